@@ -1,0 +1,372 @@
+//! What a cutter-location file says, one record a logical line.
+//!
+//! Nothing is interpreted here: numbers keep the file's units, modal words are not carried on,
+//! and a word that this crate does not know by name comes through as [`Statement::Other`].
+//! Vocabulary: ISO 3592 and ISO 4343, and the forms that NX, Creo, SolidWorks CAM, CAMWorks and NCL write.
+
+use std::borrow::Cow;
+
+/// One logical line (continuations joined) and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record<'a> {
+    /// Line of the file on which the record begins, counted from 1.
+    pub line: u64,
+    /// The record as written, without line ends; continued lines are joined by one blank.
+    pub raw: &'a [u8],
+    /// What it says.
+    pub statement: Statement,
+}
+
+impl Record<'_> {
+    /// The record's text; bytes that are not UTF-8 are shown as U+FFFD.
+    pub fn text(&self) -> Cow<'_, str> {
+        String::from_utf8_lossy(self.raw)
+    }
+}
+
+/// A position: three numbers, in the file's units.
+pub type Point = [f64; 3];
+
+/// A direction as written, of any length.
+pub type Direction = [f64; 3];
+
+/// What a record says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Statement {
+    /// `GOTO/x,y,z[,i,j,k]`: move to a point, with a tool axis if six numbers are given.
+    Goto {
+        /// The point.
+        point: Point,
+        /// The tool axis, from the tip to the holder.
+        axis: Option<Direction>,
+    },
+    /// `GODLTA/dx,dy,dz` or `GODLTA/d`.
+    Godlta(Delta),
+    /// `FROM/`: where the tool stands at the start; no move.
+    From {
+        /// The point.
+        point: Point,
+        /// The tool axis, if given.
+        axis: Option<Direction>,
+    },
+    /// `GOHOME`, `GOHOME/x,y,z[,i,j,k]`.
+    Gohome(Option<(Point, Option<Direction>)>),
+    /// `RAPID`, `RAPID/`: the next move is at rapid traverse.
+    Rapid,
+    /// `FEDRAT/`.
+    Feed(FeedRate),
+    /// `SPINDL/`.
+    Spindle(Spindle),
+    /// `COOLNT/`.
+    Coolant(Coolant),
+    /// `LOADTL/`, `LOAD/TOOL,`, `TURRET/`, `TOOLNO/`.
+    LoadTool(LoadTool),
+    /// `SELECT/TOOL,n`, `SELCTL/n`: bring the tool to the change position, no change yet.
+    SelectTool(u32),
+    /// `TLDATA/`: the cutter as NX describes it (kind word(s), then numbers).
+    ToolData {
+        /// `MILL`, `DRILL`, `TCUTTER` …, in the order written.
+        kinds: Vec<String>,
+        /// The numbers, in the order written.
+        numbers: Vec<f64>,
+    },
+    /// `CUTTER/`: the seven APT cutter parameters, as many as are given.
+    Cutter(Vec<f64>),
+    /// `UNITS/`, `UNIT/`.
+    Units(Units),
+    /// `MULTAX/ON`, `MULTAX/OFF`; plain `MULTAX` is on.
+    Multax(bool),
+    /// `MSYS/`: the frame of the operation (NX).
+    Msys {
+        /// Its origin.
+        origin: Point,
+        /// Its X direction.
+        x: Direction,
+        /// Its Y direction.
+        y: Direction,
+    },
+    /// `CSYS/` and `$$-> CSYS /`: a frame as a 3 × 4 matrix, row by row.
+    Csys([f64; 12]),
+    /// `CIRCLE/`: an arc that ends at the next `GOTO`.
+    Circle(Circle),
+    /// `NURBS/`: a spline begins; its knots and control points follow.
+    Nurbs,
+    /// `KNOT/`.
+    Knot(Vec<f64>),
+    /// `CNTRL/x,y,z[,i,j,k]`.
+    Control {
+        /// The control point.
+        point: Point,
+        /// Tool axis, if given.
+        axis: Option<Direction>,
+    },
+    /// `CYCLE/`.
+    Cycle(Cycle),
+    /// `CUTCOM/`.
+    Cutcom(Cutcom),
+    /// `ROTABL/`, `ROTATE/`, `ROTHED/`: an index move of a rotary axis.
+    Rotate(Rotate),
+    /// `TLAXIS/i,j,k`: the tool axis of the moves that follow, in the part frame.
+    ToolAxis(Direction),
+    /// `DELAY/t`, `DELAY/n,REV`, `DWELL/`.
+    Delay(Delay),
+    /// `STOP`.
+    Stop,
+    /// `OPSTOP`.
+    OptionalStop,
+    /// `TOOL PATH/name,TOOL,tool`.
+    ToolPath {
+        /// The operation's name.
+        name: String,
+        /// The tool's name, if given.
+        tool: Option<String>,
+    },
+    /// `END-OF-PATH`.
+    EndOfPath,
+    /// `PARTNO text`.
+    PartName(String),
+    /// `PPRINT text`: a remark for the operator.
+    Print(String),
+    /// `INSERT text`: a line for the NC program, letter for letter.
+    Insert(String),
+    /// `REMARK text`, `$$ text`.
+    Remark(String),
+    /// `FINI`, `END`.
+    Fini,
+    /// A word that has no statement of its own: `PAINT`, `CAMERA`, `PPWORD`, `BOX`, …
+    /// Directives (`$$-> FEATNO / 32`, `REMARK -> …`) come as their word, with `directive` set.
+    Other {
+        /// The major word in capitals.
+        word: String,
+        /// What stands behind the slash.
+        arguments: Vec<Argument>,
+        /// It stood behind `$$->` or `REMARK ->`: meant for a program, but a remark to others.
+        directive: bool,
+    },
+}
+
+/// One item behind the slash.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Argument {
+    /// A number.
+    Number(f64),
+    /// A word, or any text that is no number, as written.
+    Word(String),
+}
+
+/// `GODLTA/`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Delta {
+    /// A step in the part frame.
+    Step([f64; 3]),
+    /// A step along the tool axis.
+    AlongAxis(f64),
+}
+
+/// `FEDRAT/`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FeedRate {
+    /// The number; none in `FEDRAT/RAPID`.
+    pub value: Option<f64>,
+    /// The unit word, before or after it.
+    pub unit: Option<FeedUnit>,
+}
+
+/// Unit words of a feed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FeedUnit {
+    /// `MMPM`.
+    MillimetresPerMinute,
+    /// `IPM`.
+    InchesPerMinute,
+    /// `PERMIN`, `FPM`: the file's unit of length a minute.
+    PerMinute,
+    /// `MMPR`.
+    MillimetresPerRevolution,
+    /// `IPR`.
+    InchesPerRevolution,
+    /// `PERREV`, `FPR`.
+    PerRevolution,
+    /// `INVERS`, `INVERSE`, `FRN`: 1/min.
+    InverseTime,
+    /// `RAPID` as a feed.
+    Rapid,
+}
+
+/// `SPINDL/`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spindle {
+    /// On; a value that is not given stays as it was.
+    On {
+        /// The speed.
+        speed: Option<f64>,
+        /// Its unit, `RPM` if no word is given.
+        unit: SpindleUnit,
+        /// Sense of turning, seen from the spindle to the part.
+        sense: Option<Sense>,
+    },
+    /// `SPINDL/OFF`.
+    Off,
+    /// `SPINDL/LOCK`, `SPINDL/ORIENT`.
+    Orient,
+}
+
+/// Unit words of a spindle speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpindleUnit {
+    /// Revolutions a minute.
+    Rpm,
+    /// Metres a minute (`SMM`).
+    SurfaceMetric,
+    /// Feet a minute (`SFM`).
+    SurfaceInch,
+}
+
+/// `CLW` or `CCLW`, `CLOCKWISE` or `COUNTERCLOCKWISE`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sense {
+    /// Clockwise.
+    Clockwise,
+    /// Counter-clockwise.
+    CounterClockwise,
+}
+
+/// `COOLNT/`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coolant {
+    /// `OFF`.
+    Off,
+    /// `ON`: the last kind again.
+    On,
+    /// `FLOOD`.
+    Flood,
+    /// `MIST`.
+    Mist,
+    /// `THRU`, `THROUGH`: through the tool.
+    Through,
+    /// `AIR`.
+    Air,
+}
+
+/// `LOADTL/n[,…]`, `LOAD/TOOL,n[,…]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LoadTool {
+    /// Tool number.
+    pub number: u32,
+    /// Register of the length compensation (`ADJUST,n`, `OSETNO,n`, `OFSTNO,n`).
+    pub register: Option<u32>,
+    /// Length from the gauge line (`LENGTH,l`), in the file's units.
+    pub length: Option<f64>,
+    /// Any further words, as written.
+    pub rest: Vec<Argument>,
+}
+
+/// `UNITS/`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Units {
+    /// `MM`.
+    Millimetre,
+    /// `INCH`, `INCHES`, `IN`.
+    Inch,
+    /// `CM`.
+    Centimetre,
+    /// `M`.
+    Metre,
+    /// `FEET`, `FT`.
+    Foot,
+}
+
+/// `CIRCLE/`: centre and axis; it ends at the next `GOTO`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Circle {
+    /// The centre.
+    pub centre: Point,
+    /// The axis. Its sign gives the sense of turning (right-handed) where no word does.
+    pub axis: Direction,
+    /// The radius, if given.
+    pub radius: Option<f64>,
+    /// A sense word (CAMWorks), as written; it repeats what the axis says or contradicts it.
+    pub sense: Option<Sense>,
+    /// `TIMES,n`: whole turns in all.
+    pub turns: Option<u32>,
+}
+
+/// `CYCLE/`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cycle {
+    /// `OFF`, `NOMORE`.
+    Off,
+    /// `ON`: the last definition again; `INIT`.
+    On,
+    /// A definition; it acts at every point that follows.
+    Define(CycleDefinition),
+}
+
+/// A cycle's definition. Lengths in the file's units, along the tool axis from the programmed point,
+/// all as written (NX writes depths below the point negative, others positive).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CycleDefinition {
+    /// `DRILL`, `DEEP`, `BRKCHP`, `TAP`, `BORE`, `REAM`, `FACE`, `CSINK`, …, in capitals, in the order written
+    /// (`DRILL,DEEP` gives both).
+    pub kinds: Vec<String>,
+    /// Depth (`FEDTO`, `DEPTH`, CAMWorks' first number).
+    pub depth: Option<f64>,
+    /// Clearance above the point where the feed begins (`RAPTO`, `CLEAR`).
+    pub clearance: Option<f64>,
+    /// Return level above the point (`RTRCTO`, `RETURN`, CAMWorks' G98 level).
+    pub retract: Option<f64>,
+    /// Feed.
+    pub feed: Option<FeedRate>,
+    /// Dwell at the bottom, s.
+    pub dwell: Option<f64>,
+    /// Peck (`STEP`, `PECKING`).
+    pub step: Option<f64>,
+    /// Words and numbers that have no field.
+    pub rest: Vec<Argument>,
+}
+
+/// `CUTCOM/`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cutcom {
+    /// Side of the contour; `None` with `CUTCOM/ON`, which repeats the last.
+    pub side: Option<Side>,
+    /// `XYPLAN`, `YZPLAN`, `ZXPLAN`: index of the normal (2, 0, 1).
+    pub plane: Option<u8>,
+    /// Register, if given.
+    pub register: Option<u32>,
+}
+
+/// Side of the cutter, looking along the feed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Off.
+    Off,
+    /// Left of the contour.
+    Left,
+    /// Right of the contour.
+    Right,
+}
+
+/// An index move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rotate {
+    /// `A`, `B`, `C` from `AAXIS` …, if named.
+    pub axis: Option<char>,
+    /// The angle as written.
+    pub angle: f64,
+    /// Its unit: CAMWorks (number first, then `AAXIS,TABLE`) writes radians.
+    pub radians: bool,
+    /// A step from the present angle. CAMWorks' form is: each is undone by its negative at the operation's end.
+    pub incremental: bool,
+    /// Sense word, if given.
+    pub sense: Option<Sense>,
+}
+
+/// `DELAY/`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Delay {
+    /// Seconds.
+    Seconds(f64),
+    /// Revolutions of the spindle.
+    Revolutions(f64),
+}

@@ -1,0 +1,70 @@
+//! A dialect: one control's language.
+
+use crate::{Batch, Event, OptionSpec, Setup};
+
+/// Writes one control's language. Implemented by the author of a dialect.
+///
+/// One value serves one program, from one thread at a time; several programs may run at once, each with its own.
+pub trait Dialect: Sized + Send + 'static {
+    /// The options of `[control.<name>]` that this dialect knows.
+    fn options() -> &'static [OptionSpec] {
+        &[]
+    }
+
+    /// Called once a program, before anything else.
+    ///
+    /// # Errors
+    /// A sentence for the user, if the machine or its options cannot be served.
+    fn open(setup: &Setup<'_>) -> Result<Self, String>;
+
+    /// How numbers are written; asked once, after [`Dialect::open`].
+    fn format(&self) -> Format;
+
+    /// Appends the lines that `event` needs to `out`, each ended by `\n`.
+    /// Called once for every event, in order.
+    ///
+    /// # Errors
+    /// A sentence for the user. An event that the dialect does not know is an error, never dropped.
+    fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String>;
+}
+
+/// How a dialect writes numbers, and what its control can do. The host rounds to these before it certifies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Format {
+    /// Decimals of each axis word, in the order of [`Setup::words`].
+    pub words: Vec<u8>,
+    /// Decimals of a feed a minute.
+    pub feed: u8,
+    /// Decimals of an inverse-time feed; none if the control has no G93.
+    pub inverse_time: Option<u8>,
+    /// Decimals of a feed a revolution.
+    pub feed_per_revolution: u8,
+    /// The usual ending of a program's file name, without the dot.
+    pub extension: String,
+}
+
+/// An opened dialect as the core sees it: batches, whatever stands behind it.
+pub trait DialectSession {
+    /// How numbers are written.
+    fn format(&self) -> &Format;
+
+    /// Appends the text of all events to `out`, and for each event the length of `out` behind it to `ends`.
+    ///
+    /// # Errors
+    /// Which event could not be written, and why. What was appended before it is valid.
+    fn write_batch(
+        &mut self,
+        batch: &Batch,
+        out: &mut Vec<u8>,
+        ends: &mut Vec<usize>,
+    ) -> Result<(), WriteFault>;
+}
+
+/// An event that could not be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WriteFault {
+    /// Its place in the batch.
+    pub index: usize,
+    /// Why, as a sentence.
+    pub message: String,
+}

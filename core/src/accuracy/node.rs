@@ -1,0 +1,189 @@
+//! A node: one point of the path with the axis values chosen for it, as they will be printed.
+
+use nalgebra::Vector3;
+
+use crate::kinematics::choose::{self, Limit, OverTravel};
+use crate::kinematics::inverse::angle;
+use crate::kinematics::{Joints, MAX_AXES, Pose, Solver, Trace, Unreachable};
+use crate::machine::Machine;
+use crate::words::{WordValues, Words};
+
+/// A point of the path, solved and rounded.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// Place within its move, 0 to 1.
+    pub t: f64,
+    /// What the CL file asks for.
+    pub target: Pose,
+    /// The printed words.
+    pub words: WordValues,
+    /// The chain at the printed words.
+    pub trace: Trace,
+    /// Where the tip comes to stand: by the chain, or by the control that keeps it.
+    pub tip: Vector3<f64>,
+    /// How far the tip is off its target by rounding, mm.
+    pub tip_error: f64,
+    /// How far the tool axis is off, radians.
+    pub axis_error: f64,
+}
+
+/// Why a point has no node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Refused {
+    /// The chain cannot reach it.
+    Unreachable(Unreachable),
+    /// Every solution leaves the travel of some axis; this is the one of the nearest solution.
+    OverTravel {
+        /// Which axis, by how much.
+        over: OverTravel,
+        /// How many solutions there were.
+        tried: usize,
+    },
+    /// A solution does not stand up to the forward product.
+    Unverified {
+        /// By how much the tip misses, mm.
+        tip: f64,
+        /// By how much the tool axis misses, radians.
+        axis: f64,
+    },
+}
+
+/// Solves points one after the other.
+#[derive(Clone, Debug)]
+pub struct Placer {
+    solver: Solver,
+    words: Words,
+    /// Rotary axes with travel, in chain order.
+    rotary: Vec<Limit>,
+    linear: Vec<Limit>,
+    /// Rotary axes without travel.
+    cyclic: Vec<usize>,
+    axis_tolerance: f64,
+    tip_rounding: f64,
+    axis_rounding: f64,
+}
+
+/// Angles and positions at the very end of travel come out a rounding error beyond it.
+const SLACK: f64 = 1e-9;
+
+impl Placer {
+    /// For a machine with the tool of `solver` in it.
+    pub fn new(machine: &Machine, solver: Solver, words: Words) -> Self {
+        let limits = |rotary: bool| {
+            machine
+                .axes
+                .iter()
+                .enumerate()
+                .filter(|(_, axis)| axis.joint.rotary == rotary)
+                .filter_map(|(joint, axis)| {
+                    axis.travel.map(|[least, most]| Limit {
+                        joint,
+                        travel: [least - SLACK, most + SLACK],
+                    })
+                })
+                .collect()
+        };
+        let cyclic = (0..machine.axes.len())
+            .filter(|joint| machine.axes[*joint].travel.is_none())
+            .collect();
+        Self {
+            tip_rounding: words.rounding() + 1e-6,
+            axis_rounding: words.axis_rounding() + 1e-8,
+            solver,
+            words,
+            rotary: limits(true),
+            linear: limits(false),
+            cyclic,
+            axis_tolerance: machine.accuracy.axis_tolerance,
+        }
+    }
+
+    /// The solver in use.
+    pub fn solver(&self) -> &Solver {
+        &self.solver
+    }
+
+    /// The node of `target` nearest to `last`.
+    ///
+    /// # Errors
+    /// Why there is none.
+    #[inline]
+    pub fn place(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
+        let solutions = self
+            .solver
+            .orient(target.axis, self.axis_tolerance)
+            .map_err(Refused::Unreachable)?;
+        let choices = choose::nearest(&solutions, last, &self.rotary, &self.cyclic);
+        let mut refused = choices.over_travel().map(|over| Refused::OverTravel {
+            over,
+            tried: solutions.as_slice().len(),
+        });
+        for joints in choices.as_slice() {
+            match self.settle(target, t, *joints) {
+                Ok(node) => return Ok(node),
+                Err(fault) => refused = refused.or(Some(fault)),
+            }
+        }
+        Err(refused.unwrap_or(Refused::Unreachable(Unreachable::Linear)))
+    }
+
+    /// The node of `target` with given rotary values: the tip is put on its place, whatever they are.
+    ///
+    /// # Errors
+    /// Why there is none.
+    #[inline]
+    pub fn settle(&self, target: Pose, t: f64, mut joints: Joints) -> Result<Node, Refused> {
+        let mut words = [0.0; MAX_AXES];
+        // The rotary words first: the linear axes then make up for their rounding.
+        self.words.print_rotary(&mut joints, &mut words);
+        let turns = self.solver.chain().turns(&joints);
+        self.solver
+            .place(target.tip, &mut joints, &turns)
+            .map_err(Refused::Unreachable)?;
+        let kept = self.words.print_linear(&mut joints, target.tip, &mut words);
+        for limit in &self.linear {
+            let value = joints[limit.joint];
+            let [least, most] = limit.travel;
+            if value < least || value > most {
+                return Err(Refused::OverTravel {
+                    over: OverTravel {
+                        joint: limit.joint,
+                        value,
+                        limit: if value < least {
+                            least + SLACK
+                        } else {
+                            most - SLACK
+                        },
+                    },
+                    tried: 1,
+                });
+            }
+        }
+        let trace = self.solver.chain().trace(&joints, turns);
+        let tip = kept.unwrap_or(trace.pose.tip);
+        let node = Node {
+            t,
+            target,
+            words,
+            tip,
+            tip_error: (tip - target.tip).norm(),
+            axis_error: angle(trace.pose.axis, target.axis),
+            trace,
+        };
+        // Both the forward chain and what is left over by rounding stand behind every node.
+        let chain_error = (trace.pose.tip - target.tip).norm();
+        if chain_error <= self.tip_rounding || (kept.is_some() && chain_error <= 1e-6) {
+            Ok(node)
+        } else {
+            Err(Refused::Unverified {
+                tip: chain_error,
+                axis: node.axis_error,
+            })
+        }
+    }
+
+    /// The largest error of the tool axis that rounding can make, radians.
+    pub fn axis_rounding(&self) -> f64 {
+        self.axis_rounding
+    }
+}

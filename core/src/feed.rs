@@ -1,0 +1,174 @@
+//! How fast a block goes, and how that is written.
+//!
+//! The feed of a CL file is that of the tip against the part. It fixes the time of the block, no shorter than
+//! any axis' largest feed allows; the time is then written as the control understands it.
+
+use post_plugin::{Feed, Format};
+
+use crate::kinematics::{Joints, MAX_AXES};
+use crate::machine::{FeedLength, FeedMode, Machine, Tcp};
+use crate::program::Pace;
+use crate::words::unit_length;
+
+/// Writes feeds for one machine and dialect.
+#[derive(Clone, Debug)]
+pub struct Feeds {
+    axes: Vec<AxisFeed>,
+    tcp: Tcp,
+    inverse_time: bool,
+    length: FeedLength,
+    unit: f64,
+    feed_scale: f64,
+    inverse_scale: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct AxisFeed {
+    rotary: bool,
+    max_feed: f64,
+}
+
+/// A cut's feed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Paced {
+    /// As written.
+    pub feed: Feed,
+    /// Time of the block, minutes.
+    pub minutes: f64,
+    /// An axis' largest feed made it slower than asked for.
+    pub limited: bool,
+}
+
+impl Feeds {
+    /// Feeds of `machine` as a dialect's `format` prints them. `None` if the machine asks for inverse time
+    /// and the dialect has none.
+    pub fn new(machine: &Machine, format: &Format) -> Option<Self> {
+        let wanted = match machine.control.feed {
+            FeedMode::Auto => machine.control.tcp == Tcp::Post && format.inverse_time.is_some(),
+            FeedMode::PerMinute => false,
+            FeedMode::InverseTime => true,
+        };
+        if wanted && format.inverse_time.is_none() {
+            return None;
+        }
+        let scale = |decimals: u8| (0..decimals).fold(1.0, |scale, _| scale * 10.0);
+        Some(Self {
+            axes: machine
+                .axes
+                .iter()
+                .map(|axis| AxisFeed {
+                    rotary: axis.joint.rotary,
+                    max_feed: axis.max_feed,
+                })
+                .collect(),
+            tcp: machine.control.tcp,
+            inverse_time: wanted,
+            length: machine.control.feed_length,
+            unit: unit_length(machine.control.units),
+            feed_scale: scale(format.feed),
+            inverse_scale: scale(format.inverse_time.unwrap_or(0)),
+        })
+    }
+
+    /// The least time in which the axes can go from `from` to `to`, minutes.
+    #[inline]
+    pub fn least_time(&self, from: &Joints, to: &Joints) -> f64 {
+        let mut least: f64 = 0.0;
+        for (index, axis) in self.axes.iter().enumerate() {
+            least = least.max(libm::fabs(to[index] - from[index]) / axis.max_feed);
+        }
+        least
+    }
+
+    /// The feed of a cut of `length` mm of the tip's path, a `share` of its whole move.
+    #[inline]
+    pub fn cut(&self, pace: Pace, length: f64, share: f64, from: &Joints, to: &Joints) -> Paced {
+        let travels = self.travels(from, to);
+        let least = self.least_time(from, to);
+        let asked = match pace {
+            Pace::PerMinute(feed) if length > 1e-9 => length / feed,
+            // The tip stands still: the feed is taken along the axes, degrees as millimetres, as controls do.
+            Pace::PerMinute(feed) => travels.combined / feed,
+            Pace::InverseTime(feed) => share / feed,
+            Pace::Rapid => 0.0,
+        };
+        let minutes = asked.max(least).max(1e-9);
+        let limited = least > asked * (1.0 + 1e-9);
+        let turning = travels.rotary > 0.0;
+        let feed = if self.inverse_time && (turning || self.tcp == Tcp::Control) {
+            Feed::InverseTime(floor(1.0 / minutes, self.inverse_scale))
+        } else {
+            let per_minute = match pace {
+                // No detour over lengths where the feed of the CL file can stand as it is.
+                Pace::PerMinute(feed)
+                    if !limited && length > 1e-9 && (!turning || self.tcp == Tcp::Control) =>
+                {
+                    feed / self.unit
+                }
+                _ => self.measured(&travels, length) / minutes,
+            };
+            Feed::PerMinute(floor(per_minute, self.feed_scale))
+        };
+        Paced {
+            feed,
+            minutes,
+            limited,
+        }
+    }
+
+    /// The length that the control will divide by F, in the units of the program or degrees.
+    fn measured(&self, travels: &Travels, tip: f64) -> f64 {
+        let tip = tip / self.unit;
+        let linear = travels.linear / self.unit;
+        match (self.tcp, self.length) {
+            (Tcp::Control, _) if tip > 1e-9 => tip,
+            (Tcp::Control, _) => travels.rotary_longest,
+            (Tcp::Post, FeedLength::Linear) if linear > 1e-9 => linear,
+            (Tcp::Post, FeedLength::Linear) => travels.rotary,
+            (Tcp::Post, FeedLength::Combined) => {
+                libm::sqrt(linear * linear + travels.rotary * travels.rotary)
+            }
+            (Tcp::Post, FeedLength::Longest) => {
+                (travels.linear_longest / self.unit).max(travels.rotary_longest)
+            }
+        }
+    }
+
+    #[inline]
+    fn travels(&self, from: &Joints, to: &Joints) -> Travels {
+        let mut travels = Travels::default();
+        let (mut linear, mut rotary) = (0.0, 0.0);
+        for (index, axis) in self.axes.iter().enumerate().take(MAX_AXES) {
+            let travel = libm::fabs(to[index] - from[index]);
+            if axis.rotary {
+                let degrees = travel.to_degrees();
+                rotary += degrees * degrees;
+                travels.rotary_longest = travels.rotary_longest.max(degrees);
+            } else {
+                linear += travel * travel;
+                travels.linear_longest = travels.linear_longest.max(travel);
+            }
+        }
+        travels.combined = libm::sqrt(linear + rotary);
+        travels.linear = libm::sqrt(linear);
+        travels.rotary = libm::sqrt(rotary);
+        travels
+    }
+}
+
+/// How far the axes go in a block: mm and degrees.
+#[derive(Clone, Copy, Debug, Default)]
+struct Travels {
+    linear: f64,
+    rotary: f64,
+    combined: f64,
+    linear_longest: f64,
+    rotary_longest: f64,
+}
+
+/// The largest printed number not above `value`; a feed below the least printed number becomes that.
+#[inline]
+fn floor(value: f64, scale: f64) -> f64 {
+    // A value that is a printed number but for its last bits is that number.
+    libm::floor(value * scale + 1e-6).max(1.0) / scale
+}

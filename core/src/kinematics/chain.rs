@@ -1,0 +1,203 @@
+//! The kinematic chain: joints from the workpiece to the tool, and the forward product.
+//!
+//! `T(q) = exp(ξ1·q1) … exp(ξn·qn)·T0`, every joint given in the machine frame with all axes at zero.
+//! Directions are those of the tool as seen from the part (ISO 841), so one product with one sign serves
+//! tables and heads alike. Lengths in mm, angles in radians.
+
+use nalgebra::Vector3;
+
+/// The longest chain; working values are arrays of this length, so that no point allocates.
+pub const MAX_AXES: usize = 8;
+
+/// Axis values in chain order: mm for linear axes, radians for rotary ones. Unused places are zero.
+pub type Joints = [f64; MAX_AXES];
+
+/// One axis of the chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joint {
+    /// Turns about a line; else slides along a direction.
+    pub rotary: bool,
+    /// Unit vector, machine frame, all axes at zero; already turned round for a `reversed` axis.
+    pub direction: Vector3<f64>,
+    /// Any point of a rotary axis' line, mm, machine frame, all axes at zero.
+    pub point: Vector3<f64>,
+}
+
+/// Tip and tool axis, seen from the part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Tip, mm, part frame.
+    pub tip: Vector3<f64>,
+    /// Tool axis, unit vector from the tip to the holder, part frame.
+    pub axis: Vector3<f64>,
+}
+
+/// Sine and cosine of every rotary joint, so that a set of angles is evaluated once.
+#[derive(Clone, Copy, Debug)]
+pub struct Turns {
+    sines: Joints,
+    cosines: Joints,
+}
+
+/// The forward product with what the certificate needs of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Trace {
+    /// The pose reached.
+    pub pose: Pose,
+    /// The axis values it is reached with.
+    pub joints: Joints,
+    /// Their sines and cosines.
+    pub turns: Turns,
+    /// For each rotary joint, the tip relative to the joint's point, before that joint turns it, mm.
+    pub arms: [Vector3<f64>; MAX_AXES],
+    /// For each rotary joint, the tool axis before that joint turns it.
+    pub axes: [Vector3<f64>; MAX_AXES],
+}
+
+/// A chain with a tool in it: all that kinematics needs to know of a machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// From the workpiece to the tool.
+    joints: Vec<Joint>,
+    /// Where the part origin sits with all axes at zero, mm, machine frame.
+    mount: Vector3<f64>,
+    /// Tip with all axes at zero, mm, machine frame.
+    tip: Vector3<f64>,
+    /// Tool axis with all axes at zero, machine frame, unit vector.
+    axis: Vector3<f64>,
+}
+
+/// `vector` turned about the unit vector `k` (Rodrigues' formula).
+#[inline]
+pub(crate) fn turn(vector: Vector3<f64>, k: Vector3<f64>, sine: f64, cosine: f64) -> Vector3<f64> {
+    vector * cosine + k.cross(&vector) * sine + k * (k.dot(&vector) * (1.0 - cosine))
+}
+
+impl Turns {
+    /// Sine and cosine of joint `index`.
+    #[inline]
+    pub(crate) fn of(&self, index: usize) -> (f64, f64) {
+        (self.sines[index], self.cosines[index])
+    }
+}
+
+impl Chain {
+    /// A chain of at most [`MAX_AXES`] joints. `tip` and `axis` are those of the tool in use with all axes at zero.
+    pub fn new(
+        joints: Vec<Joint>,
+        mount: Vector3<f64>,
+        tip: Vector3<f64>,
+        axis: Vector3<f64>,
+    ) -> Self {
+        debug_assert!(joints.len() <= MAX_AXES);
+        Self {
+            joints,
+            mount,
+            tip,
+            axis: axis.normalize(),
+        }
+    }
+
+    /// The joints, from the workpiece to the tool.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Where the part origin sits with all axes at zero, mm, machine frame.
+    pub fn mount(&self) -> Vector3<f64> {
+        self.mount
+    }
+
+    /// Tip with all axes at zero, mm, machine frame.
+    pub fn tip(&self) -> Vector3<f64> {
+        self.tip
+    }
+
+    /// Tool axis with all axes at zero, machine frame.
+    pub fn axis(&self) -> Vector3<f64> {
+        self.axis
+    }
+
+    /// Sines and cosines of the rotary values of `joints`.
+    #[inline]
+    pub fn turns(&self, joints: &Joints) -> Turns {
+        let mut turns = Turns {
+            sines: [0.0; MAX_AXES],
+            cosines: [1.0; MAX_AXES],
+        };
+        for (index, joint) in self.joints.iter().enumerate() {
+            if joint.rotary {
+                (turns.sines[index], turns.cosines[index]) = libm::sincos(joints[index]);
+            }
+        }
+        turns
+    }
+
+    /// Where the tool stands, seen from the part.
+    pub fn forward(&self, joints: &Joints) -> Pose {
+        self.trace(joints, self.turns(joints)).pose
+    }
+
+    /// [`Chain::forward`] with `turns` known, and what stands between.
+    #[inline]
+    pub fn trace(&self, joints: &Joints, turns: Turns) -> Trace {
+        let mut tip = self.tip;
+        let mut axis = self.axis;
+        let mut arms = [Vector3::zeros(); MAX_AXES];
+        let mut axes = [Vector3::zeros(); MAX_AXES];
+        for (index, joint) in self.joints.iter().enumerate().rev() {
+            if joint.rotary {
+                let (sine, cosine) = turns.of(index);
+                let arm = tip - joint.point;
+                arms[index] = arm;
+                axes[index] = axis;
+                tip = joint.point + turn(arm, joint.direction, sine, cosine);
+                axis = turn(axis, joint.direction, sine, cosine);
+            } else {
+                tip += joint.direction * joints[index];
+            }
+        }
+        Trace {
+            pose: Pose {
+                tip: tip - self.mount,
+                axis,
+            },
+            joints: *joints,
+            turns,
+            arms,
+            axes,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nutating head of a published layout: B about (0, 1, 1) through the pivot; B 180 lays the tool flat.
+    #[test]
+    fn nutating_head_at_180_degrees() {
+        let joint = |rotary, direction: [f64; 3], point: [f64; 3]| Joint {
+            rotary,
+            direction: Vector3::from(direction).normalize(),
+            point: Vector3::from(point),
+        };
+        let chain = Chain::new(
+            vec![
+                joint(true, [0.0, 0.0, 1.0], [0.0; 3]),
+                joint(false, [1.0, 0.0, 0.0], [0.0; 3]),
+                joint(false, [0.0, 1.0, 0.0], [0.0; 3]),
+                joint(false, [0.0, 0.0, 1.0], [0.0; 3]),
+                joint(true, [0.0, 1.0, 1.0], [0.0, 0.0, 680.0]),
+            ],
+            Vector3::zeros(),
+            Vector3::new(0.0, 0.0, 500.0),
+            Vector3::z(),
+        );
+        let mut joints = [0.0; MAX_AXES];
+        joints[4] = std::f64::consts::PI;
+        let pose = chain.forward(&joints);
+        assert!((pose.axis - Vector3::y()).norm() < 1e-12);
+        assert!((pose.tip - Vector3::new(0.0, -180.0, 680.0)).norm() < 1e-9);
+    }
+}

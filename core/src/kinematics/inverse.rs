@@ -1,0 +1,465 @@
+//! The inverse in closed form, for zero, one and two free rotary axes in any direction and on any line.
+//!
+//! Only the rotary axes turn the tool axis, so they come first; the linear axes then follow from a 3 × 3
+//! system. With two rotary axes k1 (nearer the workpiece) and k2, tool axis a at zero and wanted axis u,
+//! the vector z between the two turns satisfies k1·z = k1·u, k2·z = k2·a, |z| = 1; k2 turns a into z and
+//! k1 turns z into u (the second Paden–Kahan subproblem, with the axes on lines of any kind since
+//! directions alone matter here).
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns, turn};
+
+/// Where the wanted axis lies closer to k1 than this, k1 turns the tool axis by nothing that a CL file
+/// with seven decimals could mean, and its angle is free: radians.
+pub const POLE: f64 = 1e-6;
+
+/// How far a returned solution may miss the pose when it is put through the forward product: mm per metre
+/// of reach, and radians.
+const VERIFIED: f64 = 1e-9;
+
+/// Up to two sets of rotary angles for one tool axis.
+#[derive(Clone, Copy, Debug)]
+pub struct RotarySolutions {
+    sets: [RotarySet; 2],
+    count: usize,
+}
+
+/// One set of rotary angles.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RotarySet {
+    /// The angles, radians, in -π to π; places of linear axes are zero.
+    pub joints: Joints,
+    /// A joint whose angle is free here (on the pole, or an axis that does not turn the tool): keep its last value.
+    pub free: Option<usize>,
+}
+
+/// Why a pose cannot be reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Unreachable {
+    /// No rotary angles give the tool axis; the nearest orientation misses by this angle.
+    Axis {
+        /// Radians.
+        miss: f64,
+    },
+    /// The linear axes span no volume at these angles.
+    Linear,
+}
+
+/// How a chain is solved: prepared once a machine, tool and index position.
+#[derive(Clone, Debug)]
+pub struct Solver {
+    chain: Chain,
+    orientation: Orientation,
+    /// Values of the rotary axes that are not free (indexed), radians.
+    held: Joints,
+    linear: Linear,
+}
+
+/// The rotary part.
+#[derive(Clone, Debug)]
+enum Orientation {
+    /// No free rotary axis: the tool axis is constant.
+    Fixed { axis: Vector3<f64> },
+    /// One free rotary axis.
+    One {
+        joint: usize,
+        before: Matrix3<f64>,
+        k: Vector3<f64>,
+        a: Vector3<f64>,
+    },
+    /// Two. Directions are taken as they stand behind the held axes in front of them.
+    Two {
+        joints: [usize; 2],
+        /// Inverse of the held turns in front of k1.
+        before: Matrix3<f64>,
+        k1: Vector3<f64>,
+        k2: Vector3<f64>,
+        a: Vector3<f64>,
+        /// k1·k2 and 1 - (k1·k2)².
+        dot: f64,
+        sine_squared: f64,
+        cross: Vector3<f64>,
+    },
+}
+
+/// The linear part: which joints, and where the rotary ones stand between them.
+#[derive(Clone, Debug)]
+struct Linear {
+    joints: [usize; 3],
+    /// Joints in front of the first linear one, and behind the last.
+    first: usize,
+    last: usize,
+    /// Inverse of the three directions, if no rotary axis stands between them.
+    inverse: Option<Matrix3<f64>>,
+}
+
+/// What a chain lacks for a closed form.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NoClosedForm {
+    /// Not three linear axes.
+    LinearAxes {
+        /// How many there are.
+        count: usize,
+    },
+    /// The three linear directions lie in one plane.
+    FlatLinearAxes,
+    /// More than two free rotary axes.
+    RotaryAxes {
+        /// Their places in the chain.
+        joints: Vec<usize>,
+    },
+    /// Two free rotary axes are parallel.
+    Parallel {
+        /// Their places in the chain.
+        joints: [usize; 2],
+    },
+}
+
+impl RotarySolutions {
+    const NONE: Self = Self {
+        sets: [RotarySet {
+            joints: [0.0; MAX_AXES],
+            free: None,
+        }; 2],
+        count: 0,
+    };
+
+    fn push(&mut self, set: RotarySet) {
+        self.sets[self.count] = set;
+        self.count += 1;
+    }
+
+    /// The sets; where two exist, the one with the larger angle of the axis nearer the tool comes first.
+    pub fn as_slice(&self) -> &[RotarySet] {
+        &self.sets[..self.count]
+    }
+}
+
+impl Solver {
+    /// Prepares a chain. `free` tells which rotary joints move in a cut; the others stand at `held` (radians).
+    ///
+    /// # Errors
+    /// What the chain lacks for a closed form.
+    pub fn new(chain: Chain, free: &[usize], held: Joints) -> Result<Self, NoClosedForm> {
+        let orientation = Orientation::new(&chain, free, &held)?;
+        let linear = Linear::new(&chain)?;
+        Ok(Self {
+            chain,
+            orientation,
+            held,
+            linear,
+        })
+    }
+
+    /// The chain that is solved.
+    pub fn chain(&self) -> &Chain {
+        &self.chain
+    }
+
+    /// All sets of rotary angles that give the tool axis `u` (unit vector, part frame) within `tolerance`
+    /// (radians; it matters only where fewer than two free axes make most axes unreachable).
+    ///
+    /// # Errors
+    /// By how much the nearest orientation misses.
+    #[inline]
+    pub fn orient(&self, u: Vector3<f64>, tolerance: f64) -> Result<RotarySolutions, Unreachable> {
+        let mut found = RotarySolutions::NONE;
+        match &self.orientation {
+            Orientation::Fixed { axis } => {
+                let miss = angle(*axis, u);
+                if miss > tolerance {
+                    return Err(Unreachable::Axis { miss });
+                }
+                found.push(RotarySet {
+                    joints: self.held,
+                    free: None,
+                });
+            }
+            Orientation::One {
+                joint,
+                before,
+                k,
+                a,
+            } => {
+                let u = before * u;
+                let turned = k.cross(a).norm();
+                if turned < POLE || k.cross(&u).norm() < POLE {
+                    let miss = angle(*a, u);
+                    if miss > tolerance {
+                        return Err(Unreachable::Axis { miss });
+                    }
+                    found.push(RotarySet {
+                        joints: self.held,
+                        free: Some(*joint),
+                    });
+                } else {
+                    let miss = libm::fabs(angle(*k, u) - angle(*k, *a));
+                    if miss > tolerance {
+                        return Err(Unreachable::Axis { miss });
+                    }
+                    let mut joints = self.held;
+                    joints[*joint] = angle_about(*k, *a, u);
+                    found.push(RotarySet { joints, free: None });
+                }
+            }
+            Orientation::Two {
+                joints: [first, second],
+                before,
+                k1,
+                k2,
+                a,
+                dot,
+                sine_squared,
+                cross,
+            } => {
+                let u = before * u;
+                let (m1, m2) = (k1.dot(&u), k2.dot(a));
+                let alpha = (m1 - dot * m2) / sine_squared;
+                let beta = (m2 - dot * m1) / sine_squared;
+                let square = 1.0 - alpha * alpha - beta * beta - 2.0 * alpha * beta * dot;
+                // A tangent solution may come out a rounding error below zero.
+                if square < -POLE * POLE {
+                    let miss = two_axis_miss(*k1, *k2, *a, u);
+                    if miss > POLE {
+                        return Err(Unreachable::Axis { miss });
+                    }
+                }
+                let gamma = libm::sqrt(square.max(0.0) / sine_squared);
+                let plane = k1 * alpha + k2 * beta;
+                let pole = k1.cross(&u).norm_squared() < POLE * POLE;
+                for gamma in [gamma, -gamma] {
+                    let z = plane + cross * gamma;
+                    let mut joints = self.held;
+                    joints[*second] = angle_about(*k2, *a, z);
+                    if !pole {
+                        joints[*first] = angle_about(*k1, z, u);
+                    }
+                    found.push(RotarySet {
+                        joints,
+                        free: pole.then_some(*first),
+                    });
+                    // Both roots are one: at the pole of a k2 that meets it, or at the edge of reach.
+                    if gamma == 0.0 || (pole && gamma * gamma * sine_squared < POLE * POLE) {
+                        break;
+                    }
+                }
+                if found.count == 2 && found.sets[0].joints[*second] < found.sets[1].joints[*second]
+                {
+                    found.sets.swap(0, 1);
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// Puts the linear axes of `joints` where the tip stands on `tip` (mm, part frame), the rotary ones
+    /// being where `joints` and `turns` have them.
+    ///
+    /// # Errors
+    /// [`Unreachable::Linear`] if the linear axes span no volume at these angles.
+    #[inline]
+    pub fn place(
+        &self,
+        tip: Vector3<f64>,
+        joints: &mut Joints,
+        turns: &Turns,
+    ) -> Result<(), Unreachable> {
+        let chain = self.chain.joints();
+        let linear = &self.linear;
+        // The target, taken through the rotary joints in front of the first linear one …
+        let mut target = tip + self.chain.mount();
+        for index in 0..linear.first {
+            let joint = &chain[index];
+            let (sine, cosine) = turns.of(index);
+            target = joint.point + turn(target - joint.point, joint.direction, -sine, cosine);
+        }
+        // … and the tip through those behind the last.
+        let mut tip = self.chain.tip();
+        for index in (linear.last + 1..chain.len()).rev() {
+            let joint = &chain[index];
+            let (sine, cosine) = turns.of(index);
+            tip = joint.point + turn(tip - joint.point, joint.direction, sine, cosine);
+        }
+        let values = if let Some(inverse) = &linear.inverse {
+            inverse * (target - tip)
+        } else {
+            let mut columns = [Vector3::zeros(); 3];
+            let mut filled = 3;
+            for index in (linear.first..=linear.last).rev() {
+                let joint = &chain[index];
+                if joint.rotary {
+                    let (sine, cosine) = turns.of(index);
+                    tip = joint.point + turn(tip - joint.point, joint.direction, sine, cosine);
+                    for column in &mut columns[filled..] {
+                        *column = turn(*column, joint.direction, sine, cosine);
+                    }
+                } else {
+                    filled -= 1;
+                    columns[filled] = joint.direction;
+                }
+            }
+            let matrix = Matrix3::from_columns(&columns);
+            if libm::fabs(matrix.determinant()) < 1e-6 {
+                return Err(Unreachable::Linear);
+            }
+            matrix.try_inverse().ok_or(Unreachable::Linear)? * (target - tip)
+        };
+        for (value, joint) in values.iter().zip(linear.joints) {
+            joints[joint] = *value;
+        }
+        Ok(())
+    }
+
+    /// All solutions for a pose, each verified by the forward product; a free angle is put at `last`.
+    /// Angles lie in -π to π; turns and travel are for the stage that chooses.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn inverse(
+        &self,
+        pose: &Pose,
+        last: &Joints,
+        tolerance: f64,
+    ) -> Result<Vec<Joints>, Unreachable> {
+        let mut solutions = Vec::with_capacity(2);
+        let mut fault = Unreachable::Linear;
+        for set in self.orient(pose.axis, tolerance)?.as_slice() {
+            let mut joints = set.joints;
+            if let Some(free) = set.free {
+                joints[free] = last[free];
+            }
+            let turns = self.chain.turns(&joints);
+            if let Err(unreachable) = self.place(pose.tip, &mut joints, &turns) {
+                fault = unreachable;
+                continue;
+            }
+            let reached = self.chain.trace(&joints, turns).pose;
+            let reach = 1000.0 + pose.tip.norm() + joints.iter().fold(0.0, |sum, q| sum + q.abs());
+            let allowed = if set.free.is_some() {
+                2.0 * POLE
+            } else {
+                VERIFIED
+            };
+            if (reached.tip - pose.tip).norm() < VERIFIED * reach / 1000.0
+                && angle(reached.axis, pose.axis) < allowed.max(tolerance)
+            {
+                solutions.push(joints);
+            }
+        }
+        if solutions.is_empty() {
+            return Err(fault);
+        }
+        Ok(solutions)
+    }
+}
+
+impl Orientation {
+    fn new(chain: &Chain, free: &[usize], held: &Joints) -> Result<Self, NoClosedForm> {
+        // Rotation of the held joints in `range`, as one matrix.
+        let hold = |range: std::ops::Range<usize>| {
+            let turns = chain.turns(held);
+            let mut columns = [Vector3::x(), Vector3::y(), Vector3::z()];
+            for index in range.rev() {
+                let joint = &chain.joints()[index];
+                if joint.rotary && !free.contains(&index) {
+                    let (sine, cosine) = turns.of(index);
+                    for column in &mut columns {
+                        *column = turn(*column, joint.direction, sine, cosine);
+                    }
+                }
+            }
+            Matrix3::from_columns(&columns)
+        };
+        let count = chain.joints().len();
+        match *free {
+            [] => Ok(Self::Fixed {
+                axis: hold(0..count) * chain.axis(),
+            }),
+            [joint] => Ok(Self::One {
+                joint,
+                before: hold(0..joint).transpose(),
+                k: chain.joints()[joint].direction,
+                a: hold(joint + 1..count) * chain.axis(),
+            }),
+            [first, second] => {
+                let between = hold(first + 1..second);
+                let k1 = chain.joints()[first].direction;
+                let k2 = between * chain.joints()[second].direction;
+                let cross = k1.cross(&k2);
+                let sine_squared = cross.norm_squared();
+                if sine_squared < 1e-6 {
+                    return Err(NoClosedForm::Parallel {
+                        joints: [first, second],
+                    });
+                }
+                Ok(Self::Two {
+                    joints: [first, second],
+                    before: hold(0..first).transpose(),
+                    k1,
+                    k2,
+                    a: between * hold(second + 1..count) * chain.axis(),
+                    dot: k1.dot(&k2),
+                    sine_squared,
+                    cross,
+                })
+            }
+            _ => Err(NoClosedForm::RotaryAxes {
+                joints: free.to_vec(),
+            }),
+        }
+    }
+}
+
+impl Linear {
+    fn new(chain: &Chain) -> Result<Self, NoClosedForm> {
+        let places: Vec<usize> = (0..chain.joints().len())
+            .filter(|index| !chain.joints()[*index].rotary)
+            .collect();
+        let joints: [usize; 3] =
+            places
+                .as_slice()
+                .try_into()
+                .map_err(|_| NoClosedForm::LinearAxes {
+                    count: places.len(),
+                })?;
+        let columns = joints.map(|index| chain.joints()[index].direction);
+        let between = chain.joints()[joints[0]..joints[2]]
+            .iter()
+            .any(|joint| joint.rotary);
+        let matrix = Matrix3::from_columns(&columns);
+        if !between && libm::fabs(matrix.determinant()) < 1e-6 {
+            return Err(NoClosedForm::FlatLinearAxes);
+        }
+        let inverse = if between { None } else { matrix.try_inverse() };
+        Ok(Self {
+            joints,
+            first: joints[0],
+            last: joints[2],
+            inverse,
+        })
+    }
+}
+
+/// Angle between two unit vectors, radians, exact for small angles too.
+pub fn angle(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
+    libm::atan2(a.cross(&b).norm(), a.dot(&b))
+}
+
+/// The angle about the unit vector `k` that turns the part of `from` across `k` into that of `to`.
+#[inline]
+fn angle_about(k: Vector3<f64>, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
+    let sine = k.dot(&from.cross(&to));
+    let cosine = from.dot(&to) - k.dot(&from) * k.dot(&to);
+    libm::atan2(sine, cosine)
+}
+
+/// By how much the nearest orientation of two rotary axes misses `u`: k2 keeps the tool axis on a cone
+/// about itself, and k1 sweeps that cone over a band of latitudes about k1.
+fn two_axis_miss(k1: Vector3<f64>, k2: Vector3<f64>, a: Vector3<f64>, u: Vector3<f64>) -> f64 {
+    let (tilt, cone, latitude) = (angle(k1, k2), angle(k2, a), angle(k1, u));
+    let least = libm::fabs(tilt - cone);
+    let sum = tilt + cone;
+    let most = sum.min(2.0 * std::f64::consts::PI - sum);
+    (least - latitude).max(latitude - most).max(0.0)
+}

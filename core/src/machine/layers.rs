@@ -1,0 +1,251 @@
+//! Layers of a machine file: what it extends, the file itself, and the settings of one run.
+//!
+//! Every layer is TOML. Later layers win, key by key. Spans are offsets into all layers laid end to end,
+//! so that a finding in the merged table still points into the file it came from.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+use crate::diagnostic::{Diagnostic, Place};
+
+/// A text and the name that the user knows it by.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// File name, or `--set`.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// A file that extends another may do so over so many steps.
+const DEPTH: usize = 8;
+
+/// All texts of a machine: the file, what it extends, and the settings, in that order.
+#[derive(Debug)]
+pub(crate) struct Sources {
+    sources: Vec<(usize, Source)>,
+    /// So many of them are files; the rest are settings.
+    files: usize,
+}
+
+impl Sources {
+    /// Collects the file, what it extends (found by `find`), and `settings` (`key=value`).
+    ///
+    /// # Errors
+    /// A file that is not found or extends itself, a setting without a value.
+    pub(crate) fn collect(
+        source: Source,
+        settings: &[String],
+        find: &mut dyn FnMut(&str) -> Result<Source, String>,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let mut all = Self {
+            sources: vec![(0, source)],
+            files: 1,
+        };
+        while let Some(name) = all.extends() {
+            let place = all.place(name.span());
+            let fault = |message: String| {
+                vec![Diagnostic::error("machine-extends", message).at(place.clone())]
+            };
+            if all.files > DEPTH {
+                return Err(fault(format!(
+                    "more than {DEPTH} machines extend one another: do they go in a circle?"
+                )));
+            }
+            let parent = find(name.get_ref()).map_err(fault)?;
+            all.push(parent);
+            all.files += 1;
+        }
+        for setting in settings {
+            let text = setting_text(setting)?;
+            all.push(Source {
+                name: "--set".to_owned(),
+                text,
+            });
+        }
+        Ok(all)
+    }
+
+    fn push(&mut self, source: Source) {
+        // One more, so that a span at the very end of a text is not taken for the next one's start.
+        let start = self
+            .sources
+            .last()
+            .map_or(0, |(start, last)| start + last.text.len() + 1);
+        self.sources.push((start, source));
+    }
+
+    /// What the last file extends; a file with syntax errors extends nothing here and is refused later.
+    fn extends(&self) -> Option<Spanned<String>> {
+        let (start, source) = self.sources.last()?;
+        let table = DeTable::parse(&source.text).ok()?.into_inner();
+        let value = table.get("extends")?;
+        let name = value.get_ref().as_str()?.to_owned();
+        Some(Spanned::new(shifted(value.span(), *start), name))
+    }
+
+    /// The merged table.
+    ///
+    /// # Errors
+    /// All syntax errors of all layers, and settings of parameters that do not exist.
+    pub(crate) fn merge(&self) -> Result<Spanned<DeTable<'_>>, Vec<Diagnostic>> {
+        let mut errors = Vec::new();
+        let mut merged = DeTable::new();
+        let files = self.sources[..self.files].iter().rev();
+        let settings = &self.sources[self.files..];
+        for (start, source) in files.chain(settings) {
+            let (table, faults) = DeTable::parse_recoverable(&source.text);
+            errors.extend(faults.iter().map(|fault| {
+                let place = fault
+                    .span()
+                    .and_then(|span| self.place(shifted(span, *start)));
+                Diagnostic::error("machine-syntax", fault.message()).at(place)
+            }));
+            let layer = moved_table(table.into_inner(), *start);
+            if source.name == "--set"
+                && let Err(error) = check_parameters(&layer, &merged)
+            {
+                errors.push(error);
+            }
+            overlay(&mut merged, layer);
+        }
+        merged.remove("extends");
+        if errors.is_empty() {
+            Ok(Spanned::new(0..0, merged))
+        } else {
+            Err(errors)
+        }
+    }
+
+    /// The line that a span begins in.
+    pub(crate) fn place(&self, span: Range<usize>) -> Option<Place> {
+        let (start, source) = self
+            .sources
+            .iter()
+            .rev()
+            .find(|(start, _)| *start <= span.start)?;
+        let text = &source.text;
+        let at = (span.start - start).min(text.len());
+        let begin = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+        let end = text[at..]
+            .find('\n')
+            .map_or(text.len(), |newline| at + newline);
+        let line = text[begin..end].trim_end_matches('\r');
+        let from = (at - begin).min(line.len());
+        let to = span
+            .end
+            .saturating_sub(start + begin)
+            .clamp(from, line.len());
+        Some(Place {
+            file: source.name.clone(),
+            line: 1 + text[..begin].matches('\n').count() as u64,
+            text: line.to_owned(),
+            span: from..to,
+        })
+    }
+}
+
+/// `Lm=312` sets a parameter, `accuracy.tolerance=0.001` any key; a value that is no TOML is text.
+fn setting_text(setting: &str) -> Result<String, Vec<Diagnostic>> {
+    let Some((key, value)) = setting.split_once('=') else {
+        return Err(vec![
+            Diagnostic::error("setting", format!("--set {setting}: no value"))
+                .help("write --set NAME=VALUE"),
+        ]);
+    };
+    let (key, value) = (key.trim(), value.trim());
+    let key = if key.contains('.') {
+        key.to_owned()
+    } else {
+        format!("parameters.{key}")
+    };
+    let plain = format!("{key} = {value}");
+    if DeTable::parse(&plain).is_ok() {
+        Ok(plain)
+    } else {
+        Ok(format!("{key} = {value:?}"))
+    }
+}
+
+/// Settings of parameters must meet parameters that the machine has: a misspelt one would be lost.
+fn check_parameters(layer: &DeTable<'_>, merged: &DeTable<'_>) -> Result<(), Diagnostic> {
+    let parameters = |table: &DeTable<'_>| -> Vec<String> {
+        table
+            .get("parameters")
+            .and_then(|value| value.get_ref().as_table())
+            .into_iter()
+            .flat_map(|table| table.keys().map(|key| key.get_ref().to_string()))
+            .collect()
+    };
+    let known = parameters(merged);
+    for name in parameters(layer) {
+        if known.contains(&name) {
+            continue;
+        }
+        let help = if known.is_empty() {
+            "it has no [parameters]; any other key is set by its full name, such as accuracy.tolerance=0.001"
+                .to_owned()
+        } else {
+            format!(
+                "its parameters are {}; any other key is set by its full name, such as accuracy.tolerance=0.001",
+                known.join(", ")
+            )
+        };
+        return Err(Diagnostic::error(
+            "setting",
+            format!("--set {name}: the machine has no parameter of that name"),
+        )
+        .help(help));
+    }
+    Ok(())
+}
+
+fn overlay<'i>(base: &mut DeTable<'i>, layer: DeTable<'i>) {
+    for (key, value) in layer {
+        let name = key.get_ref().to_string();
+        let span = value.span();
+        match (base.get_mut(name.as_str()), value.into_inner()) {
+            (Some(old), DeValue::Table(table)) if old.get_ref().is_table() => {
+                if let DeValue::Table(old) = old.get_mut() {
+                    overlay(old, table);
+                }
+            }
+            (_, value) => {
+                base.remove(name.as_str());
+                base.insert(key, Spanned::new(span, value));
+            }
+        }
+    }
+}
+
+fn shifted(span: Range<usize>, start: usize) -> Range<usize> {
+    span.start + start..span.end + start
+}
+
+/// The table with its spans counted from `start`.
+fn moved_table(table: DeTable<'_>, start: usize) -> DeTable<'_> {
+    table
+        .into_iter()
+        .map(|(key, value)| {
+            let span = shifted(key.span(), start);
+            (Spanned::new(span, key.into_inner()), moved(value, start))
+        })
+        .collect()
+}
+
+fn moved(value: Spanned<DeValue<'_>>, start: usize) -> Spanned<DeValue<'_>> {
+    let span = shifted(value.span(), start);
+    let inner = match value.into_inner() {
+        DeValue::Array(array) => DeValue::Array(
+            array
+                .into_iter()
+                .map(|item| moved(item, start))
+                .collect::<DeArray<'_>>(),
+        ),
+        DeValue::Table(table) => DeValue::Table(moved_table(table, start)),
+        scalar => scalar,
+    };
+    Spanned::new(span, inner)
+}

@@ -1,0 +1,654 @@
+//! The path: takes steps, chooses axis values, puts points in, paces blocks and hands events to the dialect.
+
+use post_plugin::{Batch, Compensation, DialectSession, Event, Format, ModelSession};
+
+use crate::accuracy::{Linearise, Node, Piece, Placer, Refused, Stuck, Tolerances};
+use crate::diagnostic::{Diagnostic, Place};
+use crate::feed::Feeds;
+use crate::kinematics::{Joints, MAX_AXES, NoClosedForm, Pose, Unreachable};
+use crate::machine::{Machine, Tcp, ToolLength};
+use crate::program::{Motion, Pace, Step, Tool};
+use crate::report::Deviation;
+use crate::words::Words;
+
+/// Where the text of the program goes.
+pub trait Output {
+    /// Takes text.
+    ///
+    /// # Errors
+    /// Why it cannot.
+    fn write(&mut self, text: &[u8]) -> Result<(), String>;
+}
+
+/// Events are handed over in runs of this length: from some dozens on, the plugin boundary costs nothing.
+const BATCH: usize = 256;
+
+/// Everything between the steps of a program and its text.
+pub struct Path<'a> {
+    machine: &'a Machine,
+    dialect: &'a mut dyn DialectSession,
+    model: &'a mut dyn ModelSession,
+    output: &'a mut dyn Output,
+    format: Format,
+    placer: Placer,
+    feeds: Feeds,
+    linearise: Linearise,
+    tool_length: Option<f64>,
+    /// The tool's length matters and nobody gave it.
+    length_unknown: bool,
+    /// Where the tool stands; none before the first position.
+    last: Option<Node>,
+    /// Axis values that the next solution should be near to.
+    near: Joints,
+    /// Length compensation or TCP is in force.
+    positioned: bool,
+    compensating: bool,
+    batch: Batch,
+    text: Vec<u8>,
+    ends: Vec<usize>,
+    tally: Tally,
+    /// Where the largest deviations stand in the present batch: event index.
+    marks: [Option<usize>; 3],
+    findings: Vec<Diagnostic>,
+    /// Something is wrong: no more text is made, but checking goes on.
+    failed: bool,
+}
+
+/// Sums and extremes for the report.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    /// Moves taken.
+    pub moves: u64,
+    /// Blocks with a motion.
+    pub blocks: u64,
+    /// Points put in.
+    pub points_added: u64,
+    /// Cuts: tip (mm), tool axis (radians); rapids: tip (mm).
+    pub deviations: [Deviation; 3],
+    /// Least axis values.
+    pub least: Joints,
+    /// Largest axis values.
+    pub most: Joints,
+    /// Minutes of cuts.
+    pub cutting: f64,
+    /// Minutes of rapids and dwells.
+    pub other: f64,
+    /// Blocks slowed down by an axis.
+    pub limited: u64,
+    /// Lines of text.
+    pub lines: u64,
+}
+
+const TIP: usize = 0;
+const AXIS: usize = 1;
+const RAPID: usize = 2;
+
+impl<'a> Path<'a> {
+    /// A path that begins.
+    ///
+    /// # Errors
+    /// What machine and dialect cannot do together.
+    pub fn new(
+        machine: &'a Machine,
+        dialect: &'a mut dyn DialectSession,
+        model: &'a mut dyn ModelSession,
+        output: &'a mut dyn Output,
+        tool_length: Option<f64>,
+        trust_model: bool,
+    ) -> Result<Self, Diagnostic> {
+        let format = dialect.format().clone();
+        let feeds = Feeds::new(machine, &format).ok_or_else(|| {
+            Diagnostic::error(
+                "feed-mode",
+                format!(
+                    "[control] asks for inverse time feeds, and the dialect {} has none",
+                    machine.control.dialect
+                ),
+            )
+            .help("feed = \"per-minute\"")
+        })?;
+        let placer = placer(machine, &format, tool_length.unwrap_or(0.0))?;
+        Ok(Self {
+            machine,
+            dialect,
+            model,
+            output,
+            format,
+            placer,
+            feeds,
+            linearise: Linearise::new(trust_model),
+            tool_length,
+            length_unknown: tool_length.is_none(),
+            last: None,
+            near: [0.0; MAX_AXES],
+            positioned: false,
+            compensating: false,
+            batch: Batch::default(),
+            text: Vec::new(),
+            ends: Vec::new(),
+            tally: Tally {
+                least: [f64::INFINITY; MAX_AXES],
+                most: [f64::NEG_INFINITY; MAX_AXES],
+                ..Tally::default()
+            },
+            marks: [None; 3],
+            findings: Vec::new(),
+            failed: false,
+        })
+    }
+
+    /// Findings since the last call; their places are yet to be filled in.
+    pub fn take_findings(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.findings)
+    }
+
+    /// There are findings.
+    #[inline]
+    pub fn has_findings(&self) -> bool {
+        !self.findings.is_empty()
+    }
+
+    /// No text is to be made any more; checking goes on.
+    pub fn fail(&mut self) {
+        self.failed = true;
+    }
+
+    /// Sums and extremes so far.
+    pub fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    /// Points that the certificate asked for over the model's head.
+    pub fn overruled(&self) -> u64 {
+        self.linearise.overruled
+    }
+
+    /// The tool length mattered, and was taken as 0 because nobody gave it.
+    pub fn length_unknown(&self) -> bool {
+        self.length_unknown && self.length_matters()
+    }
+
+    /// The first event.
+    pub fn start(&mut self) {
+        self.push(0, Event::Start);
+    }
+
+    /// The last events.
+    pub fn end(&mut self, line: u64) {
+        self.release(line);
+        self.push(line, Event::End);
+        self.flush();
+    }
+
+    /// Takes a step that comes from `line`.
+    #[inline]
+    pub fn step(&mut self, line: u64, step: Step) {
+        match step {
+            Step::Move(motion) => self.motion(line, &motion),
+            other => self.command(line, other),
+        }
+    }
+
+    fn command(&mut self, line: u64, step: Step) {
+        match step {
+            Step::Move(motion) => self.motion(line, &motion),
+            Step::From { tip, axis } => {
+                // The tool stands there: solutions near to it are wanted, but nothing moves.
+                if let Ok(node) = self.placer.place(Pose { tip, axis }, 1.0, &self.near) {
+                    self.near = node.trace.joints;
+                }
+            }
+            Step::Tool(tool) => self.change(line, &tool),
+            Step::Preselect(number) => self.push(line, Event::Preselect { number }),
+            Step::Spindle(spindle) => self.push(line, Event::Spindle(spindle)),
+            Step::Coolant(coolant) => self.push(line, Event::Coolant(coolant)),
+            Step::Compensate(compensation) => {
+                self.compensating = compensation != Compensation::Off;
+                self.push(line, Event::Compensate(compensation));
+            }
+            Step::Comment(text) => self.push(line, Event::Comment { text: &text }),
+            Step::Literal(text) => self.push(line, Event::Literal { text: &text }),
+            Step::Dwell(seconds) => {
+                self.tally.other += seconds / 60.0;
+                self.push(line, Event::Dwell { seconds });
+            }
+            Step::Stop => self.push(line, Event::Stop),
+            Step::OptionalStop => self.push(line, Event::OptionalStop),
+            Step::Home => {
+                self.release(line);
+                self.push(line, Event::Home);
+            }
+        }
+    }
+
+    /// Cancels compensation, if any is in force; the next move is a first position again.
+    fn release(&mut self, line: u64) {
+        if self.positioned {
+            self.push(line, Event::Release);
+            self.positioned = false;
+        }
+        if let Some(last) = self.last.take() {
+            self.near = last.trace.joints;
+        }
+    }
+
+    fn change(&mut self, line: u64, tool: &Tool) {
+        self.release(line);
+        let told = self.tool_length;
+        let table = || {
+            let tools = &self.machine.tools;
+            tools
+                .iter()
+                .find(|(number, _)| *number == tool.number)
+                .map(|(_, length)| *length)
+        };
+        let length = told.or_else(table).or(tool.length);
+        self.length_unknown |= length.is_none();
+        if length.is_some() && self.tally.moves == 0 {
+            self.length_unknown = false;
+        }
+        match placer(self.machine, &self.format, length.unwrap_or(0.0)) {
+            Ok(placer) => self.placer = placer,
+            Err(diagnostic) => self.findings.push(diagnostic),
+        }
+        self.push(
+            line,
+            Event::ToolChange {
+                number: tool.number,
+                register: tool.register,
+                name: &tool.name,
+            },
+        );
+    }
+
+    /// Does the program depend on the tool length? On a machine whose head turns, if the control does not
+    /// keep the tip.
+    fn length_matters(&self) -> bool {
+        let machine = self.machine;
+        if machine.control.tcp == Tcp::Control || machine.control.tool_length == ToolLength::Cl {
+            return false;
+        }
+        let first_linear = machine.axes.iter().position(|axis| !axis.joint.rotary);
+        machine
+            .axes
+            .iter()
+            .skip(first_linear.unwrap_or(0))
+            .any(|axis| axis.joint.rotary)
+    }
+
+    #[inline]
+    fn motion(&mut self, line: u64, motion: &Motion) {
+        self.tally.moves += 1;
+        let target = Pose {
+            tip: motion.tip,
+            axis: motion.axis,
+        };
+        let near = self
+            .last
+            .as_ref()
+            .map_or(&self.near, |last| &last.trace.joints);
+        let node = match self.placer.place(target, 1.0, near) {
+            Ok(node) => node,
+            Err(refused) => {
+                self.findings.push(self.refusal(&refused));
+                return;
+            }
+        };
+        if self.compensating {
+            self.check_compensation(&node);
+        }
+        let Some(last) = self.last.take() else {
+            self.first(line, motion, node);
+            return;
+        };
+        self.cut(line, motion, &last, &node);
+        self.last = Some(node);
+    }
+
+    /// The first position after the start or a tool change.
+    fn first(&mut self, line: u64, motion: &Motion, node: Node) {
+        let none = self.near;
+        let feed = match motion.pace {
+            Pace::Rapid => None,
+            // A time for a way that nobody knows has no meaning; the way is made at rapid.
+            Pace::InverseTime(_) => None,
+            Pace::PerMinute(_) => Some(self.feeds.cut(motion.pace, 1.0, 1.0, &none, &none).feed),
+        };
+        let count = self.format.words.len();
+        self.keep_range(&node);
+        self.tally.blocks += 1;
+        self.push(
+            line,
+            Event::Position {
+                words: &node.words[..count],
+                feed,
+            },
+        );
+        self.positioned = true;
+        self.last = Some(node);
+    }
+
+    /// A move from where the tool stands.
+    #[inline]
+    fn cut(&mut self, line: u64, motion: &Motion, last: &Node, node: &Node) {
+        let machine = self.machine;
+        let accuracy = &machine.accuracy;
+        let rapid = motion.pace == Pace::Rapid;
+        let keeps = machine.control.tcp == Tcp::Control;
+        let tolerances = if rapid {
+            Tolerances {
+                tip: accuracy.rapid_tolerance - motion.chord,
+                axis: f64::INFINITY,
+            }
+        } else {
+            Tolerances {
+                tip: accuracy.tolerance - motion.chord,
+                axis: accuracy.axis_tolerance,
+            }
+        };
+        let length = (node.target.tip - last.target.tip).norm();
+        let count = self.format.words.len();
+        let Self {
+            placer,
+            model,
+            linearise,
+            feeds,
+            batch,
+            tally,
+            marks,
+            dialect,
+            output,
+            text,
+            ends,
+            findings,
+            failed,
+            ..
+        } = self;
+        let mut first = true;
+        let result = linearise.pieces(
+            placer,
+            *model,
+            last,
+            node,
+            tolerances,
+            keeps,
+            &mut |_, piece: Piece<'_>| {
+                if !std::mem::take(&mut first) {
+                    tally.points_added += 1;
+                }
+                let (from, to) = (&piece.from.trace.joints, &piece.to.trace.joints);
+                keep_range(tally, piece.to);
+                let words = &piece.to.words[..count];
+                // The first piece begins at the end of the last move, whatever its t there.
+                let begin = if std::ptr::eq(piece.from, last) {
+                    0.0
+                } else {
+                    piece.from.t
+                };
+                let share = piece.to.t - begin;
+                let (minutes, event) = if rapid {
+                    (feeds.least_time(from, to), Event::Rapid { words })
+                } else {
+                    let paced = feeds.cut(motion.pace, length * share, share, from, to);
+                    tally.limited += u64::from(paced.limited);
+                    (
+                        paced.minutes,
+                        Event::Linear {
+                            words,
+                            feed: paced.feed,
+                        },
+                    )
+                };
+                if rapid {
+                    tally.other += minutes;
+                } else {
+                    tally.cutting += minutes;
+                }
+                // A block without a changed word moves nothing and is not written.
+                if piece.from.words == piece.to.words {
+                    return;
+                }
+                tally.blocks += 1;
+                let slots: &[usize] = if rapid { &[RAPID] } else { &[TIP, AXIS] };
+                let bound = [
+                    piece.tip + motion.chord,
+                    piece.axis,
+                    piece.tip + motion.chord,
+                ];
+                if slots
+                    .iter()
+                    .any(|slot| bound[*slot] > tally.deviations[*slot].value)
+                {
+                    let (tip, axis) = Linearise::measure(placer, &piece, keeps);
+                    let tight = [tip + motion.chord, axis, tip + motion.chord];
+                    for &slot in slots {
+                        if tight[slot] > tally.deviations[slot].value {
+                            tally.deviations[slot] = Deviation {
+                                value: tight[slot],
+                                block: 0,
+                                line,
+                            };
+                            marks[slot] = Some(batch.len());
+                        }
+                    }
+                }
+                if !*failed {
+                    batch.push(line, event);
+                    if batch.len() >= BATCH {
+                        flush(
+                            *dialect, *output, batch, text, ends, tally, marks, findings, failed,
+                        );
+                    }
+                }
+            },
+        );
+        if let Err(stuck) = result {
+            let finding = self.stuck(&stuck, motion);
+            self.findings.push(finding);
+        }
+    }
+
+    /// Radius compensation works in the plane of X and Y; a tilted tool would be moved sideways into the part.
+    fn check_compensation(&mut self, node: &Node) {
+        let upright =
+            crate::kinematics::inverse::angle(node.trace.pose.axis, self.machine.tool_axis);
+        if upright > 1e-3 {
+            self.compensating = false;
+            self.findings.push(
+                Diagnostic::error(
+                    "compensation",
+                    format!(
+                        "cutter radius compensation (CUTCOM) with the tool tilted by {:.3}°: the control would offset in the wrong plane",
+                        upright.to_degrees()
+                    ),
+                )
+                .help("let the CAM system write the tool centre path, with CUTCOM/OFF"),
+            );
+        }
+    }
+
+    fn keep_range(&mut self, node: &Node) {
+        keep_range(&mut self.tally, node);
+    }
+
+    fn push(&mut self, line: u64, event: Event<'_>) {
+        if self.failed {
+            return;
+        }
+        self.batch.push(line, event);
+        if self.batch.len() >= BATCH {
+            self.flush();
+        }
+    }
+
+    fn flush(&mut self) {
+        flush(
+            self.dialect,
+            self.output,
+            &mut self.batch,
+            &mut self.text,
+            &mut self.ends,
+            &mut self.tally,
+            &mut self.marks,
+            &mut self.findings,
+            &mut self.failed,
+        );
+    }
+
+    fn refusal(&self, refused: &Refused) -> Diagnostic {
+        let machine = self.machine;
+        match *refused {
+            Refused::Unreachable(Unreachable::Axis { miss }) => Diagnostic::error(
+                "out-of-reach",
+                format!(
+                    "{} cannot point the tool this way: the nearest orientation misses by {:.4}°, {:.4}° is allowed",
+                    machine.name,
+                    miss.to_degrees(),
+                    machine.accuracy.axis_tolerance.to_degrees()
+                ),
+            )
+            .help("another machine, another set-up, or --msys apply if the axes are written in another frame"),
+            Refused::Unreachable(Unreachable::Linear) => Diagnostic::error(
+                "out-of-reach",
+                format!("the linear axes of {} cannot bring the tip here at these angles", machine.name),
+            ),
+            Refused::OverTravel { over, tried } => {
+                let axis = &machine.axes[over.joint];
+                let (unit, sign) = if axis.joint.rotary {
+                    (1f64.to_radians(), "°")
+                } else {
+                    (1.0, " mm")
+                };
+                let diagnostic = Diagnostic::error(
+                    "over-travel",
+                    format!(
+                        "{} would be {:.3}{sign}, its limit is {:.3}{sign}; {}",
+                        axis.name,
+                        over.value / unit,
+                        over.limit / unit,
+                        match tried {
+                            1 => "there is no other solution".to_owned(),
+                            tried => format!("none of the {tried} solutions stays inside travel"),
+                        }
+                    ),
+                );
+                if axis.joint.rotary {
+                    diagnostic.help("another set-up of the part, or a machine that tilts so far")
+                } else {
+                    diagnostic.help("set the part elsewhere with --mount X,Y,Z, give the tool's length, or say --units if the file's units are wrong")
+                }
+            }
+            Refused::Unverified { tip, axis } => Diagnostic::error(
+                "kinematics",
+                format!(
+                    "the solution found misses the point by {tip:.6} mm and {:.6}° when it is put through the chain",
+                    axis.to_degrees()
+                ),
+            )
+            .help("this is a fault of post: please report it with the machine file and this line"),
+        }
+    }
+
+    fn stuck(&self, stuck: &Stuck, motion: &Motion) -> Diagnostic {
+        let machine = self.machine;
+        match stuck {
+            Stuck::Refused(refused) => {
+                let mut diagnostic = self.refusal(refused);
+                diagnostic.message = format!("on the way to this point: {}", diagnostic.message);
+                diagnostic
+            }
+            Stuck::Rounding { tip, axis } => Diagnostic::error(
+                "rounding",
+                format!(
+                    "the decimals of the dialect alone move the tip by {tip:.6} mm and the tool axis by {:.6}°; allowed are {:.6} mm and {:.6}°",
+                    axis.to_degrees(),
+                    machine.accuracy.tolerance - motion.chord,
+                    machine.accuracy.axis_tolerance.to_degrees()
+                ),
+            )
+            .help("more decimals in [control] or a wider tolerance in [accuracy]"),
+            Stuck::Jump { joint, from, to } => Diagnostic::error(
+                "jump",
+                format!(
+                    "{} must jump from {:.3}° to {:.3}° within this cut: no path of the axes keeps the tolerance",
+                    machine.axes[*joint].name,
+                    from.to_degrees(),
+                    to.to_degrees()
+                ),
+            )
+            .help("its travel ends here and the other solution lies far away: retract before this line, or set the part differently"),
+            Stuck::Model(message) => Diagnostic::error(
+                "model",
+                format!("the error model {} cannot answer: {message}", machine.accuracy.model),
+            ),
+        }
+    }
+}
+
+/// A solver and words for the machine with a tool of `length` mm.
+fn placer(machine: &Machine, format: &Format, length: f64) -> Result<Placer, Diagnostic> {
+    let fault = |lack: NoClosedForm| Diagnostic::error("machine-chain", format!("{lack:?}"));
+    let solver = machine.solver(length).map_err(fault)?;
+    let mut words = Words::new(machine, format);
+    words.set_zero(&solver).ok_or_else(|| {
+        Diagnostic::error(
+            "machine-chain",
+            "with every rotary axis at zero the linear axes do not span the space",
+        )
+    })?;
+    Ok(Placer::new(machine, solver, words))
+}
+
+#[inline]
+fn keep_range(tally: &mut Tally, node: &Node) {
+    for (index, value) in node.trace.joints.iter().enumerate() {
+        tally.least[index] = tally.least[index].min(*value);
+        tally.most[index] = tally.most[index].max(*value);
+    }
+}
+
+/// Hands the batch to the dialect and its text to the output.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "parts of the path that a closure holds one by one"
+)]
+fn flush(
+    dialect: &mut dyn DialectSession,
+    output: &mut dyn Output,
+    batch: &mut Batch,
+    text: &mut Vec<u8>,
+    ends: &mut Vec<usize>,
+    tally: &mut Tally,
+    marks: &mut [Option<usize>; 3],
+    findings: &mut Vec<Diagnostic>,
+    failed: &mut bool,
+) {
+    text.clear();
+    ends.clear();
+    if let Err(fault) = dialect.write_batch(batch, text, ends) {
+        let line = batch.line(fault.index.min(batch.len().saturating_sub(1)));
+        findings.push(Diagnostic::error("dialect", fault.message).at(Some(Place {
+            file: String::new(),
+            line,
+            text: String::new(),
+            span: 0..0,
+        })));
+        *failed = true;
+    }
+    for (slot, mark) in marks.iter_mut().enumerate() {
+        if let Some(index) = mark.take() {
+            let end = ends.get(index).copied().unwrap_or(text.len());
+            tally.deviations[slot].block = tally.lines + newlines(&text[..end]);
+        }
+    }
+    tally.lines += newlines(text);
+    if !*failed && let Err(message) = output.write(text) {
+        findings.push(Diagnostic::error("output", message));
+        *failed = true;
+    }
+    batch.clear();
+}
+
+fn newlines(text: &[u8]) -> u64 {
+    text.iter().map(|byte| u64::from(*byte == b'\n')).sum()
+}

@@ -1,0 +1,226 @@
+//! One run: records in, text and a report out.
+
+use post_grammar::{Record, SyntaxFault};
+use post_plugin::{DialectSession, ModelSession};
+
+use crate::diagnostic::{Diagnostic, Place, Severity};
+use crate::machine::{Machine, Tcp};
+use crate::path::{Output, Path};
+use crate::program::{Interpreter, Reading, record_place};
+use crate::report::{AxisRange, Deviation, Report};
+
+/// Faults of one run that are told; what comes after is most likely more of the same.
+pub const MOST_FAULTS: usize = 20;
+
+/// How one CL file is to be posted.
+#[derive(Clone, Debug, Default)]
+pub struct Job {
+    /// How it is read.
+    pub reading: Reading,
+    /// Length of every tool, mm, over what machine and CL file say.
+    pub tool_length: Option<f64>,
+    /// Take the model's word over the certificate's.
+    pub trust_model: bool,
+}
+
+/// Posts one CL file, record by record.
+pub struct Post<'a> {
+    machine: &'a Machine,
+    interpreter: Interpreter,
+    path: Path<'a>,
+    file: String,
+    records: u64,
+    last_line: u64,
+    findings: Vec<Diagnostic>,
+    faults: usize,
+}
+
+impl<'a> Post<'a> {
+    /// Opens a run; the header goes out with the first records.
+    ///
+    /// # Errors
+    /// What machine and dialect cannot do together.
+    pub fn new(
+        machine: &'a Machine,
+        mut job: Job,
+        dialect: &'a mut dyn DialectSession,
+        model: &'a mut dyn ModelSession,
+        output: &'a mut dyn Output,
+    ) -> Result<Self, Diagnostic> {
+        // Half of the tolerance goes to chords of arcs and splines, half is left for the axes.
+        job.reading.chord_tolerance = machine.accuracy.tolerance / 2.0;
+        job.reading.insert = machine.control.insert;
+        job.reading.tool_length = machine.control.tool_length;
+        let file = job.reading.file.clone();
+        let mut path = Path::new(
+            machine,
+            dialect,
+            model,
+            output,
+            job.tool_length,
+            job.trust_model,
+        )?;
+        path.start();
+        Ok(Self {
+            machine,
+            interpreter: Interpreter::new(job.reading),
+            path,
+            file,
+            records: 0,
+            last_line: 0,
+            findings: Vec::new(),
+            faults: 0,
+        })
+    }
+
+    /// Takes a record.
+    #[inline]
+    pub fn record(&mut self, record: &Record<'_>) {
+        self.records += 1;
+        self.last_line = record.line;
+        let path = &mut self.path;
+        self.interpreter
+            .record(record, &mut |step| path.step(record.line, step));
+        if self.path.has_findings() || self.interpreter.has_findings() {
+            let place = record_place(&self.file, record);
+            self.gather(Some(&place));
+        }
+    }
+
+    /// Takes a line that could not be read.
+    pub fn unreadable(&mut self, fault: &SyntaxFault) {
+        let mut diagnostic = Diagnostic::error("syntax", fault.message.clone()).at(Some(Place {
+            file: self.file.clone(),
+            line: fault.line,
+            text: fault.text.clone(),
+            span: fault.span.clone(),
+        }));
+        diagnostic.help.clone_from(&fault.help);
+        self.keep(diagnostic);
+    }
+
+    /// So many faults that reading on would only repeat them.
+    #[inline]
+    pub fn gave_up(&self) -> bool {
+        self.faults >= MOST_FAULTS
+    }
+
+    /// Ends the run: the report, if all is good, and every finding.
+    pub fn finish(mut self) -> (Option<Report>, Vec<Diagnostic>) {
+        if !self.gave_up() {
+            self.interpreter.finish();
+            self.gather(None);
+            self.path.end(self.last_line);
+            self.gather(None);
+        }
+        if self.faults == 0 && self.path.tally().moves == 0 {
+            self.keep(
+                Diagnostic::error("empty", format!("{} has no move", self.file))
+                    .help("is it a cutter-location file (APT, CLSF, NCL)?"),
+            );
+        }
+        if self.faults == 0 && self.path.length_unknown() {
+            self.keep(
+                Diagnostic::warning(
+                    "tool-length",
+                    "no length of the tool is known; it was taken as 0, and on this machine the axis positions depend on it",
+                )
+                .help("give --tool-length, or [tools] in the machine file"),
+            );
+        }
+        let report = (self.faults == 0).then(|| self.report());
+        (report, self.findings)
+    }
+
+    /// Takes the findings of the stages; those without a place stand at `place`.
+    #[cold]
+    fn gather(&mut self, place: Option<&Place>) {
+        let mut new = self.interpreter.take_findings();
+        for mut finding in self.path.take_findings() {
+            match &mut finding.place {
+                None => finding.place = place.cloned(),
+                // A dialect's fault names its line; the text is no longer at hand.
+                Some(known) => known.file.clone_from(&self.file),
+            }
+            new.push(finding);
+        }
+        for finding in new {
+            self.keep(finding);
+        }
+    }
+
+    fn keep(&mut self, finding: Diagnostic) {
+        if finding.severity == Severity::Error {
+            self.faults += 1;
+            self.path.fail();
+        }
+        self.findings.push(finding);
+    }
+
+    fn report(&self) -> Report {
+        let machine = self.machine;
+        let tally = self.path.tally();
+        let [tip, axis, rapid] = tally.deviations;
+        let axes = machine
+            .axes
+            .iter()
+            .enumerate()
+            .map(|(index, axis)| {
+                let unit = if axis.joint.rotary {
+                    1f64.to_radians()
+                } else {
+                    1.0
+                };
+                AxisRange {
+                    name: axis.name.clone(),
+                    min: tally.least[index] / unit,
+                    max: tally.most[index] / unit,
+                    travel: axis.travel.map(|travel| travel.map(|end| end / unit)),
+                }
+            })
+            .collect();
+        Report {
+            machine: machine.name.clone(),
+            dialect: machine.control.dialect.clone(),
+            tcp: match machine.control.tcp {
+                Tcp::Control => "control",
+                Tcp::Post => "post",
+            }
+            .to_owned(),
+            model: machine.accuracy.model.clone(),
+            records: self.records,
+            moves: tally.moves,
+            blocks: tally.blocks,
+            nc_lines: tally.lines,
+            points_added: tally.points_added,
+            model_overruled: self.path.overruled(),
+            tip_deviation_mm: tip,
+            axis_deviation_deg: Deviation {
+                value: axis.value.to_degrees(),
+                ..axis
+            },
+            rapid_deviation_mm: rapid,
+            tolerance_mm: machine.accuracy.tolerance,
+            axis_tolerance_deg: machine.accuracy.axis_tolerance.to_degrees(),
+            axes,
+            time_s: (tally.cutting + tally.other) * 60.0,
+            cutting_time_s: tally.cutting * 60.0,
+            blocks_limited: tally.limited,
+            ignored_words: self
+                .interpreter
+                .ignored()
+                .map(|(word, count)| (word.to_owned(), count))
+                .collect(),
+            plugins: Vec::new(),
+            warnings: self
+                .findings
+                .iter()
+                .filter(|finding| finding.severity == Severity::Warning)
+                .map(|finding| match &finding.place {
+                    Some(place) => format!("line {}: {}", place.line, finding.message),
+                    None => finding.message.clone(),
+                })
+                .collect(),
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Arcs become chords within a tolerance.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+
+/// An arc about an axis; a spiral or a helix where its ends differ in radius or height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arc {
+    centre: Vector3<f64>,
+    axis: Vector3<f64>,
+    /// From the centre to the start, in the plane, unit vector.
+    radial: Vector3<f64>,
+    start_radius: f64,
+    end_radius: f64,
+    start_height: f64,
+    end_height: f64,
+    /// Radians, above zero.
+    sweep: f64,
+}
+
+/// Ends nearer than this are one point, so the arc is a whole turn: mm. No CAM system writes arcs so short.
+const CLOSED: f64 = 1e-3;
+
+impl Arc {
+    /// The arc from `start` to `end`, right-handed about `axis`, over `turns` passes of its end (1 is the usual arc).
+    ///
+    /// # Errors
+    /// If the axis is null or an end lies on it.
+    pub(crate) fn new(
+        start: Vector3<f64>,
+        end: Vector3<f64>,
+        centre: Vector3<f64>,
+        axis: Vector3<f64>,
+        turns: u32,
+    ) -> Result<Self, &'static str> {
+        let axis = axis.try_normalize(1e-9).ok_or("its axis is null")?;
+        let split = |point: Vector3<f64>| {
+            let height = axis.dot(&(point - centre));
+            (point - centre - axis * height, height)
+        };
+        let (from, start_height) = split(start);
+        let (to, end_height) = split(end);
+        let radial = from
+            .try_normalize(1e-9)
+            .ok_or("it starts at its own centre")?;
+        if to.norm() < 1e-9 {
+            return Err("it ends at its own centre");
+        }
+        let tangent = axis.cross(&radial);
+        let mut sweep = libm::atan2(tangent.dot(&to), radial.dot(&to));
+        if (to - from).norm() < CLOSED {
+            sweep = TAU;
+        } else if sweep <= 0.0 {
+            sweep += TAU;
+        }
+        sweep += TAU * f64::from(turns.max(1) - 1);
+        Ok(Self {
+            centre,
+            axis,
+            radial,
+            start_radius: from.norm(),
+            end_radius: to.norm(),
+            start_height,
+            end_height,
+            sweep,
+        })
+    }
+
+    /// By how much the distances of its ends from the centre differ, mm.
+    pub(crate) fn mismatch(&self) -> f64 {
+        libm::fabs(self.end_radius - self.start_radius)
+    }
+
+    /// The largest of its radii, mm.
+    pub(crate) fn radius(&self) -> f64 {
+        self.start_radius.max(self.end_radius)
+    }
+
+    /// Number of chords that stay within `tolerance` mm, and how far they stray.
+    ///
+    /// The second derivative along t is at most `radius·sweep² + 2·|Δradius|·sweep`, so a chord over 1/n of
+    /// the arc strays by at most an eighth of that over n².
+    pub(crate) fn chords(&self, tolerance: f64) -> (u64, f64) {
+        let bend = self.radius() * self.sweep * self.sweep + 2.0 * self.mismatch() * self.sweep;
+        let count = libm::ceil(libm::sqrt(bend / (8.0 * tolerance))).max(1.0);
+        (count as u64, bend / (8.0 * count * count))
+    }
+
+    /// The point at `t` in 0 to 1.
+    pub(crate) fn at(&self, t: f64) -> Vector3<f64> {
+        let (sine, cosine) = libm::sincos(self.sweep * t);
+        let radius = self.start_radius + (self.end_radius - self.start_radius) * t;
+        let height = self.start_height + (self.end_height - self.start_height) * t;
+        self.centre
+            + (self.radial * cosine + self.axis.cross(&self.radial) * sine) * radius
+            + self.axis * height
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(x: f64, y: f64, z: f64) -> Vector3<f64> {
+        Vector3::new(x, y, z)
+    }
+
+    #[test]
+    fn quarter_turns_go_the_way_of_the_axis() {
+        let (start, end) = (point(10.0, 0.0, 0.0), point(0.0, 10.0, 0.0));
+        let forth = Arc::new(start, end, Vector3::zeros(), Vector3::z(), 1).unwrap();
+        let back = Arc::new(start, end, Vector3::zeros(), -Vector3::z(), 1).unwrap();
+        let half = std::f64::consts::FRAC_1_SQRT_2 * 10.0;
+        assert!((forth.at(0.5) - point(half, half, 0.0)).norm() < 1e-12);
+        assert!((back.at(0.5) - point(-half, -half, 0.0)).norm() < 1e-12);
+        assert!((back.at(1.0) - end).norm() < 1e-12);
+    }
+
+    #[test]
+    fn equal_ends_are_a_whole_turn_and_heights_a_helix() {
+        let start = point(10.0, 0.0, 0.0);
+        let arc = Arc::new(
+            start,
+            point(10.0, 0.0, 3.0),
+            Vector3::zeros(),
+            Vector3::z(),
+            1,
+        )
+        .unwrap();
+        assert!((arc.at(0.5) - point(-10.0, 0.0, 1.5)).norm() < 1e-12);
+        let two = Arc::new(
+            start,
+            point(10.0, 0.0, 3.0),
+            Vector3::zeros(),
+            Vector3::z(),
+            2,
+        )
+        .unwrap();
+        assert!((two.at(0.5) - point(10.0, 0.0, 1.5)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn chords_stay_within_what_they_promise() {
+        let arc = Arc::new(
+            point(50.0, 0.0, 0.0),
+            point(-49.0, 3.0, 7.0),
+            point(0.0, 1.0, 0.0),
+            point(0.1, 0.0, 1.0),
+            1,
+        )
+        .unwrap();
+        for tolerance in [0.5, 0.01, 0.001] {
+            let (count, promised) = arc.chords(tolerance);
+            assert!(promised <= tolerance);
+            let mut worst: f64 = 0.0;
+            for piece in 0..count {
+                let (a, b) = (
+                    piece as f64 / count as f64,
+                    (piece + 1) as f64 / count as f64,
+                );
+                for step in 0..=20 {
+                    let t = f64::from(step) / 20.0;
+                    let chord = arc.at(a) * (1.0 - t) + arc.at(b) * t;
+                    worst = worst.max((arc.at(a + (b - a) * t) - chord).norm());
+                }
+            }
+            assert!(worst <= promised, "{worst} above {promised}");
+            assert!(worst >= 0.6 * promised, "{worst} far below {promised}");
+        }
+    }
+}

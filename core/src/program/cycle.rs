@@ -1,0 +1,190 @@
+//! Cycles become moves: approach, peck, dwell, retract, along the tool axis.
+
+use post_grammar::CycleDefinition;
+
+/// How a cycle drills, lengths in mm along the tool axis from the programmed point, plus is away from the part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Drill {
+    /// Where the feed begins.
+    clearance: f64,
+    /// The bottom, not above zero.
+    bottom: f64,
+    /// Where the tool goes between the holes.
+    retract: f64,
+    /// Depth of one peck.
+    peck: Option<Peck>,
+    /// At the bottom, s.
+    dwell: f64,
+    /// The tool leaves the hole at feed.
+    feed_out: bool,
+}
+
+/// One peck after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Peck {
+    step: f64,
+    /// Out of the hole after each (`DEEP`), or back by a little to break the chip (`BRKCHP`).
+    full: bool,
+}
+
+/// One leg of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Leg {
+    /// At rapid traverse to this height.
+    Rapid(f64),
+    /// At the cycle's feed to this height.
+    Feed(f64),
+    /// Wait, s.
+    Dwell(f64),
+}
+
+/// Above the last depth a peck begins at feed, and a chip is broken by going back so far: mm.
+const GAP: f64 = 0.5;
+
+/// Pecks in one hole; more is a slip of the decimal point.
+const MOST_PECKS: f64 = 10_000.0;
+
+impl Drill {
+    /// Reads a definition; `scale` takes the file's lengths to mm.
+    ///
+    /// # Errors
+    /// What cannot be made as moves, as a sentence.
+    pub(crate) fn new(cycle: &CycleDefinition, scale: f64) -> Result<Self, String> {
+        let is = |kind: &str| cycle.kinds.iter().any(|word| word == kind);
+        if let Some(kind) = cycle
+            .kinds
+            .iter()
+            .find(|kind| matches!(kind.as_str(), "TAP" | "THREAD" | "MILL"))
+        {
+            return Err(format!(
+                "CYCLE/{kind} ties the feed to the spindle's turns, which moves cannot do"
+            ));
+        }
+        let depth = cycle.depth.ok_or("the cycle has no depth")?;
+        let clearance = cycle.clearance.unwrap_or(0.0) * scale;
+        let bottom = -libm::fabs(depth) * scale;
+        let retract = cycle
+            .retract
+            .map_or(clearance, |level| level * scale)
+            .max(clearance);
+        let peck = cycle
+            .step
+            .map(libm::fabs)
+            .filter(|step| *step > 0.0)
+            .map(|step| Peck {
+                step: step * scale,
+                full: !is("BRKCHP"),
+            });
+        if let Some(peck) = peck
+            && (clearance - bottom) / peck.step > MOST_PECKS
+        {
+            return Err(format!(
+                "a peck of {} mm over a depth of {} mm is more than {MOST_PECKS} pecks",
+                peck.step, -bottom
+            ));
+        }
+        Ok(Self {
+            clearance,
+            bottom,
+            retract,
+            peck,
+            dwell: cycle.dwell.unwrap_or(0.0),
+            feed_out: is("BORE") || is("REAM"),
+        })
+    }
+
+    /// Calls `emit` with the legs at one point, in order.
+    pub(crate) fn legs(&self, emit: &mut dyn FnMut(Leg)) {
+        emit(Leg::Rapid(self.retract));
+        emit(Leg::Rapid(self.clearance));
+        if let Some(peck) = self.peck {
+            let mut depth = 0.0 - peck.step;
+            while depth > self.bottom {
+                emit(Leg::Feed(depth));
+                if peck.full {
+                    emit(Leg::Rapid(self.clearance));
+                    emit(Leg::Rapid((depth + GAP).min(self.clearance)));
+                } else {
+                    emit(Leg::Rapid((depth + GAP).min(self.clearance)));
+                }
+                depth -= peck.step;
+            }
+        }
+        emit(Leg::Feed(self.bottom));
+        if self.dwell > 0.0 {
+            emit(Leg::Dwell(self.dwell));
+        }
+        if self.feed_out {
+            emit(Leg::Feed(self.clearance));
+        }
+        emit(Leg::Rapid(self.retract));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn legs(definition: &CycleDefinition, scale: f64) -> Vec<Leg> {
+        let mut legs = Vec::new();
+        Drill::new(definition, scale)
+            .unwrap()
+            .legs(&mut |leg| legs.push(leg));
+        legs
+    }
+
+    #[test]
+    fn deep_drilling_leaves_the_hole_between_pecks() {
+        let definition = CycleDefinition {
+            kinds: vec!["DEEP".to_owned()],
+            depth: Some(3.5),
+            clearance: Some(1.0),
+            step: Some(2.0),
+            ..CycleDefinition::default()
+        };
+        assert_eq!(
+            legs(&definition, 1.0),
+            [
+                Leg::Rapid(1.0),
+                Leg::Rapid(1.0),
+                Leg::Feed(-2.0),
+                Leg::Rapid(1.0),
+                Leg::Rapid(-1.5),
+                Leg::Feed(-3.5),
+                Leg::Rapid(1.0),
+            ]
+        );
+    }
+
+    #[test]
+    fn depths_of_either_sign_go_down_and_inches_are_scaled() {
+        let definition = CycleDefinition {
+            kinds: vec!["DRILL".to_owned()],
+            depth: Some(-1.0),
+            clearance: Some(0.1),
+            retract: Some(1.0),
+            dwell: Some(0.5),
+            ..CycleDefinition::default()
+        };
+        assert_eq!(
+            legs(&definition, 25.4),
+            [
+                Leg::Rapid(25.4),
+                Leg::Rapid(2.54),
+                Leg::Feed(-25.4),
+                Leg::Dwell(0.5),
+                Leg::Rapid(25.4),
+            ]
+        );
+    }
+
+    #[test]
+    fn tapping_is_refused() {
+        let definition = CycleDefinition {
+            kinds: vec!["TAP".to_owned()],
+            depth: Some(10.0),
+            ..CycleDefinition::default()
+        };
+        assert!(Drill::new(&definition, 1.0).is_err());
+    }
+}

@@ -1,0 +1,13 @@
+//! From what a CL file says to what it means.
+
+mod arc;
+mod cycle;
+mod interpret;
+mod motion;
+mod spline;
+mod words;
+
+pub(crate) use interpret::record_place;
+pub use interpret::{Interpreter, Reading, Unknown};
+pub use motion::{Motion, Pace, Step, Tool};
+pub use words::{Usage, usage};

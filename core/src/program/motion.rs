@@ -1,0 +1,77 @@
+//! What a CL file means: moves of the tip and the tool axis in mm in the part frame, and the steps between them.
+
+use nalgebra::Vector3;
+use post_plugin::{Compensation, Coolant, Spindle};
+
+/// One step of the program, with every modal word settled.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// The tool moves.
+    Move(Motion),
+    /// The tool stands here, and has not moved (`FROM`).
+    From {
+        /// Tip, mm, part frame.
+        tip: Vector3<f64>,
+        /// Tool axis, unit vector, part frame.
+        axis: Vector3<f64>,
+    },
+    /// Tool change.
+    Tool(Tool),
+    /// The next tool is made ready.
+    Preselect(u32),
+    /// Spindle.
+    Spindle(Spindle),
+    /// Coolant.
+    Coolant(Coolant),
+    /// Cutter radius compensation.
+    Compensate(Compensation),
+    /// A remark for the operator.
+    Comment(String),
+    /// A line of the program, letter for letter.
+    Literal(String),
+    /// Wait, s.
+    Dwell(f64),
+    /// Stop.
+    Stop,
+    /// Optional stop.
+    OptionalStop,
+    /// To the machine's reference.
+    Home,
+}
+
+/// A move along a straight line of the part frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Where the tip goes, mm, part frame.
+    pub tip: Vector3<f64>,
+    /// The tool axis there, unit vector from the tip to the holder, part frame.
+    pub axis: Vector3<f64>,
+    /// How fast.
+    pub pace: Pace,
+    /// How far this line strays from the curve that the CL file asks for (arcs, splines), mm, proven.
+    pub chord: f64,
+}
+
+/// How fast a move is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pace {
+    /// Rapid traverse.
+    Rapid,
+    /// Feed of the tip against the part, mm/min.
+    PerMinute(f64),
+    /// The move takes 1/F minutes.
+    InverseTime(f64),
+}
+
+/// A tool change.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tool {
+    /// Tool number.
+    pub number: u32,
+    /// Register of its length compensation.
+    pub register: u32,
+    /// Length from the gauge point to the tip, mm, if the CL file gives it.
+    pub length: Option<f64>,
+    /// Its name, empty if not known.
+    pub name: String,
+}

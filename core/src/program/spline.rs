@@ -1,0 +1,174 @@
+//! NX's `NURBS`: a cubic B-spline with clamped ends, written as its interior knots (the last is 1) and its
+//! control points but for the first, which is where the tool stands.
+
+use nalgebra::Vector3;
+
+/// Degree of the splines that NX writes.
+const DEGREE: usize = 3;
+
+/// A clamped cubic B-spline.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Spline {
+    knots: Vec<f64>,
+    points: Vec<Vector3<f64>>,
+}
+
+impl Spline {
+    /// A spline over 0 to 1 from the knots of the file (interior ones and the last) and all control points.
+    ///
+    /// # Errors
+    /// What does not fit.
+    pub(crate) fn new(knots: &[f64], points: Vec<Vector3<f64>>) -> Result<Self, String> {
+        let interior = match knots {
+            [interior @ .., last] if *last == 1.0 => interior,
+            _ => return Err("its last knot must be 1".to_owned()),
+        };
+        // A knot that stands three times breaks the second derivative that bounds the chords.
+        let rising = interior.windows(2).all(|pair| pair[0] <= pair[1])
+            && interior.windows(3).all(|triple| triple[0] < triple[2])
+            && interior.iter().all(|knot| 0.0 < *knot && *knot < 1.0);
+        if !rising {
+            return Err("its knots must rise from 0 to 1, none more than twice".to_owned());
+        }
+        let wanted = interior.len() + DEGREE + 1;
+        if points.len() != wanted {
+            return Err(format!(
+                "{} interior knots of a cubic spline need {wanted} control points (the present position is the first); there are {}",
+                interior.len(),
+                points.len()
+            ));
+        }
+        let mut all = vec![0.0; DEGREE + 1];
+        all.extend_from_slice(interior);
+        all.extend_from_slice(&[1.0; DEGREE + 1]);
+        Ok(Self { knots: all, points })
+    }
+
+    /// Calls `emit` with the ends of chords that stay within `tolerance` mm, and how far each strays.
+    ///
+    /// In one knot span the second derivative is linear, so it is largest at an end of the span, and a chord
+    /// over `h` of the parameter strays by at most `h²/8` times that.
+    pub(crate) fn flatten(&self, tolerance: f64, emit: &mut dyn FnMut(Vector3<f64>, f64)) {
+        for span in DEGREE..self.points.len() {
+            let (from, to) = (self.knots[span], self.knots[span + 1]);
+            if to <= from {
+                continue;
+            }
+            let width = to - from;
+            let bend = self
+                .second(span, from)
+                .norm()
+                .max(self.second(span, to).norm())
+                * width
+                * width;
+            let count = libm::ceil(libm::sqrt(bend / (8.0 * tolerance))).max(1.0);
+            let stray = bend / (8.0 * count * count);
+            for piece in 1..=count as u64 {
+                emit(self.at(span, from + width * piece as f64 / count), stray);
+            }
+        }
+    }
+
+    /// The point at `u` in the knot span `span` (de Boor).
+    fn at(&self, span: usize, u: f64) -> Vector3<f64> {
+        let mut work = [Vector3::zeros(); DEGREE + 1];
+        work.copy_from_slice(&self.points[span - DEGREE..=span]);
+        for level in 1..=DEGREE {
+            for index in (level..=DEGREE).rev() {
+                let knot = span - DEGREE + index;
+                let low = self.knots[knot];
+                let high = self.knots[knot + DEGREE + 1 - level];
+                let alpha = (u - low) / (high - low);
+                work[index] = work[index - 1] * (1.0 - alpha) + work[index] * alpha;
+            }
+        }
+        work[DEGREE]
+    }
+
+    /// The second derivative at `u` in the knot span `span`.
+    fn second(&self, span: usize, u: f64) -> Vector3<f64> {
+        let first = |index: usize| {
+            let width = self.knots[index + DEGREE + 1] - self.knots[index + 1];
+            (self.points[index + 1] - self.points[index]) * (DEGREE as f64 / width)
+        };
+        let second = |index: usize| {
+            let width = self.knots[index + DEGREE + 1] - self.knots[index + 2];
+            (first(index + 1) - first(index)) * ((DEGREE - 1) as f64 / width)
+        };
+        let (a, b) = (second(span - DEGREE), second(span - DEGREE + 1));
+        let alpha = (u - self.knots[span]) / (self.knots[span + 1] - self.knots[span]);
+        a * (1.0 - alpha) + b * alpha
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave() -> Spline {
+        let points = [0.0, 3.0, -2.0, 5.0, 1.0, 4.0, 2.0]
+            .iter()
+            .enumerate()
+            .map(|(index, y)| Vector3::new(index as f64 * 5.0, *y * 4.0, 0.3 * index as f64))
+            .collect();
+        Spline::new(&[0.2, 0.5, 0.6, 1.0], points).unwrap()
+    }
+
+    #[test]
+    fn a_cubic_polynomial_is_reproduced() {
+        // Without interior knots the spline is the Bézier curve of its points.
+        let points = vec![
+            Vector3::new(0.0, 0.0, 0.0),
+            Vector3::new(1.0, 2.0, 0.0),
+            Vector3::new(3.0, 2.0, 1.0),
+            Vector3::new(4.0, 0.0, 1.0),
+        ];
+        let spline = Spline::new(&[1.0], points.clone()).unwrap();
+        for step in 0..=10 {
+            let t = f64::from(step) / 10.0;
+            let s = 1.0 - t;
+            let bezier = points[0] * (s * s * s)
+                + points[1] * (3.0 * s * s * t)
+                + points[2] * (3.0 * s * t * t)
+                + points[3] * (t * t * t);
+            assert!((spline.at(DEGREE, t) - bezier).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn chords_stay_within_what_they_promise_and_end_on_the_last_point() {
+        let spline = wave();
+        for tolerance in [1.0, 0.01, 0.001] {
+            let mut ends = vec![(spline.points[0], 0.0)];
+            spline.flatten(tolerance, &mut |point, stray| ends.push((point, stray)));
+            assert!(ends.iter().all(|(_, stray)| *stray <= tolerance));
+            assert!((ends[ends.len() - 1].0 - spline.points[6]).norm() < 1e-12);
+            // Every point of a fine sampling lies within the tolerance of some chord.
+            for step in 0..1000 {
+                let u = f64::from(step) / 1000.0;
+                let span = (DEGREE..spline.points.len())
+                    .find(|span| u < spline.knots[span + 1])
+                    .unwrap();
+                let point = spline.at(span, u);
+                let nearest = ends
+                    .windows(2)
+                    .map(|pair| {
+                        let (a, b) = (pair[0].0, pair[1].0);
+                        let along =
+                            ((point - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
+                        (point - a - (b - a) * along).norm()
+                    })
+                    .fold(f64::INFINITY, f64::min);
+                assert!(nearest <= tolerance, "{nearest} at {u}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        assert!(Spline::new(&[0.5], vec![]).is_err());
+        assert!(Spline::new(&[0.6, 0.4, 1.0], vec![Vector3::zeros(); 6]).is_err());
+        let fault = Spline::new(&[0.5, 1.0], vec![Vector3::zeros(); 4]).unwrap_err();
+        assert!(fault.contains("need 5 control points"), "{fault}");
+    }
+}

@@ -1,0 +1,109 @@
+//! What becomes of each major word.
+
+/// What `post` does with a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Usage {
+    /// It has its effect on the program.
+    Used,
+    /// Its text goes into the program.
+    Passed,
+    /// It says nothing that an NC program could hold (display, names of features, the CAM system's own data).
+    Ignored,
+    /// It changes where the tool goes, and `post` does not know how: the file is refused.
+    Refused,
+    /// `post` does nothing with it, and says so.
+    Unknown,
+}
+
+/// Words that have their effect.
+const USED: &[&str] = &[
+    "CIRCLE",
+    "CNTRL",
+    "COOLNT",
+    "CUTCOM",
+    "CUTTER",
+    "CYCLE",
+    "DELAY",
+    "DWELL",
+    "END",
+    "END-OF-PATH",
+    "FEDRAT",
+    "FINI",
+    "FROM",
+    "GODLTA",
+    "GOHOME",
+    "GOTO",
+    "KNOT",
+    "LOAD",
+    "LOADTL",
+    "MSYS",
+    "MULTAX",
+    "NURBS",
+    "OPSTOP",
+    "RAPID",
+    "ROTABL",
+    "ROTATE",
+    "SELCTL",
+    "SELECT",
+    "SPINDL",
+    "STOP",
+    "TLAXIS",
+    "TLDATA",
+    "TOOLNO",
+    "TURRET",
+    "UNIT",
+    "UNITS",
+];
+
+/// Words whose text goes into the program.
+const PASSED: &[&str] = &["INSERT", "PARTNO", "PPRINT", "TOOL PATH"];
+
+/// Words that an NC program has no place for.
+const IGNORED: &[&str] = &[
+    "BOX",
+    "CAMERA",
+    "CSI_SET_EXTENSION_LENGTH",
+    "CSI_SET_FLUTE_LENGTH",
+    "CSYS",
+    "CUTCOM_GEOMETRY_TYPE",
+    "DISPLY",
+    "DRAFT",
+    "FEATNO",
+    "LEADER",
+    "LINTOL",
+    "MACHIN",
+    "MCHTOL",
+    "MFGNO",
+    "MOVE_ATTRIB",
+    "OPFEATEND",
+    "OPFEATSTART",
+    "PAINT",
+    "PPTOL",
+    "PPWORD",
+    "REMARK",
+    "REWIND",
+    "SAFETY",
+    "SEQNO",
+    "TMARK",
+    "TRNTYP",
+];
+
+/// Words that change where the tool goes.
+const REFUSED: &[&str] = &[
+    "CALL", "CLEARP", "CLRSRF", "COUPLE", "GOFWD", "HEAD", "INDIRV", "MACRO", "MODE", "ORIGIN",
+    "PIVOTZ", "PLUNGE", "POSITN", "POSTN", "PSIS", "READ", "RETRCT", "ROTHED", "TERMAC", "THREAD",
+    "TLON", "TRACUT", "TRANS",
+];
+
+/// What becomes of `word` (in capitals).
+pub fn usage(word: &str) -> Usage {
+    [
+        (USED, Usage::Used),
+        (PASSED, Usage::Passed),
+        (IGNORED, Usage::Ignored),
+        (REFUSED, Usage::Refused),
+    ]
+    .into_iter()
+    .find(|(words, _)| words.contains(&word))
+    .map_or(Usage::Unknown, |(_, usage)| usage)
+}

@@ -1,0 +1,191 @@
+//! From axis values to the words of the program and back: work offset, units, decimals, order.
+
+use nalgebra::Vector3;
+use post_plugin::Format;
+
+use crate::kinematics::{Joints, MAX_AXES, Solver};
+use crate::machine::{Machine, OutputUnits, Tcp};
+
+/// Values of the words of a block, in the order in which they are written.
+pub type WordValues = [f64; MAX_AXES];
+
+/// How axis values are written.
+#[derive(Clone, Debug)]
+pub struct Words {
+    tcp: Tcp,
+    /// In the order of writing.
+    words: Vec<Word>,
+    /// Axis values with the tip on the part origin and every rotary axis at zero.
+    zero: Joints,
+}
+
+/// One word.
+#[derive(Clone, Copy, Debug)]
+struct Word {
+    /// Place in the chain.
+    joint: usize,
+    rotary: bool,
+    /// Coordinate of the part frame, for a linear word when the control keeps the tip.
+    coordinate: usize,
+    /// Axis units (mm, radians) in one unit of the word (mm or inch, degrees).
+    unit: f64,
+    /// Ten to the number of decimals.
+    scale: f64,
+}
+
+/// The order in which addresses stand in a block.
+const ORDER: &str = "XYZUVWABC";
+
+/// Places in the chain, in the order in which their words are written.
+pub fn order(machine: &Machine) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..machine.axes.len()).collect();
+    places.sort_by_key(|place| {
+        let name = &machine.axes[*place].name;
+        let letter = name.chars().next().and_then(|letter| ORDER.find(letter));
+        (letter.unwrap_or(ORDER.len()), name.clone())
+    });
+    places
+}
+
+/// The linear axis along the tool with all axes at zero: it moves last when the tool comes near.
+pub fn depth(machine: &Machine) -> Option<usize> {
+    let along = |place: &usize| {
+        let joint = &machine.axes[*place].joint;
+        libm::fabs(joint.direction.dot(&machine.tool_axis))
+    };
+    (0..machine.axes.len())
+        .filter(|place| !machine.axes[*place].joint.rotary)
+        .max_by(|a, b| along(a).total_cmp(&along(b)))
+}
+
+/// mm in one unit of the program.
+pub fn unit_length(units: OutputUnits) -> f64 {
+    match units {
+        OutputUnits::Mm => 1.0,
+        OutputUnits::Inch => 25.4,
+    }
+}
+
+impl Words {
+    /// Words of a machine as a dialect's `format` prints them.
+    pub fn new(machine: &Machine, format: &Format) -> Self {
+        let length = unit_length(machine.control.units);
+        let words = order(machine)
+            .into_iter()
+            .zip(&format.words)
+            .map(|(joint, decimals)| {
+                let axis = &machine.axes[joint];
+                Word {
+                    joint,
+                    rotary: axis.joint.rotary,
+                    coordinate: match axis.name.as_str() {
+                        "X" => 0,
+                        "Y" => 1,
+                        _ => 2,
+                    },
+                    unit: if axis.joint.rotary {
+                        1f64.to_radians()
+                    } else {
+                        length
+                    },
+                    scale: (0..*decimals).fold(1.0, |scale, _| scale * 10.0),
+                }
+            })
+            .collect();
+        Self {
+            tcp: machine.control.tcp,
+            words,
+            zero: [0.0; MAX_AXES],
+        }
+    }
+
+    /// Number of words.
+    pub fn len(&self) -> usize {
+        self.words.len()
+    }
+
+    /// No words.
+    pub fn is_empty(&self) -> bool {
+        self.words.is_empty()
+    }
+
+    /// Takes the work offset from a solver: where the axes stand when the tip of its tool is on the part
+    /// origin and every rotary axis at zero. None if the linear axes cannot bring it there.
+    pub fn set_zero(&mut self, solver: &Solver) -> Option<()> {
+        let mut zero = [0.0; MAX_AXES];
+        let turns = solver.chain().turns(&zero);
+        solver.place(Vector3::zeros(), &mut zero, &turns).ok()?;
+        self.zero = zero;
+        Some(())
+    }
+
+    /// Puts the rotary values on printed numbers and writes them to `values`.
+    #[inline]
+    pub fn print_rotary(&self, joints: &mut Joints, values: &mut WordValues) {
+        for (place, word) in self.words.iter().enumerate() {
+            if word.rotary {
+                values[place] = printed(joints[word.joint] / word.unit, word.scale);
+                joints[word.joint] = values[place] * word.unit;
+            }
+        }
+    }
+
+    /// Puts the linear values (of the axes, or of `tip` where the control keeps it) on printed numbers.
+    /// `joints` are then where the control will bring the axes, and the tip is returned where it is the word.
+    #[inline]
+    pub fn print_linear(
+        &self,
+        joints: &mut Joints,
+        tip: Vector3<f64>,
+        values: &mut WordValues,
+    ) -> Option<Vector3<f64>> {
+        match self.tcp {
+            Tcp::Post => {
+                for (place, word) in self.words.iter().enumerate() {
+                    if !word.rotary {
+                        let zero = self.zero[word.joint];
+                        values[place] =
+                            printed((joints[word.joint] - zero) / word.unit, word.scale);
+                        joints[word.joint] = values[place] * word.unit + zero;
+                    }
+                }
+                None
+            }
+            Tcp::Control => {
+                let mut reached = tip;
+                for (place, word) in self.words.iter().enumerate() {
+                    if !word.rotary {
+                        let coordinate = word.coordinate;
+                        values[place] = printed(tip[coordinate] / word.unit, word.scale);
+                        reached[coordinate] = values[place] * word.unit;
+                    }
+                }
+                Some(reached)
+            }
+        }
+    }
+
+    /// The largest error of the tip that rounding the linear words can make, mm.
+    pub fn rounding(&self) -> f64 {
+        self.words
+            .iter()
+            .filter(|word| !word.rotary)
+            .map(|word| 0.5 * word.unit / word.scale)
+            .sum()
+    }
+
+    /// The largest error of the tool axis that rounding the rotary words can make, radians.
+    pub fn axis_rounding(&self) -> f64 {
+        self.words
+            .iter()
+            .filter(|word| word.rotary)
+            .map(|word| 0.5 * word.unit / word.scale)
+            .sum()
+    }
+}
+
+/// The number nearest to `value` that has so many decimals (`scale` is ten to their number), never -0.
+#[inline]
+fn printed(value: f64, scale: f64) -> f64 {
+    libm::rint(value * scale) / scale + 0.0
+}

@@ -1,1 +1,38 @@
-fn main() {}
+//! `post`: turns a cutter-location file into the NC program of one machine.
+
+mod arguments;
+mod machines;
+mod output;
+mod plugins;
+mod posting;
+mod progress;
+mod render;
+mod summary;
+mod words;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+
+/// All is good.
+const GOOD: u8 = 0;
+/// Refused: nothing was written, and the messages say why. (Usage faults are clap's: 2.)
+const REFUSED: u8 = 1;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let done = match &arguments.command {
+        Some(Command::Words { file, unknown_only }) => words::print(file, *unknown_only),
+        Some(Command::Machines) => machines::print(&arguments.post),
+        None => posting::run(&arguments.post),
+    };
+    match done {
+        Ok(()) => GOOD.into(),
+        Err(findings) => {
+            render::findings(&findings);
+            REFUSED.into()
+        }
+    }
+}

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use post_grammar::SyntaxFault;
+
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
@@ -24,6 +26,19 @@ pub struct Diagnostic {
     pub message: String,
     /// What would help.
     pub help: Option<String>,
+    /// How far the limit is passed, for findings that come by the thousand and are told once.
+    pub extreme: Option<Extreme>,
+}
+
+/// How far a limit is passed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extreme {
+    /// Findings with the same code and key are about the same limit.
+    pub key: u64,
+    /// By how much it is passed; the largest is told.
+    pub by: f64,
+    /// The value, as told.
+    pub value: String,
 }
 
 /// A place in a text file.
@@ -48,6 +63,7 @@ impl Diagnostic {
             place: None,
             message: message.into(),
             help: None,
+            extreme: None,
         }
     }
 
@@ -65,9 +81,28 @@ impl Diagnostic {
         self
     }
 
+    /// Adds how far the limit is passed.
+    pub fn extreme(mut self, extreme: Extreme) -> Self {
+        self.extreme = Some(extreme);
+        self
+    }
+
     /// Adds where it is.
     pub fn at(mut self, place: Option<Place>) -> Self {
         self.place = place;
         self
     }
+}
+
+/// A line of the CL file `file` that cannot be read.
+pub fn unreadable(file: &str, fault: &SyntaxFault) -> Diagnostic {
+    let place = Place {
+        file: file.to_owned(),
+        line: fault.line,
+        text: fault.text.clone(),
+        span: fault.span.clone(),
+    };
+    let mut diagnostic = Diagnostic::error("syntax", fault.message.clone()).at(Some(place));
+    diagnostic.help.clone_from(&fault.help);
+    diagnostic
 }

@@ -2,8 +2,8 @@
 
 use post_plugin::{Batch, Compensation, DialectSession, Event, Format, ModelSession};
 
-use crate::accuracy::{Linearise, Node, Piece, Placer, Refused, Stuck, Tolerances};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::accuracy::{Bound, Linearise, Move, Node, Placer, Refused, Stuck, Tolerances};
+use crate::diagnostic::{Diagnostic, Extreme, Place};
 use crate::feed::Feeds;
 use crate::kinematics::{Joints, MAX_AXES, NoClosedForm, Pose, Unreachable};
 use crate::machine::{Machine, Tcp, ToolLength};
@@ -160,7 +160,7 @@ impl<'a> Path<'a> {
 
     /// Points that the certificate asked for over the model's head.
     pub fn overruled(&self) -> u64 {
-        self.linearise.overruled
+        self.linearise.overruled()
     }
 
     /// The tool length mattered, and was taken as 0 because nobody gave it.
@@ -301,8 +301,7 @@ impl<'a> Path<'a> {
             self.first(line, motion, node);
             return;
         };
-        self.cut(line, motion, &last, &node);
-        self.last = Some(node);
+        self.last = Some(self.cut(line, motion, &last, node));
     }
 
     /// The first position after the start or a tool change.
@@ -328,123 +327,126 @@ impl<'a> Path<'a> {
         self.last = Some(node);
     }
 
-    /// A move from where the tool stands.
+    /// A move from where the tool stands; the node at which it ends.
     #[inline]
-    fn cut(&mut self, line: u64, motion: &Motion, last: &Node, node: &Node) {
-        let machine = self.machine;
-        let accuracy = &machine.accuracy;
-        let rapid = motion.pace == Pace::Rapid;
-        let keeps = machine.control.tcp == Tcp::Control;
-        let tolerances = if rapid {
-            Tolerances {
-                tip: accuracy.rapid_tolerance - motion.chord,
-                axis: f64::INFINITY,
+    fn cut(&mut self, line: u64, motion: &Motion, last: &Node, node: Node) -> Node {
+        let whole = planned(self.machine, &self.placer, motion, last, &node).whole();
+        if let Some(bound) = whole {
+            self.piece(line, motion, last, &node, 1.0, bound);
+            return node;
+        }
+        self.split(line, motion, last, node)
+    }
+
+    /// A move that needs points. Beside a pole the axes can follow the path on one of the two solutions only,
+    /// and it need not be the one whose end is nearer: then the other is tried.
+    fn split(&mut self, line: u64, motion: &Motion, last: &Node, node: Node) -> Node {
+        let mut linearise = std::mem::take(&mut self.linearise);
+        let mut end = node;
+        let (machine, placer) = (self.machine, &self.placer);
+        let mut done = linearise.split(&planned(machine, placer, motion, last, &end), self.model);
+        if let Err(Stuck::Jump { .. }) = done
+            && let Ok(other) = placer.place_other(node.target, 1.0, &last.trace.joints)
+            && linearise
+                .split(&planned(machine, placer, motion, last, &other), self.model)
+                .is_ok()
+        {
+            end = other;
+            done = Ok(());
+        }
+        match done {
+            Ok(()) => {
+                let mut from = *last;
+                from.t = 0.0;
+                for (index, piece) in linearise.pieces().iter().enumerate() {
+                    self.tally.points_added += u64::from(index > 0);
+                    let share = piece.to.t - from.t;
+                    self.piece(line, motion, &from, &piece.to, share, piece.bound);
+                    from = piece.to;
+                }
             }
+            Err(stuck) => {
+                let finding = self.stuck(&stuck, motion);
+                self.findings.push(finding);
+            }
+        }
+        self.linearise = linearise;
+        end
+    }
+
+    /// One block, a `share` of its move.
+    #[inline]
+    fn piece(
+        &mut self,
+        line: u64,
+        motion: &Motion,
+        from: &Node,
+        to: &Node,
+        share: f64,
+        bound: Bound,
+    ) {
+        self.keep_range(to);
+        let rapid = motion.pace == Pace::Rapid;
+        let (first, last) = (&from.trace.joints, &to.trace.joints);
+        let words = &to.words[..self.format.words.len()];
+        let event = if rapid {
+            self.tally.other += self.feeds.least_time(first, last);
+            Event::Rapid { words }
         } else {
-            Tolerances {
-                tip: accuracy.tolerance - motion.chord,
-                axis: accuracy.axis_tolerance,
+            let length = (to.target.tip - from.target.tip).norm();
+            let paced = self.feeds.cut(motion.pace, length, share, first, last);
+            self.tally.limited += u64::from(paced.limited);
+            self.tally.cutting += paced.minutes;
+            Event::Linear {
+                words,
+                feed: paced.feed,
             }
         };
-        let length = (node.target.tip - last.target.tip).norm();
-        let count = self.format.words.len();
-        let Self {
-            placer,
-            model,
-            linearise,
-            feeds,
-            batch,
-            tally,
-            marks,
-            dialect,
-            output,
-            text,
-            ends,
-            findings,
-            failed,
-            ..
-        } = self;
-        let mut first = true;
-        let result = linearise.pieces(
-            placer,
-            *model,
-            last,
-            node,
-            tolerances,
-            keeps,
-            &mut |_, piece: Piece<'_>| {
-                if !std::mem::take(&mut first) {
-                    tally.points_added += 1;
-                }
-                let (from, to) = (&piece.from.trace.joints, &piece.to.trace.joints);
-                keep_range(tally, piece.to);
-                let words = &piece.to.words[..count];
-                // The first piece begins at the end of the last move, whatever its t there.
-                let begin = if std::ptr::eq(piece.from, last) {
-                    0.0
-                } else {
-                    piece.from.t
+        // A block without a changed word moves nothing and is not written.
+        if from.words == to.words {
+            return;
+        }
+        self.tally.blocks += 1;
+        self.mark(line, motion, from, to, bound);
+        self.push(line, event);
+    }
+
+    /// Keeps the largest deviations: the cheap bound decides whether a block can hold one, the tight one is kept.
+    #[inline]
+    fn mark(&mut self, line: u64, motion: &Motion, from: &Node, to: &Node, bound: Bound) {
+        let values = |bound: Bound| {
+            [
+                bound.tip + motion.chord,
+                bound.axis,
+                bound.tip + motion.chord,
+            ]
+        };
+        let slots: &[usize] = if motion.pace == Pace::Rapid {
+            &[RAPID]
+        } else {
+            &[TIP, AXIS]
+        };
+        let cheap = values(bound);
+        if slots
+            .iter()
+            .all(|slot| cheap[*slot] <= self.tally.deviations[*slot].value)
+        {
+            return;
+        }
+        let tight = planned(self.machine, &self.placer, motion, from, to).measured();
+        let tight = values(Bound {
+            tip: bound.tip.min(tight.tip),
+            axis: bound.axis.min(tight.axis),
+        });
+        for &slot in slots {
+            if tight[slot] > self.tally.deviations[slot].value {
+                self.tally.deviations[slot] = Deviation {
+                    value: tight[slot],
+                    block: 0,
+                    line,
                 };
-                let share = piece.to.t - begin;
-                let (minutes, event) = if rapid {
-                    (feeds.least_time(from, to), Event::Rapid { words })
-                } else {
-                    let paced = feeds.cut(motion.pace, length * share, share, from, to);
-                    tally.limited += u64::from(paced.limited);
-                    (
-                        paced.minutes,
-                        Event::Linear {
-                            words,
-                            feed: paced.feed,
-                        },
-                    )
-                };
-                if rapid {
-                    tally.other += minutes;
-                } else {
-                    tally.cutting += minutes;
-                }
-                // A block without a changed word moves nothing and is not written.
-                if piece.from.words == piece.to.words {
-                    return;
-                }
-                tally.blocks += 1;
-                let slots: &[usize] = if rapid { &[RAPID] } else { &[TIP, AXIS] };
-                let bound = [
-                    piece.tip + motion.chord,
-                    piece.axis,
-                    piece.tip + motion.chord,
-                ];
-                if slots
-                    .iter()
-                    .any(|slot| bound[*slot] > tally.deviations[*slot].value)
-                {
-                    let (tip, axis) = Linearise::measure(placer, &piece, keeps);
-                    let tight = [tip + motion.chord, axis, tip + motion.chord];
-                    for &slot in slots {
-                        if tight[slot] > tally.deviations[slot].value {
-                            tally.deviations[slot] = Deviation {
-                                value: tight[slot],
-                                block: 0,
-                                line,
-                            };
-                            marks[slot] = Some(batch.len());
-                        }
-                    }
-                }
-                if !*failed {
-                    batch.push(line, event);
-                    if batch.len() >= BATCH {
-                        flush(
-                            *dialect, *output, batch, text, ends, tally, marks, findings, failed,
-                        );
-                    }
-                }
-            },
-        );
-        if let Err(stuck) = result {
-            let finding = self.stuck(&stuck, motion);
-            self.findings.push(finding);
+                self.marks[slot] = Some(self.batch.len());
+            }
         }
     }
 
@@ -467,8 +469,13 @@ impl<'a> Path<'a> {
         }
     }
 
+    #[inline]
     fn keep_range(&mut self, node: &Node) {
-        keep_range(&mut self.tally, node);
+        let Tally { least, most, .. } = &mut self.tally;
+        for (index, value) in node.trace.joints.iter().enumerate() {
+            least[index] = least[index].min(*value);
+            most[index] = most[index].max(*value);
+        }
     }
 
     fn push(&mut self, line: u64, event: Event<'_>) {
@@ -481,18 +488,42 @@ impl<'a> Path<'a> {
         }
     }
 
+    /// Hands the batch to the dialect and its text to the output.
     fn flush(&mut self) {
-        flush(
-            self.dialect,
-            self.output,
-            &mut self.batch,
-            &mut self.text,
-            &mut self.ends,
-            &mut self.tally,
-            &mut self.marks,
-            &mut self.findings,
-            &mut self.failed,
-        );
+        let Self {
+            batch,
+            text,
+            ends,
+            tally,
+            ..
+        } = self;
+        text.clear();
+        ends.clear();
+        if let Err(fault) = self.dialect.write_batch(batch, text, ends) {
+            let line = batch.line(fault.index.min(batch.len().saturating_sub(1)));
+            self.findings
+                .push(Diagnostic::error("dialect", fault.message).at(Some(Place {
+                    file: String::new(),
+                    line,
+                    text: String::new(),
+                    span: 0..0,
+                })));
+            self.failed = true;
+        }
+        for (slot, mark) in self.marks.iter_mut().enumerate() {
+            if let Some(index) = mark.take() {
+                let end = ends.get(index).copied().unwrap_or(text.len());
+                tally.deviations[slot].block = tally.lines + newlines(&text[..end]);
+            }
+        }
+        tally.lines += newlines(text);
+        if !self.failed
+            && let Err(message) = self.output.write(text)
+        {
+            self.findings.push(Diagnostic::error("output", message));
+            self.failed = true;
+        }
+        batch.clear();
     }
 
     fn refusal(&self, refused: &Refused) -> Diagnostic {
@@ -507,12 +538,18 @@ impl<'a> Path<'a> {
                     machine.accuracy.axis_tolerance.to_degrees()
                 ),
             )
+            .extreme(Extreme {
+                key: u64::MAX,
+                by: miss,
+                value: format!("{:.4}° off", miss.to_degrees()),
+            })
             .help("another machine, another set-up, or --msys apply if the axes are written in another frame"),
             Refused::Unreachable(Unreachable::Linear) => Diagnostic::error(
                 "out-of-reach",
                 format!("the linear axes of {} cannot bring the tip here at these angles", machine.name),
             ),
             Refused::OverTravel { over, tried } => {
+                let side = u64::from(over.value > over.limit);
                 let axis = &machine.axes[over.joint];
                 let (unit, sign) = if axis.joint.rotary {
                     (1f64.to_radians(), "°")
@@ -532,6 +569,11 @@ impl<'a> Path<'a> {
                         }
                     ),
                 );
+                let diagnostic = diagnostic.extreme(Extreme {
+                    key: over.joint as u64 * 2 + side,
+                    by: libm::fabs(over.value - over.limit) / unit,
+                    value: format!("{} {:.3}{sign}", axis.name, over.value / unit),
+                });
                 if axis.joint.rotary {
                     diagnostic.help("another set-up of the part, or a machine that tilts so far")
                 } else {
@@ -585,6 +627,33 @@ impl<'a> Path<'a> {
     }
 }
 
+/// A motion between two nodes, and what it must keep.
+#[inline]
+fn planned<'n>(
+    machine: &Machine,
+    placer: &'n Placer,
+    motion: &Motion,
+    from: &'n Node,
+    to: &'n Node,
+) -> Move<'n> {
+    let accuracy = &machine.accuracy;
+    let (tip, axis) = if motion.pace == Pace::Rapid {
+        (accuracy.rapid_tolerance, f64::INFINITY)
+    } else {
+        (accuracy.tolerance, accuracy.axis_tolerance)
+    };
+    Move {
+        placer,
+        from,
+        to,
+        tolerances: Tolerances {
+            tip: tip - motion.chord,
+            axis,
+        },
+        control_keeps_tip: machine.control.tcp == Tcp::Control,
+    }
+}
+
 /// A solver and words for the machine with a tool of `length` mm.
 fn placer(machine: &Machine, format: &Format, length: f64) -> Result<Placer, Diagnostic> {
     let fault = |lack: NoClosedForm| Diagnostic::error("machine-chain", format!("{lack:?}"));
@@ -597,56 +666,6 @@ fn placer(machine: &Machine, format: &Format, length: f64) -> Result<Placer, Dia
         )
     })?;
     Ok(Placer::new(machine, solver, words))
-}
-
-#[inline]
-fn keep_range(tally: &mut Tally, node: &Node) {
-    for (index, value) in node.trace.joints.iter().enumerate() {
-        tally.least[index] = tally.least[index].min(*value);
-        tally.most[index] = tally.most[index].max(*value);
-    }
-}
-
-/// Hands the batch to the dialect and its text to the output.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "parts of the path that a closure holds one by one"
-)]
-fn flush(
-    dialect: &mut dyn DialectSession,
-    output: &mut dyn Output,
-    batch: &mut Batch,
-    text: &mut Vec<u8>,
-    ends: &mut Vec<usize>,
-    tally: &mut Tally,
-    marks: &mut [Option<usize>; 3],
-    findings: &mut Vec<Diagnostic>,
-    failed: &mut bool,
-) {
-    text.clear();
-    ends.clear();
-    if let Err(fault) = dialect.write_batch(batch, text, ends) {
-        let line = batch.line(fault.index.min(batch.len().saturating_sub(1)));
-        findings.push(Diagnostic::error("dialect", fault.message).at(Some(Place {
-            file: String::new(),
-            line,
-            text: String::new(),
-            span: 0..0,
-        })));
-        *failed = true;
-    }
-    for (slot, mark) in marks.iter_mut().enumerate() {
-        if let Some(index) = mark.take() {
-            let end = ends.get(index).copied().unwrap_or(text.len());
-            tally.deviations[slot].block = tally.lines + newlines(&text[..end]);
-        }
-    }
-    tally.lines += newlines(text);
-    if !*failed && let Err(message) = output.write(text) {
-        findings.push(Diagnostic::error("output", message));
-        *failed = true;
-    }
-    batch.clear();
 }
 
 fn newlines(text: &[u8]) -> u64 {

@@ -3,11 +3,12 @@
 use post_grammar::{Record, SyntaxFault};
 use post_plugin::{DialectSession, ModelSession};
 
-use crate::diagnostic::{Diagnostic, Place, Severity};
+use crate::diagnostic::{Diagnostic, Extreme, Place, Severity, unreadable};
 use crate::machine::{Machine, Tcp};
 use crate::path::{Output, Path};
 use crate::program::{Interpreter, Reading, record_place};
 use crate::report::{AxisRange, Deviation, Report};
+use crate::words;
 
 /// Faults of one run that are told; what comes after is most likely more of the same.
 pub const MOST_FAULTS: usize = 20;
@@ -32,7 +33,19 @@ pub struct Post<'a> {
     records: u64,
     last_line: u64,
     findings: Vec<Diagnostic>,
+    repeats: Vec<Repeat>,
     faults: usize,
+}
+
+/// A limit that is passed again and again.
+#[derive(Debug)]
+struct Repeat {
+    /// Its first finding.
+    finding: usize,
+    count: u64,
+    extreme: Extreme,
+    /// Where it is passed farthest.
+    line: u64,
 }
 
 impl<'a> Post<'a> {
@@ -69,6 +82,7 @@ impl<'a> Post<'a> {
             records: 0,
             last_line: 0,
             findings: Vec::new(),
+            repeats: Vec::new(),
             faults: 0,
         })
     }
@@ -89,14 +103,7 @@ impl<'a> Post<'a> {
 
     /// Takes a line that could not be read.
     pub fn unreadable(&mut self, fault: &SyntaxFault) {
-        let mut diagnostic = Diagnostic::error("syntax", fault.message.clone()).at(Some(Place {
-            file: self.file.clone(),
-            line: fault.line,
-            text: fault.text.clone(),
-            span: fault.span.clone(),
-        }));
-        diagnostic.help.clone_from(&fault.help);
-        self.keep(diagnostic);
+        self.keep(unreadable(&self.file, fault));
     }
 
     /// So many faults that reading on would only repeat them.
@@ -128,6 +135,7 @@ impl<'a> Post<'a> {
                 .help("give --tool-length, or [tools] in the machine file"),
             );
         }
+        self.tell_repeats();
         let report = (self.faults == 0).then(|| self.report());
         (report, self.findings)
     }
@@ -142,6 +150,10 @@ impl<'a> Post<'a> {
                 // A dialect's fault names its line; the text is no longer at hand.
                 Some(known) => known.file.clone_from(&self.file),
             }
+            if finding.code == "dialect" && finding.help.is_none() && !self.interpreter.has_tool() {
+                finding.help =
+                    Some("the CL file loads no tool: --tool N says which it is".to_owned());
+            }
             new.push(finding);
         }
         for finding in new {
@@ -151,21 +163,64 @@ impl<'a> Post<'a> {
 
     fn keep(&mut self, finding: Diagnostic) {
         if finding.severity == Severity::Error {
-            self.faults += 1;
             self.path.fail();
+            if self.repeated(&finding) {
+                return;
+            }
+            self.faults += 1;
         }
         self.findings.push(finding);
+    }
+
+    /// A limit that was passed before: counted, and its largest value kept.
+    fn repeated(&mut self, finding: &Diagnostic) -> bool {
+        let Some(extreme) = &finding.extreme else {
+            return false;
+        };
+        let line = finding.place.as_ref().map_or(0, |place| place.line);
+        let known = self.repeats.iter_mut().find(|repeat| {
+            let first = &self.findings[repeat.finding];
+            first.code == finding.code
+                && first.extreme.as_ref().map(|extreme| extreme.key) == Some(extreme.key)
+        });
+        if let Some(repeat) = known {
+            repeat.count += 1;
+            if extreme.by > repeat.extreme.by {
+                repeat.extreme = extreme.clone();
+                repeat.line = line;
+            }
+            return true;
+        }
+        self.repeats.push(Repeat {
+            finding: self.findings.len(),
+            count: 1,
+            extreme: extreme.clone(),
+            line,
+        });
+        false
+    }
+
+    /// Adds to the first finding of a limit how often and how far it was passed.
+    fn tell_repeats(&mut self) {
+        for repeat in &self.repeats {
+            if repeat.count > 1 {
+                let finding = &mut self.findings[repeat.finding];
+                finding.message.push_str(&format!(
+                    "; {} points pass it, the farthest with {} on line {}",
+                    repeat.count, repeat.extreme.value, repeat.line
+                ));
+            }
+        }
     }
 
     fn report(&self) -> Report {
         let machine = self.machine;
         let tally = self.path.tally();
         let [tip, axis, rapid] = tally.deviations;
-        let axes = machine
-            .axes
-            .iter()
-            .enumerate()
-            .map(|(index, axis)| {
+        let axes = words::order(machine)
+            .into_iter()
+            .map(|index| {
+                let axis = &machine.axes[index];
                 let unit = if axis.joint.rotary {
                     1f64.to_radians()
                 } else {

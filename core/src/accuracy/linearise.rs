@@ -25,14 +25,19 @@ pub struct Tolerances {
 
 /// A piece of a move that is within tolerance.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece<'a> {
-    /// Where it begins.
-    pub from: &'a Node,
-    /// Where it ends.
-    pub to: &'a Node,
-    /// Bound on the deviation of the tip, mm.
+pub struct Piece {
+    /// Where it ends; it begins where the one before it ends.
+    pub to: Node,
+    /// Bounds on its deviation.
+    pub bound: Bound,
+}
+
+/// Proven bounds on the deviation along a piece.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bound {
+    /// Tip, mm.
     pub tip: f64,
-    /// Bound on the deviation of the tool axis, radians.
+    /// Tool axis, radians.
     pub axis: f64,
 }
 
@@ -73,18 +78,90 @@ const MOST_SAMPLES: f64 = 64.0;
 /// Puts points in.
 #[derive(Debug, Default)]
 pub struct Linearise {
+    /// Nodes yet to be reached, the next on top.
     stack: Vec<Node>,
-    /// Points put in although the model was content, because the certificate was not.
-    pub overruled: u64,
-    /// Take the model's word and only report the certificate.
+    pieces: Vec<Piece>,
+    overruled: u64,
     trust_model: bool,
 }
 
-/// What was found out about a piece.
-struct Verdict {
-    good: bool,
-    tip: f64,
-    axis: f64,
+/// A move between two nodes, and what it must keep.
+#[derive(Clone, Copy, Debug)]
+pub struct Move<'a> {
+    /// Solves points put in.
+    pub placer: &'a Placer,
+    /// Where it begins.
+    pub from: &'a Node,
+    /// Where it ends.
+    pub to: &'a Node,
+    /// What its pieces must stay within.
+    pub tolerances: Tolerances,
+    /// The tip follows the words in a straight line by itself.
+    pub control_keeps_tip: bool,
+}
+
+impl Move<'_> {
+    /// The bound of the whole move, if the cheap certificate clears it: then no point is needed, whatever a
+    /// model may think, and none is asked.
+    #[inline]
+    pub fn whole(&self) -> Option<Bound> {
+        let sweep = angle(self.from.target.axis, self.to.target.axis);
+        let chain = self.placer.solver().chain();
+        let bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
+        let bound = self.bound(bend);
+        self.tolerances.hold(bound).then_some(bound)
+    }
+
+    /// The tightest bound that needs no samples.
+    pub fn measured(&self) -> Bound {
+        self.bound(self.bend())
+    }
+
+    fn bend(&self) -> Bend {
+        let (from, to) = (self.from, self.to);
+        let chain = self.placer.solver().chain();
+        let sweep = angle(from.target.axis, to.target.axis);
+        let quick = certificate::quick(chain, &from.trace, &to.trace, sweep);
+        let tight = certificate::tight(
+            chain,
+            &from.trace,
+            &to.trace,
+            from.target.axis,
+            to.target.axis,
+            sweep,
+        );
+        Bend {
+            tip: quick.tip.min(tight.tip),
+            axis: quick.axis.min(tight.axis),
+        }
+    }
+
+    /// The bound that a bend proves.
+    #[inline]
+    fn bound(&self, bend: Bend) -> Bound {
+        let (from, to) = (self.from, self.to);
+        let tip_bend = if self.control_keeps_tip {
+            0.0
+        } else {
+            bend.tip
+        };
+        let axis_ends = from.axis_error.max(to.axis_error);
+        Bound {
+            tip: certificate::deviation(from.tip_error.max(to.tip_error), tip_bend),
+            axis: if bend.axis == 0.0 {
+                axis_ends
+            } else {
+                certificate::chord_angle(certificate::deviation(axis_ends, bend.axis))
+            },
+        }
+    }
+}
+
+impl Tolerances {
+    #[inline]
+    fn hold(&self, bound: Bound) -> bool {
+        bound.tip <= self.tip && bound.axis <= self.axis
+    }
 }
 
 impl Linearise {
@@ -96,224 +173,99 @@ impl Linearise {
         }
     }
 
-    /// Cuts the move between two nodes into pieces within tolerance and gives them to `emit` in order.
-    /// `control_keeps_tip` tells that the tip follows the words in a straight line by itself.
-    ///
-    /// # Errors
-    /// Why it cannot be done; pieces before that were given.
-    #[inline]
-    pub fn pieces(
-        &mut self,
-        placer: &Placer,
-        model: &mut dyn ModelSession,
-        from: &Node,
-        to: &Node,
-        tolerances: Tolerances,
-        control_keeps_tip: bool,
-        emit: &mut impl FnMut(&Linearise, Piece<'_>),
-    ) -> Result<(), Stuck> {
-        let sweep = angle(from.target.axis, to.target.axis);
-        let bound = bounds(
-            from,
-            to,
-            certificate::quick(placer.solver().chain(), &from.trace, &to.trace, sweep),
-            control_keeps_tip,
-        );
-        if bound.tip <= tolerances.tip && bound.axis <= tolerances.axis {
-            emit(
-                self,
-                Piece {
-                    from,
-                    to,
-                    tip: bound.tip,
-                    axis: bound.axis,
-                },
-            );
-            return Ok(());
-        }
-        self.split(placer, model, from, to, tolerances, control_keeps_tip, emit)
+    /// Points put in although the model was content, because the certificate was not.
+    pub fn overruled(&self) -> u64 {
+        self.overruled
     }
 
-    #[expect(clippy::too_many_arguments, reason = "the slow half of `pieces`")]
-    fn split(
-        &mut self,
-        placer: &Placer,
-        model: &mut dyn ModelSession,
-        from: &Node,
-        to: &Node,
-        tolerances: Tolerances,
-        control_keeps_tip: bool,
-        emit: &mut impl FnMut(&Linearise, Piece<'_>),
-    ) -> Result<(), Stuck> {
-        let mut current = *from;
-        current.t = 0.0;
-        let mut stack = std::mem::take(&mut self.stack);
-        stack.clear();
-        stack.push(*to);
-        let mut result = Ok(());
-        while let Some(next) = stack.pop() {
-            let verdict = match self.judge(
-                placer,
-                model,
-                &current,
-                &next,
-                tolerances,
-                control_keeps_tip,
-            ) {
-                Ok(verdict) => verdict,
-                Err(message) => {
-                    result = Err(Stuck::Model(message));
-                    break;
-                }
+    /// The pieces of the last move that was split.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// Cuts a move into pieces within tolerance, in order: see [`Linearise::pieces`].
+    ///
+    /// # Errors
+    /// Why it cannot be done.
+    pub fn split(&mut self, whole: &Move<'_>, model: &mut dyn ModelSession) -> Result<(), Stuck> {
+        let mut from = *whole.from;
+        from.t = 0.0;
+        self.pieces.clear();
+        self.stack.clear();
+        self.stack.push(*whole.to);
+        while let Some(to) = self.stack.pop() {
+            let piece = Move {
+                from: &from,
+                to: &to,
+                ..*whole
             };
-            if verdict.good {
-                emit(
-                    self,
-                    Piece {
-                        from: &current,
-                        to: &next,
-                        tip: verdict.tip,
-                        axis: verdict.axis,
-                    },
-                );
-                current = next;
+            let (good, bound) = self.judge(&piece, model).map_err(Stuck::Model)?;
+            if good {
+                self.pieces.push(Piece { to, bound });
+                from = to;
                 continue;
             }
-            let middle = stuck(&current, &next, tolerances)
-                .map_or(Ok(()), Err)
-                .and_then(|()| {
-                    middle(placer, &current, &next, verdict.axis <= tolerances.axis)
-                        .map_err(Stuck::Refused)
-                });
-            match middle {
-                Ok(middle) => {
-                    stack.push(next);
-                    stack.push(middle);
-                }
-                Err(stuck) => {
-                    result = Err(stuck);
-                    break;
-                }
+            if let Some(stuck) = stuck(&piece) {
+                return Err(stuck);
             }
+            let middle = middle(&piece, bound).map_err(Stuck::Refused)?;
+            self.stack.push(to);
+            self.stack.push(middle);
         }
-        self.stack = stack;
-        result
+        Ok(())
     }
 
     /// Is a piece within tolerance? The model proposes, the certificate disposes.
     fn judge(
         &mut self,
-        placer: &Placer,
+        piece: &Move<'_>,
         model: &mut dyn ModelSession,
-        from: &Node,
-        to: &Node,
-        tolerances: Tolerances,
-        control_keeps_tip: bool,
-    ) -> Result<Verdict, String> {
-        let chain = placer.solver().chain();
-        let sweep = angle(from.target.axis, to.target.axis);
-        let quick = certificate::quick(chain, &from.trace, &to.trace, sweep);
-        let tight = certificate::tight(
-            chain,
-            &from.trace,
-            &to.trace,
-            from.target.axis,
-            to.target.axis,
-            sweep,
-        );
-        let bend = Bend {
-            tip: quick.tip.min(tight.tip),
-            axis: quick.axis.min(tight.axis),
-        };
-        let bound = bounds(from, to, bend, control_keeps_tip);
-        let within = |tip: f64, axis: f64| tip <= tolerances.tip && axis <= tolerances.axis;
-        if within(bound.tip, bound.axis) {
-            return Ok(Verdict {
-                good: true,
-                ..bound
-            });
+    ) -> Result<(bool, Bound), String> {
+        let tolerances = piece.tolerances;
+        let bend = piece.bend();
+        let bound = piece.bound(bend);
+        if tolerances.hold(bound) {
+            return Ok((true, bound));
         }
-        let path = Block {
-            placer,
-            from,
-            to,
-            control_keeps_tip,
-        };
         let tolerance = Tolerance {
             tip: tolerances.tip,
             axis: tolerances.axis.to_degrees(),
         };
         let curve = model.fit(&tolerance, &mut |ts, out| {
             for (t, out) in ts.iter().zip(out) {
-                *out = path.deviation(*t);
+                *out = deviation(piece, *t);
             }
         })?;
-        let content = within(curve.tip_peak, curve.axis_peak.to_radians());
-        let certified = path.certify(bend, tolerances);
-        let sure = within(certified.tip, certified.axis);
+        let content = tolerances.hold(Bound {
+            tip: curve.tip_peak,
+            axis: curve.axis_peak.to_radians(),
+        });
+        let certified = certify(piece, bend);
+        let sure = tolerances.hold(certified);
         if content && !sure && !self.trust_model {
             self.overruled += 1;
         }
-        Ok(Verdict {
-            // A model that sees more than the certificate proves is wrong on the safe side: points go in.
-            good: content && (sure || self.trust_model),
-            ..certified
-        })
-    }
-
-    /// The tightest bound of a piece, for the summary.
-    pub fn measure(placer: &Placer, piece: &Piece<'_>, control_keeps_tip: bool) -> (f64, f64) {
-        let (from, to) = (piece.from, piece.to);
-        let sweep = angle(from.target.axis, to.target.axis);
-        let tight = certificate::tight(
-            placer.solver().chain(),
-            &from.trace,
-            &to.trace,
-            from.target.axis,
-            to.target.axis,
-            sweep,
-        );
-        let bound = bounds(from, to, tight, control_keeps_tip);
-        (piece.tip.min(bound.tip), piece.axis.min(bound.axis))
-    }
-}
-
-/// The bound that a bend proves for a piece.
-#[inline]
-fn bounds(from: &Node, to: &Node, bend: Bend, control_keeps_tip: bool) -> Verdict {
-    let tip_bend = if control_keeps_tip { 0.0 } else { bend.tip };
-    let axis_ends = from.axis_error.max(to.axis_error);
-    // Below a milliradian the chord of an angle is the angle to seven digits; the sum is an upper bound anyway.
-    let axis = if bend.axis == 0.0 {
-        axis_ends
-    } else {
-        certificate::chord_angle(certificate::deviation(axis_ends, bend.axis))
-    };
-    Verdict {
-        good: false,
-        tip: certificate::deviation(from.tip_error.max(to.tip_error), tip_bend),
-        axis,
+        // A model that sees more than the certificate proves is wrong on the safe side: points go in.
+        Ok((content && (sure || self.trust_model), certified))
     }
 }
 
 /// A piece that no further point can mend.
-fn stuck(from: &Node, to: &Node, tolerances: Tolerances) -> Option<Stuck> {
+fn stuck(piece: &Move<'_>) -> Option<Stuck> {
+    let (from, to) = (piece.from, piece.to);
     let tip = from.tip_error.max(to.tip_error);
     let axis = from.axis_error.max(to.axis_error);
-    if tip >= tolerances.tip || axis >= tolerances.axis {
+    if tip >= piece.tolerances.tip || axis >= piece.tolerances.axis {
         return Some(Stuck::Rounding { tip, axis });
     }
     if to.t - from.t > SHORTEST {
         return None;
     }
-    let (joint, _) = (0..from.trace.joints.len())
-        .map(|joint| {
-            (
-                joint,
-                (to.trace.joints[joint] - from.trace.joints[joint]).abs(),
-            )
-        })
-        .max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let joints = piece.placer.solver().chain().joints();
+    let turn = |joint: &usize| libm::fabs(to.trace.joints[*joint] - from.trace.joints[*joint]);
+    let joint = (0..joints.len())
+        .filter(|joint| joints[*joint].rotary)
+        .max_by(|a, b| turn(a).total_cmp(&turn(b)))?;
     Some(Stuck::Jump {
         joint,
         from: from.trace.joints[joint],
@@ -321,107 +273,96 @@ fn stuck(from: &Node, to: &Node, tolerances: Tolerances) -> Option<Stuck> {
     })
 }
 
-/// The node in the middle of a piece. `axis_holds` tells that the tool axis is within tolerance already.
-fn middle(placer: &Placer, from: &Node, to: &Node, axis_holds: bool) -> Result<Node, Refused> {
+/// The node in the middle of a piece whose deviation is bounded by `bound`.
+fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
+    let (from, to, placer) = (piece.from, piece.to, piece.placer);
     let t = (from.t + to.t) / 2.0;
-    let mut halfway: Joints = Default::default();
-    for (joint, value) in halfway.iter_mut().enumerate() {
-        *value = (from.trace.joints[joint] + to.trace.joints[joint]) / 2.0;
-    }
+    let (first, last) = (&from.trace.joints, &to.trace.joints);
     let tip = (from.target.tip + to.target.tip) / 2.0;
     let axis = (from.target.axis + to.target.axis)
         .try_normalize(1e-9)
         .unwrap_or(from.target.axis);
     let target = Pose { tip, axis };
-    let exact = placer.place(target, t, &halfway);
-    if axis_holds {
-        let straight = exact.as_ref().is_ok_and(|node| {
-            let joints = &node.trace.joints;
-            placer
-                .solver()
-                .chain()
-                .joints()
-                .iter()
-                .enumerate()
-                .filter(|(_, joint)| joint.rotary)
-                .all(|(index, _)| {
-                    let turn = (to.trace.joints[index] - from.trace.joints[index]).abs();
-                    let off = (joints[index] - halfway[index]).abs();
-                    off <= turn / 4.0 + placer.axis_rounding()
-                })
-        });
-        if !straight {
-            return placer.settle(target, t, halfway);
-        }
+    let exact = placer.place_between(target, t, first, last);
+    if bound.axis > piece.tolerances.axis {
+        return exact;
     }
-    exact
+    let mut halfway: Joints = Default::default();
+    for (joint, value) in halfway.iter_mut().enumerate() {
+        *value = (first[joint] + last[joint]) / 2.0;
+    }
+    let straight = exact.as_ref().is_ok_and(|node| {
+        let joints = placer.solver().chain().joints();
+        (0..joints.len())
+            .filter(|joint| joints[*joint].rotary)
+            .all(|joint| {
+                let turn = libm::fabs(last[joint] - first[joint]);
+                let off = libm::fabs(node.trace.joints[joint] - halfway[joint]);
+                off <= turn / 4.0 + placer.axis_rounding()
+            })
+    });
+    if straight {
+        exact
+    } else {
+        placer.settle(target, t, halfway)
+    }
 }
 
-/// A block: all axes linear in t between two nodes.
-struct Block<'a> {
-    placer: &'a Placer,
-    from: &'a Node,
-    to: &'a Node,
-    control_keeps_tip: bool,
+/// Pose of the interpolated axes minus the CL path at the same `t` of the piece.
+fn deviation(piece: &Move<'_>, t: f64) -> Deviation {
+    let (from, to) = (piece.from, piece.to);
+    let mut joints: Joints = Default::default();
+    for (joint, value) in joints.iter_mut().enumerate() {
+        *value = from.trace.joints[joint] * (1.0 - t) + to.trace.joints[joint] * t;
+    }
+    let pose = piece.placer.solver().chain().forward(&joints);
+    let reached = if piece.control_keeps_tip {
+        from.tip * (1.0 - t) + to.tip * t
+    } else {
+        pose.tip
+    };
+    let tip = reached - (from.target.tip * (1.0 - t) + to.target.tip * t);
+    let wanted = great_circle(from.target.axis, to.target.axis, t);
+    let cross = wanted.cross(&pose.axis);
+    let sine = cross.norm();
+    let turn = if sine > 0.0 {
+        cross * (libm::atan2(sine, wanted.dot(&pose.axis)).to_degrees() / sine)
+    } else {
+        Vector3::zeros()
+    };
+    Deviation {
+        tip: tip.into(),
+        axis: turn.into(),
+    }
 }
 
-impl Block<'_> {
-    /// Pose of the interpolated axes minus the CL path at the same t.
-    fn deviation(&self, t: f64) -> Deviation {
-        let (from, to) = (self.from, self.to);
-        let mut joints: Joints = Default::default();
-        for (joint, value) in joints.iter_mut().enumerate() {
-            *value = from.trace.joints[joint] * (1.0 - t) + to.trace.joints[joint] * t;
-        }
-        let pose = self.placer.solver().chain().forward(&joints);
-        let reached = if self.control_keeps_tip {
-            from.tip * (1.0 - t) + to.tip * t
-        } else {
-            pose.tip
-        };
-        let tip = reached - (from.target.tip * (1.0 - t) + to.target.tip * t);
-        let wanted = great_circle(from.target.axis, to.target.axis, t);
-        let cross = wanted.cross(&pose.axis);
-        let sine = cross.norm();
-        let turn = if sine > 0.0 {
-            cross * (libm::atan2(sine, wanted.dot(&pose.axis)).to_degrees() / sine)
-        } else {
-            Vector3::zeros()
-        };
-        Deviation {
-            tip: tip.into(),
-            axis: turn.into(),
-        }
+/// Samples a piece so densely that its bend can hide no more than a small share of the tolerance between them.
+fn certify(piece: &Move<'_>, bend: Bend) -> Bound {
+    let tolerances = piece.tolerances;
+    let tip_bend = if piece.control_keeps_tip {
+        0.0
+    } else {
+        bend.tip
+    };
+    let axis_bend = if tolerances.axis.is_infinite() {
+        0.0
+    } else {
+        bend.axis
+    };
+    let needed = (tip_bend / (8.0 * BLIND * tolerances.tip))
+        .max(axis_bend / (8.0 * BLIND * tolerances.axis));
+    let count = libm::ceil(libm::sqrt(needed)).clamp(1.0, MOST_SAMPLES);
+    let mut tip = piece.from.tip_error.max(piece.to.tip_error);
+    let mut axis = piece.from.axis_error.max(piece.to.axis_error);
+    for step in 1..count as u32 {
+        let deviation = deviation(piece, f64::from(step) / count);
+        tip = tip.max(Vector3::from(deviation.tip).norm());
+        axis = axis.max(Vector3::from(deviation.axis).norm().to_radians());
     }
-
-    /// Samples so densely that the bend can hide no more than a small share of the tolerance between them.
-    fn certify(&self, bend: Bend, tolerances: Tolerances) -> Verdict {
-        let tip_bend = if self.control_keeps_tip || tolerances.tip.is_infinite() {
-            0.0
-        } else {
-            bend.tip
-        };
-        let axis_bend = if tolerances.axis.is_infinite() {
-            0.0
-        } else {
-            bend.axis
-        };
-        let needed = (tip_bend / (8.0 * BLIND * tolerances.tip))
-            .max(axis_bend / (8.0 * BLIND * tolerances.axis));
-        let count = libm::ceil(libm::sqrt(needed)).clamp(1.0, MOST_SAMPLES);
-        let mut tip = self.from.tip_error.max(self.to.tip_error);
-        let mut axis = self.from.axis_error.max(self.to.axis_error);
-        for step in 1..count as u32 {
-            let deviation = self.deviation(f64::from(step) / count);
-            tip = tip.max(Vector3::from(deviation.tip).norm());
-            axis = axis.max(Vector3::from(deviation.axis).norm().to_radians());
-        }
-        let blind = 1.0 / (8.0 * count * count);
-        Verdict {
-            good: false,
-            tip: tip + tip_bend * blind,
-            axis: certificate::chord_angle(axis + axis_bend * blind),
-        }
+    let blind = 1.0 / (8.0 * count * count);
+    Bound {
+        tip: tip + tip_bend * blind,
+        axis: certificate::chord_angle(axis + axis_bend * blind),
     }
 }
 

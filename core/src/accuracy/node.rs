@@ -109,6 +109,19 @@ impl Placer {
     /// Why there is none.
     #[inline]
     pub fn place(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
+        self.place_but(target, t, last, 0)
+    }
+
+    /// The second nearest node of `target`: the other solution, if it is inside travel.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn place_other(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
+        self.place_but(target, t, last, 1)
+    }
+
+    #[inline]
+    fn place_but(&self, target: Pose, t: f64, last: &Joints, skip: usize) -> Result<Node, Refused> {
         let solutions = self
             .solver
             .orient(target.axis, self.axis_tolerance)
@@ -118,13 +131,41 @@ impl Placer {
             over,
             tried: solutions.as_slice().len(),
         });
-        for joints in choices.as_slice() {
+        for joints in choices.as_slice().iter().skip(skip) {
             match self.settle(target, t, *joints) {
                 Ok(node) => return Ok(node),
                 Err(fault) => refused = refused.or(Some(fault)),
             }
         }
         Err(refused.unwrap_or(Refused::Unreachable(Unreachable::Linear)))
+    }
+
+    /// The node of a `target` between two sets of axis values: the nearest to either of them. (The mean of
+    /// the two may lie far from any solution where a rotary axis turns fast.)
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn place_between(
+        &self,
+        target: Pose,
+        t: f64,
+        first: &Joints,
+        last: &Joints,
+    ) -> Result<Node, Refused> {
+        let turned = |node: &Node, from: &Joints| -> f64 {
+            let joints = self.solver.chain().joints();
+            (0..joints.len())
+                .filter(|joint| joints[*joint].rotary)
+                .map(|joint| libm::fabs(node.trace.joints[joint] - from[joint]))
+                .sum()
+        };
+        let near_first = self.place(target, t, first)?;
+        let near_last = self.place(target, t, last)?;
+        if turned(&near_last, last) < turned(&near_first, first) {
+            Ok(near_last)
+        } else {
+            Ok(near_first)
+        }
     }
 
     /// The node of `target` with given rotary values: the tip is put on its place, whatever they are.

@@ -37,6 +37,8 @@ pub struct Reading {
     pub file: String,
     /// Units of the numbers, whatever the file says.
     pub units: Option<Units>,
+    /// The tool that a file without `LOADTL` works with.
+    pub tool: Option<u32>,
     /// Take points and axes into the frame of `MSYS`.
     pub apply_msys: bool,
     /// What to do with unknown words.
@@ -155,6 +157,11 @@ impl Interpreter {
             findings: Vec::new(),
             counts: BTreeMap::new(),
         }
+    }
+
+    /// A tool was loaded.
+    pub fn has_tool(&self) -> bool {
+        self.tool.is_some()
     }
 
     /// Findings since the last call.
@@ -530,6 +537,15 @@ impl Interpreter {
     /// Emits one straight move and keeps its end.
     #[inline]
     fn advance(&mut self, tip: Vector3<f64>, pace: Pace, chord: f64, emit: &mut impl FnMut(Step)) {
+        if self.tool.is_none()
+            && let Some(number) = self.reading.tool.take()
+        {
+            let tool = LoadTool {
+                number,
+                ..LoadTool::default()
+            };
+            self.load(&tool, emit);
+        }
         self.tip = Some(tip);
         let (tip, axis) = self.to_part(tip, self.axis);
         emit(Step::Move(Motion {

@@ -84,6 +84,32 @@ pub enum Event<'a> {
     },
 }
 
+impl Event<'_> {
+    /// Name of the kind, for messages.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Event::Start => "Start",
+            Event::Comment { .. } => "Comment",
+            Event::Literal { .. } => "Literal",
+            Event::ToolChange { .. } => "ToolChange",
+            Event::Preselect { .. } => "Preselect",
+            Event::Spindle(_) => "Spindle",
+            Event::Coolant(_) => "Coolant",
+            Event::Compensate(_) => "Compensate",
+            Event::Position { .. } => "Position",
+            Event::Release => "Release",
+            Event::Rapid { .. } => "Rapid",
+            Event::Linear { .. } => "Linear",
+            Event::Dwell { .. } => "Dwell",
+            Event::Stop => "Stop",
+            Event::OptionalStop => "OptionalStop",
+            Event::Home => "Home",
+            Event::End => "End",
+            Event::Unknown { .. } => "Unknown",
+        }
+    }
+}
+
 /// Feed of a cut; already rounded down to the decimals of the dialect's format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feed {

@@ -82,6 +82,12 @@ pub trait ModelSession {
 
     /// See [`ErrorModel::value`].
     fn value(&self, curve: &Curve, t: f64) -> Deviation;
+
+    /// Why a [`ModelSession::value`] since the last fit could not be answered (it was zero then); the
+    /// next fit fails for the same reason. To be asked once more at the end of a program.
+    fn fault(&self) -> Option<String> {
+        None
+    }
 }
 
 impl<M: ErrorModel> ModelSession for M {

@@ -25,6 +25,41 @@ impl<'a> Setup<'a> {
             .find(|(name, _)| *name == key)
             .map(|(_, value)| *value)
     }
+
+    /// A flag that was declared.
+    ///
+    /// # Panics
+    /// If it was not: the author's slip, which the host reports as such. So do the three below.
+    pub fn flag(&self, key: &str) -> bool {
+        match self.option(key) {
+            Some(Value::Flag(flag)) => flag,
+            _ => panic!("the flag `{key}` is not declared"),
+        }
+    }
+
+    /// A whole number that was declared.
+    pub fn integer(&self, key: &str) -> i64 {
+        match self.option(key) {
+            Some(Value::Integer(integer)) => integer,
+            _ => panic!("the whole number `{key}` is not declared"),
+        }
+    }
+
+    /// A number that was declared.
+    pub fn number(&self, key: &str) -> f64 {
+        match self.option(key) {
+            Some(Value::Number(number)) => number,
+            _ => panic!("the number `{key}` is not declared"),
+        }
+    }
+
+    /// A text, or a choice, that was declared.
+    pub fn text(&self, key: &str) -> &'a str {
+        match self.option(key) {
+            Some(Value::Text(text)) => text,
+            _ => panic!("the text `{key}` is not declared"),
+        }
+    }
 }
 
 /// One axis word.
@@ -71,6 +106,58 @@ pub struct OptionSpec {
     pub default: Value<'static>,
     /// One sentence: what it does, with its unit.
     pub help: &'static str,
+}
+
+impl OptionSpec {
+    /// `true` or `false`.
+    pub const fn flag(key: &'static str, default: bool, help: &'static str) -> Self {
+        OptionSpec {
+            key,
+            kind: OptionKind::Flag,
+            default: Value::Flag(default),
+            help,
+        }
+    }
+
+    /// A whole number from `min` to `max`.
+    pub const fn integer(
+        key: &'static str,
+        (min, max): (i64, i64),
+        default: i64,
+        help: &'static str,
+    ) -> Self {
+        OptionSpec {
+            key,
+            kind: OptionKind::Integer { min, max },
+            default: Value::Integer(default),
+            help,
+        }
+    }
+
+    /// A number from `min` to `max`.
+    pub const fn number(
+        key: &'static str,
+        (min, max): (f64, f64),
+        default: f64,
+        help: &'static str,
+    ) -> Self {
+        OptionSpec {
+            key,
+            kind: OptionKind::Number { min, max },
+            default: Value::Number(default),
+            help,
+        }
+    }
+
+    /// Any text.
+    pub const fn text(key: &'static str, default: &'static str, help: &'static str) -> Self {
+        OptionSpec {
+            key,
+            kind: OptionKind::Text,
+            default: Value::Text(default),
+            help,
+        }
+    }
 }
 
 /// What an option takes.

@@ -1,1 +1,399 @@
-//! To be filled.
+//! Heidenhain TNC640, conversational: numbered blocks, `L` moves, a sign on every coordinate.
+//!
+//! What it assumes about the control stands in `plugins/README.md`.
+
+mod options;
+
+use post_plugin::{
+    Axes, Block, Compensation, Coolant, Dialect, Event, Feed, Format, Group, Modal, NumberStyle,
+    OptionSpec, Setup, Spindle, SpindleSense, Units, ascii, export_dialect,
+};
+
+use crate::options::OPTIONS;
+
+const SIGNED: NumberStyle = NumberStyle {
+    plus: true,
+    point: false,
+    trim: false,
+};
+
+struct Heidenhain {
+    block: Block,
+    axes: Axes,
+    program: String,
+    machine: String,
+    inch: bool,
+    tcp: bool,
+    feed_decimals: u8,
+    preset: i64,
+    rotary_way: String,
+    retract: String,
+    home: String,
+    tcp_on: String,
+    tcp_off: String,
+    coolant: [(Coolant, String); 5],
+    /// A tool call that waits for its speed.
+    tool: Option<u32>,
+    speed: Modal<f64>,
+    feed: Modal<f64>,
+    radius: Modal<&'static str>,
+    compensation: &'static str,
+    tcp_active: Modal<bool>,
+    retracted: Modal<bool>,
+    spindle_on: Modal<bool>,
+    coolant_on: Modal<bool>,
+}
+
+impl Dialect for Heidenhain {
+    fn options() -> &'static [OptionSpec] {
+        OPTIONS
+    }
+
+    fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        let inch = setup.units == Units::Inch;
+        let decimals = setup.integer(if inch { "decimals_inch" } else { "decimals" });
+        let rotary = setup.integer("rotary_decimals");
+        let own = |key| setup.text(key).to_owned();
+        Ok(Heidenhain {
+            block: Block::numbered("", 0, 1, u32::MAX - 1),
+            axes: Axes::new(setup, decimals as u8, rotary as u8, SIGNED),
+            program: program_name(setup.program),
+            machine: setup.machine.to_owned(),
+            inch,
+            tcp: setup.tcp,
+            // An inch program counts F in tenths of an inch a minute: one digit less behind the point.
+            feed_decimals: setup.integer("feed_decimals") as u8 + u8::from(inch),
+            preset: setup.integer("preset"),
+            rotary_way: own("rotary_way"),
+            retract: own("retract"),
+            home: own("home"),
+            tcp_on: own("tcp_on"),
+            tcp_off: own("tcp_off"),
+            coolant: [
+                (Coolant::Off, own("coolant_off")),
+                (Coolant::Flood, "M8".to_owned()),
+                (Coolant::Mist, own("coolant_mist")),
+                (Coolant::Through, own("coolant_through")),
+                (Coolant::Air, own("coolant_air")),
+            ],
+            tool: None,
+            speed: Modal::default(),
+            feed: Modal::default(),
+            radius: Modal::default(),
+            compensation: "R0",
+            tcp_active: Modal::default(),
+            retracted: Modal::default(),
+            spindle_on: Modal::default(),
+            coolant_on: Modal::default(),
+        })
+    }
+
+    fn format(&self) -> Format {
+        Format {
+            words: self.axes.decimals(),
+            feed: self.feed_decimals,
+            inverse_time: None,
+            feed_per_revolution: 3,
+            extension: "h".to_owned(),
+        }
+    }
+
+    fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        // The speed belongs to the tool call, so this waits for it; remarks may come between.
+        if !matches!(
+            event,
+            Event::Spindle(Spindle::On { .. }) | Event::Comment { .. }
+        ) {
+            self.call_tool(None, out);
+        }
+        match *event {
+            Event::Start => self.start(out),
+            Event::Comment { text } => self.comment(text, out),
+            Event::Literal { text } => {
+                self.block.line(text, out);
+                self.forget();
+            }
+            Event::ToolChange { number, name, .. } => {
+                self.clear(out);
+                if !name.is_empty() {
+                    self.comment(&format!("T{number} {name}"), out);
+                }
+                self.tool = Some(number);
+            }
+            Event::Preselect { number } => self.block.line(&format!("TOOL DEF {number}"), out),
+            Event::Spindle(spindle) => self.turn(spindle, out)?,
+            Event::Coolant(coolant) => self.cool(coolant, out)?,
+            // The radius stands in the tool table, not in a register.
+            Event::Compensate(compensation) => {
+                self.compensation = match compensation {
+                    Compensation::Off => "R0",
+                    Compensation::Left { .. } => "RL",
+                    Compensation::Right { .. } => "RR",
+                }
+            }
+            Event::Position { words, feed } => self.approach(words, feed, out)?,
+            Event::Release => self.release(out),
+            Event::Rapid { words } => {
+                if self.axes.moved(words) {
+                    self.block.word("L");
+                    self.axes.write(&mut self.block, words);
+                    self.finish_move(None, out)?;
+                }
+            }
+            Event::Linear { words, feed } => {
+                if self.axes.moved(words) {
+                    self.block.word("L");
+                    self.axes.write(&mut self.block, words);
+                    self.finish_move(Some(feed), out)?;
+                }
+            }
+            Event::Dwell { seconds } => {
+                self.block.line("CYCL DEF 9.0 DWELL TIME", out);
+                self.block.word("CYCL DEF 9.1 DWELL");
+                self.block
+                    .number("", seconds, 3, NumberStyle::default())
+                    .end(out);
+            }
+            Event::Stop => self.block.line("M0", out),
+            Event::OptionalStop => self.block.line("M1", out),
+            Event::Home => self.go_home(out),
+            Event::End => self.end(out),
+            other => return Err(format!("this dialect has no words for {other:?}")),
+        }
+        Ok(())
+    }
+}
+
+impl Heidenhain {
+    fn start(&mut self, out: &mut String) {
+        self.frame("BEGIN", out);
+        if !self.machine.is_empty() {
+            self.comment(&self.machine.clone(), out);
+        }
+        if self.preset >= 0 {
+            // The second line continues the block and has no number.
+            let words = format!(
+                "CYCL DEF 247 DATUM SETTING ~\n    Q339=+{} ;DATUM NUMBER",
+                self.preset
+            );
+            self.block.line(&words, out);
+        }
+        self.block.line(&self.rotary_way, out);
+        self.tcp_active.set(false);
+    }
+
+    fn frame(&mut self, word: &str, out: &mut String) {
+        let units = if self.inch { "INCH" } else { "MM" };
+        self.block
+            .line(&format!("{word} PGM {} {units}", self.program), out);
+    }
+
+    fn comment(&mut self, text: &str, out: &mut String) {
+        // A tilde at the end would continue the block.
+        let text = ascii(text).replace('~', "-");
+        self.block
+            .line(format!("; {}", text.trim()).trim_end(), out);
+    }
+
+    /// The tool call that waits, with its speed if one is known.
+    fn call_tool(&mut self, speed: Option<f64>, out: &mut String) {
+        let Some(number) = self.tool.take() else {
+            return;
+        };
+        self.block.word("TOOL CALL").integer("", number);
+        self.block.word(self.axes.depth());
+        if let Some(speed) = speed {
+            self.block.number("S", speed, 0, NumberStyle::default());
+        }
+        self.block.end(out);
+        self.speed = Modal::default();
+        self.spindle_on.forget();
+        self.axes.forget();
+    }
+
+    fn turn(&mut self, spindle: Spindle, out: &mut String) -> Result<(), String> {
+        let (rpm, sense) = match spindle {
+            Spindle::On { rpm, sense } => (rpm, sense),
+            Spindle::Off => {
+                self.block.line("M5", out);
+                self.spindle_on.set(false);
+                return Ok(());
+            }
+            Spindle::Orient => {
+                return Err("the oriented stop is a cycle of the machine builder's".to_owned());
+            }
+        };
+        if self.tool.is_some() {
+            self.call_tool(Some(rpm), out);
+            self.speed.set(rpm);
+        } else if self.speed.set(rpm) {
+            // A tool call, even one for the speed alone, is not allowed under TCP.
+            let tcp = self.tcp_active.is(true);
+            if tcp {
+                self.block.line(&self.tcp_off, out);
+            }
+            self.block.word("TOOL CALL");
+            self.block
+                .number("S", rpm, 0, NumberStyle::default())
+                .end(out);
+            if tcp {
+                self.block.line(&self.tcp_on, out);
+            }
+        }
+        self.block.line(
+            match sense {
+                SpindleSense::Clockwise => "M3",
+                SpindleSense::CounterClockwise => "M4",
+            },
+            out,
+        );
+        self.spindle_on.set(true);
+        Ok(())
+    }
+
+    fn cool(&mut self, wanted: Coolant, out: &mut String) -> Result<(), String> {
+        let codes = self.coolant.iter().find(|(coolant, _)| *coolant == wanted);
+        let codes = codes.map_or("", |(_, codes)| codes);
+        if codes.is_empty() {
+            return Err(format!(
+                "the M code of {wanted:?} coolant is the machine builder's: set the option \
+                 `coolant_{}`",
+                format!("{wanted:?}").to_lowercase()
+            ));
+        }
+        for code in codes.split_whitespace() {
+            self.block.line(code, out);
+        }
+        self.coolant_on.set(wanted != Coolant::Off);
+        Ok(())
+    }
+
+    fn approach(
+        &mut self,
+        words: &[f64],
+        feed: Option<Feed>,
+        out: &mut String,
+    ) -> Result<(), String> {
+        self.axes.forget();
+        self.radius.forget();
+        let first: &[Group] = match self.tcp {
+            true => &[Group::Rotary],
+            false => &[Group::Rotary, Group::Plane],
+        };
+        for &group in first {
+            if self.axes.moved_group(words, group) {
+                self.block.word("L");
+                self.axes.write_group(&mut self.block, words, group);
+                self.finish_move(None, out)?;
+            }
+        }
+        if self.tcp && self.tcp_active.set(true) {
+            self.block.line(&self.tcp_on, out);
+        }
+        if self.axes.moved(words) {
+            self.block.word("L");
+            self.axes.write(&mut self.block, words);
+            self.finish_move(feed, out)?;
+        }
+        self.retracted.forget();
+        Ok(())
+    }
+
+    /// Radius compensation and feed, the words behind the axes.
+    fn finish_move(&mut self, feed: Option<Feed>, out: &mut String) -> Result<(), String> {
+        if self.radius.set(self.compensation) {
+            self.block.word(self.compensation);
+        }
+        match feed {
+            None => {
+                // For this block alone; the F before stays in force.
+                self.block.word("FMAX");
+            }
+            Some(Feed::PerMinute(feed)) => {
+                if self.feed.set(feed) {
+                    let (value, decimals) = match self.inch {
+                        true => (feed * 10.0, self.feed_decimals - 1),
+                        false => (feed, self.feed_decimals),
+                    };
+                    self.block
+                        .number("F", value, decimals, NumberStyle::default());
+                }
+            }
+            Some(other) => {
+                return Err(format!("this control has no feed like {other:?}"));
+            }
+        }
+        self.block.end(out);
+        Ok(())
+    }
+
+    fn release(&mut self, out: &mut String) {
+        if self.tcp && self.tcp_active.set(false) {
+            self.block.line(&self.tcp_off, out);
+        }
+        self.axes.forget();
+    }
+
+    fn clear(&mut self, out: &mut String) {
+        if !self.tcp_active.is(false) {
+            self.release(out);
+        }
+        if self.retracted.set(true) {
+            self.block.line(&self.retract, out);
+            self.axes.forget();
+            self.radius.forget();
+        }
+    }
+
+    fn go_home(&mut self, out: &mut String) {
+        self.clear(out);
+        if !self.home.is_empty() {
+            self.block.line(&self.home, out);
+            self.axes.forget();
+        }
+    }
+
+    fn end(&mut self, out: &mut String) {
+        if self.coolant_on.set(false) {
+            for code in self.coolant[0].1.split_whitespace() {
+                self.block.line(code, out);
+            }
+        }
+        if self.spindle_on.set(false) {
+            self.block.line("M5", out);
+        }
+        self.go_home(out);
+        self.block.line("M30", out);
+        self.frame("END", out);
+    }
+
+    /// After a line of the user's own nothing is known to be in force.
+    fn forget(&mut self) {
+        self.speed.forget();
+        self.feed.forget();
+        self.radius.forget();
+        self.axes.forget();
+        self.tcp_active.forget();
+        self.retracted.forget();
+        self.spindle_on.forget();
+        self.coolant_on.forget();
+    }
+}
+
+/// A name that the control takes: letters, digits, `_` and `-`.
+fn program_name(name: &str) -> String {
+    let plain = ascii(name);
+    let allowed = |letter: char| match letter {
+        letter if letter.is_ascii_alphanumeric() || letter == '-' => letter.to_ascii_uppercase(),
+        _ => '_',
+    };
+    match plain.trim() {
+        "" => "PROGRAM".to_owned(),
+        plain => plain.chars().map(allowed).collect(),
+    }
+}
+
+export_dialect!(heidenhain, Heidenhain);
+
+#[cfg(test)]
+mod tests;

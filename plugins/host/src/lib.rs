@@ -1,1 +1,20 @@
-//! To be filled.
+//! Finds, checks, opens and calls plugins: the host's side of the contract in `post-plugin`.
+//!
+//! A plugin that is linked in and one that is opened from a file are called through the same pointers,
+//! so what is tested on the one holds for the other. Nothing that a plugin returns is believed before it
+//! was checked.
+
+mod dialect;
+mod fault;
+mod finder;
+mod model;
+mod options;
+mod plugin;
+mod sink;
+
+pub use dialect::{OpenedDialect, ProgramSetup, ProgramWord};
+pub use fault::{OptionFault, PluginFault, Reason};
+pub use finder::Finder;
+pub use model::OpenedModel;
+pub use options::{GivenValue, check_options};
+pub use plugin::{Kind, Plugin};

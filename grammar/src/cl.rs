@@ -1,0 +1,269 @@
+//! One logical line of a cutter-location file to a [`Statement`], by pest.
+
+use crate::fault::SyntaxFault;
+use crate::record::{Argument, Statement};
+use crate::words;
+use pest::Parser;
+use pest::error::InputLocation;
+use pest::iterators::Pair;
+use pest_derive::Parser;
+use std::ops::Range;
+
+#[derive(Parser)]
+#[grammar = "cl.pest"]
+struct Grammar;
+
+/// Whether a line's text is free: then a `$` at its end is text, not a continuation, and `$$` in it is no comment.
+///
+/// Says of a line's beginning what the grammar says of the whole line, for the reader must know before it joins lines.
+pub(crate) fn is_free_text(line: &[u8]) -> bool {
+    let line = line.trim_ascii_start();
+    if let Some(comment) = line.strip_prefix(b"$$") {
+        return !comment.trim_ascii_start().starts_with(b"->");
+    }
+    let end = line
+        .iter()
+        .position(|&byte| !(byte.is_ascii_alphanumeric() || byte == b'_'))
+        .unwrap_or(line.len());
+    let (word, rest) = line.split_at(end);
+    let rest = rest.trim_ascii_start();
+    match word.to_ascii_uppercase().as_slice() {
+        b"PARTNO" | b"PPRINT" | b"INSERT" | b"OPFEATSTART" | b"OPFEATEND" => true,
+        b"REMARK" => !rest.starts_with(b"->"),
+        b"TOOL" => rest.len() >= 4 && rest[..4].eq_ignore_ascii_case(b"PATH"),
+        _ => false,
+    }
+}
+
+/// One item behind the slash.
+pub(crate) struct Item<'t> {
+    /// As written; empty where two commas follow each other.
+    pub text: &'t str,
+    /// Where in the line it begins, in bytes.
+    pub start: usize,
+    /// Its value, if it is a number.
+    pub value: Option<f64>,
+    /// Only blanks part it from the item before.
+    pub comma_missing: bool,
+}
+
+impl Item<'_> {
+    pub fn span(&self) -> Range<usize> {
+        self.start..self.start + self.text.len()
+    }
+
+    pub fn argument(&self) -> Argument {
+        match self.value {
+            Some(value) => Argument::Number(value),
+            None => Argument::Word(self.text.to_owned()),
+        }
+    }
+}
+
+/// A statement taken apart, before anyone looks at what it means.
+pub(crate) struct Line<'t> {
+    /// The whole line.
+    pub text: &'t str,
+    /// The major word in capitals.
+    pub word: String,
+    /// Where it stands.
+    pub word_span: Range<usize>,
+    /// A slash stands behind it.
+    pub slash: bool,
+    /// What follows.
+    pub items: Vec<Item<'t>>,
+}
+
+/// Reads one logical line: a record without line ends, its continuations joined.
+///
+/// [`Reader`](crate::Reader) gives the same for every line of a file; this is for a single one.
+pub fn parse_record(text: &str) -> Result<Statement, SyntaxFault> {
+    if let Some(at) = text.bytes().position(is_control) {
+        let byte = text.as_bytes()[at];
+        return Err(
+            SyntaxFault::new(text, at..at + 1, format!("byte 0x{byte:02X} is not text"))
+                .help("a cutter-location file is plain text; one saved as UTF-16 has to be saved as UTF-8"),
+        );
+    }
+    let mut pairs = Grammar::parse(Rule::line, text).map_err(|error| {
+        let at = match error.location {
+            InputLocation::Pos(at) => at,
+            InputLocation::Span((at, _)) => at,
+        };
+        unreadable(text, at)
+    })?;
+    let inner = pairs
+        .next()
+        .and_then(|line| line.into_inner().next())
+        .expect("a line has content");
+    match inner.as_rule() {
+        Rule::comment => Ok(Statement::Remark(trimmed(inner))),
+        Rule::tool_path => {
+            let mut parts = inner.into_inner().map(trimmed);
+            Ok(Statement::ToolPath {
+                name: parts.next().unwrap_or_default(),
+                tool: parts.next(),
+            })
+        }
+        Rule::free_text => Ok(free_text(inner)),
+        Rule::directive => {
+            let remark = text.trim_start();
+            let remark = remark
+                .strip_prefix("$$")
+                .unwrap_or_else(|| &remark["REMARK".len()..]);
+            let statement = inner
+                .into_inner()
+                .next()
+                .expect("a directive holds a statement");
+            let read = line(text, statement).and_then(|line| words::directive(&line));
+            Ok(read.unwrap_or_else(|_| Statement::Remark(remark.trim().to_owned())))
+        }
+        _ => words::statement(&line(text, inner)?),
+    }
+}
+
+/// A byte that no text holds. Tabs are blanks.
+fn is_control(byte: u8) -> bool {
+    (byte < b' ' && byte != b'\t') || byte == 0x7F
+}
+
+/// The fault of a line that is no statement at all; pest could not go on at `at`.
+fn unreadable(text: &str, at: usize) -> SyntaxFault {
+    let next = text[at..].chars().next().map_or(0, char::len_utf8);
+    let begin = text.len() - text.trim_start().len();
+    if at <= begin {
+        return SyntaxFault::new(text, at..at + next, "a record begins with a word")
+            .help("a line that goes on with the record before it must follow a `$`");
+    }
+    SyntaxFault::new(
+        text,
+        at..at + next,
+        "a `/` or the end of the line must follow the word",
+    )
+}
+
+fn trimmed(pair: Pair<'_, Rule>) -> String {
+    let pair = match pair.as_rule() {
+        Rule::comment => pair.into_inner().next().expect("a comment has a text"),
+        _ => pair,
+    };
+    pair.as_str().trim().to_owned()
+}
+
+fn free_text(pair: Pair<'_, Rule>) -> Statement {
+    let mut parts = pair.into_inner();
+    let word = parts
+        .next()
+        .map(|word| word.as_str().to_ascii_uppercase())
+        .unwrap_or_default();
+    let text = parts.next().map(trimmed).unwrap_or_default();
+    match word.as_str() {
+        "PARTNO" => Statement::PartName(text),
+        "PPRINT" => Statement::Print(text),
+        "INSERT" => Statement::Insert(text),
+        "REMARK" => Statement::Remark(text),
+        _ => Statement::Other {
+            word,
+            arguments: if text.is_empty() {
+                Vec::new()
+            } else {
+                vec![Argument::Word(text)]
+            },
+            directive: false,
+        },
+    }
+}
+
+/// Collects the items of a statement; a number that a double cannot hold is a fault.
+fn line<'t>(text: &'t str, statement: Pair<'t, Rule>) -> Result<Line<'t>, SyntaxFault> {
+    let mut line = Line {
+        text,
+        word: String::new(),
+        word_span: 0..0,
+        slash: false,
+        items: Vec::new(),
+    };
+    // Whether an item is due: at the beginning and behind a comma.
+    let mut due = true;
+    for pair in statement.into_inner() {
+        let span = pair.as_span();
+        match pair.as_rule() {
+            Rule::word => {
+                line.word = pair.as_str().to_ascii_uppercase();
+                line.word_span = span.start()..span.end();
+            }
+            Rule::slash => line.slash = true,
+            Rule::comma => {
+                if due {
+                    line.items.push(Item {
+                        text: "",
+                        start: span.start(),
+                        value: None,
+                        comma_missing: false,
+                    });
+                }
+                due = true;
+            }
+            rule => {
+                let value = match rule {
+                    Rule::number => Some(number(text, &pair)?),
+                    _ => None,
+                };
+                line.items.push(Item {
+                    text: pair.as_str(),
+                    start: span.start(),
+                    value,
+                    comma_missing: !due,
+                });
+                due = false;
+            }
+        }
+    }
+    Ok(line)
+}
+
+fn number(text: &str, pair: &Pair<'_, Rule>) -> Result<f64, SyntaxFault> {
+    match pair.as_str().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => {
+            let span = pair.as_span();
+            let message = format!("{} is beyond any number a program can hold", pair.as_str());
+            Err(SyntaxFault::new(text, span.start()..span.end(), message))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reader_and_the_grammar_agree_on_what_is_free_text() {
+        for (line, free) in [
+            ("PARTNO", true),
+            (" pprint", true),
+            ("INSERT.", true),
+            ("REMARK -", true),
+            ("REMARK ->FEATNO/", false),
+            ("remark->FEATNO/", false),
+            ("OPFEATSTART/", true),
+            ("OPFEATEND/", true),
+            ("TOOL PATH/", true),
+            ("TOOL/", false),
+            ("\t$$", true),
+            ("$$ -> FEATNO/", false),
+            ("PARTNOX/", false),
+            ("RAPID", false),
+            ("NOSUCH/", false),
+        ] {
+            assert_eq!(is_free_text(line.as_bytes()), free, "{line}");
+            // In a free text, a comment is text.
+            let statement = parse_record(&format!("{line} $$ x")).unwrap();
+            assert_eq!(
+                format!("{statement:?}").contains("$$ x"),
+                free,
+                "{line}: {statement:?}"
+            );
+        }
+    }
+}

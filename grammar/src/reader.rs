@@ -1,0 +1,282 @@
+//! Chunks of a file to logical lines, in one buffer that is used again and again.
+//!
+//! A line ends at LF, CR LF or CR. What CAM systems and ISO 4343 agree on about `$`:
+//! - a single `$` as the last character of a line, blanks aside: the record goes on in the next line;
+//! - `$$`: a comment from there to the end of the line, at the beginning of a line and behind a statement alike.
+//!   So `$$` never continues a line, and a `$` inside a comment does not either;
+//! - `$$->` at the beginning is a directive, which is read, commented and continued like a statement;
+//! - in a free text (`PPRINT`, `INSERT`, a comment, …) both are text: a remark that happens to end in `$`
+//!   must not swallow the move after it.
+
+use crate::cl::{is_free_text, parse_record};
+use crate::fault::{ReadError, SyntaxFault};
+use crate::record::{Record, Statement};
+use crate::scan;
+use memchr::{memchr2, memmem};
+use std::borrow::Cow;
+use std::io::{self, ErrorKind, Read};
+use std::ops::Range;
+
+/// Bytes asked of the input at a time: small enough to stay in the processor's cache.
+const CHUNK: usize = 256 * 1024;
+
+/// Longest record, in bytes of the file. Anything longer is not a cutter-location file.
+const LONGEST: usize = 1024 * 1024;
+
+/// UTF-8 for U+FEFF, which some editors put before a text.
+const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+
+/// How much of a record that is too long is shown.
+const SHOWN: usize = 80;
+
+/// Reads the records of a cutter-location file one by one; memory does not grow with the file.
+///
+/// The input need not be buffered.
+#[derive(Debug)]
+pub struct Reader<R> {
+    input: R,
+    buffer: Vec<u8>,
+    /// What is read and not yet consumed: `buffer[start..end]`.
+    start: usize,
+    end: usize,
+    /// The input has ended.
+    ended: bool,
+    /// Bytes taken from the input.
+    taken: u64,
+    /// Number of the line that begins at `start`.
+    line: u64,
+}
+
+/// A physical line; offsets from `start`.
+struct Physical {
+    /// Where its text ends.
+    end: usize,
+    /// Where the next line begins.
+    next: usize,
+    /// The record has become too long, and part of it was thrown away.
+    overlong: bool,
+}
+
+impl<R: Read> Reader<R> {
+    /// Reads from `input`.
+    pub fn new(input: R) -> Self {
+        Self {
+            input,
+            buffer: vec![0; CHUNK],
+            start: 0,
+            end: 0,
+            ended: false,
+            taken: 0,
+            line: 1,
+        }
+    }
+
+    /// How many bytes the records so far take up, for a progress bar; at the end the length of the file.
+    pub fn bytes_read(&self) -> u64 {
+        self.taken - self.pending().len() as u64
+    }
+
+    /// The next record; `None` at the end of the file.
+    ///
+    /// After a [`ReadError::Syntax`] the next call goes on with the next line.
+    pub fn next_record(&mut self) -> Result<Option<Record<'_>>, ReadError> {
+        while let Some(physical) = self.physical(0)? {
+            let line = self.line;
+            let raw = self.start..self.start + physical.end;
+            let text = &self.buffer[raw.clone()];
+            let whole = !physical.overlong && !text.ends_with(b"$");
+            if whole && let Some((point, axis)) = scan::goto(text) {
+                self.consume(&physical, 1);
+                let raw = &self.buffer[raw];
+                let statement = Statement::Goto { point, axis };
+                return Ok(Some(Record {
+                    line,
+                    raw,
+                    statement,
+                }));
+            }
+            if let Some(raw) = self.logical(physical)? {
+                let raw = &self.buffer[raw];
+                let statement = match scan::goto(raw) {
+                    Some((point, axis)) => Statement::Goto { point, axis },
+                    None => {
+                        parse_record(&decode(raw)).map_err(|fault| SyntaxFault { line, ..fault })?
+                    }
+                };
+                return Ok(Some(Record {
+                    line,
+                    raw,
+                    statement,
+                }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Consumes the logical line that begins with `first`, and gives its place in the buffer; `None` if it is blank.
+    ///
+    /// Continued lines are moved together in the buffer, over the `$` and the line end between them.
+    fn logical(&mut self, first: Physical) -> Result<Option<Range<usize>>, ReadError> {
+        let line = self.line;
+        let mut begin = 0;
+        if line == 1 && self.pending().starts_with(BYTE_ORDER_MARK) {
+            begin = BYTE_ORDER_MARK.len();
+        }
+        let text = &self.pending()[begin..first.end.max(begin)];
+        // Old DOS systems end a text file with 0x1A.
+        let blank = matches!(text.trim_ascii(), b"" | b"\x1A");
+        let mut continued = if is_free_text(text) {
+            None
+        } else {
+            continued(text)
+        };
+        let mut end = match continued {
+            Some(body) => begin + body,
+            None => first.end,
+        };
+        let mut last = first;
+        let mut lines = 1;
+        while continued.is_some() && !last.overlong {
+            let from = last.next;
+            let Some(physical) = self.physical(from)? else {
+                let text = decode(&self.pending()[begin..end]).into_owned();
+                self.consume(&last, lines);
+                let at = text.len()..text.len();
+                let fault =
+                    SyntaxFault::new(&text, at, "the file ends where this record should go on");
+                return Err(SyntaxFault { line, ..fault }
+                    .help("a `$` at the end of a line means that the next one belongs to it")
+                    .into());
+            };
+            let piece = &self.pending()[from..physical.end];
+            let lead = piece.len() - piece.trim_ascii_start().len();
+            continued = self::continued(piece);
+            let length = continued.unwrap_or(piece.len()).max(lead);
+            let piece = self.start + from + lead..self.start + from + length;
+            let to = self.start + end;
+            // The `$` and the line end before it leave room for the blank.
+            self.buffer[to] = b' ';
+            end += 1 + piece.len();
+            self.buffer.copy_within(piece, to + 1);
+            last = physical;
+            lines += 1;
+        }
+        if last.overlong {
+            let mut text =
+                String::from_utf8_lossy(&self.pending()[..SHOWN.min(self.end - self.start)])
+                    .into_owned();
+            self.consume(&last, lines);
+            text.push('…');
+            let fault = SyntaxFault::new(
+                &text,
+                0..text.len(),
+                format!("a record of more than {LONGEST} bytes"),
+            );
+            return Err(SyntaxFault { line, ..fault }
+                .help("is this a cutter-location file?")
+                .into());
+        }
+        let raw = self.start + begin..self.start + end;
+        self.consume(&last, lines);
+        Ok((!blank).then_some(raw))
+    }
+
+    /// What is read and not yet consumed.
+    fn pending(&self) -> &[u8] {
+        &self.buffer[self.start..self.end]
+    }
+
+    /// Goes on behind the line `last`; its bytes stay in the buffer until it is filled again.
+    fn consume(&mut self, last: &Physical, lines: u64) {
+        self.start += last.next;
+        self.line += lines;
+    }
+
+    /// The line that begins at the offset `from`; `None` at the end of the file.
+    fn physical(&mut self, from: usize) -> io::Result<Option<Physical>> {
+        let mut searched = from;
+        let mut overlong = false;
+        loop {
+            let pending = self.pending();
+            if let Some(at) = memchr2(b'\n', b'\r', &pending[searched..]) {
+                let end = searched + at;
+                let pair = pending[end] == b'\r' && pending.get(end + 1) == Some(&b'\n');
+                // Behind a CR at the end of a chunk an LF may follow.
+                if pending[end] == b'\n' || end + 1 < pending.len() || self.ended {
+                    overlong |= end > LONGEST;
+                    let next = end + 1 + usize::from(pair);
+                    return Ok(Some(Physical {
+                        end,
+                        next,
+                        overlong,
+                    }));
+                }
+                searched = end;
+            } else {
+                searched = pending.len();
+                overlong |= searched > LONGEST;
+                if self.ended {
+                    let line = Physical {
+                        end: searched,
+                        next: searched,
+                        overlong,
+                    };
+                    return Ok((searched > from).then_some(line));
+                }
+                if searched > LONGEST {
+                    searched = from.max(SHOWN);
+                    self.end = self.start + searched;
+                }
+            }
+            self.fill()?;
+        }
+    }
+
+    /// Moves what is left to the front of the buffer and reads more behind it.
+    fn fill(&mut self) -> io::Result<()> {
+        if self.start > 0 {
+            self.buffer.copy_within(self.start..self.end, 0);
+            self.end -= self.start;
+            self.start = 0;
+        }
+        if self.end == self.buffer.len() {
+            self.buffer.resize(2 * self.end, 0);
+        }
+        loop {
+            match self.input.read(&mut self.buffer[self.end..]) {
+                Ok(0) => self.ended = true,
+                Ok(count) => {
+                    self.end += count;
+                    self.taken += count as u64;
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+                Err(error) => return Err(error),
+            }
+            return Ok(());
+        }
+    }
+}
+
+/// If the record goes on in the next line, how far it reaches in this one.
+fn continued(text: &[u8]) -> Option<usize> {
+    // The `$$` of a directive is no comment.
+    let from = match text.trim_ascii_start().strip_prefix(b"$$") {
+        Some(rest) if rest.trim_ascii_start().starts_with(b"->") => text.len() - rest.len(),
+        _ => 0,
+    };
+    let body = match memmem::find(&text[from..], b"$$") {
+        Some(at) => &text[..from + at],
+        None => text,
+    };
+    let body = body.trim_ascii_end().strip_suffix(b"$")?;
+    Some(body.trim_ascii_end().len())
+}
+
+/// The text of a line. What is not UTF-8 is taken for Latin-1, which older CAM systems write:
+/// an `INSERT` has to reach the program letter for letter.
+fn decode(raw: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(raw) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => Cow::Owned(raw.iter().map(|&byte| char::from(byte)).collect()),
+    }
+}

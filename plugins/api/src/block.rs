@@ -1,0 +1,258 @@
+//! Blocks and the axis words in them: what most dialects have in common.
+//!
+//! Nothing here is needed to write a dialect; it saves an author the usual hundred lines.
+
+use crate::{Setup, fixed};
+
+/// How numbers look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NumberStyle {
+    /// `+1.000`: a sign also on what is not negative.
+    pub plus: bool,
+    /// `F200.`: a point also where there are no decimals.
+    pub point: bool,
+    /// `10.5` for `10.500`: no zeros at the end.
+    pub trim: bool,
+}
+
+impl NumberStyle {
+    /// Appends `value` with at most `decimals` decimals.
+    pub fn write(self, out: &mut String, value: f64, decimals: u8) {
+        let start = out.len();
+        fixed(out, value, decimals);
+        if self.plus && !out[start..].starts_with('-') {
+            out.insert(start, '+');
+        }
+        if decimals == 0 {
+            if self.point {
+                out.push('.');
+            }
+        } else if self.trim {
+            let kept = out.trim_end_matches('0').len();
+            out.truncate(kept);
+            if !self.point && out.ends_with('.') {
+                out.pop();
+            }
+        }
+    }
+}
+
+/// One block under construction, and the numbering of all of them.
+#[derive(Clone, Debug)]
+pub struct Block {
+    words: String,
+    prefix: &'static str,
+    number: u32,
+    step: u32,
+    limit: u32,
+}
+
+impl Block {
+    /// Blocks without numbers.
+    pub fn plain() -> Self {
+        Block::numbered("", 0, 0, 0)
+    }
+
+    /// Blocks with numbers: `prefix` and `first`, then `step` more each. Past `limit` they begin anew
+    /// at `step`.
+    pub fn numbered(prefix: &'static str, first: u32, step: u32, limit: u32) -> Self {
+        Block {
+            words: String::new(),
+            prefix,
+            number: first,
+            step,
+            limit,
+        }
+    }
+
+    /// Adds a word as it is.
+    pub fn word(&mut self, word: &str) -> &mut Self {
+        self.space();
+        self.words.push_str(word);
+        self
+    }
+
+    /// Adds a word with a whole number: `T1`.
+    pub fn integer(&mut self, address: &str, value: u32) -> &mut Self {
+        self.number(address, value.into(), 0, NumberStyle::default())
+    }
+
+    /// Adds a word with a number: `X12.500`.
+    pub fn number(
+        &mut self,
+        address: &str,
+        value: f64,
+        decimals: u8,
+        style: NumberStyle,
+    ) -> &mut Self {
+        self.space();
+        self.words.push_str(address);
+        style.write(&mut self.words, value, decimals);
+        self
+    }
+
+    /// Appends the block as a line to `out` and begins the next one. An empty block is not a line.
+    pub fn end(&mut self, out: &mut String) {
+        if self.words.is_empty() {
+            return;
+        }
+        if self.step != 0 {
+            out.push_str(self.prefix);
+            fixed(out, self.number.into(), 0);
+            out.push(' ');
+            self.number += self.step;
+            if self.number > self.limit {
+                self.number = self.step;
+            }
+        }
+        out.push_str(&self.words);
+        out.push('\n');
+        self.words.clear();
+    }
+
+    /// A block of one word, or of several given as one.
+    pub fn line(&mut self, words: &str, out: &mut String) {
+        self.word(words).end(out);
+    }
+
+    fn space(&mut self) {
+        if !self.words.is_empty() {
+            self.words.push(' ');
+        }
+    }
+}
+
+/// A value that holds until it is changed: `G1`, `F200.`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Modal<T>(Option<T>);
+
+impl<T> Default for Modal<T> {
+    fn default() -> Self {
+        Modal(None)
+    }
+}
+
+impl<T: PartialEq + Copy> Modal<T> {
+    /// Notes `value`; says whether it must be written, since something else, or nothing known, was in force.
+    pub fn set(&mut self, value: T) -> bool {
+        let changed = self.0 != Some(value);
+        self.0 = Some(value);
+        changed
+    }
+
+    /// `value` is known to be in force.
+    pub fn is(&self, value: T) -> bool {
+        self.0 == Some(value)
+    }
+
+    /// What is in force is not known any more.
+    pub fn forget(&mut self) {
+        self.0 = None;
+    }
+}
+
+/// The axis words of a program: their decimals, and which of them a move has to write.
+#[derive(Clone, Debug)]
+pub struct Axes {
+    axes: Vec<Axis>,
+    style: NumberStyle,
+}
+
+#[derive(Clone, Debug)]
+struct Axis {
+    name: String,
+    group: Group,
+    decimals: u8,
+    last: Modal<f64>,
+}
+
+/// Which axis words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// The rotary ones.
+    Rotary,
+    /// The linear ones but the depth.
+    Plane,
+    /// The linear one along the spindle.
+    Depth,
+}
+
+impl Axes {
+    /// The words of `setup`, with these decimals for linear and rotary ones.
+    pub fn new(setup: &Setup<'_>, linear: u8, rotary: u8, style: NumberStyle) -> Self {
+        let axes = setup.words.iter().map(|word| Axis {
+            name: word.name.to_owned(),
+            group: match (word.rotary, word.depth) {
+                (true, _) => Group::Rotary,
+                (false, true) => Group::Depth,
+                (false, false) => Group::Plane,
+            },
+            decimals: if word.rotary { rotary } else { linear },
+            last: Modal::default(),
+        });
+        Axes {
+            axes: axes.collect(),
+            style,
+        }
+    }
+
+    /// Decimals of each word, for [`Format::words`](crate::Format::words).
+    pub fn decimals(&self) -> Vec<u8> {
+        self.axes.iter().map(|axis| axis.decimals).collect()
+    }
+
+    /// Name of the word along the spindle; `Z` if there is none.
+    pub fn depth(&self) -> &str {
+        self.axes
+            .iter()
+            .find(|axis| axis.group == Group::Depth)
+            .map_or("Z", |axis| &axis.name)
+    }
+
+    /// Where the axes stand is not known any more: the next move writes all its words.
+    pub fn forget(&mut self) {
+        for axis in &mut self.axes {
+            axis.last.forget();
+        }
+    }
+
+    /// A move to `words` has something to write.
+    pub fn moved(&self, words: &[f64]) -> bool {
+        self.axes
+            .iter()
+            .zip(words)
+            .any(|(axis, word)| !axis.last.is(*word))
+    }
+
+    /// A move to `words` has something to write in this group.
+    pub fn moved_group(&self, words: &[f64], group: Group) -> bool {
+        self.axes
+            .iter()
+            .zip(words)
+            .any(|(axis, word)| axis.group == group && !axis.last.is(*word))
+    }
+
+    /// Adds all words that have changed.
+    pub fn write(&mut self, block: &mut Block, words: &[f64]) {
+        for (axis, word) in self.axes.iter_mut().zip(words) {
+            axis.write(block, *word, self.style);
+        }
+    }
+
+    /// Adds the words of one group that have changed.
+    pub fn write_group(&mut self, block: &mut Block, words: &[f64], group: Group) {
+        for (axis, word) in self.axes.iter_mut().zip(words) {
+            if axis.group == group {
+                axis.write(block, *word, self.style);
+            }
+        }
+    }
+}
+
+impl Axis {
+    fn write(&mut self, block: &mut Block, value: f64, style: NumberStyle) {
+        if self.last.set(value) {
+            block.number(&self.name, value, self.decimals, style);
+        }
+    }
+}

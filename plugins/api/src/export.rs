@@ -1,0 +1,443 @@
+//! From the safe traits to the C contract: what the export lines expand to.
+//!
+//! Every entry catches panics, since none may cross the border; its message is kept for `last_error`.
+
+#![allow(unsafe_code)]
+
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::ffi::c_void;
+use std::marker::PhantomData;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr::{null, null_mut};
+use std::sync::Once;
+
+use crate::raw::{self, PostDialect, PostEmit, PostFormat, PostModel, PostPlugin, PostText};
+use crate::raw::{PostDeviationFn, PostEvent, PostPair, PostSetup, PostSink};
+use crate::{Curve, Deviation, Dialect, ErrorModel, OptionSpec, Tolerance};
+
+/// A plugin that is part of the program itself. The host calls it through the same pointers as an
+/// opened library, so there is one way through.
+#[derive(Clone, Copy, Debug)]
+pub struct Linked(&'static Exported);
+
+impl Linked {
+    /// For the export lines.
+    #[doc(hidden)]
+    pub const fn new(exported: &'static Exported) -> Self {
+        Linked(exported)
+    }
+
+    /// What the library of this plugin would export.
+    pub fn raw(self) -> &'static PostPlugin {
+        &self.0.0
+    }
+}
+
+/// A [`PostPlugin`] whose functions are those of this module, so that safe code can vouch for it.
+#[doc(hidden)]
+#[derive(Debug)]
+#[repr(transparent)]
+pub struct Exported(PostPlugin);
+
+impl Exported {
+    pub const fn dialect<D: Dialect>(name: &'static str, version: &'static str) -> Self {
+        let mut plugin = common(name, version, raw::KIND_DIALECT);
+        plugin.describe = Some(describe_dialect::<D>);
+        plugin.table_size = size_of::<PostDialect>() as u32;
+        plugin.dialect = Table::<D>::DIALECT;
+        Exported(plugin)
+    }
+
+    pub const fn model<M: ErrorModel>(name: &'static str, version: &'static str) -> Self {
+        let mut plugin = common(name, version, raw::KIND_MODEL);
+        plugin.describe = Some(describe_model::<M>);
+        plugin.table_size = size_of::<PostModel>() as u32;
+        plugin.model = Table::<M>::MODEL;
+        Exported(plugin)
+    }
+}
+
+const fn common(name: &'static str, version: &'static str, kind: u32) -> PostPlugin {
+    PostPlugin {
+        magic: raw::MAGIC,
+        abi: raw::ABI,
+        kind,
+        size: size_of::<PostPlugin>() as u32,
+        table_size: 0,
+        layout: raw::LAYOUT,
+        name: PostText::new(name),
+        version: PostText::new(version),
+        describe: None,
+        loaded: Some(loaded),
+        dialect: null(),
+        model: null(),
+    }
+}
+
+/// Exports a [`Dialect`](crate::Dialect) as `post_plugin_<name>` from the crate `post_<name>`, and makes
+/// `pub fn plugin() -> Linked` for those who link the crate.
+///
+/// The symbol carries the name, so that several plugins can be linked into one program.
+///
+/// ```ignore
+/// post_plugin::export_dialect!(fanuc, Fanuc);
+/// ```
+#[macro_export]
+macro_rules! export_dialect {
+    ($name:ident, $type:ty) => {
+        $crate::export_plugin!($name, $crate::export::Exported::dialect::<$type>);
+    };
+}
+
+/// Exports an [`ErrorModel`](crate::ErrorModel), as [`export_dialect!`] does a dialect.
+#[macro_export]
+macro_rules! export_error_model {
+    ($name:ident, $type:ty) => {
+        $crate::export_plugin!($name, $crate::export::Exported::model::<$type>);
+    };
+}
+
+#[doc(hidden)]
+#[macro_export]
+macro_rules! export_plugin {
+    ($name:ident, $make:expr) => {
+        const _: () = assert!(
+            $crate::export::names_crate(stringify!($name), option_env!("CARGO_CRATE_NAME")),
+            concat!(
+                "the crate of this plugin must be called post_",
+                stringify!($name)
+            ),
+        );
+
+        #[allow(unsafe_code)]
+        #[unsafe(export_name = concat!("post_plugin_", stringify!($name)))]
+        static POST_PLUGIN: $crate::export::Exported =
+            $make(stringify!($name), env!("CARGO_PKG_VERSION"));
+
+        /// This plugin, linked in.
+        pub fn plugin() -> $crate::Linked {
+            $crate::Linked::new(&POST_PLUGIN)
+        }
+    };
+}
+
+/// The crate is `post_<name>`: the host derives the symbol from the file's name, and that is the crate's.
+#[doc(hidden)]
+pub const fn names_crate(name: &str, krate: Option<&str>) -> bool {
+    // Built without cargo: nothing to compare with.
+    let Some(krate) = krate else { return true };
+    let (name, krate) = (name.as_bytes(), krate.as_bytes());
+    let prefix = b"post_";
+    if krate.len() != prefix.len() + name.len() {
+        return false;
+    }
+    let mut index = 0;
+    while index < krate.len() {
+        let wanted = if index < prefix.len() {
+            prefix[index]
+        } else {
+            name[index - prefix.len()]
+        };
+        if krate[index] != wanted {
+            return false;
+        }
+        index += 1;
+    }
+    true
+}
+
+thread_local! {
+    /// How many entries of this plugin are running on this thread.
+    static INSIDE: Cell<u32> = const { Cell::new(0) };
+    /// Where the last panic inside an entry was raised.
+    static PLACE: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// A library has its own copy of std, whose panic printer would write to the user's terminal behind the
+/// host's back; it is silenced while an entry runs. A linked-in plugin shares the host's std, and there
+/// the hook is the host's own: so the host calls this for opened libraries alone.
+unsafe extern "C" fn loaded() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let previous = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |info| {
+            if INSIDE.get() == 0 {
+                previous(info);
+            } else if let Some(place) = info.location() {
+                PLACE.set(format!(" ({place})"));
+            }
+        }));
+    });
+}
+
+/// Runs `call`; a panic becomes its message.
+fn guarded<R>(call: impl FnOnce() -> Result<R, String>) -> Result<R, String> {
+    PLACE.take();
+    INSIDE.set(INSIDE.get() + 1);
+    let outcome = catch_unwind(AssertUnwindSafe(call));
+    INSIDE.set(INSIDE.get() - 1);
+    outcome.unwrap_or_else(|payload| {
+        Err(format!(
+            "the plugin panicked: {}{}",
+            message(payload),
+            PLACE.take()
+        ))
+    })
+}
+
+fn message(payload: Box<dyn Any + Send>) -> String {
+    if let Some(text) = payload.downcast_ref::<&str>() {
+        return (*text).to_owned();
+    }
+    if let Some(text) = payload.downcast_ref::<String>() {
+        return text.clone();
+    }
+    // The payload's own destructor could panic once more.
+    std::mem::forget(payload);
+    "without a message".to_owned()
+}
+
+/// An open plugin with what its last call left behind.
+struct Context<T> {
+    value: T,
+    error: String,
+    text: String,
+    /// After a panic the value may be half-changed, so it is not used again.
+    broken: bool,
+}
+
+impl<T> Context<T> {
+    /// Runs `call` on the value, keeping the message if it fails.
+    fn run<R>(&mut self, call: impl FnOnce(&mut T, &mut String) -> Result<R, String>) -> Option<R> {
+        if self.broken {
+            return None;
+        }
+        self.broken = true;
+        let (value, text) = (&mut self.value, &mut self.text);
+        // The inner result is the author's, the outer one fails only by a panic.
+        match guarded(|| Ok(call(value, text))) {
+            Ok(outcome) => {
+                self.broken = false;
+                outcome.map_err(|error| self.error = error).ok()
+            }
+            Err(error) => {
+                self.error = error;
+                None
+            }
+        }
+    }
+}
+
+/// Moves a fresh value behind a pointer, or reports why there is none.
+///
+/// # Safety
+/// `error` is null or a sink in force.
+unsafe fn hand_over<T>(opened: Result<T, String>, error: *const PostSink) -> *mut c_void {
+    match opened {
+        Ok(value) => Box::into_raw(Box::new(Context {
+            value,
+            error: String::new(),
+            text: String::new(),
+            broken: false,
+        }))
+        .cast(),
+        Err(message) => {
+            // SAFETY: the caller vouches for the sink.
+            if let Some(sink) = unsafe { error.as_ref() } {
+                unsafe { sink.put(&message) };
+            }
+            null_mut()
+        }
+    }
+}
+
+/// # Safety
+/// `ctx` came from [`hand_over`] with the same `T` and was not closed; no other call uses it.
+unsafe fn context<'a, T>(ctx: *mut c_void) -> &'a mut Context<T> {
+    // SAFETY: the caller vouches for it.
+    unsafe { &mut *ctx.cast::<Context<T>>() }
+}
+
+const NOT_TEXT: &str = "the host handed over text that is not UTF-8";
+
+struct Table<T>(PhantomData<T>);
+
+impl<D: Dialect> Table<D> {
+    const DIALECT: &'static PostDialect = &PostDialect {
+        open: Some(open_dialect::<D>),
+        format: Some(format::<D>),
+        write: Some(write::<D>),
+        last_error: Some(last_error::<D>),
+        close: Some(close::<D>),
+    };
+}
+
+impl<M: ErrorModel> Table<M> {
+    const MODEL: &'static PostModel = &PostModel {
+        open: Some(open_model::<M>),
+        fit: Some(fit::<M>),
+        value: Some(value::<M>),
+        last_error: Some(last_error::<M>),
+        close: Some(close::<M>),
+    };
+}
+
+// Safety of all entries below: the host keeps the promises that `raw` states on each function pointer,
+// so every pointer is valid for the call, and a context is in use by one call at a time.
+
+unsafe extern "C" fn describe_dialect<D: Dialect>(host: *mut c_void, emit: PostEmit) {
+    // SAFETY: as stated above.
+    unsafe { describe(D::options, host, emit) };
+}
+
+unsafe extern "C" fn describe_model<M: ErrorModel>(host: *mut c_void, emit: PostEmit) {
+    // SAFETY: as stated above.
+    unsafe { describe(M::options, host, emit) };
+}
+
+/// # Safety
+/// `emit` accepts `host`.
+unsafe fn describe(
+    options: impl FnOnce() -> &'static [OptionSpec],
+    host: *mut c_void,
+    emit: PostEmit,
+) {
+    // A plugin that panics here declares nothing, so the first option given is refused as unknown.
+    for spec in guarded(|| Ok(options())).unwrap_or_default() {
+        // SAFETY: the caller vouches for it.
+        raw::with_option(spec, |option| unsafe { emit(host, option) });
+    }
+}
+
+unsafe extern "C" fn open_dialect<D: Dialect>(
+    setup: *const PostSetup,
+    error: *const PostSink,
+) -> *mut c_void {
+    // SAFETY: as stated above.
+    let opened =
+        guarded(|| unsafe { (*setup).with(D::open) }.unwrap_or_else(|| Err(NOT_TEXT.to_owned())));
+    unsafe { hand_over(opened, error) }
+}
+
+unsafe extern "C" fn format<D: Dialect>(ctx: *mut c_void, out: *mut PostFormat) -> i32 {
+    // SAFETY: as stated above.
+    let context = unsafe { context::<D>(ctx) };
+    let format = context.run(|dialect, _| {
+        PostFormat::new(&dialect.format())
+            .ok_or_else(|| "its format has too many words or too long an extension".to_owned())
+    });
+    match format {
+        Some(format) => {
+            // SAFETY: as stated above.
+            unsafe { *out = format };
+            0
+        }
+        None => 1,
+    }
+}
+
+unsafe extern "C" fn write<D: Dialect>(
+    ctx: *mut c_void,
+    events: *const PostEvent,
+    n: usize,
+    out: *const PostSink,
+    ends: *mut u64,
+) -> usize {
+    // SAFETY: as stated above.
+    let context = unsafe { context::<D>(ctx) };
+    let events = unsafe { raw::slice(events, n) };
+    context.text.clear();
+    let mut written = 0;
+    let mut good = 0;
+    context.run(|dialect, text| {
+        for event in events {
+            // SAFETY: as stated above.
+            let event = unsafe { event.get() }.ok_or_else(|| NOT_TEXT.to_owned())?;
+            dialect.write(&event, text)?;
+            good = text.len();
+            // SAFETY: `ends` has room for `n` numbers, and `written` is less.
+            unsafe { *ends.add(written) = good as u64 };
+            written += 1;
+        }
+        Ok(())
+    });
+    // SAFETY: as stated above. What an event left before it failed is not handed on; an author who
+    // shortened the text is found out by the host, since the ends are then not in order.
+    let text = context.text.get(..good).unwrap_or_default();
+    unsafe { (*out).put(text) };
+    written
+}
+
+unsafe extern "C" fn open_model<M: ErrorModel>(
+    options: *const PostPair,
+    n: usize,
+    error: *const PostSink,
+) -> *mut c_void {
+    // SAFETY: as stated above.
+    let opened = guarded(|| match unsafe { raw::pairs(options, n) } {
+        Some(options) => M::open(&options),
+        None => Err(NOT_TEXT.to_owned()),
+    });
+    unsafe { hand_over(opened, error) }
+}
+
+unsafe extern "C" fn fit<M: ErrorModel>(
+    ctx: *mut c_void,
+    tolerance: *const Tolerance,
+    deviation: PostDeviationFn,
+    host: *mut c_void,
+    curve: *mut Curve,
+) -> i32 {
+    // SAFETY: as stated above.
+    let (context, tolerance) = unsafe { (context::<M>(ctx), &*tolerance) };
+    let fitted = context.run(|model, _| {
+        model.fit(tolerance, &mut |ts, out| {
+            let n = ts.len().min(out.len());
+            // SAFETY: both hold `n` numbers, and the call is inside `fit`.
+            unsafe { deviation(host, n, ts.as_ptr(), out.as_mut_ptr()) };
+        })
+    });
+    match fitted {
+        Some(fitted) => {
+            // SAFETY: as stated above.
+            unsafe { *curve = fitted };
+            0
+        }
+        None => 1,
+    }
+}
+
+unsafe extern "C" fn value<M: ErrorModel>(
+    ctx: *mut c_void,
+    curve: *const Curve,
+    n: usize,
+    ts: *const f64,
+    out: *mut Deviation,
+) -> i32 {
+    // SAFETY: as stated above; `out` has room for `n` deviations.
+    let (context, curve) = unsafe { (context::<M>(ctx), &*curve) };
+    let ts = unsafe { raw::slice(ts, n) };
+    let done = context.run(|model, _| {
+        for (index, t) in ts.iter().enumerate() {
+            unsafe { *out.add(index) = model.value(curve, *t) };
+        }
+        Ok(())
+    });
+    i32::from(done.is_none())
+}
+
+unsafe extern "C" fn last_error<T>(ctx: *mut c_void, out: *const PostSink) {
+    // SAFETY: as stated above.
+    unsafe { (*out).put(&context::<T>(ctx).error) };
+}
+
+unsafe extern "C" fn close<T>(ctx: *mut c_void) {
+    // SAFETY: as stated above; the host does not use `ctx` again.
+    let context = unsafe { Box::from_raw(ctx.cast::<Context<T>>()) };
+    // A destructor that panics has nobody to tell.
+    let _ = guarded(|| {
+        drop(context);
+        Ok(())
+    });
+}

@@ -1,0 +1,180 @@
+//! Numbers as a program has them: fixed point, the same on every machine, never `-0.000`.
+
+use std::fmt::Write;
+
+/// Powers of ten that an `f64` and a `u64` hold exactly.
+const POWERS: [u64; 16] = {
+    let mut powers = [1; 16];
+    let mut index = 1;
+    while index < powers.len() {
+        powers[index] = powers[index - 1] * 10;
+        index += 1;
+    }
+    powers
+};
+
+/// Appends `value` with `decimals` digits behind the point (at most 15; none and no point for 0).
+///
+/// Digit for digit what `format!("{value:.decimals$}")` gives (ties of the exact binary value go to the
+/// even digit), except that a number which rounds to nothing has no sign: `0.000`, never `-0.000`.
+pub fn fixed(out: &mut String, value: f64, decimals: u8) {
+    let Some(count) = count(value, decimals) else {
+        // Writing to a String cannot fail.
+        let _ = write!(out, "{value:.*}", usize::from(decimals));
+        return;
+    };
+    // 20 digits of a u64, a point and a sign.
+    let mut buffer = [b'0'; 24];
+    let mut at = buffer.len();
+    let mut rest = count;
+    let mut digits = 0;
+    while rest != 0 || digits <= decimals {
+        if digits == decimals && decimals != 0 {
+            at -= 1;
+            buffer[at] = b'.';
+        }
+        at -= 1;
+        buffer[at] = b'0' + (rest % 10) as u8;
+        rest /= 10;
+        digits += 1;
+    }
+    if value < 0.0 && count != 0 {
+        at -= 1;
+        buffer[at] = b'-';
+    }
+    out.extend(buffer[at..].iter().map(|byte| char::from(*byte)));
+}
+
+/// The `f64` nearest to the number that [`fixed`] prints, so that it prints the same again and comparing
+/// two such numbers with `==` compares what stands in the program.
+pub fn quantise(value: f64, decimals: u8) -> f64 {
+    match count(value, decimals) {
+        // Both are exact, and a division rounds once.
+        Some(count) if count < 1 << 53 => {
+            let size = count as f64 / POWERS[usize::from(decimals)] as f64;
+            if value < 0.0 && count != 0 {
+                -size
+            } else {
+                size
+            }
+        }
+        _ => {
+            let mut text = String::new();
+            fixed(&mut text, value, decimals);
+            text.parse().unwrap_or(value)
+        }
+    }
+}
+
+/// How many units of the last decimal `|value|` has, rounded exactly; none if that is beyond this way.
+fn count(value: f64, decimals: u8) -> Option<u64> {
+    let power = *POWERS.get(usize::from(decimals))?;
+    let bits = value.abs().to_bits();
+    // |value| = mantissa / 2^shift.
+    let (exponent, fraction) = ((bits >> 52) as i32, bits & ((1 << 52) - 1));
+    let (mantissa, shift) = match exponent {
+        0 => (fraction, 1074),
+        _ => (fraction | 1 << 52, 1075 - exponent),
+    };
+    if shift <= 0 {
+        return None;
+    }
+    // Below 2^53 · 2^50, so nothing is lost, and whatever is shifted out wholly is less than a half.
+    let units = u128::from(mantissa) * u128::from(power);
+    if shift > 104 {
+        return Some(0);
+    }
+    let whole = units >> shift;
+    let half = 1_u128 << (shift - 1);
+    let rest = units & ((1_u128 << shift) - 1);
+    let up = rest > half || (rest == half && whole & 1 == 1);
+    u64::try_from(whole + u128::from(up)).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn own(value: f64, decimals: u8) -> String {
+        let mut text = String::new();
+        fixed(&mut text, value, decimals);
+        text
+    }
+
+    fn std(value: f64, decimals: u8) -> String {
+        let text = format!("{value:.*}", usize::from(decimals));
+        match text.strip_prefix('-') {
+            Some(rest) if rest.bytes().all(|byte| byte == b'0' || byte == b'.') => rest.to_owned(),
+            _ => text,
+        }
+    }
+
+    fn check(value: f64) {
+        for decimals in 0..=9 {
+            for value in [value, -value] {
+                let text = own(value, decimals);
+                assert_eq!(text, std(value, decimals), "{value:e} with {decimals}");
+                let same = quantise(value, decimals);
+                assert_eq!(own(same, decimals), text, "{value:e} with {decimals}");
+                assert_eq!(quantise(same, decimals), same);
+                assert!(same != 0.0 || same.is_sign_positive());
+            }
+        }
+    }
+
+    #[test]
+    fn writes_what_std_writes() {
+        for value in [
+            0.0,
+            0.5,
+            1.5,
+            2.5,
+            0.25,
+            0.125,
+            0.375,
+            0.0005,
+            0.0015,
+            0.9995,
+            1e-300,
+            5e-324,
+            1e15,
+            9e15,
+            4.5e15,
+            1e16,
+            1e22,
+            1e300,
+            0.1,
+            0.35,
+            1.005,
+            123_456.789_5,
+        ] {
+            check(value);
+        }
+        for step in 0..4000 {
+            // Exact ties and their neighbours.
+            let value = f64::from(step) / 64.0;
+            check(value);
+            check(f64::from_bits(value.to_bits() + 1));
+            check(f64::from_bits(value.to_bits().saturating_sub(1)));
+        }
+        // xorshift: any bit pattern, and the sizes that occur on machines.
+        let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+        for _ in 0..20_000 {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            let any = f64::from_bits(state);
+            if any.is_finite() && any.abs() < 1e40 {
+                check(any);
+            }
+            check((state % 2_000_000_000_000) as f64 / 1e6 - 1e6);
+            check((state % 20_000_000) as f64 / 1e4 + 0.000_05);
+        }
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_left_to_std() {
+        assert_eq!(own(f64::INFINITY, 3), "inf");
+        assert_eq!(own(f64::NAN, 3), "NaN");
+    }
+}

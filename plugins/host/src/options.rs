@@ -1,0 +1,194 @@
+//! The options of a machine file against what a plugin declares.
+
+use post_plugin::{OptionKind, OptionSpec, Value};
+
+use crate::OptionFault;
+
+/// Value of an option, as a machine file gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GivenValue {
+    /// `true`, `false`.
+    Flag(bool),
+    /// A whole number.
+    Integer(i64),
+    /// A number.
+    Number(f64),
+    /// Text.
+    Text(String),
+}
+
+impl GivenValue {
+    /// The value as a plugin gets it.
+    pub fn as_value(&self) -> Value<'_> {
+        match self {
+            GivenValue::Flag(flag) => Value::Flag(*flag),
+            GivenValue::Integer(integer) => Value::Integer(*integer),
+            GivenValue::Number(number) => Value::Number(*number),
+            GivenValue::Text(text) => Value::Text(text),
+        }
+    }
+}
+
+impl From<Value<'_>> for GivenValue {
+    fn from(value: Value<'_>) -> Self {
+        match value {
+            Value::Flag(flag) => GivenValue::Flag(flag),
+            Value::Integer(integer) => GivenValue::Integer(integer),
+            Value::Number(number) => GivenValue::Number(number),
+            Value::Text(text) => GivenValue::Text(text.to_owned()),
+        }
+    }
+}
+
+/// Checks `given` and completes it by the defaults; the answer is in the order of `specs`.
+///
+/// # Errors
+/// The first option that is not known, given twice, of another type or out of range.
+pub fn check_options(
+    specs: &[OptionSpec],
+    given: &[(String, GivenValue)],
+) -> Result<Vec<(String, GivenValue)>, OptionFault> {
+    for (index, (key, _)) in given.iter().enumerate() {
+        let message = if !specs.iter().any(|spec| spec.key == key) {
+            "not known"
+        } else if given[..index].iter().any(|(other, _)| other == key) {
+            "given twice"
+        } else {
+            continue;
+        };
+        return Err(OptionFault {
+            key: key.clone(),
+            message: message.to_owned(),
+            allowed: specs.iter().map(|spec| spec.key.to_owned()).collect(),
+        });
+    }
+    specs
+        .iter()
+        .map(|spec| {
+            let value = given.iter().find(|(key, _)| key == spec.key);
+            let value = match value {
+                Some((_, value)) => check(spec, value)?,
+                None => spec.default.into(),
+            };
+            Ok((spec.key.to_owned(), value))
+        })
+        .collect()
+}
+
+/// `value` in the type that `spec` asks for.
+pub(crate) fn check(spec: &OptionSpec, value: &GivenValue) -> Result<GivenValue, OptionFault> {
+    let fault = |message: String, allowed: &[&str]| {
+        Err(OptionFault {
+            key: spec.key.to_owned(),
+            message,
+            allowed: allowed.iter().map(|&text| text.to_owned()).collect(),
+        })
+    };
+    match (spec.kind, value) {
+        (OptionKind::Flag, GivenValue::Flag(_)) | (OptionKind::Text, GivenValue::Text(_)) => {
+            Ok(value.clone())
+        }
+        (OptionKind::Integer { min, max }, GivenValue::Integer(integer)) => {
+            if (min..=max).contains(integer) {
+                Ok(value.clone())
+            } else {
+                fault(format!("{integer} is not between {min} and {max}"), &[])
+            }
+        }
+        (OptionKind::Number { min, max }, GivenValue::Number(_) | GivenValue::Integer(_)) => {
+            let number = match value {
+                GivenValue::Integer(integer) => *integer as f64,
+                GivenValue::Number(number) => *number,
+                _ => f64::NAN,
+            };
+            if (min..=max).contains(&number) {
+                Ok(GivenValue::Number(number))
+            } else {
+                fault(format!("{number} is not between {min} and {max}"), &[])
+            }
+        }
+        (OptionKind::Choice(choices), GivenValue::Text(text)) => {
+            if choices.contains(&text.as_str()) {
+                Ok(value.clone())
+            } else {
+                fault(format!("`{text}` is not one of its values"), choices)
+            }
+        }
+        (OptionKind::Flag, _) => fault("must be true or false".to_owned(), &["true", "false"]),
+        (OptionKind::Integer { .. }, _) => fault("must be a whole number".to_owned(), &[]),
+        (OptionKind::Number { .. }, _) => fault("must be a number".to_owned(), &[]),
+        (OptionKind::Text, _) => fault("must be text, in quotes".to_owned(), &[]),
+        (OptionKind::Choice(choices), _) => fault("must be text, in quotes".to_owned(), choices),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPECS: &[OptionSpec] = &[
+        OptionSpec {
+            key: "step",
+            kind: OptionKind::Integer { min: 1, max: 100 },
+            default: Value::Integer(10),
+            help: "",
+        },
+        OptionSpec {
+            key: "ratio",
+            kind: OptionKind::Number { min: 0.0, max: 1.0 },
+            default: Value::Number(0.5),
+            help: "",
+        },
+        OptionSpec {
+            key: "way",
+            kind: OptionKind::Choice(&["long", "short"]),
+            default: Value::Text("short"),
+            help: "",
+        },
+    ];
+
+    fn fault(key: &str, value: GivenValue) -> OptionFault {
+        check_options(SPECS, &[(key.to_owned(), value)]).unwrap_err()
+    }
+
+    #[test]
+    fn what_is_not_given_has_its_default() {
+        let given = [("ratio".to_owned(), GivenValue::Integer(1))];
+        assert_eq!(
+            check_options(SPECS, &given).unwrap(),
+            [
+                ("step".to_owned(), GivenValue::Integer(10)),
+                ("ratio".to_owned(), GivenValue::Number(1.0)),
+                ("way".to_owned(), GivenValue::Text("short".to_owned())),
+            ]
+        );
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let unknown = fault("stepp", GivenValue::Integer(1));
+        assert_eq!(unknown.allowed, ["step", "ratio", "way"]);
+        assert_eq!(
+            fault("step", GivenValue::Integer(0)).to_string(),
+            "option `step`: 0 is not between 1 and 100"
+        );
+        assert_eq!(
+            fault("step", GivenValue::Number(2.0)).message,
+            "must be a whole number"
+        );
+        assert_eq!(
+            fault("ratio", GivenValue::Number(f64::NAN)).message,
+            "NaN is not between 0 and 1"
+        );
+        let choice = fault("way", GivenValue::Text("round".to_owned()));
+        assert_eq!(choice.allowed, ["long", "short"]);
+        let twice = [
+            ("step".to_owned(), GivenValue::Integer(1)),
+            ("step".to_owned(), GivenValue::Integer(2)),
+        ];
+        assert_eq!(
+            check_options(SPECS, &twice).unwrap_err().message,
+            "given twice"
+        );
+    }
+}

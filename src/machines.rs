@@ -1,0 +1,123 @@
+//! Where machines come from: a file, a machine folder, or built in.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use post_core::diagnostic::Diagnostic;
+use post_core::machine::{self, Machine, Source};
+
+use crate::arguments::PostArguments;
+
+/// Names and texts of the machines built in.
+const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.rs"));
+
+/// Loads the machine that the arguments name.
+pub fn load(arguments: &PostArguments) -> Result<Machine, Vec<Diagnostic>> {
+    let name = arguments.machine.as_deref().unwrap_or_default();
+    let folders = folders(arguments);
+    let fault = |message| vec![Diagnostic::error("machine", message)];
+    let source = find(name, &folders).map_err(fault)?;
+    // A machine extends its neighbours first.
+    let mut near: Vec<PathBuf> = Path::new(&source.name)
+        .parent()
+        .filter(|folder| folder.is_dir())
+        .map(Path::to_owned)
+        .into_iter()
+        .collect();
+    near.extend(folders);
+    machine::load(source, &arguments.settings(), &mut |parent| {
+        find(parent, &near)
+    })
+}
+
+/// The folders of machines: those of the command line, of the environment, and `machines` here.
+fn folders(arguments: &PostArguments) -> Vec<PathBuf> {
+    let mut folders = arguments.machines.clone();
+    if let Some(more) = env::var_os("POST_MACHINES") {
+        folders.extend(env::split_paths(&more).filter(|path| !path.as_os_str().is_empty()));
+    }
+    folders.push(PathBuf::from("machines"));
+    folders
+}
+
+fn find(name: &str, folders: &[PathBuf]) -> Result<Source, String> {
+    let path = Path::new(name);
+    let file =
+        path.extension().is_some_and(|ending| ending == "toml") || path.components().count() > 1;
+    if file {
+        // A file that is extended is named as seen from the one that extends it.
+        let beside = folders.iter().map(|folder| folder.join(path));
+        let found = std::iter::once(path.to_owned())
+            .chain(beside)
+            .find(|path| path.is_file())
+            .unwrap_or_else(|| path.to_owned());
+        return read(&found);
+    }
+    for folder in folders {
+        let path = folder.join(format!("{name}.toml"));
+        if path.is_file() {
+            return read(&path);
+        }
+    }
+    if let Some((name, text)) = BUILT_IN.iter().find(|(known, _)| *known == name) {
+        return Ok(Source {
+            name: format!("{name}.toml (built in)"),
+            text: (*text).to_owned(),
+        });
+    }
+    let known: Vec<&str> = BUILT_IN.iter().map(|(name, _)| *name).collect();
+    Err(format!(
+        "there is no machine {name}: no {name}.toml in {}, and built in are {}",
+        folders
+            .iter()
+            .map(|folder| folder.display().to_string())
+            .collect::<Vec<_>>()
+            .join(", "),
+        known.join(", ")
+    ))
+}
+
+fn read(path: &Path) -> Result<Source, String> {
+    let bytes = fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        format!(
+            "{}: a machine file is UTF-8 text, this is not",
+            path.display()
+        )
+    })?;
+    Ok(Source {
+        name: path.display().to_string(),
+        text,
+    })
+}
+
+/// Lists the machines that a bare name finds.
+pub fn print(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
+    let mut rows = Vec::new();
+    for folder in folders(arguments) {
+        let Ok(entries) = fs::read_dir(&folder) else {
+            continue;
+        };
+        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+        paths.sort();
+        for path in paths {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            rows.push((name.into_owned(), path.display().to_string()));
+        }
+    }
+    for (name, _) in BUILT_IN {
+        if !rows.iter().any(|(known, _)| known == name) {
+            rows.push(((*name).to_owned(), "built in".to_owned()));
+        }
+    }
+    let mut stdout = std::io::stdout().lock();
+    for (name, origin) in rows {
+        // A reader that has seen enough closes the pipe.
+        if writeln!(stdout, "{name:<20} {origin}").is_err() {
+            break;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,156 @@
+//! The plugins that are part of the command, and those that the user's folders hold.
+
+use std::env;
+use std::path::PathBuf;
+
+use post_core::diagnostic::{Diagnostic, Place};
+use post_core::machine::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
+use post_core::report::PluginUse;
+use post_core::words;
+use post_host::{
+    Finder, GivenValue, OpenedDialect, OpenedModel, Plugin, PluginFault, ProgramSetup, ProgramWord,
+    Reason,
+};
+use post_plugin::Units;
+
+use crate::arguments::PostArguments;
+
+/// The finder for a run.
+pub fn finder(arguments: &PostArguments) -> Result<Finder, Vec<Diagnostic>> {
+    let mut folders = arguments.plugins.clone();
+    if let Some(more) = env::var_os("POST_PLUGINS") {
+        folders.extend(env::split_paths(&more).filter(|path| !path.as_os_str().is_empty()));
+    }
+    missing(&arguments.plugins)?;
+    let linked = [
+        post_fanuc::plugin(),
+        post_heidenhain::plugin(),
+        post_linuxcnc::plugin(),
+        post_sampled::plugin(),
+    ]
+    .into_iter()
+    .map(Plugin::linked)
+    .collect::<Result<_, _>>()
+    .map_err(|fault| vec![diagnostic(&fault, &[], None)])?;
+    Ok(Finder { folders, linked })
+}
+
+/// A folder that the user names must be there: a slip would take the built-in plugin in silence.
+fn missing(folders: &[PathBuf]) -> Result<(), Vec<Diagnostic>> {
+    let missing: Vec<Diagnostic> = folders
+        .iter()
+        .filter(|folder| !folder.is_dir())
+        .map(|folder| {
+            Diagnostic::error(
+                "plugin",
+                format!("--plugins {}: no such folder", folder.display()),
+            )
+        })
+        .collect();
+    if missing.is_empty() {
+        Ok(())
+    } else {
+        Err(missing)
+    }
+}
+
+/// Opens the dialect of a machine for the program `program`.
+pub fn dialect(
+    finder: &Finder,
+    machine: &Machine,
+    program: &str,
+) -> Result<(OpenedDialect, PluginUse), Vec<Diagnostic>> {
+    let control = &machine.control;
+    let fault = |fault: PluginFault| {
+        vec![diagnostic(
+            &fault,
+            &control.options,
+            control.dialect_place.clone(),
+        )]
+    };
+    let plugin = finder.find(&control.dialect).map_err(fault)?;
+    let depth = words::depth(machine);
+    let setup = ProgramSetup {
+        program: program.to_owned(),
+        machine: machine.name.clone(),
+        units: match control.units {
+            OutputUnits::Mm => Units::Millimetre,
+            OutputUnits::Inch => Units::Inch,
+        },
+        tcp: control.tcp == Tcp::Control,
+        words: words::order(machine)
+            .into_iter()
+            .map(|place| ProgramWord {
+                name: machine.axes[place].name.clone(),
+                rotary: machine.axes[place].joint.rotary,
+                depth: Some(place) == depth,
+            })
+            .collect(),
+        options: given(&control.options),
+    };
+    let opened = plugin.dialect(&setup).map_err(fault)?;
+    Ok((opened, used(&plugin)))
+}
+
+/// Opens the error model of a machine.
+pub fn model(
+    finder: &Finder,
+    machine: &Machine,
+) -> Result<(OpenedModel, PluginUse), Vec<Diagnostic>> {
+    let accuracy = &machine.accuracy;
+    let fault = |fault: PluginFault| {
+        vec![diagnostic(
+            &fault,
+            &accuracy.options,
+            accuracy.model_place.clone(),
+        )]
+    };
+    let plugin = finder.find(&accuracy.model).map_err(fault)?;
+    let opened = plugin
+        .error_model(&given(&accuracy.options))
+        .map_err(fault)?;
+    Ok((opened, used(&plugin)))
+}
+
+fn given(options: &[GivenOption]) -> Vec<(String, GivenValue)> {
+    options
+        .iter()
+        .map(|option| {
+            let value = match &option.value {
+                OptionValue::Flag(flag) => GivenValue::Flag(*flag),
+                OptionValue::Integer(number) => GivenValue::Integer(*number),
+                OptionValue::Number(number) => GivenValue::Number(*number),
+                OptionValue::Text(text) => GivenValue::Text(text.clone()),
+            };
+            (option.key.clone(), value)
+        })
+        .collect()
+}
+
+fn used(plugin: &Plugin) -> PluginUse {
+    PluginUse {
+        name: plugin.name().to_owned(),
+        version: plugin.version().to_owned(),
+        path: plugin.path().map(|path| path.display().to_string()),
+        hash: plugin.hash().map(str::to_owned),
+    }
+}
+
+/// A plugin's fault at the line of the machine file that asked for it.
+fn diagnostic(fault: &PluginFault, options: &[GivenOption], place: Option<Place>) -> Diagnostic {
+    let place = match &fault.reason {
+        Reason::Option(option) => options
+            .iter()
+            .find(|given| given.key == option.key)
+            .and_then(|given| given.place.clone())
+            .or(place),
+        _ => place,
+    };
+    let help = fault.help();
+    let diagnostic = Diagnostic::error("plugin", fault.to_string()).at(place);
+    if help.is_empty() {
+        diagnostic
+    } else {
+        diagnostic.help(help)
+    }
+}

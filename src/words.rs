@@ -1,0 +1,77 @@
+//! `post words`: every word of a CL file, how often, and what becomes of it.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+use post_core::diagnostic::{Diagnostic, unreadable};
+use post_core::program::{Usage, usage};
+use post_grammar::{ReadError, Reader, Statement};
+
+/// Prints the table.
+pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
+    let name = path.display().to_string();
+    let fault = |error: io::Error| vec![Diagnostic::error("input", format!("{name}: {error}"))];
+    let input: Box<dyn Read> = if path == Path::new("-") {
+        Box::new(io::stdin().lock())
+    } else {
+        Box::new(File::open(path).map_err(fault)?)
+    };
+    let mut reader = Reader::new(input);
+    let mut words: BTreeMap<String, (u64, u64, Usage)> = BTreeMap::new();
+    let mut faults = Vec::new();
+    loop {
+        match reader.next_record() {
+            Ok(None) => break,
+            Ok(Some(record)) => {
+                let word = record.statement.word();
+                let usage = match (&record.statement, usage(word)) {
+                    (
+                        Statement::Other {
+                            directive: true, ..
+                        },
+                        Usage::Unknown,
+                    ) => Usage::Ignored,
+                    (_, usage) => usage,
+                };
+                if let Some((count, ..)) = words.get_mut(word) {
+                    *count += 1;
+                } else {
+                    words.insert(word.to_owned(), (1, record.line, usage));
+                }
+            }
+            Err(ReadError::Io(error)) => return Err(fault(error)),
+            Err(ReadError::Syntax(fault)) => faults.push(unreadable(&name, &fault)),
+        }
+    }
+    let mut rows: Vec<_> = words.into_iter().collect();
+    rows.sort_by(|a, b| b.1.0.cmp(&a.1.0).then_with(|| a.0.cmp(&b.0)));
+    let mut stdout = io::stdout().lock();
+    let mut line = |text: String| {
+        // A reader that has seen enough closes the pipe.
+        let _ = writeln!(stdout, "{}", text.trim_end());
+    };
+    line(format!(
+        "{:<26} {:>9}  {:<10} {}",
+        "word", "times", "becomes", "first on line"
+    ));
+    for (word, (count, first, usage)) in rows {
+        if unknown_only && !matches!(usage, Usage::Unknown | Usage::Refused) {
+            continue;
+        }
+        let becomes = match usage {
+            Usage::Used => "used",
+            Usage::Passed => "passed on",
+            Usage::Ignored => "ignored",
+            Usage::Refused => "refused",
+            Usage::Unknown => "unknown",
+        };
+        line(format!("{word:<26} {count:>9}  {becomes:<10} {first}"));
+    }
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(faults)
+    }
+}

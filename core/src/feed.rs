@@ -25,7 +25,8 @@ pub struct Feeds {
 #[derive(Clone, Copy, Debug)]
 struct AxisFeed {
     rotary: bool,
-    max_feed: f64,
+    /// Minutes that the axis needs for one mm or radian at its largest feed.
+    slowness: f64,
 }
 
 /// A cut's feed.
@@ -58,7 +59,7 @@ impl Feeds {
                 .iter()
                 .map(|axis| AxisFeed {
                     rotary: axis.joint.rotary,
-                    max_feed: axis.max_feed,
+                    slowness: 1.0 / axis.max_feed,
                 })
                 .collect(),
             tcp: machine.control.tcp,
@@ -75,7 +76,7 @@ impl Feeds {
     pub fn least_time(&self, from: &Joints, to: &Joints) -> f64 {
         let mut least: f64 = 0.0;
         for (index, axis) in self.axes.iter().enumerate() {
-            least = least.max(libm::fabs(to[index] - from[index]) / axis.max_feed);
+            least = least.max((to[index] - from[index]).abs() * axis.slowness);
         }
         least
     }
@@ -139,7 +140,7 @@ impl Feeds {
         let mut travels = Travels::default();
         let (mut linear, mut rotary) = (0.0, 0.0);
         for (index, axis) in self.axes.iter().enumerate().take(MAX_AXES) {
-            let travel = libm::fabs(to[index] - from[index]);
+            let travel = (to[index] - from[index]).abs();
             if axis.rotary {
                 let degrees = travel.to_degrees();
                 rotary += degrees * degrees;
@@ -149,9 +150,9 @@ impl Feeds {
                 travels.linear_longest = travels.linear_longest.max(travel);
             }
         }
-        travels.combined = libm::sqrt(linear + rotary);
-        travels.linear = libm::sqrt(linear);
-        travels.rotary = libm::sqrt(rotary);
+        travels.combined = (linear + rotary).sqrt();
+        travels.linear = linear.sqrt();
+        travels.rotary = rotary.sqrt();
         travels
     }
 }
@@ -170,5 +171,5 @@ struct Travels {
 #[inline]
 fn floor(value: f64, scale: f64) -> f64 {
     // A value that is a printed number but for its last bits is that number.
-    libm::floor(value * scale + 1e-6).max(1.0) / scale
+    (value * scale + 1e-6).floor().max(1.0) / scale
 }

@@ -35,13 +35,13 @@ pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> Bend {
         if !joint.rotary {
             continue;
         }
-        let angle = libm::fabs(to.joints[index] - from.joints[index]);
+        let angle = (to.joints[index] - from.joints[index]).abs();
         if angle == 0.0 {
             continue;
         }
         let grow = |bend: f64, from: Vector3<f64>, to: Vector3<f64>| {
             let (from, to) = (joint.direction.cross(&from), joint.direction.cross(&to));
-            let radius = libm::sqrt(from.norm_squared().max(to.norm_squared())) + bend / 8.0;
+            let radius = from.norm_squared().max(to.norm_squared()).sqrt() + bend / 8.0;
             let slope = (to - from).norm() + bend / 2.0;
             angle * angle * radius + 2.0 * angle * slope + bend
         };
@@ -113,7 +113,7 @@ fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> Bend {
     let mut axis = [0.0; 4];
     for index in (0..chain.joints().len().min(MAX_AXES)).rev() {
         let joint = &chain.joints()[index];
-        let w = libm::fabs(to.joints[index] - from.joints[index]);
+        let w = (to.joints[index] - from.joints[index]).abs();
         if !joint.rotary {
             tip[0] += w;
             continue;
@@ -144,8 +144,13 @@ pub fn deviation(ends: f64, bend: f64) -> f64 {
     ends + bend / 8.0
 }
 
-/// The angle between two unit vectors whose difference is at most `length`, radians.
+/// An upper bound on the angle between two unit vectors whose difference is at most `length`, radians.
+///
+/// `2·asin(c/2) = c + c³/24 + 3c⁵/640 + …`; below a tenth all that follows the first term is less than c³/23.
 #[inline]
 pub fn chord_angle(length: f64) -> f64 {
+    if length < 0.1 {
+        return length + length * length * length / 23.0;
+    }
     2.0 * libm::asin((length / 2.0).min(1.0))
 }

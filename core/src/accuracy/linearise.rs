@@ -9,7 +9,7 @@
 use nalgebra::Vector3;
 use post_plugin::{Deviation, ModelSession, Tolerance};
 
-use super::certificate::{self, Bend};
+use super::certificate::{self, Bend, chord_angle};
 use super::node::{Node, Placer, Refused};
 use crate::kinematics::inverse::angle;
 use crate::kinematics::{Joints, Pose};
@@ -105,7 +105,8 @@ impl Move<'_> {
     /// model may think, and none is asked.
     #[inline]
     pub fn whole(&self) -> Option<Bound> {
-        let sweep = angle(self.from.target.axis, self.to.target.axis);
+        // An upper bound on the sweep is enough here, and cheaper than the angle.
+        let sweep = chord_angle((self.from.target.axis - self.to.target.axis).norm());
         let chain = self.placer.solver().chain();
         let bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
         let bound = self.bound(bend);
@@ -148,11 +149,7 @@ impl Move<'_> {
         let axis_ends = from.axis_error.max(to.axis_error);
         Bound {
             tip: certificate::deviation(from.tip_error.max(to.tip_error), tip_bend),
-            axis: if bend.axis == 0.0 {
-                axis_ends
-            } else {
-                certificate::chord_angle(certificate::deviation(axis_ends, bend.axis))
-            },
+            axis: chord_angle(certificate::deviation(axis_ends, bend.axis)),
         }
     }
 }
@@ -304,7 +301,9 @@ fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
     if straight {
         exact
     } else {
-        placer.settle(target, t, halfway)
+        let mut node = Node::default();
+        placer.settle(&mut node, target, t, &halfway)?;
+        Ok(node)
     }
 }
 
@@ -362,7 +361,7 @@ fn certify(piece: &Move<'_>, bend: Bend) -> Bound {
     let blind = 1.0 / (8.0 * count * count);
     Bound {
         tip: tip + tip_bend * blind,
-        axis: certificate::chord_angle(axis + axis_bend * blind),
+        axis: chord_angle(axis + axis_bend * blind),
     }
 }
 

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector3;
 
+use super::certificate::chord_angle;
 use crate::kinematics::choose::{self, Limit, OverTravel};
-use crate::kinematics::inverse::angle;
 use crate::kinematics::{Joints, MAX_AXES, Pose, Solver, Trace, Unreachable};
 use crate::machine::Machine;
 use crate::words::{WordValues, Words};
 
 /// A point of the path, solved and rounded.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Node {
     /// Place within its move, 0 to 1.
     pub t: f64,
@@ -107,9 +107,10 @@ impl Placer {
     ///
     /// # Errors
     /// Why there is none.
-    #[inline]
     pub fn place(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
-        self.place_but(target, t, last, 0)
+        let mut node = Node::default();
+        self.fill(&mut node, target, t, last, 0)?;
+        Ok(node)
     }
 
     /// The second nearest node of `target`: the other solution, if it is inside travel.
@@ -117,11 +118,24 @@ impl Placer {
     /// # Errors
     /// Why there is none.
     pub fn place_other(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
-        self.place_but(target, t, last, 1)
+        let mut node = Node::default();
+        self.fill(&mut node, target, t, last, 1)?;
+        Ok(node)
     }
 
+    /// [`Placer::place`] into a node that is there already (it is large); the `skip` nearest are left out.
+    ///
+    /// # Errors
+    /// Why there is none.
     #[inline]
-    fn place_but(&self, target: Pose, t: f64, last: &Joints, skip: usize) -> Result<Node, Refused> {
+    pub fn fill(
+        &self,
+        node: &mut Node,
+        target: Pose,
+        t: f64,
+        last: &Joints,
+        skip: usize,
+    ) -> Result<(), Refused> {
         let solutions = self
             .solver
             .orient(target.axis, self.axis_tolerance)
@@ -132,8 +146,8 @@ impl Placer {
             tried: solutions.as_slice().len(),
         });
         for joints in choices.as_slice().iter().skip(skip) {
-            match self.settle(target, t, *joints) {
-                Ok(node) => return Ok(node),
+            match self.settle(node, target, t, joints) {
+                Ok(()) => return Ok(()),
                 Err(fault) => refused = refused.or(Some(fault)),
             }
         }
@@ -173,15 +187,25 @@ impl Placer {
     /// # Errors
     /// Why there is none.
     #[inline]
-    pub fn settle(&self, target: Pose, t: f64, mut joints: Joints) -> Result<Node, Refused> {
-        let mut words = [0.0; MAX_AXES];
+    pub fn settle(
+        &self,
+        node: &mut Node,
+        target: Pose,
+        t: f64,
+        rotary: &Joints,
+    ) -> Result<(), Refused> {
+        let chain = self.solver.chain();
+        node.t = t;
+        node.target = target;
+        let joints = &mut node.trace.joints;
+        *joints = *rotary;
         // The rotary words first: the linear axes then make up for their rounding.
-        self.words.print_rotary(&mut joints, &mut words);
-        let turns = self.solver.chain().turns(&joints);
+        self.words.print_rotary(joints, &mut node.words);
+        node.trace.turns = chain.turns(joints);
         self.solver
-            .place(target.tip, &mut joints, &turns)
+            .place(target.tip, joints, &node.trace.turns)
             .map_err(Refused::Unreachable)?;
-        let kept = self.words.print_linear(&mut joints, target.tip, &mut words);
+        let kept = self.words.print_linear(joints, target.tip, &mut node.words);
         for limit in &self.linear {
             let value = joints[limit.joint];
             let [least, most] = limit.travel;
@@ -200,24 +224,18 @@ impl Placer {
                 });
             }
         }
-        let trace = self.solver.chain().trace(&joints, turns);
-        let tip = kept.unwrap_or(trace.pose.tip);
-        let node = Node {
-            t,
-            target,
-            words,
-            tip,
-            tip_error: (tip - target.tip).norm(),
-            axis_error: angle(trace.pose.axis, target.axis),
-            trace,
-        };
-        // Both the forward chain and what is left over by rounding stand behind every node.
-        let chain_error = (trace.pose.tip - target.tip).norm();
-        if chain_error <= self.tip_rounding || (kept.is_some() && chain_error <= 1e-6) {
-            Ok(node)
+        chain.trace(&mut node.trace);
+        let pose = &node.trace.pose;
+        node.tip = kept.unwrap_or(pose.tip);
+        node.tip_error = (node.tip - target.tip).norm();
+        node.axis_error = chord_angle((pose.axis - target.axis).norm());
+        // The forward chain stands behind every node: what it misses by must be rounding.
+        let missed = (pose.tip - target.tip).norm();
+        if missed <= self.tip_rounding {
+            Ok(())
         } else {
             Err(Refused::Unverified {
-                tip: chain_error,
+                tip: missed,
                 axis: node.axis_error,
             })
         }

@@ -24,7 +24,7 @@ pub struct Joint {
 }
 
 /// Tip and tool axis, seen from the part.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
     /// Tip, mm, part frame.
     pub tip: Vector3<f64>,
@@ -33,14 +33,14 @@ pub struct Pose {
 }
 
 /// Sine and cosine of every rotary joint, so that a set of angles is evaluated once.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Turns {
     sines: Joints,
     cosines: Joints,
 }
 
 /// The forward product with what the certificate needs of it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Trace {
     /// The pose reached.
     pub pose: Pose,
@@ -135,38 +135,36 @@ impl Chain {
 
     /// Where the tool stands, seen from the part.
     pub fn forward(&self, joints: &Joints) -> Pose {
-        self.trace(joints, self.turns(joints)).pose
+        let mut trace = Trace {
+            joints: *joints,
+            turns: self.turns(joints),
+            ..Trace::default()
+        };
+        self.trace(&mut trace);
+        trace.pose
     }
 
-    /// [`Chain::forward`] with `turns` known, and what stands between.
+    /// [`Chain::forward`] from the joints and turns of `trace`; fills in the rest of it.
     #[inline]
-    pub fn trace(&self, joints: &Joints, turns: Turns) -> Trace {
+    pub fn trace(&self, trace: &mut Trace) {
         let mut tip = self.tip;
         let mut axis = self.axis;
-        let mut arms = [Vector3::zeros(); MAX_AXES];
-        let mut axes = [Vector3::zeros(); MAX_AXES];
         for (index, joint) in self.joints.iter().enumerate().rev() {
             if joint.rotary {
-                let (sine, cosine) = turns.of(index);
+                let (sine, cosine) = trace.turns.of(index);
                 let arm = tip - joint.point;
-                arms[index] = arm;
-                axes[index] = axis;
+                trace.arms[index] = arm;
+                trace.axes[index] = axis;
                 tip = joint.point + turn(arm, joint.direction, sine, cosine);
                 axis = turn(axis, joint.direction, sine, cosine);
             } else {
-                tip += joint.direction * joints[index];
+                tip += joint.direction * trace.joints[index];
             }
         }
-        Trace {
-            pose: Pose {
-                tip: tip - self.mount,
-                axis,
-            },
-            joints: *joints,
-            turns,
-            arms,
-            axes,
-        }
+        trace.pose = Pose {
+            tip: tip - self.mount,
+            axis,
+        };
     }
 }
 

@@ -99,16 +99,16 @@ fn near(
     for &joint in cyclic {
         let value = unwound(joints[joint], last[joint]);
         joints[joint] = value;
-        cost += libm::fabs(value - last[joint]);
+        cost += (value - last[joint]).abs();
     }
     for limit in limits {
         let joint = limit.joint;
         let mut value = unwound(joints[joint], last[joint]);
         let [least, most] = limit.travel;
         if value > most {
-            value -= TAU * libm::ceil((value - most) / TAU);
+            value -= TAU * f64::ceil((value - most) / TAU);
         } else if value < least {
-            value += TAU * libm::ceil((least - value) / TAU);
+            value += TAU * f64::ceil((least - value) / TAU);
         }
         if value > most || value < least {
             let asked = unwound(joints[joint], (least + most) / 2.0);
@@ -119,7 +119,7 @@ fn near(
             });
         }
         joints[joint] = value;
-        cost += libm::fabs(value - last[joint]);
+        cost += (value - last[joint]).abs();
     }
     Ok((joints, cost))
 }
@@ -128,8 +128,8 @@ fn near(
 #[inline]
 fn unwound(angle: f64, last: f64) -> f64 {
     let difference = angle - last;
-    if libm::fabs(difference) <= TAU / 2.0 {
+    if difference.abs() <= TAU / 2.0 {
         return angle;
     }
-    angle - TAU * libm::round(difference / TAU)
+    angle - TAU * f64::round(difference / TAU)
 }

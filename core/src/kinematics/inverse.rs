@@ -225,7 +225,7 @@ impl Solver {
                         return Err(Unreachable::Axis { miss });
                     }
                 }
-                let gamma = libm::sqrt(square.max(0.0) / sine_squared);
+                let gamma = (square.max(0.0) / sine_squared).sqrt();
                 let plane = k1 * alpha + k2 * beta;
                 let pole = k1.cross(&u).norm_squared() < POLE * POLE;
                 for gamma in [gamma, -gamma] {
@@ -334,7 +334,7 @@ impl Solver {
                 fault = unreachable;
                 continue;
             }
-            let reached = self.chain.trace(&joints, turns).pose;
+            let reached = self.chain.forward(&joints);
             let reach = 1000.0 + pose.tip.norm() + joints.iter().fold(0.0, |sum, q| sum + q.abs());
             let allowed = if set.free.is_some() {
                 2.0 * POLE

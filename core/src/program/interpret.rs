@@ -504,7 +504,7 @@ impl Interpreter {
             );
             return false;
         }
-        self.axis = axis / libm::sqrt(square);
+        self.axis = axis / square.sqrt();
         true
     }
 

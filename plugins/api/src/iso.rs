@@ -70,6 +70,11 @@ impl IsoMotion {
         self.axes.forget();
     }
 
+    /// A line of the dialect's own has put `G94` in force.
+    pub fn feeds_per_minute(&mut self) {
+        self.feed_mode.set("G94");
+    }
+
     /// A block of its own.
     pub fn line(&mut self, words: &str, out: &mut String) {
         self.block.line(words, out);

@@ -42,7 +42,8 @@ pub fn fixed(out: &mut String, value: f64, decimals: u8) {
         at -= 1;
         buffer[at] = b'-';
     }
-    out.extend(buffer[at..].iter().map(|byte| char::from(*byte)));
+    // Digits are UTF-8.
+    out.push_str(std::str::from_utf8(&buffer[at..]).unwrap_or_default());
 }
 
 /// The `f64` nearest to the number that [`fixed`] prints, so that it prints the same again and comparing

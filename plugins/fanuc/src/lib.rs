@@ -171,6 +171,7 @@ impl Fanuc {
         self.iso
             .line(&format!("{units} G17 G40 G49 G80 G90 G94"), out);
         self.length_active.set(false);
+        self.iso.feeds_per_minute();
     }
 
     /// One M in a block, as the control's default has it.

@@ -26,8 +26,14 @@ impl Dialect for Tiny {
 
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
         let (motion, words, feed) = match *event {
-            Event::Start => return Ok(out.push_str("G21 G90 G94\n")),
-            Event::End => return Ok(out.push_str("M30\n")),
+            Event::Start => {
+                out.push_str("G21 G90 G94\n");
+                return Ok(());
+            }
+            Event::End => {
+                out.push_str("M30\n");
+                return Ok(());
+            }
             Event::Position { words, feed: None } | Event::Rapid { words } => ("G0", words, None),
             Event::Linear {
                 words,

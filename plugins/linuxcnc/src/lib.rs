@@ -173,12 +173,16 @@ impl LinuxCnc {
         self.iso.line(&safe, out);
         if self.blend > 0.0 {
             self.iso.block.word("G64");
-            let style = NumberStyle::default();
+            let style = NumberStyle {
+                trim: true,
+                ..NumberStyle::default()
+            };
             self.iso.block.number("P", self.blend, 6, style).end(out);
         } else {
             self.iso.line("G61", out);
         }
         self.length_active.set(false);
+        self.iso.feeds_per_minute();
     }
 
     fn codes(&mut self, codes: &str, out: &mut String) {

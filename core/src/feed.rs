@@ -84,18 +84,17 @@ impl Feeds {
     /// The feed of a cut of `length` mm of the tip's path, a `share` of its whole move.
     #[inline]
     pub fn cut(&self, pace: Pace, length: f64, share: f64, from: &Joints, to: &Joints) -> Paced {
-        let travels = self.travels(from, to);
         let least = self.least_time(from, to);
         let asked = match pace {
             Pace::PerMinute(feed) if length > 1e-9 => length / feed,
             // The tip stands still: the feed is taken along the axes, degrees as millimetres, as controls do.
-            Pace::PerMinute(feed) => travels.combined / feed,
+            Pace::PerMinute(feed) => self.travels(from, to).combined / feed,
             Pace::InverseTime(feed) => share / feed,
             Pace::Rapid => 0.0,
         };
         let minutes = asked.max(least).max(1e-9);
         let limited = least > asked * (1.0 + 1e-9);
-        let turning = travels.rotary > 0.0;
+        let turning = self.turning(from, to);
         let feed = if self.inverse_time && (turning || self.tcp == Tcp::Control) {
             Feed::InverseTime(floor(1.0 / minutes, self.inverse_scale))
         } else {
@@ -106,7 +105,7 @@ impl Feeds {
                 {
                     feed / self.unit
                 }
-                _ => self.measured(&travels, length) / minutes,
+                _ => self.measured(&self.travels(from, to), length) / minutes,
             };
             Feed::PerMinute(floor(per_minute, self.feed_scale))
         };
@@ -115,6 +114,12 @@ impl Feeds {
             minutes,
             limited,
         }
+    }
+
+    #[inline]
+    fn turning(&self, from: &Joints, to: &Joints) -> bool {
+        let mut axes = self.axes.iter().enumerate();
+        axes.any(|(index, axis)| axis.rotary && from[index] != to[index])
     }
 
     /// The length that the control will divide by F, in the units of the program or degrees.
@@ -135,7 +140,6 @@ impl Feeds {
         }
     }
 
-    #[inline]
     fn travels(&self, from: &Joints, to: &Joints) -> Travels {
         let mut travels = Travels::default();
         let (mut linear, mut rotary) = (0.0, 0.0);

@@ -2,7 +2,7 @@
 
 use post_plugin::{Batch, Compensation, DialectSession, Event, Format, ModelSession};
 
-use crate::accuracy::{Bound, Linearise, Move, Node, Placer, Refused, Stuck, Tolerances};
+use crate::accuracy::{Bound, Linearise, Move, Node, Placer, Refused, Stuck, Tolerances, Which};
 use crate::diagnostic::{Diagnostic, Extreme, Place};
 use crate::feed::Feeds;
 use crate::kinematics::{Joints, MAX_AXES, NoClosedForm, Pose, Unreachable};
@@ -37,7 +37,9 @@ pub struct Path<'a> {
     /// The tool's length matters and nobody gave it.
     length_unknown: bool,
     /// Where the tool stands; none before the first position.
-    last: Option<Node>,
+    last: Option<Box<Node>>,
+    /// The node before that, to be filled again.
+    spare: Option<Box<Node>>,
     /// Axis values that the next solution should be near to.
     near: Joints,
     /// Length compensation or TCP is in force.
@@ -120,6 +122,7 @@ impl<'a> Path<'a> {
             tool_length,
             length_unknown: tool_length.is_none(),
             last: None,
+            spare: None,
             near: [0.0; MAX_AXES],
             positioned: false,
             compensating: false,
@@ -283,29 +286,34 @@ impl<'a> Path<'a> {
             tip: motion.tip,
             axis: motion.axis,
         };
+        let mut node = self.spare.take().unwrap_or_default();
         let near = self
             .last
             .as_ref()
             .map_or(&self.near, |last| &last.trace.joints);
-        let node = match self.placer.place(target, 1.0, near) {
-            Ok(node) => node,
-            Err(refused) => {
-                self.findings.push(self.refusal(&refused));
-                return;
-            }
-        };
+        if let Err(refused) = self
+            .placer
+            .fill(&mut node, target, 1.0, near, Which::Nearest)
+        {
+            self.spare = Some(node);
+            self.findings.push(self.refusal(&refused));
+            return;
+        }
         if self.compensating {
             self.check_compensation(&node);
         }
-        let Some(last) = self.last.take() else {
-            self.first(line, motion, node);
-            return;
-        };
-        self.last = Some(self.cut(line, motion, &last, node));
+        match self.last.take() {
+            None => self.first(line, motion, &node),
+            Some(last) => {
+                self.cut(line, motion, &last, &mut node);
+                self.spare = Some(last);
+            }
+        }
+        self.last = Some(node);
     }
 
     /// The first position after the start or a tool change.
-    fn first(&mut self, line: u64, motion: &Motion, node: Node) {
+    fn first(&mut self, line: u64, motion: &Motion, node: &Node) {
         let none = self.near;
         let feed = match motion.pace {
             Pace::Rapid => None,
@@ -314,7 +322,7 @@ impl<'a> Path<'a> {
             Pace::PerMinute(_) => Some(self.feeds.cut(motion.pace, 1.0, 1.0, &none, &none).feed),
         };
         let count = self.format.words.len();
-        self.keep_range(&node);
+        self.keep_range(node);
         self.tally.blocks += 1;
         self.push(
             line,
@@ -324,34 +332,31 @@ impl<'a> Path<'a> {
             },
         );
         self.positioned = true;
-        self.last = Some(node);
     }
 
-    /// A move from where the tool stands; the node at which it ends.
+    /// A move from where the tool stands to `node`, or to another solution for the same point.
     #[inline]
-    fn cut(&mut self, line: u64, motion: &Motion, last: &Node, node: Node) -> Node {
-        let whole = planned(self.machine, &self.placer, motion, last, &node).whole();
-        if let Some(bound) = whole {
-            self.piece(line, motion, last, &node, 1.0, bound);
-            return node;
+    fn cut(&mut self, line: u64, motion: &Motion, last: &Node, node: &mut Node) {
+        let whole = planned(self.machine, &self.placer, motion, last, node).whole();
+        match whole {
+            Some(bound) => self.piece(line, motion, last, node, 1.0, bound),
+            None => self.split(line, motion, last, node),
         }
-        self.split(line, motion, last, node)
     }
 
     /// A move that needs points. Beside a pole the axes can follow the path on one of the two solutions only,
     /// and it need not be the one whose end is nearer: then the other is tried.
-    fn split(&mut self, line: u64, motion: &Motion, last: &Node, node: Node) -> Node {
+    fn split(&mut self, line: u64, motion: &Motion, last: &Node, node: &mut Node) {
         let mut linearise = std::mem::take(&mut self.linearise);
-        let mut end = node;
         let (machine, placer) = (self.machine, &self.placer);
-        let mut done = linearise.split(&planned(machine, placer, motion, last, &end), self.model);
+        let mut done = linearise.split(&planned(machine, placer, motion, last, node), self.model);
         if let Err(Stuck::Jump { .. }) = done
             && let Ok(other) = placer.place_other(node.target, 1.0, &last.trace.joints)
             && linearise
                 .split(&planned(machine, placer, motion, last, &other), self.model)
                 .is_ok()
         {
-            end = other;
+            *node = other;
             done = Ok(());
         }
         match done {
@@ -371,7 +376,6 @@ impl<'a> Path<'a> {
             }
         }
         self.linearise = linearise;
-        end
     }
 
     /// One block, a `share` of its move.
@@ -669,5 +673,5 @@ fn placer(machine: &Machine, format: &Format, length: f64) -> Result<Placer, Dia
 }
 
 fn newlines(text: &[u8]) -> u64 {
-    text.iter().map(|byte| u64::from(*byte == b'\n')).sum()
+    memchr::memchr_iter(b'\n', text).count() as u64
 }

@@ -29,6 +29,8 @@ struct Word {
     coordinate: usize,
     /// Axis units (mm, radians) in one unit of the word (mm or inch, degrees).
     unit: f64,
+    /// Its inverse.
+    per_unit: f64,
     /// Ten to the number of decimals.
     scale: f64,
 }
@@ -75,6 +77,11 @@ impl Words {
             .zip(&format.words)
             .map(|(joint, decimals)| {
                 let axis = &machine.axes[joint];
+                let unit = if axis.joint.rotary {
+                    1f64.to_radians()
+                } else {
+                    length
+                };
                 Word {
                     joint,
                     rotary: axis.joint.rotary,
@@ -83,11 +90,8 @@ impl Words {
                         "Y" => 1,
                         _ => 2,
                     },
-                    unit: if axis.joint.rotary {
-                        1f64.to_radians()
-                    } else {
-                        length
-                    },
+                    unit,
+                    per_unit: 1.0 / unit,
                     scale: (0..*decimals).fold(1.0, |scale, _| scale * 10.0),
                 }
             })
@@ -124,7 +128,7 @@ impl Words {
     pub fn print_rotary(&self, joints: &mut Joints, values: &mut WordValues) {
         for (place, word) in self.words.iter().enumerate() {
             if word.rotary {
-                values[place] = printed(joints[word.joint] / word.unit, word.scale);
+                values[place] = printed(joints[word.joint] * word.per_unit, word.scale);
                 joints[word.joint] = values[place] * word.unit;
             }
         }
@@ -145,7 +149,7 @@ impl Words {
                     if !word.rotary {
                         let zero = self.zero[word.joint];
                         values[place] =
-                            printed((joints[word.joint] - zero) / word.unit, word.scale);
+                            printed((joints[word.joint] - zero) * word.per_unit, word.scale);
                         joints[word.joint] = values[place] * word.unit + zero;
                     }
                 }
@@ -156,7 +160,7 @@ impl Words {
                 for (place, word) in self.words.iter().enumerate() {
                     if !word.rotary {
                         let coordinate = word.coordinate;
-                        values[place] = printed(tip[coordinate] / word.unit, word.scale);
+                        values[place] = printed(tip[coordinate] * word.per_unit, word.scale);
                         reached[coordinate] = values[place] * word.unit;
                     }
                 }

@@ -30,7 +30,8 @@ pub struct Bend {
 /// r' from the chord's slope by half of it. `sweep` is the angle between the wanted axes, radians.
 #[inline]
 pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> Bend {
-    let mut bend = Bend::default();
+    let mut tip = 0.0;
+    let mut turns = 0.0;
     for (index, joint) in chain.joints().iter().enumerate().rev() {
         if !joint.rotary {
             continue;
@@ -39,17 +40,18 @@ pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> Bend {
         if angle == 0.0 {
             continue;
         }
-        let grow = |bend: f64, from: Vector3<f64>, to: Vector3<f64>| {
-            let (from, to) = (joint.direction.cross(&from), joint.direction.cross(&to));
-            let radius = from.norm_squared().max(to.norm_squared()).sqrt() + bend / 8.0;
-            let slope = (to - from).norm() + bend / 2.0;
-            angle * angle * radius + 2.0 * angle * slope + bend
-        };
-        bend.tip = grow(bend.tip, from.arms[index], to.arms[index]);
-        bend.axis = grow(bend.axis, from.axes[index], to.axes[index]);
+        let first = joint.direction.cross(&from.arms[index]);
+        let last = joint.direction.cross(&to.arms[index]);
+        let radius = first.norm_squared().max(last.norm_squared()).sqrt() + tip / 8.0;
+        let slope = (last - first).norm() + tip / 2.0;
+        tip += angle * (angle * radius + 2.0 * slope);
+        turns += angle;
     }
-    bend.axis += sweep * sweep;
-    bend
+    // A unit vector that turns at a rate of `turns` at most bends by its square at most.
+    Bend {
+        tip,
+        axis: turns * turns + sweep * sweep,
+    }
 }
 
 /// A bound that tends to the true second derivative as the block grows short.

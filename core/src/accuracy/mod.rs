@@ -5,4 +5,4 @@ mod linearise;
 mod node;
 
 pub use linearise::{Bound, Linearise, Move, Piece, Stuck, Tolerances};
-pub use node::{Node, Placer, Refused};
+pub use node::{Node, Placer, Refused, Which};

@@ -1,10 +1,12 @@
 //! A node: one point of the path with the axis values chosen for it, as they will be printed.
 
+use std::cell::Cell;
+
 use nalgebra::Vector3;
 
 use super::certificate::chord_angle;
-use crate::kinematics::choose::{self, Limit, OverTravel};
-use crate::kinematics::{Joints, MAX_AXES, Pose, Solver, Trace, Unreachable};
+use crate::kinematics::choose::{Limit, OverTravel, Turning};
+use crate::kinematics::{Joints, Pose, Solver, Trace, Unreachable};
 use crate::machine::Machine;
 use crate::words::{WordValues, Words};
 
@@ -48,16 +50,24 @@ pub enum Refused {
     },
 }
 
+/// Which solution is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// The nearest inside travel.
+    Nearest,
+    /// The other one.
+    Other,
+}
+
 /// Solves points one after the other.
 #[derive(Clone, Debug)]
 pub struct Placer {
     solver: Solver,
     words: Words,
-    /// Rotary axes with travel, in chain order.
-    rotary: Vec<Limit>,
+    turning: Turning,
     linear: Vec<Limit>,
-    /// Rotary axes without travel.
-    cyclic: Vec<usize>,
+    /// The branch of the last point: most likely that of the next.
+    branch: Cell<usize>,
     axis_tolerance: f64,
     tip_rounding: f64,
     axis_rounding: f64,
@@ -91,9 +101,12 @@ impl Placer {
             axis_rounding: words.axis_rounding() + 1e-8,
             solver,
             words,
-            rotary: limits(true),
+            turning: Turning {
+                limits: limits(true),
+                cyclic,
+            },
             linear: limits(false),
-            cyclic,
+            branch: Cell::new(0),
             axis_tolerance: machine.accuracy.axis_tolerance,
         }
     }
@@ -109,7 +122,7 @@ impl Placer {
     /// Why there is none.
     pub fn place(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
         let mut node = Node::default();
-        self.fill(&mut node, target, t, last, 0)?;
+        self.fill(&mut node, target, t, last, Which::Nearest)?;
         Ok(node)
     }
 
@@ -119,11 +132,11 @@ impl Placer {
     /// Why there is none.
     pub fn place_other(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
         let mut node = Node::default();
-        self.fill(&mut node, target, t, last, 1)?;
+        self.fill(&mut node, target, t, last, Which::Other)?;
         Ok(node)
     }
 
-    /// [`Placer::place`] into a node that is there already (it is large); the `skip` nearest are left out.
+    /// [`Placer::place`] into a node that is there already (it is large).
     ///
     /// # Errors
     /// Why there is none.
@@ -134,24 +147,34 @@ impl Placer {
         target: Pose,
         t: f64,
         last: &Joints,
-        skip: usize,
+        which: Which,
     ) -> Result<(), Refused> {
-        let solutions = self
-            .solver
+        let solver = &self.solver;
+        let branches = solver
             .orient(target.axis, self.axis_tolerance)
             .map_err(Refused::Unreachable)?;
-        let choices = choose::nearest(&solutions, last, &self.rotary, &self.cyclic);
-        let mut refused = choices.over_travel().map(|over| Refused::OverTravel {
-            over,
-            tried: solutions.as_slice().len(),
-        });
-        for joints in choices.as_slice().iter().skip(skip) {
-            match self.settle(node, target, t, joints) {
-                Ok(()) => return Ok(()),
-                Err(fault) => refused = refused.or(Some(fault)),
-            }
+        let tried = branches.count();
+        let choice = self
+            .turning
+            .nearest(solver, &branches, last, self.branch.get());
+        let refused = match (which, choice.joints) {
+            (Which::Nearest, Ok(joints)) => match self.settle(node, target, t, &joints) {
+                Ok(()) => {
+                    self.branch.set(choice.index);
+                    return Ok(());
+                }
+                Err(refused) => refused,
+            },
+            (Which::Other, _) => Refused::Unreachable(Unreachable::Linear),
+            (_, Err(over)) => Refused::OverTravel { over, tried },
+        };
+        match self.turning.other(solver, &branches, last, choice.index) {
+            Some(joints) => self
+                .settle(node, target, t, &joints)
+                .map_err(|_| refused)
+                .map(|()| self.branch.set(1 - choice.index)),
+            None => Err(refused),
         }
-        Err(refused.unwrap_or(Refused::Unreachable(Unreachable::Linear)))
     }
 
     /// The node of a `target` between two sets of axis values: the nearest to either of them. (The mean of
@@ -226,11 +249,13 @@ impl Placer {
         }
         chain.trace(&mut node.trace);
         let pose = &node.trace.pose;
-        node.tip = kept.unwrap_or(pose.tip);
-        node.tip_error = (node.tip - target.tip).norm();
         node.axis_error = chord_angle((pose.axis - target.axis).norm());
         // The forward chain stands behind every node: what it misses by must be rounding.
         let missed = (pose.tip - target.tip).norm();
+        (node.tip, node.tip_error) = match kept {
+            Some(tip) => (tip, (tip - target.tip).norm()),
+            None => (pose.tip, missed),
+        };
         if missed <= self.tip_rounding {
             Ok(())
         } else {

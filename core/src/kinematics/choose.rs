@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::chain::{Joints, MAX_AXES};
-use super::inverse::{RotarySet, RotarySolutions};
+use super::chain::Joints;
+use super::inverse::{Branches, RotarySet, Solver};
 
 /// What the choice needs to know of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,14 +12,6 @@ pub struct Limit {
     pub joint: usize,
     /// Least and largest value: mm or radians.
     pub travel: [f64; 2],
-}
-
-/// Rotary angles with their turns, the nearest first.
-#[derive(Clone, Copy, Debug)]
-pub struct Choices {
-    choices: [Joints; 2],
-    count: usize,
-    over: Option<OverTravel>,
 }
 
 /// A value outside the travel of its axis.
@@ -33,54 +25,100 @@ pub struct OverTravel {
     pub limit: f64,
 }
 
-impl Choices {
-    /// The choices inside travel, the nearest first.
-    pub fn as_slice(&self) -> &[Joints] {
-        &self.choices[..self.count]
-    }
-
-    /// Why the nearest set of angles was left out, if one was.
-    pub fn over_travel(&self) -> Option<OverTravel> {
-        self.over
-    }
+/// Travel and turns of the rotary axes.
+#[derive(Clone, Debug, Default)]
+pub struct Turning {
+    /// Rotary axes with travel.
+    pub limits: Vec<Limit>,
+    /// Places in the chain of rotary axes without travel.
+    pub cyclic: Vec<usize>,
 }
 
-/// Orders the sets of rotary angles by the sum of the turns from `last`, each angle taken on the turn that
-/// is nearest to it and inside travel. Sets that no whole turn brings inside travel are left out.
-///
-/// `cyclic` lists the rotary joints without travel. A tie (a start on the pole) goes to the set that the
-/// solver puts first.
-#[inline]
-pub fn nearest(
-    solutions: &RotarySolutions,
-    last: &Joints,
-    limits: &[Limit],
-    cyclic: &[usize],
-) -> Choices {
-    let mut chosen = Choices {
-        choices: [[0.0; MAX_AXES]; 2],
-        count: 0,
-        over: None,
-    };
-    let mut costs = [f64::INFINITY; 2];
-    for set in solutions.as_slice() {
-        match near(set, last, limits, cyclic) {
-            Err(over) => chosen.over = chosen.over.or(Some(over)),
-            Ok((joints, cost)) => {
-                let place = if chosen.count == 1 && cost < costs[0] - 1e-9 {
-                    chosen.choices[1] = chosen.choices[0];
-                    costs[1] = costs[0];
-                    0
+/// A branch with its angles on their nearest turns.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice {
+    /// Which branch.
+    pub index: usize,
+    /// The rotary angles, or why they are outside travel.
+    pub joints: Result<Joints, OverTravel>,
+}
+
+impl Turning {
+    /// The branch nearest to `last` by the sum of the turns, each angle taken on the turn that is nearest and
+    /// inside travel. `likely` is the branch to look at first: where the other is provably farther, it is not
+    /// even worked out. A tie (a start on the pole) goes to the larger angle of the axis nearer the tool.
+    /// If no branch is inside travel, the fault is that of the likely one.
+    #[inline]
+    pub fn nearest(
+        &self,
+        solver: &Solver,
+        branches: &Branches,
+        last: &Joints,
+        likely: usize,
+    ) -> Choice {
+        let likely = likely.min(branches.count() - 1);
+        let (first, cost) = self.choice(solver, branches, last, likely);
+        if branches.count() == 1 || 2.0 * cost < branches.apart() {
+            return first;
+        }
+        let (second, other_cost) = self.choice(solver, branches, last, 1 - likely);
+        let joint = solver.last_rotary();
+        let better = match (&first.joints, &second.joints) {
+            (_, Err(_)) => false,
+            (Err(_), Ok(_)) => true,
+            (Ok(a), Ok(b)) => {
+                let tie = (other_cost - cost).abs() < 1e-9;
+                if tie {
+                    b[joint] > a[joint]
                 } else {
-                    chosen.count
-                };
-                chosen.choices[place] = joints;
-                costs[place] = cost;
-                chosen.count += 1;
+                    other_cost < cost
+                }
             }
+        };
+        if better { second } else { first }
+    }
+
+    /// The other branch than `index`, if there is one inside travel.
+    pub fn other(
+        &self,
+        solver: &Solver,
+        branches: &Branches,
+        last: &Joints,
+        index: usize,
+    ) -> Option<Joints> {
+        if branches.count() == 1 {
+            return None;
+        }
+        self.choice(solver, branches, last, 1 - index).0.joints.ok()
+    }
+
+    /// A branch, and the sum of its turns from `last`; infinite outside travel.
+    #[inline]
+    fn choice(
+        &self,
+        solver: &Solver,
+        branches: &Branches,
+        last: &Joints,
+        index: usize,
+    ) -> (Choice, f64) {
+        let set = solver.angles(branches, index);
+        match near(&set, last, &self.limits, &self.cyclic) {
+            Ok((joints, cost)) => (
+                Choice {
+                    index,
+                    joints: Ok(joints),
+                },
+                cost,
+            ),
+            Err(over) => (
+                Choice {
+                    index,
+                    joints: Err(over),
+                },
+                f64::INFINITY,
+            ),
         }
     }
-    chosen
 }
 
 /// One set on its nearest turns, and the sum of its turns from `last`.

@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns, turn};
+use super::chain::{Chain, Joints, Pose, Turns, turn};
 
 /// Where the wanted axis lies closer to k1 than this, k1 turns the tool axis by nothing that a CL file
 /// with seven decimals could mean, and its angle is free: radians.
@@ -18,11 +18,17 @@ pub const POLE: f64 = 1e-6;
 /// of reach, and radians.
 const VERIFIED: f64 = 1e-9;
 
-/// Up to two sets of rotary angles for one tool axis.
+/// The one or two ways to point the tool along one axis. Their angles are worked out when asked for: where
+/// solutions are far apart, the nearer one is all that is wanted.
 #[derive(Clone, Copy, Debug)]
-pub struct RotarySolutions {
-    sets: [RotarySet; 2],
+pub struct Branches {
     count: usize,
+    /// The wanted axis behind the held turns in front of the first free joint.
+    u: Vector3<f64>,
+    /// The tool axis between the two turns, one for each branch.
+    z: [Vector3<f64>; 2],
+    /// The first free joint turns nothing here.
+    pole: bool,
 }
 
 /// One set of rotary angles.
@@ -116,23 +122,24 @@ pub enum NoClosedForm {
     },
 }
 
-impl RotarySolutions {
-    const NONE: Self = Self {
-        sets: [RotarySet {
-            joints: [0.0; MAX_AXES],
-            free: None,
-        }; 2],
-        count: 0,
+impl Branches {
+    const ONE: Self = Self {
+        count: 1,
+        u: Vector3::new(0.0, 0.0, 0.0),
+        z: [Vector3::new(0.0, 0.0, 0.0); 2],
+        pole: false,
     };
 
-    fn push(&mut self, set: RotarySet) {
-        self.sets[self.count] = set;
-        self.count += 1;
+    /// How many there are: one or two.
+    pub fn count(&self) -> usize {
+        self.count
     }
 
-    /// The sets; where two exist, the one with the larger angle of the axis nearer the tool comes first.
-    pub fn as_slice(&self) -> &[RotarySet] {
-        &self.sets[..self.count]
+    /// The axis nearer the tool stands at least so far apart in the two branches, radians.
+    #[inline]
+    pub fn apart(&self) -> f64 {
+        // The chord of a turn is no longer than its arc.
+        (self.z[0] - self.z[1]).norm()
     }
 }
 
@@ -157,54 +164,40 @@ impl Solver {
         &self.chain
     }
 
-    /// All sets of rotary angles that give the tool axis `u` (unit vector, part frame) within `tolerance`
-    /// (radians; it matters only where fewer than two free axes make most axes unreachable).
+    /// The ways to point the tool along `u` (unit vector, part frame) within `tolerance` (radians; it matters
+    /// only where fewer than two free axes make most axes unreachable).
     ///
     /// # Errors
     /// By how much the nearest orientation misses.
     #[inline]
-    pub fn orient(&self, u: Vector3<f64>, tolerance: f64) -> Result<RotarySolutions, Unreachable> {
-        let mut found = RotarySolutions::NONE;
+    pub fn orient(&self, u: Vector3<f64>, tolerance: f64) -> Result<Branches, Unreachable> {
+        let within = |miss: f64| {
+            if miss > tolerance {
+                Err(Unreachable::Axis { miss })
+            } else {
+                Ok(())
+            }
+        };
         match &self.orientation {
             Orientation::Fixed { axis } => {
-                let miss = angle(*axis, u);
-                if miss > tolerance {
-                    return Err(Unreachable::Axis { miss });
-                }
-                found.push(RotarySet {
-                    joints: self.held,
-                    free: None,
-                });
+                within(angle(*axis, u))?;
+                Ok(Branches::ONE)
             }
-            Orientation::One {
-                joint,
-                before,
-                k,
-                a,
-            } => {
+            Orientation::One { before, k, a, .. } => {
                 let u = before * u;
-                let turned = k.cross(a).norm();
-                if turned < POLE || k.cross(&u).norm() < POLE {
-                    let miss = angle(*a, u);
-                    if miss > tolerance {
-                        return Err(Unreachable::Axis { miss });
-                    }
-                    found.push(RotarySet {
-                        joints: self.held,
-                        free: Some(*joint),
-                    });
+                let pole = k.cross(a).norm() < POLE || k.cross(&u).norm() < POLE;
+                within(if pole {
+                    angle(*a, u)
                 } else {
-                    let miss = libm::fabs(angle(*k, u) - angle(*k, *a));
-                    if miss > tolerance {
-                        return Err(Unreachable::Axis { miss });
-                    }
-                    let mut joints = self.held;
-                    joints[*joint] = angle_about(*k, *a, u);
-                    found.push(RotarySet { joints, free: None });
-                }
+                    (angle(*k, u) - angle(*k, *a)).abs()
+                })?;
+                Ok(Branches {
+                    u,
+                    pole,
+                    ..Branches::ONE
+                })
             }
             Orientation::Two {
-                joints: [first, second],
                 before,
                 k1,
                 k2,
@@ -212,6 +205,7 @@ impl Solver {
                 dot,
                 sine_squared,
                 cross,
+                ..
             } => {
                 let u = before * u;
                 let (m1, m2) = (k1.dot(&u), k2.dot(a));
@@ -227,30 +221,62 @@ impl Solver {
                 }
                 let gamma = (square.max(0.0) / sine_squared).sqrt();
                 let plane = k1 * alpha + k2 * beta;
+                let aside = cross * gamma;
                 let pole = k1.cross(&u).norm_squared() < POLE * POLE;
-                for gamma in [gamma, -gamma] {
-                    let z = plane + cross * gamma;
-                    let mut joints = self.held;
-                    joints[*second] = angle_about(*k2, *a, z);
-                    if !pole {
-                        joints[*first] = angle_about(*k1, z, u);
-                    }
-                    found.push(RotarySet {
-                        joints,
-                        free: pole.then_some(*first),
-                    });
-                    // Both roots are one: at the pole of a k2 that meets it, or at the edge of reach.
-                    if gamma == 0.0 || (pole && gamma * gamma * sine_squared < POLE * POLE) {
-                        break;
-                    }
+                // Both roots are one: at the pole of a k2 that meets it, or at the edge of reach.
+                let one = gamma == 0.0 || (pole && aside.norm_squared() < POLE * POLE);
+                Ok(Branches {
+                    count: if one { 1 } else { 2 },
+                    u,
+                    z: [plane + aside, plane - aside],
+                    pole,
+                })
+            }
+        }
+    }
+
+    /// The rotary angles of a branch.
+    #[inline]
+    pub fn angles(&self, branches: &Branches, index: usize) -> RotarySet {
+        let mut set = RotarySet {
+            joints: self.held,
+            free: None,
+        };
+        match &self.orientation {
+            Orientation::Fixed { .. } => {}
+            Orientation::One { joint, k, a, .. } => {
+                if branches.pole {
+                    set.free = Some(*joint);
+                } else {
+                    set.joints[*joint] = angle_about(*k, *a, branches.u);
                 }
-                if found.count == 2 && found.sets[0].joints[*second] < found.sets[1].joints[*second]
-                {
-                    found.sets.swap(0, 1);
+            }
+            Orientation::Two {
+                joints: [first, second],
+                k1,
+                k2,
+                a,
+                ..
+            } => {
+                let z = branches.z[index];
+                set.joints[*second] = angle_about(*k2, *a, z);
+                if branches.pole {
+                    set.free = Some(*first);
+                } else {
+                    set.joints[*first] = angle_about(*k1, z, branches.u);
                 }
             }
         }
-        Ok(found)
+        set
+    }
+
+    /// The free joint nearer the tool.
+    pub fn last_rotary(&self) -> usize {
+        match &self.orientation {
+            Orientation::Fixed { .. } => 0,
+            Orientation::One { joint, .. } => *joint,
+            Orientation::Two { joints, .. } => joints[1],
+        }
     }
 
     /// Puts the linear axes of `joints` where the tip stands on `tip` (mm, part frame), the rotary ones
@@ -324,7 +350,9 @@ impl Solver {
     ) -> Result<Vec<Joints>, Unreachable> {
         let mut solutions = Vec::with_capacity(2);
         let mut fault = Unreachable::Linear;
-        for set in self.orient(pose.axis, tolerance)?.as_slice() {
+        let branches = self.orient(pose.axis, tolerance)?;
+        for index in 0..branches.count() {
+            let set = self.angles(&branches, index);
             let mut joints = set.joints;
             if let Some(free) = set.free {
                 joints[free] = last[free];

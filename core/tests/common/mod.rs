@@ -167,7 +167,9 @@ impl Random {
                     tip: rng.point(SIZE),
                     axis: rng.direction(),
                 },
-                free: (0..kinds.len()).filter(|index| kinds[*index] == 1).collect(),
+                free: (0..kinds.len())
+                    .filter(|index| kinds[*index] == 1)
+                    .collect(),
                 held: std::array::from_fn(|index| {
                     if kinds.get(index) == Some(&2) {
                         rng.range(-PI, PI)

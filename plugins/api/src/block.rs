@@ -2,6 +2,7 @@
 //!
 //! Nothing here is needed to write a dialect; it saves an author the usual hundred lines.
 
+use crate::number::Look;
 use crate::{Setup, fixed};
 
 /// How numbers look.
@@ -18,21 +19,21 @@ pub struct NumberStyle {
 impl NumberStyle {
     /// Appends `value` with at most `decimals` decimals.
     pub fn write(self, out: &mut String, value: f64, decimals: u8) {
-        let start = out.len();
-        fixed(out, value, decimals);
-        if self.plus && !out[start..].starts_with('-') {
-            out.insert(start, '+');
-        }
-        if decimals == 0 {
-            if self.point {
-                out.push('.');
-            }
-        } else if self.trim {
-            let kept = out.trim_end_matches('0').len();
-            out.truncate(kept);
-            if !self.point && out.ends_with('.') {
-                out.pop();
-            }
+        self.write_behind(["", ""], out, value, decimals);
+    }
+
+    /// The same behind `front`, in one piece.
+    #[inline]
+    fn write_behind(self, front: [&str; 2], out: &mut String, value: f64, decimals: u8) {
+        let look = Look {
+            plus: self.plus,
+            trim: self.trim,
+            point: self.point,
+        };
+        if !look.append(out, front, value, decimals) {
+            // A number that no machine reaches: as it is.
+            out.extend(front);
+            fixed(out, value, decimals);
         }
     }
 }
@@ -85,9 +86,8 @@ impl Block {
         decimals: u8,
         style: NumberStyle,
     ) -> &mut Self {
-        self.space();
-        self.words.push_str(address);
-        style.write(&mut self.words, value, decimals);
+        let space = if self.words.is_empty() { "" } else { " " };
+        style.write_behind([space, address], &mut self.words, value, decimals);
         self
     }
 

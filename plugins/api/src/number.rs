@@ -1,5 +1,7 @@
 //! Numbers as a program has them: fixed point, the same on every machine, never `-0.000`.
 
+#![allow(unsafe_code)]
+
 use std::fmt::Write;
 
 /// Powers of ten that an `f64` and a `u64` hold exactly.
@@ -13,38 +15,138 @@ const POWERS: [u64; 16] = {
     powers
 };
 
+/// The same as `f64`.
+const POWERS_F: [f64; 16] = {
+    let mut powers = [1.0; 16];
+    let mut index = 0;
+    while index < powers.len() {
+        powers[index] = POWERS[index] as f64;
+        index += 1;
+    }
+    powers
+};
+
 /// Appends `value` with `decimals` digits behind the point (at most 15; none and no point for 0).
 ///
 /// Digit for digit what `format!("{value:.decimals$}")` gives (ties of the exact binary value go to the
 /// even digit), except that a number which rounds to nothing has no sign: `0.000`, never `-0.000`.
 pub fn fixed(out: &mut String, value: f64, decimals: u8) {
-    let Some(count) = count(value, decimals) else {
+    if !Look::default().append(out, ["", ""], value, decimals) {
         // Writing to a String cannot fail.
         let _ = write!(out, "{value:.*}", usize::from(decimals));
-        return;
-    };
-    // 20 digits of a u64, a point and a sign.
-    let mut buffer = [b'0'; 24];
-    let mut at = buffer.len();
-    let mut rest = count;
-    let mut digits = 0;
-    while rest != 0 || digits <= decimals {
-        if digits == decimals && decimals != 0 {
-            at -= 1;
-            buffer[at] = b'.';
-        }
-        at -= 1;
-        buffer[at] = b'0' + (rest % 10) as u8;
-        rest /= 10;
-        digits += 1;
     }
-    if value < 0.0 && count != 0 {
-        at -= 1;
-        buffer[at] = b'-';
-    }
-    // Digits are UTF-8.
-    out.push_str(std::str::from_utf8(&buffer[at..]).unwrap_or_default());
 }
+
+/// What [`fixed`] leaves open.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Look {
+    /// A plus where there is no minus.
+    pub(crate) plus: bool,
+    /// No zeros at the end.
+    pub(crate) trim: bool,
+    /// A point also where no decimals are left.
+    pub(crate) point: bool,
+}
+
+impl Look {
+    /// Appends `front` and the number; false, and nothing appended, if that is beyond this way.
+    ///
+    /// Everything is written where it will stay: putting it together elsewhere and copying it costs more than
+    /// the digits do.
+    #[inline]
+    pub(crate) fn append(
+        self,
+        out: &mut String,
+        front: [&str; 2],
+        value: f64,
+        decimals: u8,
+    ) -> bool {
+        let Some(mut count) = count(value, decimals) else {
+            return false;
+        };
+        let sign = if value < 0.0 && count != 0 {
+            Some(b'-')
+        } else {
+            self.plus.then_some(b'+')
+        };
+        let mut decimals = usize::from(decimals);
+        if self.trim {
+            while decimals > 0 && count.is_multiple_of(10) {
+                count /= 10;
+                decimals -= 1;
+            }
+        }
+        let point = decimals > 0 || self.point;
+        let log = match u32::try_from(count.max(1)) {
+            Ok(count) => count.ilog10(),
+            Err(_) => count.ilog10(),
+        };
+        let digits = (log as usize + 1).max(decimals + 1);
+        let [first, second] = front;
+        let length =
+            first.len() + second.len() + usize::from(sign.is_some()) + digits + usize::from(point);
+        out.reserve(length);
+        // SAFETY: what is appended is whole strings and ASCII. There is room for `length` bytes behind the old
+        // end; the front and the sign fill it from the one side, and from the other, `decimals` digits, the
+        // point and the rest of the `digits` digits, and together they are `length`.
+        unsafe {
+            let bytes = out.as_mut_vec();
+            let start = bytes.len();
+            let mut to = bytes.as_mut_ptr().add(start);
+            let mut from_end = to.add(length);
+            for byte in first.bytes().chain(second.bytes()).chain(sign) {
+                to.write(byte);
+                to = to.add(1);
+            }
+            if point {
+                from_end = digits_before(from_end, &mut count, decimals);
+                from_end = from_end.sub(1);
+                from_end.write(b'.');
+            }
+            digits_before(from_end, &mut count, digits - decimals);
+            bytes.set_len(start + length);
+        }
+        true
+    }
+}
+
+/// Writes the last `left` digits of `count` before `end` and takes them off it; where the first stands.
+///
+/// # Safety
+/// There must be room for `left` bytes before `end`.
+#[inline]
+unsafe fn digits_before(mut end: *mut u8, count: &mut u64, mut left: usize) -> *mut u8 {
+    while left >= 2 {
+        let pair = &PAIRS[(*count % 100) as usize];
+        *count /= 100;
+        // SAFETY: the caller's promise.
+        unsafe {
+            end = end.sub(2);
+            end.copy_from_nonoverlapping(pair.as_ptr(), 2);
+        }
+        left -= 2;
+    }
+    if left == 1 {
+        // SAFETY: the caller's promise.
+        unsafe {
+            end = end.sub(1);
+            end.write(b'0' + (*count % 10) as u8);
+        }
+        *count /= 10;
+    }
+    end
+}
+
+/// `00` to `99`.
+const PAIRS: [[u8; 2]; 100] = {
+    let mut pairs = [[0; 2]; 100];
+    let mut index = 0;
+    while index < pairs.len() {
+        pairs[index] = [b'0' + (index / 10) as u8, b'0' + (index % 10) as u8];
+        index += 1;
+    }
+    pairs
+};
 
 /// The `f64` nearest to the number that [`fixed`] prints, so that it prints the same again and comparing
 /// two such numbers with `==` compares what stands in the program.
@@ -68,8 +170,19 @@ pub fn quantise(value: f64, decimals: u8) -> f64 {
 }
 
 /// How many units of the last decimal `|value|` has, rounded exactly; none if that is beyond this way.
+#[inline]
 fn count(value: f64, decimals: u8) -> Option<u64> {
     let power = *POWERS.get(usize::from(decimals))?;
+    // One multiplication is off by less than 2^-13 here, so only near a tie it does not settle the matter.
+    let scaled = value.abs() * POWERS_F[usize::from(decimals)];
+    if scaled < (1_u64 << 40) as f64 {
+        // SAFETY: it is not negative, below 2^40 and not NaN, so the cast need not look.
+        let whole: i64 = unsafe { scaled.to_int_unchecked() };
+        let rest = scaled - whole as f64;
+        if (rest - 0.5).abs() > 1e-3 {
+            return Some(whole as u64 + u64::from(rest > 0.5));
+        }
+    }
     let bits = value.abs().to_bits();
     // |value| = mantissa / 2^shift.
     let (exponent, fraction) = ((bits >> 52) as i32, bits & ((1 << 52) - 1));

@@ -295,6 +295,8 @@ impl DialectSession for OpenedDialect {
             self.fault(batch, 0, &message)
         })?;
 
+        // All at once, at the speed of memory; event by event only to name the one that is at fault.
+        let sound = is_sound(&out[base..]);
         let mut from = base;
         for index in 0..written {
             let to = usize::try_from(self.ends[index])
@@ -303,6 +305,7 @@ impl DialectSession for OpenedDialect {
                 .filter(|to| (from..=out.len()).contains(to));
             let checked = match to {
                 None => Err("the end of its text is not where it says".to_owned()),
+                Some(to) if sound && (to == from || out[to - 1] == b'\n') => Ok(to),
                 Some(to) => check_text(&out[from..to], &batch.event(index)).map(|()| to),
             };
             match checked {
@@ -335,6 +338,27 @@ impl Drop for OpenedDialect {
             unsafe { close(self.ctx) };
         }
     }
+}
+
+/// A text in which [`check_text`] can find nothing but a missing line feed; a few others fail here as well.
+fn is_sound(text: &[u8]) -> bool {
+    // Bit operations without a branch: the compiler makes vectors of them.
+    let odd = |byte: u8| (byte < b' ') & (byte != b'\n') | (byte >= 0x7f);
+    let word = |a: u8, b: u8, c: u8, word: &[u8; 3]| {
+        (a | 32 == word[0]) & (b | 32 == word[1]) & (c | 32 == word[2])
+    };
+    let second = text.get(1..).unwrap_or(&[]);
+    let third = text.get(2..).unwrap_or(&[]);
+    let no_number = text
+        .iter()
+        .zip(second)
+        .zip(third)
+        .fold(false, |found, ((a, b), c)| {
+            found | word(*a, *b, *c, b"nan") | word(*a, *b, *c, b"inf")
+        });
+    !text
+        .iter()
+        .fold(no_number, |found, byte| found | odd(*byte))
 }
 
 /// The text of one event is whole lines that a control can read, and a move's numbers are numbers.

@@ -476,7 +476,8 @@ impl<'a> Path<'a> {
     #[inline]
     fn keep_range(&mut self, node: &Node) {
         let Tally { least, most, .. } = &mut self.tally;
-        for (index, value) in node.trace.joints.iter().enumerate() {
+        let axes = self.machine.axes.len();
+        for (index, value) in node.trace.joints.iter().take(axes).enumerate() {
             least[index] = least[index].min(*value);
             most[index] = most[index].max(*value);
         }

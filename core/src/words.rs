@@ -33,6 +33,8 @@ struct Word {
     per_unit: f64,
     /// Ten to the number of decimals.
     scale: f64,
+    /// Its inverse: one printed number is always the same `f64`, so `==` compares what is printed.
+    per_scale: f64,
 }
 
 /// The order in which addresses stand in a block.
@@ -77,6 +79,7 @@ impl Words {
             .zip(&format.words)
             .map(|(joint, decimals)| {
                 let axis = &machine.axes[joint];
+                let scale = (0..*decimals).fold(1.0, |scale, _| scale * 10.0);
                 let unit = if axis.joint.rotary {
                     1f64.to_radians()
                 } else {
@@ -92,7 +95,8 @@ impl Words {
                     },
                     unit,
                     per_unit: 1.0 / unit,
-                    scale: (0..*decimals).fold(1.0, |scale, _| scale * 10.0),
+                    scale,
+                    per_scale: 1.0 / scale,
                 }
             })
             .collect();
@@ -128,7 +132,7 @@ impl Words {
     pub fn print_rotary(&self, joints: &mut Joints, values: &mut WordValues) {
         for (place, word) in self.words.iter().enumerate() {
             if word.rotary {
-                values[place] = printed(joints[word.joint] * word.per_unit, word.scale);
+                values[place] = word.printed(joints[word.joint] * word.per_unit);
                 joints[word.joint] = values[place] * word.unit;
             }
         }
@@ -148,8 +152,7 @@ impl Words {
                 for (place, word) in self.words.iter().enumerate() {
                     if !word.rotary {
                         let zero = self.zero[word.joint];
-                        values[place] =
-                            printed((joints[word.joint] - zero) * word.per_unit, word.scale);
+                        values[place] = word.printed((joints[word.joint] - zero) * word.per_unit);
                         joints[word.joint] = values[place] * word.unit + zero;
                     }
                 }
@@ -160,7 +163,7 @@ impl Words {
                 for (place, word) in self.words.iter().enumerate() {
                     if !word.rotary {
                         let coordinate = word.coordinate;
-                        values[place] = printed(tip[coordinate] * word.per_unit, word.scale);
+                        values[place] = word.printed(tip[coordinate] * word.per_unit);
                         reached[coordinate] = values[place] * word.unit;
                     }
                 }
@@ -188,11 +191,13 @@ impl Words {
     }
 }
 
-/// The number nearest to `value` that has so many decimals (`scale` is ten to their number), never -0.
-#[inline]
-fn printed(value: f64, scale: f64) -> f64 {
-    // Adding and taking away 1.5·2^52 rounds to an integer, ties to even, for all that a machine can reach;
-    // the functions of the library cost a call each.
-    const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
-    (value * scale + ROUND - ROUND) / scale + 0.0
+impl Word {
+    /// The number nearest to `value` that has its decimals, never -0.
+    #[inline]
+    fn printed(&self, value: f64) -> f64 {
+        // Adding and taking away 1.5·2^52 rounds to an integer, ties to even, for all that a machine can
+        // reach; the functions of the library cost a call each.
+        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+        (value * self.scale + ROUND - ROUND) * self.per_scale + 0.0
+    }
 }

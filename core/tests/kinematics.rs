@@ -8,12 +8,31 @@ use std::f64::consts::PI;
 
 use common::{Random, Rng, angle, turned};
 use nalgebra::{UnitQuaternion, Vector3};
-use post_core::kinematics::inverse::POLE;
+use post_core::kinematics::inverse::{POLE, RotarySet};
 use post_core::kinematics::{Joints, Pose, Solver, Unreachable};
 
 fn solver(machine: &Random) -> Solver {
     Solver::new(machine.reference.chain(), &machine.free, machine.held)
         .expect("a random machine has a closed form")
+}
+
+/// All sets of rotary angles for a wanted axis.
+fn sets(
+    solver: &Solver,
+    wanted: Vector3<f64>,
+    tolerance: f64,
+) -> Result<Vec<RotarySet>, Unreachable> {
+    let branches = solver.orient(wanted, tolerance)?;
+    let sets: Vec<RotarySet> = (0..branches.count())
+        .map(|index| solver.angles(&branches, index))
+        .collect();
+    if let [first, second] = *sets.as_slice() {
+        // What lets the chooser skip the farther branch.
+        let joint = solver.last_rotary();
+        let apart = turned(first.joints[joint], second.joints[joint]).abs();
+        assert!(apart >= branches.apart() - 1e-12, "{apart} {branches:?}");
+    }
+    Ok(sets)
 }
 
 /// Forward agrees with the isometries, the inverse finds every pose, each of its solutions leads back to the
@@ -136,11 +155,11 @@ fn scan(machine: &Random, wanted: Vector3<f64>) -> f64 {
 fn axes_out_of_reach_are_refused_by_the_angle_that_a_scan_finds() {
     let mut rng = Rng(2);
     let (mut refused, mut reached, mut worst): (u32, u32, f64) = (0, 0, 0.0);
-    for round in 0..240 {
-        let machine = Random::new(&mut rng, 2, usize::from(round % 3 == 0));
+    for round in 0..240_u32 {
+        let machine = Random::new(&mut rng, 2, usize::from(round.is_multiple_of(3)));
         let wanted = rng.direction();
         let least = scan(&machine, wanted);
-        match solver(&machine).orient(wanted, 1e-9) {
+        match sets(&solver(&machine), wanted, 1e-9) {
             Ok(_) => {
                 assert!(
                     least < 1e-6,
@@ -198,8 +217,8 @@ fn one_axis_or_none_takes_the_nearest_orientation() {
             }
             _ => unreachable!(),
         };
-        let found = solver.orient(wanted, least * 1.0001 + 1e-7).unwrap();
-        for set in found.as_slice() {
+        let found = sets(&solver, wanted, least * 1.0001 + 1e-7).unwrap();
+        for set in &found {
             let reached = angle(reference.forward(&set.joints).1, wanted);
             assert!(
                 (reached - least).abs() < 1e-7,
@@ -217,9 +236,9 @@ fn one_axis_or_none_takes_the_nearest_orientation() {
 
 /// A machine with two free axes that can point its tool along the first one, either way, and the axis itself.
 fn pole(rng: &mut Rng, round: usize) -> (Random, Joints, Vector3<f64>) {
-    let mut machine = Random::new(rng, 2, usize::from(round % 3 == 0));
+    let mut machine = Random::new(rng, 2, usize::from(round.is_multiple_of(3)));
     let q = machine.values(rng);
-    let sign = if round % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = if round.is_multiple_of(2) { 1.0 } else { -1.0 };
     let wanted = machine.reference.direction(&q, machine.free[0]) * sign;
     machine.reference.axis = machine.reference.rotation(&q).inverse() * wanted;
     (machine, q, wanted)
@@ -235,8 +254,7 @@ fn on_the_pole_the_first_axis_is_free() {
         let (machine, q, wanted) = pole(&mut rng, round);
         let reference = &machine.reference;
         let solver = solver(&machine);
-        let sets = solver.orient(wanted, 1e-9).unwrap();
-        for set in sets.as_slice() {
+        for set in &sets(&solver, wanted, 1e-9).unwrap() {
             assert_eq!(set.free, Some(machine.free[0]), "round {round}");
             let mut joints = set.joints;
             joints[machine.free[0]] = rng.range(-PI, PI);
@@ -274,8 +292,7 @@ fn beside_the_pole_the_tool_points_where_it_is_wanted() {
         let (machine, mut q, on_pole) = pole(&mut rng, round);
         q[machine.free[1]] += rng.order(-9.0, -1.0);
         let wanted = machine.reference.forward(&q).1;
-        let sets = solver(&machine).orient(wanted, 1e-9).unwrap();
-        for set in sets.as_slice() {
+        for set in &sets(&solver(&machine), wanted, 1e-9).unwrap() {
             let error = angle(machine.reference.forward(&set.joints).1, wanted);
             if set.free.is_some() {
                 assert!(angle(on_pole, wanted) < 1.01 * POLE);

@@ -179,7 +179,7 @@ fn check(name: &str, rotary: &str, order: &str) {
             .fold(f64::INFINITY, f64::min);
         joint_error = joint_error.max(nearest);
     }
-    println!(
+    eprintln!(
         "{name}: {} rows, tip {tip_error:.1e} mm, axis {axis_error:.1e} rad, joints {joint_error:.1e} mm or deg",
         table.rows.len()
     );

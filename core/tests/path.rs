@@ -899,7 +899,7 @@ fn fastest(tcp: bool) -> f64 {
                         );
                     }
                 }
-                println!("{kind}, tcp {tcp}, F{feed}: {at_feed} moves at feed, {limited} limited");
+                eprintln!("{kind}, tcp {tcp}, F{feed}: {at_feed} moves at feed, {limited} limited");
                 assert!(at_feed > 10);
             }
         }

@@ -152,7 +152,7 @@ pub fn deviation(ends: f64, bend: f64) -> f64 {
 #[inline]
 pub fn chord_angle(length: f64) -> f64 {
     if length < 0.1 {
-        return length + length * length * length / 23.0;
+        return length + length * length * length * (1.0 / 23.0);
     }
     2.0 * libm::asin((length / 2.0).min(1.0))
 }

@@ -99,8 +99,10 @@ impl Chain {
     }
 
     /// The joints, from the workpiece to the tool.
+    #[inline]
     pub fn joints(&self) -> &[Joint] {
-        &self.joints
+        // No longer than MAX_AXES in any case: said here so that no loop over them checks it again.
+        &self.joints[..self.joints.len().min(MAX_AXES)]
     }
 
     /// Where the part origin sits with all axes at zero, mm, machine frame.
@@ -125,7 +127,7 @@ impl Chain {
             sines: [0.0; MAX_AXES],
             cosines: [1.0; MAX_AXES],
         };
-        for (index, joint) in self.joints.iter().enumerate() {
+        for (index, joint) in self.joints().iter().enumerate() {
             if joint.rotary {
                 (turns.sines[index], turns.cosines[index]) = libm::sincos(joints[index]);
             }
@@ -149,7 +151,7 @@ impl Chain {
     pub fn trace(&self, trace: &mut Trace) {
         let mut tip = self.tip;
         let mut axis = self.axis;
-        for (index, joint) in self.joints.iter().enumerate().rev() {
+        for (index, joint) in self.joints().iter().enumerate().rev() {
             if joint.rotary {
                 let (sine, cosine) = trace.turns.of(index);
                 let arm = tip - joint.point;

@@ -82,9 +82,9 @@ enum Orientation {
         k1: Vector3<f64>,
         k2: Vector3<f64>,
         a: Vector3<f64>,
-        /// k1·k2 and 1 - (k1·k2)².
+        /// k1·k2, and 1/(1 - (k1·k2)²).
         dot: f64,
-        sine_squared: f64,
+        per_sine_squared: f64,
         cross: Vector3<f64>,
     },
 }
@@ -203,14 +203,14 @@ impl Solver {
                 k2,
                 a,
                 dot,
-                sine_squared,
+                per_sine_squared,
                 cross,
                 ..
             } => {
                 let u = before * u;
                 let (m1, m2) = (k1.dot(&u), k2.dot(a));
-                let alpha = (m1 - dot * m2) / sine_squared;
-                let beta = (m2 - dot * m1) / sine_squared;
+                let alpha = (m1 - dot * m2) * per_sine_squared;
+                let beta = (m2 - dot * m1) * per_sine_squared;
                 let square = 1.0 - alpha * alpha - beta * beta - 2.0 * alpha * beta * dot;
                 // A tangent solution may come out a rounding error below zero.
                 if square < -POLE * POLE {
@@ -219,7 +219,7 @@ impl Solver {
                         return Err(Unreachable::Axis { miss });
                     }
                 }
-                let gamma = (square.max(0.0) / sine_squared).sqrt();
+                let gamma = (square.max(0.0) * per_sine_squared).sqrt();
                 let plane = k1 * alpha + k2 * beta;
                 let aside = cross * gamma;
                 let pole = k1.cross(&u).norm_squared() < POLE * POLE;
@@ -428,7 +428,7 @@ impl Orientation {
                     k2,
                     a: between * hold(second + 1..count) * chain.axis(),
                     dot: k1.dot(&k2),
-                    sine_squared,
+                    per_sine_squared: 1.0 / sine_squared,
                     cross,
                 })
             }

@@ -39,7 +39,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
         &mut model,
         &mut file,
     )
-    .map_err(|finding| vec![finding])?;
+    .map_err(|finding| vec![*finding])?;
     while !post.gave_up() {
         match reader.next_record() {
             Ok(Some(record)) => post.record(&record),

@@ -3,6 +3,9 @@
 //! After a change of the output, read each new snapshot as the machine's operator would, then accept it:
 //! `cargo insta review`, or `INSTA_UPDATE=always cargo test --test snapshots`.
 
+// Clippy lets test functions unwrap, but not the helpers beside them.
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use std::collections::BTreeSet;

@@ -87,6 +87,11 @@ impl Diagnostic {
         self
     }
 
+    /// In a box, for results that are mostly good.
+    pub fn boxed(self) -> Box<Self> {
+        Box::new(self)
+    }
+
     /// Adds where it is.
     pub fn at(mut self, place: Option<Place>) -> Self {
         self.place = place;

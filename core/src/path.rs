@@ -97,7 +97,7 @@ impl<'a> Path<'a> {
         output: &'a mut dyn Output,
         tool_length: Option<f64>,
         trust_model: bool,
-    ) -> Result<Self, Diagnostic> {
+    ) -> Result<Self, Box<Diagnostic>> {
         let format = dialect.format().clone();
         let feeds = Feeds::new(machine, &format).ok_or_else(|| {
             Diagnostic::error(
@@ -108,6 +108,7 @@ impl<'a> Path<'a> {
                 ),
             )
             .help("feed = \"per-minute\"")
+            .boxed()
         })?;
         let placer = placer(machine, &format, tool_length.unwrap_or(0.0))?;
         Ok(Self {
@@ -252,7 +253,7 @@ impl<'a> Path<'a> {
         }
         match placer(self.machine, &self.format, length.unwrap_or(0.0)) {
             Ok(placer) => self.placer = placer,
-            Err(diagnostic) => self.findings.push(diagnostic),
+            Err(diagnostic) => self.findings.push(*diagnostic),
         }
         self.push(
             line,
@@ -397,7 +398,8 @@ impl<'a> Path<'a> {
             self.tally.other += self.feeds.least_time(first, last);
             Event::Rapid { words }
         } else {
-            let length = (to.target.tip - from.target.tip).norm();
+            // Between the printed tips: that is the way that the control will time.
+            let length = (to.tip - from.tip).norm();
             let paced = self.feeds.cut(motion.pace, length, share, first, last);
             self.tally.limited += u64::from(paced.limited);
             self.tally.cutting += paced.minutes;
@@ -660,8 +662,14 @@ fn planned<'n>(
 }
 
 /// A solver and words for the machine with a tool of `length` mm.
-fn placer(machine: &Machine, format: &Format, length: f64) -> Result<Placer, Diagnostic> {
-    let fault = |lack: NoClosedForm| Diagnostic::error("machine-chain", format!("{lack:?}"));
+fn placer(machine: &Machine, format: &Format, length: f64) -> Result<Placer, Box<Diagnostic>> {
+    let fault = |lack: NoClosedForm| {
+        Diagnostic::error(
+            "machine-chain",
+            format!("the chain cannot be solved: {lack:?}"),
+        )
+        .boxed()
+    };
     let solver = machine.solver(length).map_err(fault)?;
     let mut words = Words::new(machine, format);
     words.set_zero(&solver).ok_or_else(|| {
@@ -669,6 +677,7 @@ fn placer(machine: &Machine, format: &Format, length: f64) -> Result<Placer, Dia
             "machine-chain",
             "with every rotary axis at zero the linear axes do not span the space",
         )
+        .boxed()
     })?;
     Ok(Placer::new(machine, solver, words))
 }

@@ -59,7 +59,7 @@ impl<'a> Post<'a> {
         dialect: &'a mut dyn DialectSession,
         model: &'a mut dyn ModelSession,
         output: &'a mut dyn Output,
-    ) -> Result<Self, Diagnostic> {
+    ) -> Result<Self, Box<Diagnostic>> {
         // Half of the tolerance goes to chords of arcs and splines, half is left for the axes.
         job.reading.chord_tolerance = machine.accuracy.tolerance / 2.0;
         job.reading.insert = machine.control.insert;

@@ -138,36 +138,32 @@ impl Words {
         }
     }
 
-    /// Puts the linear values (of the axes, or of `tip` where the control keeps it) on printed numbers.
-    /// `joints` are then where the control will bring the axes, and the tip is returned where it is the word.
+    /// Where the control keeps the tip: writes `tip` to `values` and gives the printed tip, which is where the
+    /// control brings it. None where the words are axis positions: [`Words::print_linear`].
     #[inline]
-    pub fn print_linear(
-        &self,
-        joints: &mut Joints,
-        tip: Vector3<f64>,
-        values: &mut WordValues,
-    ) -> Option<Vector3<f64>> {
-        match self.tcp {
-            Tcp::Post => {
-                for (place, word) in self.words.iter().enumerate() {
-                    if !word.rotary {
-                        let zero = self.zero[word.joint];
-                        values[place] = word.printed((joints[word.joint] - zero) * word.per_unit);
-                        joints[word.joint] = values[place] * word.unit + zero;
-                    }
-                }
-                None
+    pub fn print_tip(&self, tip: Vector3<f64>, values: &mut WordValues) -> Option<Vector3<f64>> {
+        if self.tcp == Tcp::Post {
+            return None;
+        }
+        let mut printed = tip;
+        for (place, word) in self.words.iter().enumerate() {
+            if !word.rotary {
+                let coordinate = word.coordinate;
+                values[place] = word.printed(tip[coordinate] * word.per_unit);
+                printed[coordinate] = values[place] * word.unit;
             }
-            Tcp::Control => {
-                let mut reached = tip;
-                for (place, word) in self.words.iter().enumerate() {
-                    if !word.rotary {
-                        let coordinate = word.coordinate;
-                        values[place] = word.printed(tip[coordinate] * word.per_unit);
-                        reached[coordinate] = values[place] * word.unit;
-                    }
-                }
-                Some(reached)
+        }
+        Some(printed)
+    }
+
+    /// Puts the linear axes on printed numbers and writes them to `values`.
+    #[inline]
+    pub fn print_linear(&self, joints: &mut Joints, values: &mut WordValues) {
+        for (place, word) in self.words.iter().enumerate() {
+            if !word.rotary {
+                let zero = self.zero[word.joint];
+                values[place] = word.printed((joints[word.joint] - zero) * word.per_unit);
+                joints[word.joint] = values[place] * word.unit + zero;
             }
         }
     }

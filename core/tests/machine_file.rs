@@ -360,7 +360,7 @@ const SLIPS: &[Slip] = &[
     (
         "Zc = 50.5",
         "Zc = \"half * 2\"",
-        "26 \"Zc\"",
+        "5 \"half * 2\"",
         "in a circle",
         true,
     ),
@@ -460,15 +460,11 @@ fn a_machine_extends_another_key_by_key() {
     )
     .unwrap_err();
     assert_eq!(underlined(&found[0]), "4 mount");
-    let found = try_load(
-        "extends = \"good\"\nparameters.half = \"1 / (Zc - 50.5)\"\n",
-        &[],
-    )
-    .unwrap_err();
+    let found = try_load("extends = \"good\"\naxis.A.cyclic = true\n", &[]).unwrap_err();
     let place = found[0].place.as_ref().unwrap();
     assert_eq!(
         (place.file.as_str(), underlined(&found[0]).as_str()),
-        ("good.toml", "9 \"half\"")
+        ("good.toml", "27 [-120, 30]")
     );
 }
 

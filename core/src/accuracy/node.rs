@@ -225,10 +225,14 @@ impl Placer {
         // The rotary words first: the linear axes then make up for their rounding.
         self.words.print_rotary(joints, &mut node.words);
         node.trace.turns = chain.turns(joints);
+        let kept = self.words.print_tip(target.tip, &mut node.words);
+        let wanted = kept.unwrap_or(target.tip);
         self.solver
-            .place(target.tip, joints, &node.trace.turns)
+            .place(wanted, joints, &node.trace.turns)
             .map_err(Refused::Unreachable)?;
-        let kept = self.words.print_linear(joints, target.tip, &mut node.words);
+        if kept.is_none() {
+            self.words.print_linear(joints, &mut node.words);
+        }
         for limit in &self.linear {
             let value = joints[limit.joint];
             let [least, most] = limit.travel;
@@ -250,12 +254,10 @@ impl Placer {
         chain.trace(&mut node.trace);
         let pose = &node.trace.pose;
         node.axis_error = chord_angle((pose.axis - target.axis).norm());
+        node.tip = pose.tip;
+        node.tip_error = (pose.tip - target.tip).norm();
         // The forward chain stands behind every node: what it misses by must be rounding.
-        let missed = (pose.tip - target.tip).norm();
-        (node.tip, node.tip_error) = match kept {
-            Some(tip) => (tip, (tip - target.tip).norm()),
-            None => (pose.tip, missed),
-        };
+        let missed = node.tip_error;
         if missed <= self.tip_rounding {
             Ok(())
         } else {

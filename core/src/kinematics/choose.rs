@@ -102,7 +102,7 @@ impl Turning {
         index: usize,
     ) -> (Choice, f64) {
         let set = solver.angles(branches, index);
-        match near(&set, last, &self.limits, &self.cyclic) {
+        match near(set, last, &self.limits, &self.cyclic) {
             Ok((joints, cost)) => (
                 Choice {
                     index,
@@ -124,16 +124,14 @@ impl Turning {
 /// One set on its nearest turns, and the sum of its turns from `last`.
 #[inline]
 fn near(
-    set: &RotarySet,
+    mut set: RotarySet,
     last: &Joints,
     limits: &[Limit],
     cyclic: &[usize],
 ) -> Result<(Joints, f64), OverTravel> {
-    let mut joints = set.joints;
     let mut cost = 0.0;
-    if let Some(free) = set.free {
-        joints[free] = last[free];
-    }
+    set.keep(last);
+    let joints = &mut set.joints;
     for &joint in cyclic {
         let value = unwound(joints[joint], last[joint]);
         joints[joint] = value;
@@ -159,7 +157,7 @@ fn near(
         joints[joint] = value;
         cost += (value - last[joint]).abs();
     }
-    Ok((joints, cost))
+    Ok((set.joints, cost))
 }
 
 /// `angle` on the turn nearest to `last`.

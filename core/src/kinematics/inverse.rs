@@ -36,8 +36,24 @@ pub struct Branches {
 pub struct RotarySet {
     /// The angles, radians, in -π to π; places of linear axes are zero.
     pub joints: Joints,
-    /// A joint whose angle is free here (on the pole, or an axis that does not turn the tool): keep its last value.
-    pub free: Option<usize>,
+    /// Joints whose angle is free here (on the pole, or an axis along the tool), one bit each: they keep
+    /// their last value.
+    pub free: u8,
+}
+
+impl RotarySet {
+    /// Puts the free joints where they were.
+    #[inline]
+    pub fn keep(&mut self, last: &Joints) {
+        if self.free == 0 {
+            return;
+        }
+        for (joint, value) in self.joints.iter_mut().enumerate() {
+            if self.free & (1 << joint) != 0 {
+                *value = last[joint];
+            }
+        }
+    }
 }
 
 /// Why a pose cannot be reached.
@@ -57,6 +73,8 @@ pub enum Unreachable {
 pub struct Solver {
     chain: Chain,
     orientation: Orientation,
+    /// Free rotary axes along the tool, which turn nothing: one bit each.
+    idle: u8,
     /// Values of the rotary axes that are not free (indexed), radians.
     held: Joints,
     linear: Linear,
@@ -82,10 +100,14 @@ enum Orientation {
         k1: Vector3<f64>,
         k2: Vector3<f64>,
         a: Vector3<f64>,
-        /// k1·k2, and 1/(1 - (k1·k2)²).
+        /// Across k1, towards k2; and k1 × `towards`.
+        towards: Vector3<f64>,
+        aside: Vector3<f64>,
+        /// k1·k2, and one over the sine of the angle between them.
         dot: f64,
-        per_sine_squared: f64,
-        cross: Vector3<f64>,
+        per_sine: f64,
+        /// k2·a.
+        cone: f64,
     },
 }
 
@@ -149,11 +171,12 @@ impl Solver {
     /// # Errors
     /// What the chain lacks for a closed form.
     pub fn new(chain: Chain, free: &[usize], held: Joints) -> Result<Self, NoClosedForm> {
-        let orientation = Orientation::new(&chain, free, &held)?;
+        let (orientation, idle) = Orientation::new(&chain, free, &held)?;
         let linear = Linear::new(&chain)?;
         Ok(Self {
             chain,
             orientation,
+            idle,
             held,
             linear,
         })
@@ -202,16 +225,28 @@ impl Solver {
                 k1,
                 k2,
                 a,
+                towards,
+                aside,
                 dot,
-                per_sine_squared,
-                cross,
+                per_sine,
+                cone,
                 ..
             } => {
                 let u = before * u;
-                let (m1, m2) = (k1.dot(&u), k2.dot(a));
-                let alpha = (m1 - dot * m2) * per_sine_squared;
-                let beta = (m2 - dot * m1) * per_sine_squared;
-                let square = 1.0 - alpha * alpha - beta * beta - 2.0 * alpha * beta * dot;
+                // z = k1·cosine + towards·x ± aside·y keeps k1·z = k1·u and |z| = 1; x follows from
+                // k2·z = k2·a. Beside a pole cosines say little: the sine is taken from the part of u across
+                // k1, and 1 - |cosine| from the sine.
+                let cosine = k1.dot(&u);
+                let across = u - k1 * cosine;
+                let sine_squared = across.norm_squared();
+                let rest = sine_squared / (1.0 + cosine.abs());
+                let x = if cosine >= 0.0 {
+                    (cone - dot) + dot * rest
+                } else {
+                    (cone + dot) - dot * rest
+                } * per_sine;
+                let sine = sine_squared.sqrt();
+                let square = (sine - x) * (sine + x);
                 // A tangent solution may come out a rounding error below zero.
                 if square < -POLE * POLE {
                     let miss = two_axis_miss(*k1, *k2, *a, u);
@@ -219,17 +254,14 @@ impl Solver {
                         return Err(Unreachable::Axis { miss });
                     }
                 }
-                let gamma = (square.max(0.0) * per_sine_squared).sqrt();
-                let plane = k1 * alpha + k2 * beta;
-                let aside = cross * gamma;
-                let pole = k1.cross(&u).norm_squared() < POLE * POLE;
-                // Both roots are one: at the pole of a k2 that meets it, or at the edge of reach.
-                let one = gamma == 0.0 || (pole && aside.norm_squared() < POLE * POLE);
+                let y = square.max(0.0).sqrt();
+                let (middle, side) = (k1 * cosine + towards * x, aside * y);
                 Ok(Branches {
-                    count: if one { 1 } else { 2 },
+                    // Both roots are one at the edge of reach, and at a pole that k2 meets.
+                    count: if y == 0.0 { 1 } else { 2 },
                     u,
-                    z: [plane + aside, plane - aside],
-                    pole,
+                    z: [middle + side, middle - side],
+                    pole: sine < POLE,
                 })
             }
         }
@@ -240,13 +272,13 @@ impl Solver {
     pub fn angles(&self, branches: &Branches, index: usize) -> RotarySet {
         let mut set = RotarySet {
             joints: self.held,
-            free: None,
+            free: self.idle,
         };
         match &self.orientation {
             Orientation::Fixed { .. } => {}
             Orientation::One { joint, k, a, .. } => {
                 if branches.pole {
-                    set.free = Some(*joint);
+                    set.free |= 1 << joint;
                 } else {
                     set.joints[*joint] = angle_about(*k, *a, branches.u);
                 }
@@ -261,7 +293,7 @@ impl Solver {
                 let z = branches.z[index];
                 set.joints[*second] = angle_about(*k2, *a, z);
                 if branches.pole {
-                    set.free = Some(*first);
+                    set.free |= 1 << first;
                 } else {
                     set.joints[*first] = angle_about(*k1, z, branches.u);
                 }
@@ -295,8 +327,7 @@ impl Solver {
         let linear = &self.linear;
         // The target, taken through the rotary joints in front of the first linear one …
         let mut target = tip + self.chain.mount();
-        for index in 0..linear.first {
-            let joint = &chain[index];
+        for (index, joint) in chain[..linear.first].iter().enumerate() {
             let (sine, cosine) = turns.of(index);
             target = joint.point + turn(target - joint.point, joint.direction, -sine, cosine);
         }
@@ -352,11 +383,9 @@ impl Solver {
         let mut fault = Unreachable::Linear;
         let branches = self.orient(pose.axis, tolerance)?;
         for index in 0..branches.count() {
-            let set = self.angles(&branches, index);
+            let mut set = self.angles(&branches, index);
+            set.keep(last);
             let mut joints = set.joints;
-            if let Some(free) = set.free {
-                joints[free] = last[free];
-            }
             let turns = self.chain.turns(&joints);
             if let Err(unreachable) = self.place(pose.tip, &mut joints, &turns) {
                 fault = unreachable;
@@ -364,7 +393,7 @@ impl Solver {
             }
             let reached = self.chain.forward(&joints);
             let reach = 1000.0 + pose.tip.norm() + joints.iter().fold(0.0, |sum, q| sum + q.abs());
-            let allowed = if set.free.is_some() {
+            let allowed = if set.free != self.idle {
                 2.0 * POLE
             } else {
                 VERIFIED
@@ -383,7 +412,8 @@ impl Solver {
 }
 
 impl Orientation {
-    fn new(chain: &Chain, free: &[usize], held: &Joints) -> Result<Self, NoClosedForm> {
+    /// The rotary part, and which free joints are idle.
+    fn new(chain: &Chain, free: &[usize], held: &Joints) -> Result<(Self, u8), NoClosedForm> {
         // Rotation of the held joints in `range`, as one matrix.
         let hold = |range: std::ops::Range<usize>| {
             let turns = chain.turns(held);
@@ -401,15 +431,21 @@ impl Orientation {
         };
         let count = chain.joints().len();
         match *free {
-            [] => Ok(Self::Fixed {
-                axis: hold(0..count) * chain.axis(),
-            }),
-            [joint] => Ok(Self::One {
-                joint,
-                before: hold(0..joint).transpose(),
-                k: chain.joints()[joint].direction,
-                a: hold(joint + 1..count) * chain.axis(),
-            }),
+            [] => Ok((
+                Self::Fixed {
+                    axis: hold(0..count) * chain.axis(),
+                },
+                0,
+            )),
+            [joint] => Ok((
+                Self::One {
+                    joint,
+                    before: hold(0..joint).transpose(),
+                    k: chain.joints()[joint].direction,
+                    a: hold(joint + 1..count) * chain.axis(),
+                },
+                0,
+            )),
             [first, second] => {
                 let between = hold(first + 1..second);
                 let k1 = chain.joints()[first].direction;
@@ -421,16 +457,30 @@ impl Orientation {
                         joints: [first, second],
                     });
                 }
-                Ok(Self::Two {
+                let before = hold(0..first).transpose();
+                let a = between * hold(second + 1..count) * chain.axis();
+                if k2.cross(&a).norm() < POLE {
+                    let one = Self::One {
+                        joint: first,
+                        before,
+                        k: k1,
+                        a,
+                    };
+                    return Ok((one, 1 << second));
+                }
+                let two = Self::Two {
                     joints: [first, second],
-                    before: hold(0..first).transpose(),
+                    before,
                     k1,
                     k2,
-                    a: between * hold(second + 1..count) * chain.axis(),
+                    a,
+                    towards: (k2 - k1 * k1.dot(&k2)).normalize(),
+                    aside: cross.normalize(),
                     dot: k1.dot(&k2),
-                    per_sine_squared: 1.0 / sine_squared,
-                    cross,
-                })
+                    per_sine: 1.0 / sine_squared.sqrt(),
+                    cone: k2.dot(&a),
+                };
+                Ok((two, 0))
             }
             _ => Err(NoClosedForm::RotaryAxes {
                 joints: free.to_vec(),
@@ -477,9 +527,10 @@ pub fn angle(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
 /// The angle about the unit vector `k` that turns the part of `from` across `k` into that of `to`.
 #[inline]
 fn angle_about(k: Vector3<f64>, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
-    let sine = k.dot(&from.cross(&to));
-    let cosine = from.dot(&to) - k.dot(&from) * k.dot(&to);
-    libm::atan2(sine, cosine)
+    // Across k first: beside a pole little is left of either, and differences of products would lose it.
+    let from = from - k * k.dot(&from);
+    let to = to - k * k.dot(&to);
+    libm::atan2(k.dot(&from.cross(&to)), from.dot(&to))
 }
 
 /// By how much the nearest orientation of two rotary axes misses `u`: k2 keeps the tool axis on a cone

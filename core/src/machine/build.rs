@@ -135,6 +135,14 @@ impl Builder<'_> {
         mut control_options: BTreeMap<String, Vec<GivenOption>>,
         mut model_options: BTreeMap<String, Vec<GivenOption>>,
     ) -> Option<Machine> {
+        // A parameter that nothing uses is checked too: it may be used tomorrow.
+        for quantity in self.parameters.values() {
+            self.number(quantity);
+        }
+        if !self.faults.is_empty() {
+            // Whatever uses them would only repeat it.
+            return None;
+        }
         let axes = self.axes(file)?;
         let mount = match &file.workpiece.mount {
             Some(mount) => self.vector(mount),
@@ -170,6 +178,9 @@ impl Builder<'_> {
                     "",
                 );
             }
+        }
+        if control.tcp == Some(Tcp::Control) {
+            self.check_tip_words(&axes, file.chain.span());
         }
         let accuracy = &file.accuracy;
         let model = accuracy
@@ -476,6 +487,26 @@ impl Builder<'_> {
             indexed,
             max_feed,
         })
+    }
+
+    /// Where the control keeps the tip, the linear words are its coordinates.
+    fn check_tip_words(&mut self, axes: &[Axis], span: Range<usize>) {
+        let linear: BTreeSet<&str> = axes
+            .iter()
+            .filter(|axis| !axis.joint.rotary)
+            .map(|axis| axis.name.as_str())
+            .collect();
+        if linear != BTreeSet::from(["X", "Y", "Z"]) {
+            self.fault(
+                "machine-tcp",
+                span,
+                format!(
+                    "with tcp = \"control\" the linear words are the tip's X, Y and Z, but the linear axes are called {}",
+                    linear.into_iter().collect::<Vec<_>>().join(", ")
+                ),
+                "rename the axes, or use tcp = \"post\"",
+            );
+        }
     }
 
     fn tools(&mut self, file: &MachineFile) -> Vec<(u32, f64)> {

@@ -97,7 +97,8 @@ impl Sources {
         let settings = &self.sources[self.files..];
         for (start, source) in files.chain(settings) {
             let (table, faults) = DeTable::parse_recoverable(&source.text);
-            errors.extend(faults.iter().map(|fault| {
+            // What follows the first fault of a text is mostly its echo.
+            errors.extend(faults.iter().take(1).map(|fault| {
                 let place = fault
                     .span()
                     .and_then(|span| self.place(shifted(span, *start)));
@@ -107,7 +108,7 @@ impl Sources {
             if source.name == "--set"
                 && let Err(error) = check_parameters(&layer, &merged)
             {
-                errors.push(error);
+                errors.push(*error);
             }
             overlay(&mut merged, layer);
         }
@@ -147,6 +148,9 @@ impl Sources {
     }
 }
 
+/// Keys without a table: they are set by their bare names, all other bare names are parameters.
+const TOP_LEVEL: [&str; 2] = ["name", "chain"];
+
 /// `Lm=312` sets a parameter, `accuracy.tolerance=0.001` any key; a value that is no TOML is text.
 fn setting_text(setting: &str) -> Result<String, Vec<Diagnostic>> {
     let Some((key, value)) = setting.split_once('=') else {
@@ -156,7 +160,7 @@ fn setting_text(setting: &str) -> Result<String, Vec<Diagnostic>> {
         ]);
     };
     let (key, value) = (key.trim(), value.trim());
-    let key = if key.contains('.') {
+    let key = if key.contains('.') || TOP_LEVEL.contains(&key) {
         key.to_owned()
     } else {
         format!("parameters.{key}")
@@ -170,7 +174,7 @@ fn setting_text(setting: &str) -> Result<String, Vec<Diagnostic>> {
 }
 
 /// Settings of parameters must meet parameters that the machine has: a misspelt one would be lost.
-fn check_parameters(layer: &DeTable<'_>, merged: &DeTable<'_>) -> Result<(), Diagnostic> {
+fn check_parameters(layer: &DeTable<'_>, merged: &DeTable<'_>) -> Result<(), Box<Diagnostic>> {
     let parameters = |table: &DeTable<'_>| -> Vec<String> {
         table
             .get("parameters")
@@ -197,7 +201,8 @@ fn check_parameters(layer: &DeTable<'_>, merged: &DeTable<'_>) -> Result<(), Dia
             "setting",
             format!("--set {name}: the machine has no parameter of that name"),
         )
-        .help(help));
+        .help(help)
+        .boxed());
     }
     Ok(())
 }

@@ -88,15 +88,15 @@ enum Orientation {
     /// One free rotary axis.
     One {
         joint: usize,
-        before: Matrix3<f64>,
+        before: Option<Matrix3<f64>>,
         k: Vector3<f64>,
         a: Vector3<f64>,
     },
     /// Two. Directions are taken as they stand behind the held axes in front of them.
     Two {
         joints: [usize; 2],
-        /// Inverse of the held turns in front of k1.
-        before: Matrix3<f64>,
+        /// Inverse of the held turns in front of k1, if there are any.
+        before: Option<Matrix3<f64>>,
         k1: Vector3<f64>,
         k2: Vector3<f64>,
         a: Vector3<f64>,
@@ -207,7 +207,7 @@ impl Solver {
                 Ok(Branches::ONE)
             }
             Orientation::One { before, k, a, .. } => {
-                let u = before * u;
+                let u = before.map_or(u, |before| before * u);
                 let pole = k.cross(a).norm() < POLE || k.cross(&u).norm() < POLE;
                 within(if pole {
                     angle(*a, u)
@@ -232,7 +232,7 @@ impl Solver {
                 cone,
                 ..
             } => {
-                let u = before * u;
+                let u = before.map_or(u, |before| before * u);
                 // z = k1·cosine + towards·x ± aside·y keeps k1·z = k1·u and |z| = 1; x follows from
                 // k2·z = k2·a. Beside a pole cosines say little: the sine is taken from the part of u across
                 // k1, and 1 - |cosine| from the sine.
@@ -245,8 +245,7 @@ impl Solver {
                 } else {
                     (cone + dot) - dot * rest
                 } * per_sine;
-                let sine = sine_squared.sqrt();
-                let square = (sine - x) * (sine + x);
+                let square = sine_squared - x * x;
                 // A tangent solution may come out a rounding error below zero.
                 if square < -POLE * POLE {
                     let miss = two_axis_miss(*k1, *k2, *a, u);
@@ -261,7 +260,7 @@ impl Solver {
                     count: if y == 0.0 { 1 } else { 2 },
                     u,
                     z: [middle + side, middle - side],
-                    pole: sine < POLE,
+                    pole: sine_squared < POLE * POLE,
                 })
             }
         }
@@ -430,6 +429,11 @@ impl Orientation {
             Matrix3::from_columns(&columns)
         };
         let count = chain.joints().len();
+        // Inverse of the held turns in front of a joint, if there are any.
+        let in_front = |joint: usize| {
+            let turns = hold(0..joint);
+            (turns != Matrix3::identity()).then(|| turns.transpose())
+        };
         match *free {
             [] => Ok((
                 Self::Fixed {
@@ -440,7 +444,7 @@ impl Orientation {
             [joint] => Ok((
                 Self::One {
                     joint,
-                    before: hold(0..joint).transpose(),
+                    before: in_front(joint),
                     k: chain.joints()[joint].direction,
                     a: hold(joint + 1..count) * chain.axis(),
                 },
@@ -457,7 +461,7 @@ impl Orientation {
                         joints: [first, second],
                     });
                 }
-                let before = hold(0..first).transpose();
+                let before = in_front(first);
                 let a = between * hold(second + 1..count) * chain.axis();
                 if k2.cross(&a).norm() < POLE {
                     let one = Self::One {

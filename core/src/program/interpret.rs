@@ -504,7 +504,7 @@ impl Interpreter {
             );
             return false;
         }
-        self.axis = axis / square.sqrt();
+        self.axis = axis * (1.0 / square.sqrt());
         true
     }
 

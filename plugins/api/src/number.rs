@@ -85,29 +85,55 @@ impl Look {
         let [first, second] = front;
         let length =
             first.len() + second.len() + usize::from(sign.is_some()) + digits + usize::from(point);
-        out.reserve(length);
-        // SAFETY: what is appended is whole strings and ASCII. There is room for `length` bytes behind the old
-        // end; the front and the sign fill it from the one side, and from the other, `decimals` digits, the
-        // point and the rest of the `digits` digits, and together they are `length`.
+        // Eight bytes are written at a time below; the last may reach past the end.
+        out.reserve(length + 8);
+        // SAFETY: what is appended is whole strings and ASCII. There is room for `length` bytes and eight more
+        // behind the old end; the front and the sign come first, then the digits with the point among them,
+        // and together they are `length`.
         unsafe {
             let bytes = out.as_mut_vec();
             let start = bytes.len();
             let mut to = bytes.as_mut_ptr().add(start);
-            let mut from_end = to.add(length);
             for byte in first.bytes().chain(second.bytes()).chain(sign) {
                 to.write(byte);
                 to = to.add(1);
             }
-            if point {
-                from_end = digits_before(from_end, &mut count, decimals);
-                from_end = from_end.sub(1);
-                from_end.write(b'.');
+            if digits <= 8 {
+                let text = eight_digits(count) >> (8 * (8 - digits));
+                let whole = digits - decimals;
+                to.cast::<u64>().write_unaligned(text.to_le());
+                if point {
+                    to = to.add(whole);
+                    to.write(b'.');
+                    // A shift by all 64 bits would be none.
+                    let rest = (text >> 8) >> (8 * (whole - 1));
+                    to.add(1).cast::<u64>().write_unaligned(rest.to_le());
+                }
+            } else {
+                let mut end = to.add(digits + usize::from(point));
+                if point {
+                    end = digits_before(end, &mut count, decimals).sub(1);
+                    end.write(b'.');
+                }
+                digits_before(end, &mut count, digits - decimals);
             }
-            digits_before(from_end, &mut count, digits - decimals);
             bytes.set_len(start + length);
         }
         true
     }
+}
+
+/// The eight decimal digits of a number below 10^8 as ASCII, the first in the lowest byte.
+#[inline]
+fn eight_digits(count: u64) -> u64 {
+    // Halves of four digits, quarters of two, digits: each split divides all lanes at once, by a
+    // multiplication and a shift that are exact for numbers so small.
+    let halves = count / 10_000 | (count % 10_000) << 32;
+    let hundreds = ((halves * 10_486) >> 20) & 0x0000_007f_0000_007f;
+    let quarters = hundreds | (halves - hundreds * 100) << 16;
+    let tens = ((quarters * 103) >> 10) & 0x000f_000f_000f_000f;
+    let digits = tens | (quarters - tens * 10) << 8;
+    digits | 0x3030_3030_3030_3030
 }
 
 /// Writes the last `left` digits of `count` before `end` and takes them off it; where the first stands.
@@ -220,6 +246,16 @@ mod tests {
         match text.strip_prefix('-') {
             Some(rest) if rest.bytes().all(|byte| byte == b'0' || byte == b'.') => rest.to_owned(),
             _ => text,
+        }
+    }
+
+    #[test]
+    fn eight_digits_are_those_of_std() {
+        for count in (0..100_000_000_u64).step_by(997).chain([99_999_999]) {
+            assert_eq!(
+                eight_digits(count).to_le_bytes().as_slice(),
+                format!("{count:08}").as_bytes()
+            );
         }
     }
 

@@ -168,6 +168,14 @@ impl Words {
         }
     }
 
+    /// A value that passes a limit by less than this is printed as the limit, mm or radians.
+    pub fn grace(&self, joint: usize) -> f64 {
+        self.words
+            .iter()
+            .find(|word| word.joint == joint)
+            .map_or(0.0, |word| 0.499 * word.unit * word.per_scale)
+    }
+
     /// The largest error of the tip that rounding the linear words can make, mm.
     pub fn rounding(&self) -> f64 {
         self.words

@@ -73,7 +73,7 @@ pub struct Placer {
     axis_rounding: f64,
 }
 
-/// Angles and positions at the very end of travel come out a rounding error beyond it.
+/// Positions at the very end of travel come out a rounding error beyond it, mm.
 const SLACK: f64 = 1e-9;
 
 impl Placer {
@@ -86,9 +86,11 @@ impl Placer {
                 .enumerate()
                 .filter(|(_, axis)| axis.joint.rotary == rotary)
                 .filter_map(|(joint, axis)| {
+                    // Angles are checked before they are rounded, linear positions after it.
+                    let grace = if rotary { words.grace(joint) } else { SLACK };
                     axis.travel.map(|[least, most]| Limit {
                         joint,
-                        travel: [least - SLACK, most + SLACK],
+                        travel: [least - grace, most + grace],
                     })
                 })
                 .collect()
@@ -97,15 +99,15 @@ impl Placer {
             .filter(|joint| machine.axes[*joint].travel.is_none())
             .collect();
         Self {
-            tip_rounding: words.rounding() + 1e-6,
-            axis_rounding: words.axis_rounding() + 1e-8,
-            solver,
-            words,
             turning: Turning {
                 limits: limits(true),
                 cyclic,
             },
             linear: limits(false),
+            tip_rounding: words.rounding() + 1e-6,
+            axis_rounding: words.axis_rounding() + 1e-8,
+            solver,
+            words,
             branch: Cell::new(0),
             axis_tolerance: machine.accuracy.axis_tolerance,
         }
@@ -241,11 +243,7 @@ impl Placer {
                     over: OverTravel {
                         joint: limit.joint,
                         value,
-                        limit: if value < least {
-                            least + SLACK
-                        } else {
-                            most - SLACK
-                        },
+                        limit: if value < least { least } else { most },
                     },
                     tried: 1,
                 });

@@ -128,11 +128,11 @@ impl Look {
 fn eight_digits(count: u64) -> u64 {
     // Halves of four digits, quarters of two, digits: each split divides all lanes at once, by a
     // multiplication and a shift that are exact for numbers so small.
-    let halves = count / 10_000 | (count % 10_000) << 32;
+    let halves = (count / 10_000) | ((count % 10_000) << 32);
     let hundreds = ((halves * 10_486) >> 20) & 0x0000_007f_0000_007f;
-    let quarters = hundreds | (halves - hundreds * 100) << 16;
+    let quarters = hundreds | ((halves - hundreds * 100) << 16);
     let tens = ((quarters * 103) >> 10) & 0x000f_000f_000f_000f;
-    let digits = tens | (quarters - tens * 10) << 8;
+    let digits = tens | ((quarters - tens * 10) << 8);
     digits | 0x3030_3030_3030_3030
 }
 

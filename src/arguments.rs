@@ -46,7 +46,11 @@ pub enum Command {
         unknown_only: bool,
     },
     /// Lists the machines that a bare name finds.
-    Machines,
+    Machines {
+        /// A further folder of machine files.
+        #[arg(long, value_name = "FOLDER")]
+        machines: Vec<PathBuf>,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -63,7 +67,7 @@ pub struct PostArguments {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Writes the summary as JSON for programs to read.
+    /// Writes the summary as JSON for programs to read; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     pub summary: Option<PathBuf>,
 
@@ -105,15 +109,17 @@ pub struct PostArguments {
         long,
         value_name = "X,Y,Z",
         allow_hyphen_values = true,
+        value_parser = point,
         help_heading = "Machine"
     )]
-    pub mount: Option<String>,
+    pub mount: Option<Point>,
 
     /// Length of every tool from the gauge point to the tip, mm, over what machine and CL file say.
     #[arg(
         long,
         value_name = "MM",
         allow_hyphen_values = true,
+        value_parser = finite,
         help_heading = "Machine"
     )]
     pub tool_length: Option<f64>,
@@ -123,7 +129,7 @@ pub struct PostArguments {
     pub set: Vec<String>,
 
     /// Largest deviation of the tip in a cut, mm; short for --set accuracy.tolerance=…
-    #[arg(long, value_name = "MM", help_heading = "Machine")]
+    #[arg(long, value_name = "MM", value_parser = positive, help_heading = "Machine")]
     pub tolerance: Option<f64>,
 
     /// Who keeps the tip on its path; short for --set control.tcp=…
@@ -171,15 +177,47 @@ pub enum TcpArgument {
     Post,
 }
 
+/// `X,Y,Z`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point([f64; 3]);
+
+fn point(text: &str) -> Result<Point, String> {
+    let numbers = text
+        .split(',')
+        .map(|number| finite(number.trim()))
+        .collect::<Result<Vec<f64>, String>>()?;
+    match numbers.try_into() {
+        Ok(numbers) => Ok(Point(numbers)),
+        Err(numbers) => Err(format!(
+            "three numbers are needed, X,Y,Z; there are {}",
+            numbers.len()
+        )),
+    }
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("`{text}` is no number")),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        number if number > 0.0 => Ok(number),
+        number => Err(format!("{number} is not above zero")),
+    }
+}
+
 impl PostArguments {
     /// What the short flags set, after what `--set` sets.
     pub fn settings(&self) -> Vec<String> {
         let mut settings = self.set.clone();
-        if let Some(mount) = &self.mount {
-            settings.push(format!("workpiece.mount=[{mount}]"));
+        if let Some(Point([x, y, z])) = &self.mount {
+            settings.push(format!("workpiece.mount=[{x:?}, {y:?}, {z:?}]"));
         }
         if let Some(tolerance) = self.tolerance {
-            settings.push(format!("accuracy.tolerance={tolerance}"));
+            settings.push(format!("accuracy.tolerance={tolerance:?}"));
         }
         if let Some(tcp) = self.tcp {
             let who = match tcp {

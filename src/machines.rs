@@ -15,7 +15,7 @@ const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.r
 /// Loads the machine that the arguments name.
 pub fn load(arguments: &PostArguments) -> Result<Machine, Vec<Diagnostic>> {
     let name = arguments.machine.as_deref().unwrap_or_default();
-    let folders = folders(arguments);
+    let folders = folders(&arguments.machines);
     let fault = |message| vec![Diagnostic::error("machine", message)];
     let source = find(name, &folders).map_err(fault)?;
     // A machine extends its neighbours first.
@@ -32,8 +32,8 @@ pub fn load(arguments: &PostArguments) -> Result<Machine, Vec<Diagnostic>> {
 }
 
 /// The folders of machines: those of the command line, of the environment, and `machines` here.
-fn folders(arguments: &PostArguments) -> Vec<PathBuf> {
-    let mut folders = arguments.machines.clone();
+fn folders(named: &[PathBuf]) -> Vec<PathBuf> {
+    let mut folders = named.to_owned();
     if let Some(more) = env::var_os("POST_MACHINES") {
         folders.extend(env::split_paths(&more).filter(|path| !path.as_os_str().is_empty()));
     }
@@ -93,9 +93,9 @@ fn read(path: &Path) -> Result<Source, String> {
 }
 
 /// Lists the machines that a bare name finds.
-pub fn print(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
+pub fn print(named: &[PathBuf]) -> Result<(), Vec<Diagnostic>> {
     let mut rows = Vec::new();
-    for folder in folders(arguments) {
+    for folder in folders(named) {
         let Ok(entries) = fs::read_dir(&folder) else {
             continue;
         };

@@ -25,7 +25,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let done = match &arguments.command {
         Some(Command::Words { file, unknown_only }) => words::print(file, *unknown_only),
-        Some(Command::Machines) => machines::print(&arguments.post),
+        Some(Command::Machines { machines }) => machines::print(machines),
         None => posting::run(&arguments.post),
     };
     match done {

@@ -6,30 +6,27 @@ use std::path::{Path, PathBuf};
 
 use post_core::diagnostic::{Diagnostic, Severity};
 use post_core::program::{Reading, Unknown};
-use post_core::report::Report;
-use post_core::{Job, Post};
+use post_core::{Job, Output, Post};
 use post_grammar::{ReadError, Reader, Units};
 use post_plugin::DialectSession;
 
 use crate::arguments::{Msys, PostArguments, UnitsArgument, UnknownArgument};
-use crate::output::{self, Program};
+use crate::output::{Target, Whole};
 use crate::progress::Progress;
 use crate::{machines, plugins, render, summary};
 
 /// Posts as the arguments say.
 pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
-    let input_path = arguments.input.as_deref().unwrap_or(Path::new("-"));
+    let input_path = arguments.input.as_deref().unwrap_or(standard());
     let machine = machines::load(arguments)?;
     let finder = plugins::finder(arguments)?;
     let program = program_name(input_path, arguments.output.as_deref());
     let (mut dialect, dialect_use) = plugins::dialect(&finder, &machine, &program)?;
     let (mut model, model_use) = plugins::model(&finder, &machine)?;
-    let target = target(input_path, arguments, &dialect.format().extension)?;
+    let path = target(input_path, arguments, &dialect.format().extension)?;
+    let summary_file = summary_file(input_path, arguments, &path)?;
     let input = Input::open(input_path)?;
-    let mut file = Program::create(target.as_deref()).map_err(|error| {
-        let place = target.as_deref().unwrap_or(Path::new("standard output"));
-        one("output", format!("{}: {error}", place.display()))
-    })?;
+    let mut file = create(&path)?;
     let mut progress = Progress::new(input.length);
     let mut reader = Reader::new(input.bytes);
     let mut post = Post::new(
@@ -57,35 +54,66 @@ pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
         return Err(findings);
     };
     report.plugins = vec![dialect_use, model_use];
-    file.finish().map_err(|error| {
-        let place = target.as_deref().unwrap_or(Path::new("standard output"));
-        one("output", format!("{}: {error}", place.display()))
-    })?;
+    file.finish().map_err(|error| fault_at(&path, &error))?;
     debug_assert!(
         findings
             .iter()
             .all(|finding| finding.severity == Severity::Warning)
     );
     render::findings(&findings);
-    tell(arguments, &report, target.as_deref(), &input.name)
-}
-
-/// The summary, for people and for programs.
-fn tell(
-    arguments: &PostArguments,
-    report: &Report,
-    target: Option<&Path>,
-    input: &str,
-) -> Result<(), Vec<Diagnostic>> {
-    if let Some(path) = &arguments.summary {
-        let json = summary::json(report);
-        output::write_whole(path, json.as_bytes())
-            .map_err(|error| one("summary", format!("{}: {error}", path.display())))?;
+    if let Some((mut file, path)) = summary_file {
+        let json = summary::json(&report);
+        file.write(json.as_bytes())
+            .map_err(io::Error::other)
+            .and_then(|()| file.finish())
+            .map_err(|error| fault_at(&path, &error))?;
     }
     if !arguments.quiet {
-        summary::print(report, input, target);
+        let to_stderr =
+            [Some(path.as_path()), arguments.summary.as_deref()].contains(&Some(standard()));
+        summary::print(&report, &input.name, &path, to_stderr);
     }
     Ok(())
+}
+
+/// The name of standard input and output.
+fn standard() -> &'static Path {
+    Path::new("-")
+}
+
+fn create(path: &Path) -> Result<Whole, Vec<Diagnostic>> {
+    Whole::create(Target::of(path)).map_err(|error| fault_at(path, &error))
+}
+
+fn fault_at(path: &Path, error: &io::Error) -> Vec<Diagnostic> {
+    let place = if path == standard() {
+        "standard output".to_owned()
+    } else {
+        path.display().to_string()
+    };
+    one("output", format!("{place}: {error}"))
+}
+
+/// The summary's file, opened before the work begins: a program without its summary would be half a result.
+fn summary_file(
+    input: &Path,
+    arguments: &PostArguments,
+    program: &Path,
+) -> Result<Option<(Whole, PathBuf)>, Vec<Diagnostic>> {
+    let Some(path) = &arguments.summary else {
+        return Ok(None);
+    };
+    let target = Target::of(path);
+    if target.is(input) || target.is(program) || path == program {
+        return Err(vec![
+            Diagnostic::error(
+                "output",
+                format!("the summary would overwrite {}", path.display()),
+            )
+            .help("name another file with --summary"),
+        ]);
+    }
+    Ok(Some((create(path)?, path.clone())))
 }
 
 /// Input and what is known of it.
@@ -97,7 +125,7 @@ struct Input {
 
 impl Input {
     fn open(path: &Path) -> Result<Self, Vec<Diagnostic>> {
-        if path == Path::new("-") {
+        if path == standard() {
             return Ok(Self {
                 name: "standard input".to_owned(),
                 bytes: Box::new(io::stdin().lock()),
@@ -148,7 +176,7 @@ fn program_name(input: &Path, output: Option<&Path>) -> String {
     [output, Some(input)]
         .into_iter()
         .flatten()
-        .filter(|path| *path != Path::new("-"))
+        .filter(|path| *path != standard())
         .find_map(Path::file_stem)
         .map_or_else(
             || "PROGRAM".to_owned(),
@@ -156,24 +184,18 @@ fn program_name(input: &Path, output: Option<&Path>) -> String {
         )
 }
 
-/// Where the program goes; none is standard output.
+/// Where the program goes; `-` is standard output.
 fn target(
     input: &Path,
     arguments: &PostArguments,
     extension: &str,
-) -> Result<Option<PathBuf>, Vec<Diagnostic>> {
-    let standard = Path::new("-");
-    let target = match &arguments.output {
-        Some(path) if path == standard => return Ok(None),
+) -> Result<PathBuf, Vec<Diagnostic>> {
+    let path = match &arguments.output {
         Some(path) => path.clone(),
-        None if input == standard => return Ok(None),
+        None if input == standard() => return Ok(standard().to_owned()),
         None => input.with_extension(extension),
     };
-    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
-    };
-    if same(&target, input) {
+    if Target::of(&path).is(input) {
         return Err(vec![
             Diagnostic::error(
                 "output",
@@ -185,10 +207,10 @@ fn target(
             .help("name another file with -o"),
         ]);
     }
-    if target.is_dir() {
-        return Err(one("output", format!("{} is a folder", target.display())));
+    if path.is_dir() {
+        return Err(one("output", format!("{} is a folder", path.display())));
     }
-    Ok(Some(target))
+    Ok(path)
 }
 
 fn one(code: &'static str, message: String) -> Vec<Diagnostic> {

@@ -13,26 +13,28 @@ pub fn json(report: &Report) -> String {
     text
 }
 
-/// Prints the summary: to standard output, or to standard error where the program goes to the former.
-pub fn print(report: &Report, input: &str, target: Option<&Path>) {
+/// Prints the summary: to standard output, or to standard error where something else goes there.
+pub fn print(report: &Report, input: &str, target: &Path, to_stderr: bool) {
     let text = text(report, input, target);
     // A reader that has seen enough closes the pipe.
-    let _ = match target {
-        Some(_) => std::io::stdout().lock().write_all(text.as_bytes()),
-        None => std::io::stderr().lock().write_all(text.as_bytes()),
+    let _ = if to_stderr {
+        std::io::stderr().lock().write_all(text.as_bytes())
+    } else {
+        std::io::stdout().lock().write_all(text.as_bytes())
     };
 }
 
-fn text(report: &Report, input: &str, target: Option<&Path>) -> String {
+fn text(report: &Report, input: &str, target: &Path) -> String {
     let mut text = String::new();
     let mut row = |name: &str, value: String| {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{name:<16} {value}");
     };
-    let target = target.map_or_else(
-        || "standard output".to_owned(),
-        |path| path.display().to_string(),
-    );
+    let target = if target == Path::new("-") {
+        "standard output".to_owned()
+    } else {
+        target.display().to_string()
+    };
     row("program", format!("{target}, from {input}"));
     row(
         "machine",

@@ -1,6 +1,6 @@
 //! The path: takes steps, chooses axis values, puts points in, paces blocks and hands events to the dialect.
 
-use post_plugin::{Batch, Compensation, DialectSession, Event, Format, ModelSession};
+use post_plugin::{Batch, Compensation, DialectSession, Event, Format, ModelSession, Spindle};
 
 use crate::accuracy::{Bound, Linearise, Move, Node, Placer, Refused, Stuck, Tolerances, Which};
 use crate::diagnostic::{Diagnostic, Extreme, Place};
@@ -45,6 +45,10 @@ pub struct Path<'a> {
     /// Length compensation or TCP is in force.
     positioned: bool,
     compensating: bool,
+    /// The spindle was switched on since the last tool change.
+    turning: bool,
+    /// That it was not is told once a program.
+    told_spindle: bool,
     batch: Batch,
     text: Vec<u8>,
     ends: Vec<usize>,
@@ -127,6 +131,8 @@ impl<'a> Path<'a> {
             near: [0.0; MAX_AXES],
             positioned: false,
             compensating: false,
+            turning: false,
+            told_spindle: false,
             batch: Batch::default(),
             text: Vec::new(),
             ends: Vec::new(),
@@ -204,7 +210,10 @@ impl<'a> Path<'a> {
             }
             Step::Tool(tool) => self.change(line, &tool),
             Step::Preselect(number) => self.push(line, Event::Preselect { number }),
-            Step::Spindle(spindle) => self.push(line, Event::Spindle(spindle)),
+            Step::Spindle(spindle) => {
+                self.turning = matches!(spindle, Spindle::On { .. });
+                self.push(line, Event::Spindle(spindle));
+            }
             Step::Coolant(coolant) => self.push(line, Event::Coolant(coolant)),
             Step::Compensate(compensation) => {
                 self.compensating = compensation != Compensation::Off;
@@ -238,6 +247,7 @@ impl<'a> Path<'a> {
 
     fn change(&mut self, line: u64, tool: &Tool) {
         self.release(line);
+        self.turning = false;
         let told = self.tool_length;
         let table = || {
             let tools = &self.machine.tools;
@@ -302,6 +312,16 @@ impl<'a> Path<'a> {
         }
         if self.compensating {
             self.check_compensation(&node);
+        }
+        if !self.turning && motion.pace != Pace::Rapid && !self.told_spindle {
+            self.told_spindle = true;
+            self.findings.push(
+                Diagnostic::warning(
+                    "spindle",
+                    "the tool cuts, and the spindle was not switched on",
+                )
+                .help("the CAM system should write SPINDL before this line"),
+            );
         }
         match self.last.take() {
             None => self.first(line, motion, &node),
@@ -456,23 +476,45 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// Radius compensation works in the plane of X and Y; a tilted tool would be moved sideways into the part.
+    /// Radius compensation works in the plane of X and Y of the machine (of the part, where the control keeps
+    /// the tip): a tool that does not stand upright in it would be moved sideways into the part.
     fn check_compensation(&mut self, node: &Node) {
-        let upright =
-            crate::kinematics::inverse::angle(node.trace.pose.axis, self.machine.tool_axis);
-        if upright > 1e-3 {
-            self.compensating = false;
-            self.findings.push(
-                Diagnostic::error(
-                    "compensation",
-                    format!(
-                        "cutter radius compensation (CUTCOM) with the tool tilted by {:.3}°: the control would offset in the wrong plane",
-                        upright.to_degrees()
-                    ),
-                )
-                .help("let the CAM system write the tool centre path, with CUTCOM/OFF"),
-            );
-        }
+        let machine = self.machine;
+        let chain = self.placer.solver().chain();
+        let axis = match machine.control.tcp {
+            Tcp::Control => node.trace.pose.axis,
+            Tcp::Post => {
+                let mut joints = node.trace.joints;
+                for (value, axis) in joints.iter_mut().zip(&machine.axes) {
+                    if axis.carries_part {
+                        *value = 0.0;
+                    }
+                }
+                chain.forward(&joints).axis
+            }
+        };
+        let tilt = crate::kinematics::inverse::angle(axis, machine.tool_axis);
+        let turned = self.last.as_ref().is_some_and(|last| {
+            let joints = machine.axes.iter().enumerate();
+            joints
+                .filter(|(_, axis)| axis.joint.rotary)
+                .any(|(joint, _)| last.trace.joints[joint] != node.trace.joints[joint])
+        });
+        let what = if tilt > 1e-3 {
+            format!("the tool tilted by {:.3}°", tilt.to_degrees())
+        } else if turned {
+            "rotary axes turning".to_owned()
+        } else {
+            return;
+        };
+        self.compensating = false;
+        self.findings.push(
+            Diagnostic::error(
+                "compensation",
+                format!("cutter radius compensation (CUTCOM) with {what}: the control would offset in the wrong plane"),
+            )
+            .help("let the CAM system write the tool centre path, with CUTCOM/OFF"),
+        );
     }
 
     #[inline]

@@ -104,7 +104,7 @@ pub enum Statement {
     Cycle(Cycle),
     /// `CUTCOM/`.
     Cutcom(Cutcom),
-    /// `ROTABL/`, `ROTATE/`, `ROTHED/`: an index move of a rotary axis.
+    /// `ROTABL/`, `ROTATE/`: an index move of a rotary axis.
     Rotate(Rotate),
     /// `TLAXIS/i,j,k`: the tool axis of the moves that follow, in the part frame.
     ToolAxis(Direction),
@@ -356,7 +356,8 @@ pub struct Rotate {
     pub angle: f64,
     /// Its unit: CAMWorks (number first, then `AAXIS,TABLE`) writes radians.
     pub radians: bool,
-    /// A step from the present angle. CAMWorks' form is: each is undone by its negative at the operation's end.
+    /// A step from the present angle (`INCR`). CAMWorks' form is none: it states the angle at the start of every
+    /// operation, and turns back only after some.
     pub incremental: bool,
     /// Sense word, if given.
     pub sense: Option<Sense>,

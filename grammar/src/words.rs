@@ -82,7 +82,7 @@ fn reader(word: &str) -> Option<Reader> {
         "CNTRL" => cntrl,
         "CYCLE" => cycle,
         "CUTCOM" => cutcom,
-        "ROTABL" | "ROTATE" | "ROTHED" => rotate,
+        "ROTABL" | "ROTATE" => rotate,
         "TLAXIS" => tlaxis,
         "DELAY" | "DWELL" => delay,
         "STOP" => |items| items.nothing(Statement::Stop),
@@ -661,7 +661,7 @@ fn rotate(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "ROTABL/AAXIS,degrees, ROTABL/ATANGL,degrees,CLW, ROTABL/INCR,degrees,CCLW or, from CAMWorks, ROTABL/radians,AAXIS,TABLE,CCLW";
     let radians = items.peek().is_some_and(|item| item.value.is_some());
     let (mut axis, mut angle, mut turning) = (None, None, None);
-    let (mut incremental, mut member) = (radians, false);
+    let (mut incremental, mut member) = (false, false);
     for (index, item) in items.line.items.iter().enumerate() {
         let name = word(item);
         match name.as_str() {

@@ -466,7 +466,6 @@ fn index_moves() {
             "ROTABL/AAXIS,90.0",
             "ROTATE/AAXIS,ABSOL,90",
             "ROTATE/TABLE,AAXIS,ATANGL,90",
-            "ROTHED/AAXIS,90",
         ],
     );
     same(
@@ -488,7 +487,7 @@ fn index_moves() {
         Statement::Rotate(Rotate {
             angle: 0.250000,
             radians: true,
-            incremental: true,
+            incremental: false,
             sense: Some(Sense::CounterClockwise),
             ..table
         }),

@@ -170,13 +170,22 @@ impl Placer {
             (Which::Other, _) => Refused::Unreachable(Unreachable::Linear),
             (_, Err(over)) => Refused::OverTravel { over, tried },
         };
-        match self.turning.other(solver, &branches, last, choice.index) {
-            Some(joints) => self
-                .settle(node, target, t, &joints)
-                .map_err(|_| refused)
-                .map(|()| self.branch.set(1 - choice.index)),
-            None => Err(refused),
-        }
+        let refused = match self.turning.other(solver, &branches, last, choice.index) {
+            Some(joints) => match self.settle(node, target, t, &joints) {
+                Ok(()) => {
+                    self.branch.set(1 - choice.index);
+                    return Ok(());
+                }
+                // What stops the solution whose angles are inside travel is what the user can mend.
+                Err(other) if choice.joints.is_err() => other,
+                Err(_) => refused,
+            },
+            None => refused,
+        };
+        Err(match refused {
+            Refused::OverTravel { over, .. } => Refused::OverTravel { over, tried },
+            other => other,
+        })
     }
 
     /// The node of a `target` between two sets of axis values: the nearest to either of them. (The mean of

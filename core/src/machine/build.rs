@@ -307,7 +307,7 @@ impl Builder<'_> {
                         continue;
                     }
                     match file.axis.get(&name) {
-                        Some(axis) => match self.axis(&name, axis) {
+                        Some(axis) => match self.axis(&name, axis, carries_part) {
                             Some(axis) => axes.push(axis),
                             None => sound = false,
                         },
@@ -347,7 +347,12 @@ impl Builder<'_> {
         sound.then_some(axes)
     }
 
-    fn axis(&mut self, name: &str, spanned: &Spanned<AxisFile>) -> Option<Axis> {
+    fn axis(
+        &mut self,
+        name: &str,
+        spanned: &Spanned<AxisFile>,
+        carries_part: bool,
+    ) -> Option<Axis> {
         let axis: &AxisFile = spanned.get_ref();
         let (rotary, direction) = match (&axis.linear, &axis.rotary) {
             (Some(direction), None) => (false, direction),
@@ -478,6 +483,7 @@ impl Builder<'_> {
         });
         Some(Axis {
             name: name.to_owned(),
+            carries_part,
             joint: Joint {
                 rotary,
                 direction,

@@ -39,6 +39,8 @@ pub struct Machine {
 pub struct Axis {
     /// Its address, `X`, `C`.
     pub name: String,
+    /// It carries the workpiece (primed in the chain), else the tool.
+    pub carries_part: bool,
     /// Kind, direction and line.
     pub joint: Joint,
     /// Least and largest value, mm or radians; none for a cyclic axis.

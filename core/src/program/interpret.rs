@@ -96,11 +96,12 @@ pub struct Interpreter {
 }
 
 /// How often a word was met.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 struct WordCount {
     usage: Usage,
     count: u64,
-    first: u64,
+    /// Where it was met first.
+    first: Place,
 }
 
 /// A curve that is not yet complete.
@@ -235,12 +236,9 @@ impl Interpreter {
             } else {
                 "is not a word that post knows"
             };
-            let message = format!(
-                "{word} {what}: met {}, first on line {}",
-                times(count.count),
-                count.first
-            );
-            self.findings.push(match self.reading.unknown {
+            let message = format!("{word} {what}: met {}", times(count.count));
+            let place = Some(count.first.clone());
+            let finding = match self.reading.unknown {
                 Unknown::Error => Diagnostic::error("unknown-word", message)
                     .help("--unknown=warn leaves it out, --unknown=pass writes it as a comment"),
                 Unknown::Warn => {
@@ -249,14 +247,15 @@ impl Interpreter {
                 Unknown::Pass => {
                     Diagnostic::warning("unknown-word", format!("{message}; written as a comment"))
                 }
-            });
+            };
+            self.findings.push(finding.at(place));
         }
     }
 
     fn other(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
         if self.finished {
             if !matches!(record.statement, Statement::Remark(_) | Statement::Fini) {
-                self.count("FINI", record.line, Usage::Used);
+                self.count("FINI", record, Usage::Used);
                 if self
                     .counts
                     .get("FINI")
@@ -413,12 +412,12 @@ impl Interpreter {
                 Insert::Literal => emit(Step::Literal(text.clone())),
             },
             Statement::Csys(_) | Statement::Remark(_) => {
-                self.count(record.statement.word(), record.line, Usage::Ignored);
+                self.count(record.statement.word(), record, Usage::Ignored);
             }
             Statement::Fini => {
                 self.end_spline(record, emit);
                 self.finished = true;
-                self.count("FINI", record.line, Usage::Used);
+                self.count("FINI", record, Usage::Used);
             }
             Statement::Other {
                 word, directive, ..
@@ -428,7 +427,7 @@ impl Interpreter {
                     Usage::Unknown if *directive => Usage::Ignored,
                     usage => usage,
                 };
-                self.count(word, record.line, usage);
+                self.count(word, record, usage);
                 if usage == Usage::Refused {
                     self.fault(
                         record,
@@ -460,10 +459,12 @@ impl Interpreter {
             && let (Some(turned), Some(told)) = (&self.turned, self.told_axis)
             && (turned * self.axis - told).norm() > 1e-3
         {
-            self.warn(
+            self.fault(
                 record,
                 "rotabl",
-                "the index angles do not turn the tool to the axis that TLAXIS names".to_owned(),
+                "the index angles (ROTABL) do not turn the tool to the axis that TLAXIS names"
+                    .to_owned(),
+                "one of the two is wrong: check the operation's set-up in the CAM system",
             );
         }
         let tip = self.point(point);
@@ -986,19 +987,18 @@ impl Interpreter {
         self.check_axis = self.turned.is_some();
     }
 
-    fn count(&mut self, word: &str, line: u64, usage: Usage) {
+    fn count(&mut self, word: &str, record: &Record<'_>, usage: Usage) {
         if let Some(count) = self.counts.get_mut(word) {
             count.count += 1;
             return;
         }
-        self.counts.insert(
-            word.to_owned(),
-            WordCount {
-                usage,
-                count: 1,
-                first: line,
-            },
-        );
+        let first = record_place(&self.reading.file, record);
+        let count = WordCount {
+            usage,
+            count: 1,
+            first,
+        };
+        self.counts.insert(word.to_owned(), count);
     }
 
     fn place(&self, record: &Record<'_>) -> Option<Place> {

@@ -34,6 +34,8 @@ struct Heidenhain {
     coolant: [(Coolant, String); 5],
     /// A tool call that waits for its speed.
     tool: Option<u32>,
+    /// What came between a tool change and its call.
+    held: Vec<Held>,
     speed: Modal<f64>,
     feed: Modal<f64>,
     radius: Modal<&'static str>,
@@ -42,6 +44,13 @@ struct Heidenhain {
     retracted: Modal<bool>,
     spindle_on: Modal<bool>,
     coolant_on: Modal<bool>,
+}
+
+/// An event that waits for the tool call.
+#[derive(Clone, Copy, Debug)]
+enum Held {
+    Preselect(u32),
+    Coolant(Coolant),
 }
 
 impl Dialect for Heidenhain {
@@ -77,6 +86,7 @@ impl Dialect for Heidenhain {
                 (Coolant::Air, own("coolant_air")),
             ],
             tool: None,
+            held: Vec::new(),
             speed: Modal::default(),
             feed: Modal::default(),
             radius: Modal::default(),
@@ -100,11 +110,17 @@ impl Dialect for Heidenhain {
 
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
         // The speed belongs to the tool call, so this waits for it; remarks may come between.
-        if !matches!(
-            event,
-            Event::Spindle(Spindle::On { .. }) | Event::Comment { .. }
-        ) {
-            self.call_tool(None, out);
+        match *event {
+            Event::Spindle(Spindle::On { .. }) | Event::Comment { .. } => {}
+            Event::Preselect { .. } | Event::Coolant(_) if self.tool.is_some() => {
+                self.held.push(match *event {
+                    Event::Coolant(coolant) => Held::Coolant(coolant),
+                    Event::Preselect { number } => Held::Preselect(number),
+                    _ => return Ok(()),
+                });
+                return Ok(());
+            }
+            _ => self.call_tool(None, out)?,
         }
         match *event {
             Event::Start => self.start(out),
@@ -195,10 +211,10 @@ impl Heidenhain {
             .line(format!("; {}", text.trim()).trim_end(), out);
     }
 
-    /// The tool call that waits, with its speed if one is known.
-    fn call_tool(&mut self, speed: Option<f64>, out: &mut String) {
+    /// The tool call that waits, with its speed if one is known, and what waited for it.
+    fn call_tool(&mut self, speed: Option<f64>, out: &mut String) -> Result<(), String> {
         let Some(number) = self.tool.take() else {
-            return;
+            return Ok(());
         };
         self.block.word("TOOL CALL").integer("", number);
         self.block.word(self.axes.depth());
@@ -209,6 +225,13 @@ impl Heidenhain {
         self.speed = Modal::default();
         self.spindle_on.forget();
         self.axes.forget();
+        for held in std::mem::take(&mut self.held) {
+            match held {
+                Held::Preselect(number) => self.block.line(&format!("TOOL DEF {number}"), out),
+                Held::Coolant(coolant) => self.cool(coolant, out)?,
+            }
+        }
+        Ok(())
     }
 
     fn turn(&mut self, spindle: Spindle, out: &mut String) -> Result<(), String> {
@@ -224,7 +247,7 @@ impl Heidenhain {
             }
         };
         if self.tool.is_some() {
-            self.call_tool(Some(rpm), out);
+            self.call_tool(Some(rpm), out)?;
             self.speed.set(rpm);
         } else if self.speed.set(rpm) {
             // A tool call, even one for the speed alone, is not allowed under TCP.

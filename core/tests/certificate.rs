@@ -262,7 +262,8 @@ fn the_swing_head_move_of_the_parabolic_paper() {
             };
             let joints = *solutions.iter().find(wanted).expect("the paper's angles");
             // Eq. 11 with the signs of the Lm terms put right: the pivot is the tip plus Lm·u.
-            let pivot = Vector3::new(joints[1], joints[2], joints[3]);
+            // With Z at zero the pivot stands 1200 mm over the table.
+            let pivot = Vector3::new(joints[1], joints[2], joints[3] + 1200.0);
             assert!((pivot - (pose.tip + pose.axis * swing)).norm() < 1e-9);
             (pose, joints)
         });

@@ -23,12 +23,15 @@ const VERIFIED: f64 = 1e-9;
 #[derive(Clone, Copy, Debug)]
 pub struct Branches {
     count: usize,
-    /// The wanted axis behind the held turns in front of the first free joint.
-    u: Vector3<f64>,
-    /// The tool axis between the two turns, one for each branch.
-    z: [Vector3<f64>; 2],
     /// The first free joint turns nothing here.
     pole: bool,
+    /// The wanted axis behind the held turns in front of the first free joint. With two free axes, in
+    /// coordinates: along k1, along `towards`, along `aside`.
+    u: Vector3<f64>,
+    /// The tool axis between the two turns: the coordinate along k1 is that of u, these are along `towards`
+    /// and, up to the sign that tells the branches apart, along `aside`.
+    x: f64,
+    y: f64,
 }
 
 /// One set of rotary angles.
@@ -108,6 +111,9 @@ enum Orientation {
         per_sine: f64,
         /// k2·a.
         cone: f64,
+        /// The part of a across k2, and k2 × that, in the coordinates k1, `towards`, `aside`.
+        across: Vector3<f64>,
+        ahead: Vector3<f64>,
     },
 }
 
@@ -147,9 +153,10 @@ pub enum NoClosedForm {
 impl Branches {
     const ONE: Self = Self {
         count: 1,
-        u: Vector3::new(0.0, 0.0, 0.0),
-        z: [Vector3::new(0.0, 0.0, 0.0); 2],
         pole: false,
+        u: Vector3::new(0.0, 0.0, 0.0),
+        x: 0.0,
+        y: 0.0,
     };
 
     /// How many there are: one or two.
@@ -161,7 +168,7 @@ impl Branches {
     #[inline]
     pub fn apart(&self) -> f64 {
         // The chord of a turn is no longer than its arc.
-        (self.z[0] - self.z[1]).norm()
+        2.0 * self.y
     }
 }
 
@@ -254,13 +261,13 @@ impl Solver {
                     }
                 }
                 let y = square.max(0.0).sqrt();
-                let (middle, side) = (k1 * cosine + towards * x, aside * y);
                 Ok(Branches {
                     // Both roots are one at the edge of reach, and at a pole that k2 meets.
                     count: if y == 0.0 { 1 } else { 2 },
-                    u,
-                    z: [middle + side, middle - side],
                     pole: sine_squared < POLE * POLE,
+                    u: Vector3::new(cosine, towards.dot(&across), aside.dot(&across)),
+                    x,
+                    y,
                 })
             }
         }
@@ -284,17 +291,19 @@ impl Solver {
             }
             Orientation::Two {
                 joints: [first, second],
-                k1,
-                k2,
-                a,
+                across,
+                ahead,
                 ..
             } => {
-                let z = branches.z[index];
-                set.joints[*second] = angle_about(*k2, *a, z);
+                let Branches { u, x, y, .. } = branches;
+                let y = if index == 0 { *y } else { -y };
+                let z = Vector3::new(u.x, *x, y);
+                // k2 takes a, which lies along `across`, into z; k1 takes z into u, seen along k1.
+                set.joints[*second] = libm::atan2(ahead.dot(&z), across.dot(&z));
                 if branches.pole {
                     set.free |= 1 << first;
                 } else {
-                    set.joints[*first] = angle_about(*k1, z, branches.u);
+                    set.joints[*first] = libm::atan2(x * u.z - y * u.y, x * u.y + y * u.z);
                 }
             }
         }
@@ -472,14 +481,21 @@ impl Orientation {
                     };
                     return Ok((one, 1 << second));
                 }
+                let towards = (k2 - k1 * k1.dot(&k2)).normalize();
+                let aside = cross.normalize();
+                let coordinates =
+                    |v: Vector3<f64>| Vector3::new(k1.dot(&v), towards.dot(&v), aside.dot(&v));
+                let across = a - k2 * k2.dot(&a);
                 let two = Self::Two {
                     joints: [first, second],
                     before,
                     k1,
                     k2,
                     a,
-                    towards: (k2 - k1 * k1.dot(&k2)).normalize(),
-                    aside: cross.normalize(),
+                    towards,
+                    aside,
+                    across: coordinates(across),
+                    ahead: coordinates(k2.cross(&across)),
                     dot: k1.dot(&k2),
                     per_sine: 1.0 / sine_squared.sqrt(),
                     cone: k2.dot(&a),

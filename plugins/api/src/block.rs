@@ -68,7 +68,7 @@ impl Block {
 
     /// Adds a word as it is.
     pub fn word(&mut self, word: &str) -> &mut Self {
-        self.space();
+        self.words.push(' ');
         self.words.push_str(word);
         self
     }
@@ -86,8 +86,7 @@ impl Block {
         decimals: u8,
         style: NumberStyle,
     ) -> &mut Self {
-        let space = if self.words.is_empty() { "" } else { " " };
-        style.write_behind([space, address], &mut self.words, value, decimals);
+        style.write_behind([" ", address], &mut self.words, value, decimals);
         self
     }
 
@@ -105,7 +104,8 @@ impl Block {
                 self.number = self.step;
             }
         }
-        out.push_str(&self.words);
+        // Every word has its blank in front; the first needs none.
+        out.push_str(&self.words[1..]);
         out.push('\n');
         self.words.clear();
     }
@@ -113,12 +113,6 @@ impl Block {
     /// A block of one word, or of several given as one.
     pub fn line(&mut self, words: &str, out: &mut String) {
         self.word(words).end(out);
-    }
-
-    fn space(&mut self) {
-        if !self.words.is_empty() {
-            self.words.push(' ');
-        }
     }
 }
 
@@ -160,7 +154,8 @@ pub struct Axes {
 
 #[derive(Clone, Debug)]
 struct Axis {
-    name: String,
+    /// A blank and its address.
+    word: String,
     group: Group,
     decimals: u8,
     last: Modal<f64>,
@@ -181,7 +176,7 @@ impl Axes {
     /// The words of `setup`, with these decimals for linear and rotary ones.
     pub fn new(setup: &Setup<'_>, linear: u8, rotary: u8, style: NumberStyle) -> Self {
         let axes = setup.words.iter().map(|word| Axis {
-            name: word.name.to_owned(),
+            word: format!(" {}", word.name),
             group: match (word.rotary, word.depth) {
                 (true, _) => Group::Rotary,
                 (false, true) => Group::Depth,
@@ -206,7 +201,7 @@ impl Axes {
         self.axes
             .iter()
             .find(|axis| axis.group == Group::Depth)
-            .map_or("Z", |axis| &axis.name)
+            .map_or("Z", |axis| axis.word.trim_start())
     }
 
     /// Where the axes stand is not known any more: the next move writes all its words.
@@ -252,7 +247,7 @@ impl Axes {
 impl Axis {
     fn write(&mut self, block: &mut Block, value: f64, style: NumberStyle) {
         if self.last.set(value) {
-            block.number(&self.name, value, self.decimals, style);
+            style.write_behind([&self.word, ""], &mut block.words, value, self.decimals);
         }
     }
 }

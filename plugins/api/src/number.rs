@@ -94,8 +94,17 @@ impl Look {
             let bytes = out.as_mut_vec();
             let start = bytes.len();
             let mut to = bytes.as_mut_ptr().add(start);
-            for byte in first.bytes().chain(second.bytes()).chain(sign) {
+            // Mostly a blank and a letter: loops are shorter than calls.
+            for &byte in first.as_bytes() {
                 to.write(byte);
+                to = to.add(1);
+            }
+            for &byte in second.as_bytes() {
+                to.write(byte);
+                to = to.add(1);
+            }
+            if let Some(sign) = sign {
+                to.write(sign);
                 to = to.add(1);
             }
             if digits <= 8 {

@@ -40,8 +40,7 @@ pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> Bend {
         if angle == 0.0 {
             continue;
         }
-        let first = joint.direction.cross(&from.arms[index]);
-        let last = joint.direction.cross(&to.arms[index]);
+        let (first, last) = (from.tip_rates[index], to.tip_rates[index]);
         let radius = first.norm_squared().max(last.norm_squared()).sqrt() + tip / 8.0;
         let slope = (last - first).norm() + tip / 2.0;
         tip += angle * (angle * radius + 2.0 * slope);
@@ -96,14 +95,14 @@ fn second_derivatives(
             continue;
         }
         let (sine, cosine) = at.turns.of(index);
-        let advance = |place: Vector3<f64>, slope: &mut Vector3<f64>, bend: &mut Vector3<f64>| {
-            let across = k.cross(&place) * step;
+        let advance = |rate: Vector3<f64>, slope: &mut Vector3<f64>, bend: &mut Vector3<f64>| {
+            let across = rate * step;
             let turned_bend = *bend + k.cross(slope) * (2.0 * step) + k.cross(&across) * step;
             *bend = turn(turned_bend, k, sine, cosine);
             *slope = turn(*slope + across, k, sine, cosine);
         };
-        advance(at.arms[index], &mut tip_slope, &mut tip_bend);
-        advance(at.axes[index], &mut axis_slope, &mut axis_bend);
+        advance(at.tip_rates[index], &mut tip_slope, &mut tip_bend);
+        advance(k.cross(&at.axes[index]), &mut axis_slope, &mut axis_bend);
     }
     (tip_bend, axis_bend)
 }
@@ -121,8 +120,7 @@ fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> Bend {
             continue;
         }
         let grow = |d: &mut [f64; 4], from: Vector3<f64>, to: Vector3<f64>| {
-            let k = joint.direction;
-            let radius = k.cross(&from).norm().max(k.cross(&to).norm()) + d[1] / 8.0;
+            let radius = from.norm().max(to.norm()) + d[1] / 8.0;
             let (w2, w3) = (w * w, w * w * w);
             *d = [
                 w * radius + d[0],
@@ -131,8 +129,9 @@ fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> Bend {
                 w3 * w * radius + 4.0 * w3 * d[0] + 6.0 * w2 * d[1] + 4.0 * w * d[2] + d[3],
             ];
         };
-        grow(&mut tip, from.arms[index], to.arms[index]);
-        grow(&mut axis, from.axes[index], to.axes[index]);
+        grow(&mut tip, from.tip_rates[index], to.tip_rates[index]);
+        let rate = |trace: &Trace| joint.direction.cross(&trace.axes[index]);
+        grow(&mut axis, rate(from), rate(to));
     }
     Bend {
         tip: tip[3],

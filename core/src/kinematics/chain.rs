@@ -48,9 +48,10 @@ pub struct Trace {
     pub joints: Joints,
     /// Their sines and cosines.
     pub turns: Turns,
-    /// For each rotary joint, the tip relative to the joint's point, before that joint turns it, mm.
-    pub arms: [Vector3<f64>; MAX_AXES],
-    /// For each rotary joint, the tool axis before that joint turns it.
+    /// For each rotary joint, how the tip moves with it, mm a radian, before that joint has turned: its
+    /// direction × the arm from its line to the tip.
+    pub tip_rates: [Vector3<f64>; MAX_AXES],
+    /// For each rotary joint, the tool axis before that joint has turned.
     pub axes: [Vector3<f64>; MAX_AXES],
 }
 
@@ -175,7 +176,7 @@ impl Chain {
             if joint.rotary {
                 let (sine, cosine) = trace.turns.of(index);
                 let arm = tip - joint.point;
-                trace.arms[index] = arm;
+                trace.tip_rates[index] = joint.direction.cross(&arm);
                 trace.axes[index] = axis;
                 tip = joint.point + turn(arm, joint.direction, sine, cosine);
                 axis = turn(axis, joint.direction, sine, cosine);

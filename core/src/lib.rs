@@ -13,6 +13,7 @@ pub mod machine;
 mod path;
 mod post;
 pub mod program;
+mod refusal;
 pub mod report;
 pub mod words;
 

@@ -2,12 +2,13 @@
 
 use post_plugin::{Batch, Compensation, DialectSession, Event, Format, ModelSession, Spindle};
 
-use crate::accuracy::{Bound, Linearise, Move, Node, Placer, Refused, Stuck, Tolerances, Which};
-use crate::diagnostic::{Diagnostic, Extreme, Place};
+use crate::accuracy::{Bound, Linearise, Move, Node, Placer, Stuck, Tolerances, Which};
+use crate::diagnostic::{Diagnostic, Place};
 use crate::feed::Feeds;
-use crate::kinematics::{Joints, MAX_AXES, NoClosedForm, Pose, Unreachable};
+use crate::kinematics::{Joints, MAX_AXES, NoClosedForm, Pose};
 use crate::machine::{Machine, Tcp, ToolLength};
 use crate::program::{Motion, Pace, Step, Tool};
+use crate::refusal;
 use crate::report::Deviation;
 use crate::words::Words;
 
@@ -307,7 +308,7 @@ impl<'a> Path<'a> {
             .fill(&mut node, target, 1.0, near, Which::Nearest)
         {
             self.spare = Some(node);
-            self.findings.push(self.refusal(&refused));
+            self.findings.push(refusal::refused(self.machine, &refused));
             return;
         }
         if self.compensating {
@@ -392,8 +393,8 @@ impl<'a> Path<'a> {
                 }
             }
             Err(stuck) => {
-                let finding = self.stuck(&stuck, motion);
-                self.findings.push(finding);
+                self.findings
+                    .push(refusal::stuck(self.machine, &stuck, motion));
             }
         }
         self.linearise = linearise;
@@ -573,106 +574,6 @@ impl<'a> Path<'a> {
             self.failed = true;
         }
         batch.clear();
-    }
-
-    fn refusal(&self, refused: &Refused) -> Diagnostic {
-        let machine = self.machine;
-        match *refused {
-            Refused::Unreachable(Unreachable::Axis { miss }) => Diagnostic::error(
-                "out-of-reach",
-                format!(
-                    "{} cannot point the tool this way: the nearest orientation misses by {:.4}°, {:.4}° is allowed",
-                    machine.name,
-                    miss.to_degrees(),
-                    machine.accuracy.axis_tolerance.to_degrees()
-                ),
-            )
-            .extreme(Extreme {
-                key: u64::MAX,
-                by: miss,
-                value: format!("{:.4}° off", miss.to_degrees()),
-            })
-            .help("another machine, another set-up, or --msys apply if the axes are written in another frame"),
-            Refused::Unreachable(Unreachable::Linear) => Diagnostic::error(
-                "out-of-reach",
-                format!("the linear axes of {} cannot bring the tip here at these angles", machine.name),
-            ),
-            Refused::OverTravel { over, tried } => {
-                let side = u64::from(over.value > over.limit);
-                let axis = &machine.axes[over.joint];
-                let (unit, sign) = if axis.joint.rotary {
-                    (1f64.to_radians(), "°")
-                } else {
-                    (1.0, " mm")
-                };
-                let diagnostic = Diagnostic::error(
-                    "over-travel",
-                    format!(
-                        "{} would be {:.3}{sign}, its limit is {:.3}{sign}; {}",
-                        axis.name,
-                        over.value / unit,
-                        over.limit / unit,
-                        match tried {
-                            1 => "there is no other solution".to_owned(),
-                            tried => format!("none of the {tried} solutions stays inside travel"),
-                        }
-                    ),
-                );
-                let diagnostic = diagnostic.extreme(Extreme {
-                    key: over.joint as u64 * 2 + side,
-                    by: libm::fabs(over.value - over.limit) / unit,
-                    value: format!("{} {:.3}{sign}", axis.name, over.value / unit),
-                });
-                if axis.joint.rotary {
-                    diagnostic.help("another set-up of the part, or a machine that tilts so far")
-                } else {
-                    diagnostic.help("set the part elsewhere with --mount X,Y,Z, give the tool's length, or say --units if the file's units are wrong")
-                }
-            }
-            Refused::Unverified { tip, axis } => Diagnostic::error(
-                "kinematics",
-                format!(
-                    "the solution found misses the point by {tip:.6} mm and {:.6}° when it is put through the chain",
-                    axis.to_degrees()
-                ),
-            )
-            .help("this is a fault of post: please report it with the machine file and this line"),
-        }
-    }
-
-    fn stuck(&self, stuck: &Stuck, motion: &Motion) -> Diagnostic {
-        let machine = self.machine;
-        match stuck {
-            Stuck::Refused(refused) => {
-                let mut diagnostic = self.refusal(refused);
-                diagnostic.message = format!("on the way to this point: {}", diagnostic.message);
-                diagnostic
-            }
-            Stuck::Rounding { tip, axis } => Diagnostic::error(
-                "rounding",
-                format!(
-                    "the decimals of the dialect alone move the tip by {tip:.6} mm and the tool axis by {:.6}°; allowed are {:.6} mm and {:.6}°",
-                    axis.to_degrees(),
-                    machine.accuracy.tolerance - motion.chord,
-                    machine.accuracy.axis_tolerance.to_degrees()
-                ),
-            )
-            .help("more decimals in [control] or a wider tolerance in [accuracy]"),
-            Stuck::Jump { joint, from, to } => Diagnostic::error(
-                "jump",
-                format!(
-                    "{} must jump from {:.3}° to {:.3}° within this cut: no path of the axes keeps the tolerance",
-                    machine.axes[*joint].name,
-                    from.to_degrees(),
-                    to.to_degrees()
-                ),
-            )
-            .help("its travel ends here and the other solution lies far away: retract before this line, or set the part differently"),
-            Stuck::Model(message) => Diagnostic::error(
-                "model",
-                format!("the error model {} cannot answer: {message}", machine.accuracy.model),
-            ),
-        }
     }
 }
 

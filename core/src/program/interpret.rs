@@ -1,34 +1,21 @@
 //! Settles what is modal in a CL file: units, axis, feed, frames, cycles; arcs and splines become chords.
 
-use std::collections::BTreeMap;
-
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use post_grammar::{
     Circle, Coolant as CoolantWord, Cutcom, Cycle, CycleDefinition, Delay, Delta, FeedRate,
-    FeedUnit, LoadTool, Record, Rotate, Sense, Side, Spindle as SpindleWord, SpindleUnit,
-    Statement, Units,
+    FeedUnit, LoadTool, Record, Sense, Side, Spindle as SpindleWord, SpindleUnit, Statement, Units,
 };
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
 use super::arc::Arc;
 use super::cycle::{Drill, Leg};
+use super::frame::Frame;
+use super::met::{Unknown, WordsMet};
 use super::motion::{Motion, Pace, Step, Tool};
 use super::spline::Spline;
 use super::words::{Usage, usage};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::machine::{Insert, ToolLength};
-
-/// What to do with a word that is not known.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Unknown {
-    /// Refuse the file.
-    Error,
-    /// Leave it out and say so.
-    #[default]
-    Warn,
-    /// Write it into the program as a comment.
-    Pass,
-}
 
 /// How a file is to be read.
 #[derive(Clone, Debug, Default)]
@@ -74,11 +61,7 @@ pub struct Interpreter {
     /// `FEDRAT/RAPID` is in force.
     rapid_feed: bool,
     feed: Option<Pace>,
-    msys: Option<(Vector3<f64>, Matrix3<f64>)>,
-    /// Angles of index axes A, B, C, radians.
-    index: [f64; 3],
-    /// Frame of the file seen from the part, by [`Self::index`].
-    turned: Option<Matrix3<f64>>,
+    frame: Frame,
     pending: Option<Pending>,
     cycle: Option<(Drill, Pace)>,
     last_cycle: Option<(Drill, Pace)>,
@@ -92,16 +75,7 @@ pub struct Interpreter {
     cutter_length: Option<f64>,
     finished: bool,
     findings: Vec<Diagnostic>,
-    counts: BTreeMap<String, WordCount>,
-}
-
-/// How often a word was met.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct WordCount {
-    usage: Usage,
-    count: u64,
-    /// Where it was met first.
-    first: Place,
+    met: WordsMet,
 }
 
 /// A curve that is not yet complete.
@@ -127,6 +101,7 @@ impl Interpreter {
     /// Nothing read yet.
     pub fn new(reading: Reading) -> Self {
         let scale = reading.units.map_or(1.0, millimetres);
+        let frame = Frame::new(reading.apply_msys);
         Self {
             reading,
             units: None,
@@ -140,9 +115,7 @@ impl Interpreter {
             rapid: false,
             rapid_feed: false,
             feed: None,
-            msys: None,
-            index: [0.0; 3],
-            turned: None,
+            frame,
             pending: None,
             cycle: None,
             last_cycle: None,
@@ -156,7 +129,7 @@ impl Interpreter {
             cutter_length: None,
             finished: false,
             findings: Vec::new(),
-            counts: BTreeMap::new(),
+            met: WordsMet::default(),
         }
     }
 
@@ -178,10 +151,7 @@ impl Interpreter {
 
     /// Words that were ignored, and how often.
     pub fn ignored(&self) -> impl Iterator<Item = (&str, u64)> {
-        self.counts
-            .iter()
-            .filter(|(_, count)| count.usage == Usage::Ignored)
-            .map(|(word, count)| (word.as_str(), count.count))
+        self.met.ignored()
     }
 
     /// Takes one record and gives the steps it means to `emit`, in order.
@@ -227,40 +197,14 @@ impl Interpreter {
                 ),
             }
         }
-        for (word, count) in &self.counts {
-            if count.usage != Usage::Unknown {
-                continue;
-            }
-            let what = if post_grammar::vocabulary().contains(&word.as_str()) {
-                "is not supported"
-            } else {
-                "is not a word that post knows"
-            };
-            let message = format!("{word} {what}: met {}", times(count.count));
-            let place = Some(count.first.clone());
-            let finding = match self.reading.unknown {
-                Unknown::Error => Diagnostic::error("unknown-word", message)
-                    .help("--unknown=warn leaves it out, --unknown=pass writes it as a comment"),
-                Unknown::Warn => {
-                    Diagnostic::warning("unknown-word", format!("{message}; left out"))
-                }
-                Unknown::Pass => {
-                    Diagnostic::warning("unknown-word", format!("{message}; written as a comment"))
-                }
-            };
-            self.findings.push(finding.at(place));
-        }
+        self.findings.extend(self.met.unknown(self.reading.unknown));
     }
 
     fn other(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
         if self.finished {
             if !matches!(record.statement, Statement::Remark(_) | Statement::Fini) {
                 self.count("FINI", record, Usage::Used);
-                if self
-                    .counts
-                    .get("FINI")
-                    .is_some_and(|count| count.count == 2)
-                {
+                if self.met.times("FINI") == 2 {
                     self.warn(
                         record,
                         "after-fini",
@@ -295,7 +239,7 @@ impl Interpreter {
                     return;
                 }
                 self.tip = Some(tip);
-                let (tip, axis) = self.to_part(tip, self.axis);
+                let (tip, axis) = self.frame.to_part(tip, self.axis);
                 emit(Step::From { tip, axis });
             }
             Statement::Gohome(None) => emit(Step::Home),
@@ -344,7 +288,15 @@ impl Interpreter {
                     self.axis = Vector3::z();
                 }
             }
-            Statement::Msys { origin, x, y } => self.msys(record, *origin, *x, *y),
+            Statement::Msys { origin, x, y } => {
+                let origin = self.point(*origin);
+                let done = self
+                    .frame
+                    .set_msys(origin, Vector3::from(*x), Vector3::from(*y));
+                if let Err(message) = done {
+                    self.fault(record, "msys", message.to_owned(), "");
+                }
+            }
             Statement::Circle(circle) => {
                 if self.pending.is_some() {
                     self.fault(
@@ -376,11 +328,25 @@ impl Interpreter {
             Statement::Knot(_) | Statement::Control { .. } => self.spline_data(record),
             Statement::Cycle(cycle) => self.cycle(record, cycle),
             Statement::Cutcom(cutcom) => self.cutcom(*cutcom, emit),
-            Statement::Rotate(rotate) => self.rotate(record, rotate),
+            Statement::Rotate(rotate) => match self.frame.rotate(rotate) {
+                Ok(()) => {
+                    self.axis = match (self.frame.turned(), self.told_axis) {
+                        (None, Some(axis)) => axis,
+                        _ => Vector3::z(),
+                    };
+                    self.check_axis = self.frame.turned().is_some();
+                }
+                Err(message) => self.fault(
+                    record,
+                    "rotabl",
+                    message.to_owned(),
+                    "write ROTABL/AAXIS,…, BAXIS or CAXIS",
+                ),
+            },
             Statement::ToolAxis(axis) => match Vector3::from(*axis).try_normalize(1e-9) {
                 Some(axis) => {
                     self.told_axis = Some(axis);
-                    if self.turned.is_none() {
+                    if self.frame.turned().is_none() {
                         self.axis = axis;
                     }
                 }
@@ -456,7 +422,7 @@ impl Interpreter {
             return;
         }
         if std::mem::take(&mut self.check_axis)
-            && let (Some(turned), Some(told)) = (&self.turned, self.told_axis)
+            && let (Some(turned), Some(told)) = (self.frame.turned(), self.told_axis)
             && (turned * self.axis - told).norm() > 1e-3
         {
             self.fault(
@@ -548,30 +514,13 @@ impl Interpreter {
             self.load(&tool, emit);
         }
         self.tip = Some(tip);
-        let (tip, axis) = self.to_part(tip, self.axis);
+        let (tip, axis) = self.frame.to_part(tip, self.axis);
         emit(Step::Move(Motion {
             tip,
             axis,
             pace,
             chord,
         }));
-    }
-
-    /// From the frame of the file to that of the part.
-    #[inline]
-    fn to_part(&self, tip: Vector3<f64>, axis: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-        let (mut tip, mut axis) = (tip, axis);
-        if let Some(turned) = &self.turned {
-            tip = turned * tip;
-            axis = turned * axis;
-        }
-        if self.reading.apply_msys
-            && let Some((origin, rows)) = &self.msys
-        {
-            tip = rows * (tip - origin);
-            axis = rows * axis;
-        }
-        (tip, axis)
     }
 
     fn arc(
@@ -924,81 +873,9 @@ impl Interpreter {
         }
     }
 
-    fn msys(&mut self, record: &Record<'_>, origin: [f64; 3], x: [f64; 3], y: [f64; 3]) {
-        let (x, y) = (Vector3::from(x), Vector3::from(y));
-        let z = x.cross(&y);
-        if (z.norm() - 1.0).abs() > 1e-3 {
-            self.fault(
-                record,
-                "msys",
-                "X and Y of this MSYS are not two unit vectors at a right angle".to_owned(),
-                "",
-            );
-            return;
-        }
-        // Seven decimals leave the axes a little off: make them a rotation.
-        let z = z.normalize();
-        let x = x.normalize();
-        let rows = Matrix3::from_rows(&[x.transpose(), z.cross(&x).transpose(), z.transpose()]);
-        self.msys = Some((self.point(origin), rows));
-    }
-
-    /// `ROTABL`: the points that follow are written in the turned part's frame.
-    fn rotate(&mut self, record: &Record<'_>, rotate: &Rotate) {
-        let Some(place) = rotate.axis.and_then(|axis| "ABC".find(axis)) else {
-            self.fault(
-                record,
-                "rotabl",
-                "this index move names no axis".to_owned(),
-                "write ROTABL/AAXIS,…, BAXIS or CAXIS",
-            );
-            return;
-        };
-        let angle = if rotate.radians {
-            rotate.angle
-        } else {
-            rotate.angle.to_radians()
-        };
-        let angle = match rotate.sense {
-            Some(Sense::Clockwise) => -angle,
-            _ => angle,
-        };
-        if rotate.incremental {
-            self.index[place] += angle;
-        } else {
-            self.index[place] = angle;
-        }
-        // Radians with six decimals do not quite undo one another, nor quite reach a right angle.
-        let eighth = std::f64::consts::FRAC_PI_4;
-        let near = libm::round(self.index[place] / eighth) * eighth;
-        if libm::fabs(self.index[place] - near) < 2e-6 {
-            self.index[place] = near;
-        }
-        let turn = |k: Vector3<f64>, angle: f64| {
-            nalgebra::Rotation3::from_axis_angle(&nalgebra::Unit::new_unchecked(k), angle)
-        };
-        let [a, b, c] = self.index;
-        let rotation = turn(Vector3::x(), a) * turn(Vector3::y(), b) * turn(Vector3::z(), c);
-        self.turned = (self.index != [0.0; 3]).then(|| rotation.into_inner());
-        self.axis = match (&self.turned, self.told_axis) {
-            (None, Some(axis)) => axis,
-            _ => Vector3::z(),
-        };
-        self.check_axis = self.turned.is_some();
-    }
-
     fn count(&mut self, word: &str, record: &Record<'_>, usage: Usage) {
-        if let Some(count) = self.counts.get_mut(word) {
-            count.count += 1;
-            return;
-        }
-        let first = record_place(&self.reading.file, record);
-        let count = WordCount {
-            usage,
-            count: 1,
-            first,
-        };
-        self.counts.insert(word.to_owned(), count);
+        self.met
+            .count(word, usage, || record_place(&self.reading.file, record));
     }
 
     fn place(&self, record: &Record<'_>) -> Option<Place> {
@@ -1046,12 +923,4 @@ fn millimetres(units: Units) -> f64 {
 
 fn is_inch(units: Units) -> bool {
     matches!(units, Units::Inch | Units::Foot)
-}
-
-fn times(count: u64) -> String {
-    match count {
-        1 => "once".to_owned(),
-        2 => "twice".to_owned(),
-        count => format!("{count} times"),
-    }
 }

@@ -2,12 +2,15 @@
 
 mod arc;
 mod cycle;
+mod frame;
 mod interpret;
+mod met;
 mod motion;
 mod spline;
 mod words;
 
 pub(crate) use interpret::record_place;
-pub use interpret::{Interpreter, Reading, Unknown};
+pub use interpret::{Interpreter, Reading};
+pub use met::Unknown;
 pub use motion::{Motion, Pace, Step, Tool};
 pub use words::{Usage, usage};

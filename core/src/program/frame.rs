@@ -1,0 +1,116 @@
+//! From the frame that a CL file is written in to that of the part: index moves and `MSYS`.
+
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use post_grammar::{Rotate, Sense};
+
+/// The frame in force.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Frame {
+    /// Take points and axes into the frame of `MSYS`.
+    apply_msys: bool,
+    /// Origin in mm, and the frame's axes as rows.
+    msys: Option<(Vector3<f64>, Matrix3<f64>)>,
+    /// Angles of the index axes A, B, C, radians.
+    index: [f64; 3],
+    /// The turned part's frame seen from the part; none if no index axis is turned.
+    turned: Option<Matrix3<f64>>,
+}
+
+/// Angles with six decimals of a radian do not quite reach a right angle: so far they are taken as one.
+const NEAR: f64 = 2e-6;
+
+impl Frame {
+    /// The part's own frame.
+    pub(crate) fn new(apply_msys: bool) -> Self {
+        Self {
+            apply_msys,
+            ..Self::default()
+        }
+    }
+
+    /// Takes an `MSYS`; `origin` in mm.
+    ///
+    /// # Errors
+    /// If X and Y are not two unit vectors at a right angle.
+    pub(crate) fn set_msys(
+        &mut self,
+        origin: Vector3<f64>,
+        x: Vector3<f64>,
+        y: Vector3<f64>,
+    ) -> Result<(), &'static str> {
+        let z = x.cross(&y);
+        if (z.norm() - 1.0).abs() > 1e-3 {
+            return Err("X and Y of this MSYS are not two unit vectors at a right angle");
+        }
+        // Seven decimals leave the axes a little off: make them a rotation.
+        let z = z.normalize();
+        let x = x.normalize();
+        let rows = Matrix3::from_rows(&[x.transpose(), z.cross(&x).transpose(), z.transpose()]);
+        self.msys = Some((origin, rows));
+        Ok(())
+    }
+
+    /// Takes an index move (`ROTABL`): the points that follow are written in the turned part's frame.
+    ///
+    /// # Errors
+    /// If no axis is named.
+    pub(crate) fn rotate(&mut self, rotate: &Rotate) -> Result<(), &'static str> {
+        let place = rotate
+            .axis
+            .and_then(|axis| "ABC".find(axis))
+            .ok_or("this index move names no axis")?;
+        let angle = if rotate.radians {
+            rotate.angle
+        } else {
+            rotate.angle.to_radians()
+        };
+        let angle = match rotate.sense {
+            Some(Sense::Clockwise) => -angle,
+            _ => angle,
+        };
+        let angle = if rotate.incremental {
+            self.index[place] + angle
+        } else {
+            angle
+        };
+        let eighth = std::f64::consts::FRAC_PI_4;
+        let near = (angle / eighth).round() * eighth;
+        self.index[place] = if (angle - near).abs() < NEAR {
+            near
+        } else {
+            angle
+        };
+        let turn = |k: Vector3<f64>, angle: f64| {
+            Rotation3::from_axis_angle(&Unit::new_unchecked(k), angle)
+        };
+        let [a, b, c] = self.index;
+        let rotation = turn(Vector3::x(), a) * turn(Vector3::y(), b) * turn(Vector3::z(), c);
+        self.turned = (self.index != [0.0; 3]).then(|| rotation.into_inner());
+        Ok(())
+    }
+
+    /// The turned part's frame seen from the part, if an index axis is turned.
+    pub(crate) fn turned(&self) -> Option<&Matrix3<f64>> {
+        self.turned.as_ref()
+    }
+
+    /// A point (mm) and an axis, taken to the frame of the part.
+    #[inline]
+    pub(crate) fn to_part(
+        &self,
+        mut tip: Vector3<f64>,
+        mut axis: Vector3<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        if let Some(turned) = &self.turned {
+            tip = turned * tip;
+            axis = turned * axis;
+        }
+        if self.apply_msys
+            && let Some((origin, rows)) = &self.msys
+        {
+            tip = rows * (tip - origin);
+            axis = rows * axis;
+        }
+        (tip, axis)
+    }
+}

@@ -21,6 +21,9 @@ pub trait Output {
     fn write(&mut self, text: &[u8]) -> Result<(), String>;
 }
 
+/// Deviations that differ by less are the same: mm or radians.
+const EQUAL: f64 = 1e-9;
+
 /// Events are handed over in runs of this length: from some dozens on, the plugin boundary costs nothing.
 const BATCH: usize = 256;
 
@@ -466,13 +469,17 @@ impl<'a> Path<'a> {
             axis: bound.axis.min(tight.axis),
         });
         for &slot in slots {
-            if tight[slot] > self.tally.deviations[slot].value {
-                self.tally.deviations[slot] = Deviation {
+            let deviation = &mut self.tally.deviations[slot];
+            // Of blocks that are equal but for rounding errors, the first is named.
+            if tight[slot] > deviation.value + EQUAL {
+                *deviation = Deviation {
                     value: tight[slot],
                     block: 0,
                     line,
                 };
                 self.marks[slot] = Some(self.batch.len());
+            } else {
+                deviation.value = deviation.value.max(tight[slot]);
             }
         }
     }

@@ -86,6 +86,22 @@ const GOOD: &[(&str, &str, &str)] = &[
         "--msys apply --tool-length 150",
     ),
     ("nx_HumMan_cutcom.clsf", "vmc", ""),
+    // Cutter compensation on an indexed table: the tool stands upright in the machine.
+    (
+        "camworks_neMoguta_UniSource.clt",
+        "ac-trunnion",
+        "--tool 1 --tool-length 150",
+    ),
+    (
+        "swcam_aamorim_Interface-glue.clt",
+        "ac-trunnion",
+        "--tool 1 --tool-length 150",
+    ),
+    (
+        "swcam_aamorim_Teste-Metrologia.apt",
+        "ac-trunnion",
+        "--tool-length 80",
+    ),
     ("nx_HumMan_nurbs.clsf", "head-head", "--tool 1"),
     ("nx_HumMan_nurbs.clsf", "disc-cutter", "--tool 1"),
     ("nx_HumMan_deep_drill.clsf", "vmc", "--tool 1"),

@@ -53,6 +53,8 @@ pub struct Path<'a> {
     turning: bool,
     /// That it was not is told once a program.
     told_spindle: bool,
+    /// That compensation cannot be, likewise.
+    told_compensation: bool,
     batch: Batch,
     text: Vec<u8>,
     ends: Vec<usize>,
@@ -137,6 +139,7 @@ impl<'a> Path<'a> {
             compensating: false,
             turning: false,
             told_spindle: false,
+            told_compensation: false,
             batch: Batch::default(),
             text: Vec::new(),
             ends: Vec::new(),
@@ -516,6 +519,9 @@ impl<'a> Path<'a> {
             return;
         };
         self.compensating = false;
+        if std::mem::replace(&mut self.told_compensation, true) {
+            return;
+        }
         self.findings.push(
             Diagnostic::error(
                 "compensation",

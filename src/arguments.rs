@@ -101,7 +101,7 @@ pub struct PostArguments {
     pub unknown: UnknownArgument,
 
     /// Number of the tool, for a CL file that loads none.
-    #[arg(long, value_name = "N", help_heading = "Reading")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Reading")]
     pub tool: Option<u32>,
 
     /// Where the part origin sits for this job, all axes at zero, machine frame, mm.
@@ -119,7 +119,7 @@ pub struct PostArguments {
         long,
         value_name = "MM",
         allow_hyphen_values = true,
-        value_parser = finite,
+        value_parser = not_negative,
         help_heading = "Machine"
     )]
     pub tool_length: Option<f64>,
@@ -199,6 +199,13 @@ fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ => Err(format!("`{text}` is no number")),
+    }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        number if number >= 0.0 => Ok(number),
+        number => Err(format!("{number} is below zero")),
     }
 }
 

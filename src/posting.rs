@@ -86,12 +86,23 @@ fn create(path: &Path) -> Result<Whole, Vec<Diagnostic>> {
 }
 
 fn fault_at(path: &Path, error: &io::Error) -> Vec<Diagnostic> {
-    let place = if path == standard() {
-        "standard output".to_owned()
-    } else {
-        path.display().to_string()
-    };
-    one("output", format!("{place}: {error}"))
+    if path == standard() {
+        return one("output", format!("standard output: {error}"));
+    }
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    match folder {
+        Some(folder) if !folder.is_dir() => one(
+            "output",
+            format!(
+                "{}: there is no folder {}",
+                path.display(),
+                folder.display()
+            ),
+        ),
+        _ => one("output", format!("{}: {error}", path.display())),
+    }
 }
 
 /// The summary's file, opened before the work begins: a program without its summary would be half a result.
@@ -108,7 +119,11 @@ fn summary_file(
         return Err(vec![
             Diagnostic::error(
                 "output",
-                format!("the summary would overwrite {}", path.display()),
+                if path == standard() {
+                    "program and summary cannot both go to standard output".to_owned()
+                } else {
+                    format!("the summary would overwrite {}", path.display())
+                },
             )
             .help("name another file with --summary"),
         ]);

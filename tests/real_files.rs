@@ -738,3 +738,48 @@ fn real_files_are_read_back() {
         read_back(&data.join(case.name), &case);
     }
 }
+
+/// Arcs of NX go clockwise about their axis. Made the other way round they would be the outer three quarters of
+/// their circles, and the axes would travel beyond the points of the file by up to a diameter.
+#[test]
+fn arcs_of_nx_stay_among_the_points_of_the_file() {
+    let Some(folder) = data() else {
+        return;
+    };
+    for (file, machine, arguments) in [
+        ("nx_HumMan_cutcom.clsf", "vmc", ""),
+        ("nx_HumMan__3_PAZ_125_N2.cls", "head-head", "--tool 1"),
+    ] {
+        let text = fs::read_to_string(folder.join(file)).unwrap();
+        let points: Vec<Vec<f64>> = text
+            .lines()
+            .filter_map(|line| line.trim().strip_prefix("GOTO/"))
+            .map(|rest| {
+                rest.split(',')
+                    .take(2)
+                    .map(|number| number.trim().parse().unwrap())
+                    .collect()
+            })
+            .collect();
+        let (done, summary) = post(&folder.join(file), machine, arguments);
+        let summary = summary.unwrap_or_else(|| panic!("{file}: {}", done.err));
+        for (coordinate, name) in ["X", "Y"].into_iter().enumerate() {
+            let axis = summary["axes"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .find(|axis| axis["name"] == name)
+                .unwrap();
+            let span = axis["max"].as_f64().unwrap() - axis["min"].as_f64().unwrap();
+            let values = points.iter().map(|point| point[coordinate]);
+            let least = values.clone().fold(f64::INFINITY, f64::min);
+            let most = values.fold(f64::NEG_INFINITY, f64::max);
+            // A quarter of an arc may bulge beyond the points by a little.
+            assert!(
+                span < (most - least) * 1.02 + 1.0,
+                "{file} {name}: {span} for {}",
+                most - least
+            );
+        }
+    }
+}

@@ -51,6 +51,8 @@ pub struct Path<'a> {
     compensating: bool,
     /// The spindle was switched on since the last tool change.
     turning: bool,
+    /// What the CL file last said of it.
+    commanded: Option<Spindle>,
     /// That it was not is told once a program.
     told_spindle: bool,
     /// That compensation cannot be, likewise.
@@ -138,6 +140,7 @@ impl<'a> Path<'a> {
             positioned: false,
             compensating: false,
             turning: false,
+            commanded: None,
             told_spindle: false,
             told_compensation: false,
             batch: Batch::default(),
@@ -219,6 +222,7 @@ impl<'a> Path<'a> {
             Step::Preselect(number) => self.push(line, Event::Preselect { number }),
             Step::Spindle(spindle) => {
                 self.turning = matches!(spindle, Spindle::On { .. });
+                self.commanded = self.turning.then_some(spindle);
                 self.push(line, Event::Spindle(spindle));
             }
             Step::Coolant(coolant) => self.push(line, Event::Coolant(coolant)),
@@ -352,6 +356,18 @@ impl<'a> Path<'a> {
         let count = self.format.words.len();
         self.keep_range(node);
         self.tally.blocks += 1;
+        if let (false, Some(spindle)) = (self.turning, self.commanded) {
+            // The tool change stopped it, and the CL file takes it to be turning.
+            self.turning = true;
+            self.push(line, Event::Spindle(spindle));
+            self.findings.push(
+                Diagnostic::warning(
+                    "spindle",
+                    "no SPINDL since the tool change; the spindle was switched on again as before it",
+                )
+                .help("check that the speed fits the new tool"),
+            );
+        }
         self.push(
             line,
             Event::Position {

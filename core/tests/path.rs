@@ -1136,7 +1136,8 @@ fn cycles_are_drilled_in_order() {
         ("Linear", -3.5),
         ("Rapid", 1.0),
     ];
-    let expected: Vec<_> = [&hole[..], &hole[..], &[("Rapid", 50.0)]].concat();
+    // Aside at the height where the tool stands, and only then down.
+    let expected: Vec<_> = [&[("Rapid", 50.0)], &hole[..], &hole[..], &[("Rapid", 50.0)]].concat();
     assert_eq!(heights(&run_deep), expected);
     let feeds: Vec<_> = run_deep
         .asked
@@ -1150,6 +1151,7 @@ fn cycles_are_drilled_in_order() {
     assert_eq!(
         heights(&run_drill),
         [
+            ("Rapid", 50.0),
             ("Rapid", 25.0),
             ("Rapid", 3.0),
             ("Linear", -10.0),

@@ -281,11 +281,13 @@ pub enum Units {
 pub struct Circle {
     /// The centre.
     pub centre: Point,
-    /// The axis. Its sign gives the sense of turning (right-handed) where no word does.
+    /// The axis. Without a sense the arc is counter-clockwise (right-handed) about it.
     pub axis: Direction,
     /// The radius, if given.
     pub radius: Option<f64>,
-    /// A sense word (CAMWorks), as written; it repeats what the axis says or contradicts it.
+    /// Sense of turning about the axis: a word (CAMWorks), or clockwise in the form of eleven numbers, since
+    /// NX points the axis of its arcs so that they go clockwise about it (its documentation of the CLSF's CIRCLE;
+    /// all arcs of the collected files meet their neighbours tangentially that way, and none the other).
     pub sense: Option<Sense>,
     /// `TIMES,n`: whole turns in all.
     pub turns: Option<u32>,

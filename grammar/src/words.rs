@@ -520,7 +520,8 @@ fn circle(items: &mut Items<'_, '_>) -> Read<Statement> {
         centre: [numbers[0], numbers[1], numbers[2]],
         axis: [numbers[3], numbers[4], numbers[5]],
         radius,
-        sense: None,
+        // NX means its axis so that the arc goes clockwise about it.
+        sense: (numbers.len() == 11).then_some(Sense::Clockwise),
         turns: None,
     };
     while let Some(item) = items.take() {

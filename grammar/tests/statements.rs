@@ -88,15 +88,20 @@ fn arcs_and_splines() {
     };
     same(
         Statement::Circle(arc.clone()),
-        &[
-            "CIRCLE/1,2,3,0,0,-1,56.25,0.06,0.5,125.0,1.0",
-            "CIRCLE / 1, 2, 3, 0, 0, -1, 56.25",
-        ],
+        &["CIRCLE / 1, 2, 3, 0, 0, -1, 56.25"],
+    );
+    let nx = Circle {
+        sense: Some(Sense::Clockwise),
+        ..arc.clone()
+    };
+    same(
+        Statement::Circle(nx.clone()),
+        &["CIRCLE/1,2,3,0,0,-1,56.25,0.06,0.5,125.0,1.0"],
     );
     same(
         Statement::Circle(Circle {
             turns: Some(2),
-            ..arc.clone()
+            ..nx
         }),
         &["CIRCLE/1,2,3,0,0,-1,56.25,0.06,0.5,125.0,1.0,TIMES,2"],
     );

@@ -519,7 +519,18 @@ impl Builder<'_> {
         let mut tools = Vec::new();
         for (number, length) in &file.tools {
             match number.parse() {
-                Ok(number) => tools.push((number, self.number(length))),
+                Ok(number) => {
+                    let value = self.number(length);
+                    if value < 0.0 {
+                        self.fault(
+                            "machine-tools",
+                            length.span(),
+                            format!("tool {number} has the length {value}, below zero"),
+                            "lengths go from the gauge point to the tip",
+                        );
+                    }
+                    tools.push((number, value));
+                }
                 Err(_) => self.fault(
                     "machine-tools",
                     length.span(),

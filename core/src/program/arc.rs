@@ -72,6 +72,13 @@ impl Arc {
         libm::fabs(self.end_radius - self.start_radius)
     }
 
+    /// The distance between ends so near that a whole turn may be meant, mm.
+    pub(crate) fn doubtful(&self) -> Option<f64> {
+        let gap = (self.at(1.0) - self.at(0.0) - self.axis * (self.end_height - self.start_height))
+            .norm();
+        (CLOSED..10.0 * CLOSED).contains(&gap).then_some(gap)
+    }
+
     /// The largest of its radii, mm.
     pub(crate) fn radius(&self) -> f64 {
         self.start_radius.max(self.end_radius)

@@ -1,6 +1,6 @@
 //! Cycles become moves: approach, peck, dwell, retract, along the tool axis.
 
-use post_grammar::CycleDefinition;
+use post_grammar::{Argument, CycleDefinition};
 
 /// How a cycle drills, lengths in mm along the tool axis from the programmed point, plus is away from the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +38,12 @@ pub(crate) enum Leg {
     Dwell(f64),
 }
 
+/// Kinds that rapid, feed, dwell and feed or rapid back make.
+const KINDS: [&str; 12] = [
+    "DRILL", "DEEP", "BRKCHP", "BORE", "REAM", "FACE", "CSINK", "CBORE", "CDRILL", "SPOT", "THRU",
+    "PECKING",
+];
+
 /// Above the last depth a peck begins at feed, and a chip is broken by going back so far: mm.
 const GAP: f64 = 0.5;
 
@@ -51,17 +57,31 @@ impl Drill {
     /// What cannot be made as moves, as a sentence.
     pub(crate) fn new(cycle: &CycleDefinition, scale: f64) -> Result<Self, String> {
         let is = |kind: &str| cycle.kinds.iter().any(|word| word == kind);
-        if let Some(kind) = cycle
-            .kinds
-            .iter()
-            .find(|kind| matches!(kind.as_str(), "TAP" | "THREAD" | "MILL"))
-        {
-            return Err(format!(
-                "CYCLE/{kind} ties the feed to the spindle's turns, which moves cannot do"
-            ));
+        for kind in &cycle.kinds {
+            match kind.as_str() {
+                "TAP" | "THREAD" | "RTAP" | "TAPPING" => {
+                    return Err(format!(
+                        "CYCLE/{kind} ties the feed to the spindle's turns, which moves cannot do"
+                    ));
+                }
+                kind if KINDS.contains(&kind) => {}
+                kind => {
+                    return Err(format!(
+                        "CYCLE/{kind} is not a cycle that post can make as moves"
+                    ));
+                }
+            }
         }
         let depth = cycle.depth.ok_or("the cycle has no depth")?;
-        let clearance = cycle.clearance.unwrap_or(0.0) * scale;
+        let clearance = cycle
+            .clearance
+            .ok_or("the cycle has no clearance (RAPTO, CLEAR): the rapid would end on the part")?
+            * scale;
+        if clearance < 0.0 {
+            return Err(format!(
+                "a clearance of {clearance} mm lies below the point: the rapid would end in the part"
+            ));
+        }
         let bottom = -libm::fabs(depth) * scale;
         let retract = cycle
             .retract
@@ -91,6 +111,29 @@ impl Drill {
             dwell: cycle.dwell.unwrap_or(0.0),
             feed_out: is("BORE") || is("REAM"),
         })
+    }
+
+    /// Level between the holes.
+    pub(crate) fn retract(&self) -> f64 {
+        self.retract
+    }
+
+    /// Words of a definition that have no effect here.
+    pub(crate) fn left_out(cycle: &CycleDefinition) -> impl Iterator<Item = String> {
+        let pecks = cycle.step.is_none()
+            && cycle
+                .kinds
+                .iter()
+                .any(|kind| kind == "DEEP" || kind == "BRKCHP");
+        let pecks = pecks.then(|| "the pecks, since there is no STEP".to_owned());
+        pecks
+            .into_iter()
+            .chain(cycle.rest.iter().filter_map(|argument| match argument {
+                // CAMWorks states the level twice and a second peck.
+                Argument::Word(word) if word == "G98" => None,
+                Argument::Word(word) => Some(word.clone()),
+                Argument::Number(_) => None,
+            }))
     }
 
     /// Calls `emit` with the legs at one point, in order.

@@ -48,7 +48,6 @@ pub struct Interpreter {
     scale: f64,
     /// Some feed word names a metric or an inch unit.
     feed_units: Option<Units>,
-    multax: Option<bool>,
     /// Modal tool axis, frame of the file.
     axis: Vector3<f64>,
     /// `TLAXIS`, part frame.
@@ -60,22 +59,39 @@ pub struct Interpreter {
     rapid: bool,
     /// `FEDRAT/RAPID` is in force.
     rapid_feed: bool,
-    feed: Option<Pace>,
+    feed: Option<FeedWord>,
     frame: Frame,
     pending: Option<Pending>,
-    cycle: Option<(Drill, Pace)>,
-    last_cycle: Option<(Drill, Pace)>,
+    cycle: Option<(Drill, FeedWord)>,
+    last_cycle: Option<(Drill, FeedWord)>,
     rpm: Option<f64>,
     sense: SpindleSense,
     coolant: Coolant,
     side: Option<Side>,
-    tool: Option<u32>,
+    /// Number, register and length (as written) of the tool in the spindle.
+    loaded: Option<(u32, u32, Option<f64>)>,
+    /// A further cutter was described, and no tool was loaded for it.
+    cutter_changed: bool,
+    /// Some move was read since the last tool was loaded.
+    cut_any: bool,
+    told_cutter: bool,
+    /// Cutter compensation is in force, and its register.
+    compensated: bool,
+    register: Option<u32>,
     tool_name: String,
     diameter: Option<f64>,
     cutter_length: Option<f64>,
     finished: bool,
     findings: Vec<Diagnostic>,
     met: WordsMet,
+}
+
+/// A feed as the file has it; one a revolution waits for the speed of the spindle at the move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum FeedWord {
+    Pace(Pace),
+    /// mm.
+    PerRevolution(f64),
 }
 
 /// A curve that is not yet complete.
@@ -107,7 +123,6 @@ impl Interpreter {
             units: None,
             scale,
             feed_units: None,
-            multax: None,
             axis: Vector3::z(),
             told_axis: None,
             check_axis: false,
@@ -123,7 +138,12 @@ impl Interpreter {
             sense: SpindleSense::Clockwise,
             coolant: Coolant::Flood,
             side: None,
-            tool: None,
+            loaded: None,
+            cutter_changed: false,
+            cut_any: false,
+            told_cutter: false,
+            compensated: false,
+            register: None,
             tool_name: String::new(),
             diameter: None,
             cutter_length: None,
@@ -135,7 +155,7 @@ impl Interpreter {
 
     /// A tool was loaded.
     pub fn has_tool(&self) -> bool {
-        self.tool.is_some()
+        self.loaded.is_some()
     }
 
     /// Findings since the last call.
@@ -242,14 +262,21 @@ impl Interpreter {
                 let (tip, axis) = self.frame.to_part(tip, self.axis);
                 emit(Step::From { tip, axis });
             }
-            Statement::Gohome(None) => emit(Step::Home),
+            Statement::Gohome(None) => {
+                self.rapid = false;
+                self.tip = None;
+                emit(Step::Home);
+            }
             Statement::Gohome(Some((point, axis))) => {
                 self.rapid = true;
                 self.goto(record, *point, *axis, emit);
             }
             Statement::Rapid => self.rapid = true,
             Statement::Feed(feed) => self.set_feed(record, *feed),
-            Statement::Spindle(spindle) => self.spindle(record, *spindle, emit),
+            Statement::Spindle(spindle) => {
+                self.load_told(record, emit);
+                self.spindle(record, *spindle, emit);
+            }
             Statement::Coolant(word) => {
                 let coolant = match word {
                     CoolantWord::Off => Coolant::Off,
@@ -262,28 +289,32 @@ impl Interpreter {
                 if coolant != Coolant::Off {
                     self.coolant = coolant;
                 }
+                self.load_told(record, emit);
                 emit(Step::Coolant(coolant));
             }
-            Statement::LoadTool(tool) => self.load(tool, emit),
+            Statement::LoadTool(tool) => self.load(record, tool, emit),
             Statement::SelectTool(number) => {
-                if self.tool != Some(*number) {
+                if self.loaded.map(|(loaded, ..)| loaded) != Some(*number) {
                     emit(Step::Preselect(*number));
                 }
             }
-            Statement::ToolData { numbers, .. } => {
-                self.diameter = numbers.first().map(|diameter| diameter * self.scale);
-                self.cutter_length = numbers.get(2).map(|length| length * self.scale);
-            }
-            Statement::Cutter(numbers) => {
-                self.diameter = numbers.first().map(|diameter| diameter * self.scale);
-                self.cutter_length = numbers.get(6).map(|length| length * self.scale);
-            }
+            Statement::ToolData { numbers, .. } => self.cutter(numbers, 2),
+            Statement::Cutter(numbers) => self.cutter(numbers, 6),
             Statement::Units(units) => {
+                let scale = millimetres(self.reading.units.unwrap_or(*units));
+                if scale != self.scale && (self.tip.is_some() || self.feed.is_some()) {
+                    self.fault(
+                        record,
+                        "units",
+                        "UNITS comes after points or feeds that were read in other units"
+                            .to_owned(),
+                        "put it before them, or say --units",
+                    );
+                }
                 self.units = Some(*units);
-                self.scale = millimetres(self.reading.units.unwrap_or(*units));
+                self.scale = scale;
             }
             Statement::Multax(on) => {
-                self.multax = Some(*on);
                 if !on {
                     self.axis = Vector3::z();
                 }
@@ -421,6 +452,17 @@ impl Interpreter {
         if !self.set_axis(record, axis) {
             return;
         }
+        if self.loaded.is_none() {
+            self.load_told(record, emit);
+        }
+        if self.cutter_changed && !self.told_cutter {
+            self.told_cutter = true;
+            self.warn(
+                record,
+                "cutter",
+                "another cutter was described (CUTTER, TLDATA), but no tool was loaded for it: this is cut with the tool before".to_owned(),
+            );
+        }
         if std::mem::take(&mut self.check_axis)
             && let (Some(turned), Some(told)) = (self.frame.turned(), self.told_axis)
             && (turned * self.axis - told).norm() > 1e-3
@@ -445,8 +487,10 @@ impl Interpreter {
                 self.end_spline(record, emit);
             }
         }
-        if let Some((drill, pace)) = self.cycle {
-            self.drill(drill, pace, tip, emit);
+        if let Some((drill, feed)) = self.cycle {
+            if let Some(pace) = self.resolved(record, feed) {
+                self.drill(drill, pace, tip, emit);
+            }
             return;
         }
         if let Some(pace) = self.pace(record) {
@@ -486,7 +530,7 @@ impl Interpreter {
         if std::mem::take(&mut self.rapid) || self.rapid_feed {
             return Some(Pace::Rapid);
         }
-        if self.feed.is_none() {
+        let Some(feed) = self.feed else {
             if self.tip.is_none() {
                 // The first approach of a file that names no feed yet comes from the tool change.
                 return Some(Pace::Rapid);
@@ -497,23 +541,36 @@ impl Interpreter {
                 "this move has no feed: no FEDRAT before it, and no RAPID".to_owned(),
                 "the CAM system must write a FEDRAT",
             );
+            return None;
+        };
+        self.resolved(record, feed)
+    }
+
+    /// A feed word as the spindle turns now.
+    #[inline]
+    fn resolved(&mut self, record: &Record<'_>, feed: FeedWord) -> Option<Pace> {
+        match (feed, self.rpm) {
+            (FeedWord::Pace(pace), _) => Some(pace),
+            (FeedWord::PerRevolution(feed), Some(rpm)) if rpm > 0.0 => {
+                Some(Pace::PerMinute(feed * rpm))
+            }
+            (FeedWord::PerRevolution(_), _) => {
+                self.fault(
+                    record,
+                    "feed",
+                    "a feed per revolution needs a spindle speed".to_owned(),
+                    "put a SPINDL before it",
+                );
+                None
+            }
         }
-        self.feed
     }
 
     /// Emits one straight move and keeps its end.
     #[inline]
     fn advance(&mut self, tip: Vector3<f64>, pace: Pace, chord: f64, emit: &mut impl FnMut(Step)) {
-        if self.tool.is_none()
-            && let Some(number) = self.reading.tool.take()
-        {
-            let tool = LoadTool {
-                number,
-                ..LoadTool::default()
-            };
-            self.load(&tool, emit);
-        }
         self.tip = Some(tip);
+        self.cut_any = true;
         let (tip, axis) = self.frame.to_part(tip, self.axis);
         emit(Step::Move(Motion {
             tip,
@@ -557,6 +614,31 @@ impl Interpreter {
                 return;
             }
         };
+        if self.cycle.is_some() {
+            self.fault(
+                record,
+                "arc",
+                "an arc while a cycle is on".to_owned(),
+                "put a CYCLE/OFF before it",
+            );
+        }
+        if let Some(gap) = arc.doubtful() {
+            self.warn(
+                record,
+                "arc",
+                format!("the ends of this arc lie {gap:.4} mm apart: it is made as that short arc, not as a whole turn"),
+            );
+        }
+        if arc.mismatch() > self.reading.chord_tolerance && arc.mismatch() <= ARC_MISMATCH {
+            self.warn(
+                record,
+                "arc",
+                format!(
+                    "the ends of this arc lie {:.4} mm apart in their distance from its centre; it is made as a spiral",
+                    arc.mismatch()
+                ),
+            );
+        }
         if arc.mismatch() > ARC_MISMATCH {
             self.fault(
                 record,
@@ -594,6 +676,11 @@ impl Interpreter {
             return;
         }
         let end_axis = self.axis;
+        let pace = match pace {
+            // The time is that of the whole arc.
+            Pace::InverseTime(feed) => Pace::InverseTime(feed * count as f64),
+            pace => pace,
+        };
         for piece in 1..=count {
             let t = piece as f64 / count as f64;
             let point = if piece == count { end } else { arc.at(t) };
@@ -681,6 +768,19 @@ impl Interpreter {
     ) {
         self.rapid = false;
         let axis = self.axis;
+        // Between holes the tool goes up before it goes aside, and aside before it goes down.
+        if let Some(tip) = self.tip {
+            let height = axis.dot(&(tip - point));
+            let aside = tip - point - axis * height;
+            if aside.norm() > 1e-6 {
+                let level = height.max(drill.retract());
+                if height < level {
+                    self.advance(point + aside + axis * level, Pace::Rapid, 0.0, emit);
+                } else if height > drill.retract() {
+                    self.advance(point + axis * level, Pace::Rapid, 0.0, emit);
+                }
+            }
+        }
         drill.legs(&mut |leg| match leg {
             Leg::Rapid(height) => self.advance(point + axis * height, Pace::Rapid, 0.0, emit),
             Leg::Feed(height) => self.advance(point + axis * height, feed, 0.0, emit),
@@ -710,10 +810,18 @@ impl Interpreter {
             }
         };
         let feed = match definition.feed {
-            Some(feed) => self.feed_pace(record, feed),
+            Some(feed) => self.feed_word(record, feed),
             None => self.feed,
         };
-        let Some(feed) = feed.filter(|feed| *feed != Pace::Rapid) else {
+        let left: Vec<String> = Drill::left_out(definition).collect();
+        if !left.is_empty() {
+            self.warn(
+                record,
+                "cycle",
+                format!("of this cycle is left out: {}", left.join(", ")),
+            );
+        }
+        let Some(feed) = feed.filter(|feed| *feed != FeedWord::Pace(Pace::Rapid)) else {
             self.fault(record, "no-feed", "the cycle has no feed".to_owned(), "");
             return;
         };
@@ -726,13 +834,13 @@ impl Interpreter {
         if self.rapid_feed {
             return;
         }
-        if let Some(pace) = self.feed_pace(record, feed) {
+        if let Some(pace) = self.feed_word(record, feed) {
             self.feed = Some(pace);
         }
     }
 
-    /// A feed word as a pace.
-    fn feed_pace(&mut self, record: &Record<'_>, feed: FeedRate) -> Option<Pace> {
+    /// A feed in mm.
+    fn feed_word(&mut self, record: &Record<'_>, feed: FeedRate) -> Option<FeedWord> {
         let value = feed.value.unwrap_or(0.0);
         if value <= 0.0 {
             self.fault(
@@ -763,24 +871,16 @@ impl Interpreter {
             Some(FeedUnit::PerRevolution) => (true, self.scale),
             Some(FeedUnit::MillimetresPerRevolution) => (true, length(self, Units::Millimetre)),
             Some(FeedUnit::InchesPerRevolution) => (true, length(self, Units::Inch)),
-            Some(FeedUnit::InverseTime) => return Some(Pace::InverseTime(value)),
-            Some(FeedUnit::Rapid) => return Some(Pace::Rapid),
-        };
-        if !per_revolution {
-            return Some(Pace::PerMinute(value * scale));
-        }
-        match self.rpm {
-            Some(rpm) if rpm > 0.0 => Some(Pace::PerMinute(value * scale * rpm)),
-            _ => {
-                self.fault(
-                    record,
-                    "feed",
-                    "a feed per revolution needs a spindle speed".to_owned(),
-                    "put a SPINDL before it",
-                );
-                None
+            Some(FeedUnit::InverseTime) => {
+                return Some(FeedWord::Pace(Pace::InverseTime(value)));
             }
-        }
+            Some(FeedUnit::Rapid) => return Some(FeedWord::Pace(Pace::Rapid)),
+        };
+        Some(if per_revolution {
+            FeedWord::PerRevolution(value * scale)
+        } else {
+            FeedWord::Pace(Pace::PerMinute(value * scale))
+        })
     }
 
     fn spindle(&mut self, record: &Record<'_>, spindle: SpindleWord, emit: &mut impl FnMut(Step)) {
@@ -834,27 +934,77 @@ impl Interpreter {
         emit(Step::Spindle(step));
     }
 
-    fn load(&mut self, tool: &LoadTool, emit: &mut impl FnMut(Step)) {
-        // NX repeats LOAD in every operation; the same tool stays in the spindle.
-        if self.tool == Some(tool.number) {
+    fn load(&mut self, record: &Record<'_>, tool: &LoadTool, emit: &mut impl FnMut(Step)) {
+        let register = tool.register.unwrap_or(tool.number);
+        if tool.number == 0 || register == 0 {
+            self.fault(
+                record,
+                "tool",
+                "tool 0 and length register 0 mean none: the tool's length would not be known"
+                    .to_owned(),
+                "let the CAM system number its tools from 1",
+            );
             return;
         }
-        self.tool = Some(tool.number);
         let cutter = match self.reading.tool_length {
             ToolLength::Cl => self.cutter_length,
             ToolLength::Assembly => None,
         };
+        let length = tool.length.map(|length| length * self.scale).or(cutter);
+        // NX repeats LOAD in every operation; the same tool stays in the spindle.
+        let loaded = Some((tool.number, register, tool.length));
+        if self.loaded == loaded {
+            return;
+        }
+        self.loaded = loaded;
+        self.cutter_changed = false;
+        self.cut_any = false;
+        if self.compensated {
+            self.compensated = false;
+            emit(Step::Compensate(Compensation::Off));
+            self.warn(
+                record,
+                "compensation",
+                "the tool is changed with cutter compensation in force; it is switched off"
+                    .to_owned(),
+            );
+        }
+        // The tool comes from the changer: no arc begins where the last one stood.
+        self.tip = None;
         emit(Step::Tool(Tool {
             number: tool.number,
-            register: tool.register.unwrap_or(tool.number),
-            length: tool.length.map(|length| length * self.scale).or(cutter),
+            register,
+            length,
             name: self.tool_name.clone(),
         }));
+    }
+
+    /// Loads the tool that the user names, before the first record that needs one.
+    fn load_told(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+        if self.loaded.is_none()
+            && let Some(number) = self.reading.tool.take()
+        {
+            let tool = LoadTool {
+                number,
+                ..LoadTool::default()
+            };
+            self.load(record, &tool, emit);
+        }
+    }
+
+    /// A cutter's description; `length` is where its length stands.
+    fn cutter(&mut self, numbers: &[f64], length: usize) {
+        let diameter = numbers.first().map(|diameter| diameter * self.scale);
+        // Files that load their tools describe the cutter just before or after that.
+        self.cutter_changed |= self.diameter.is_some() && self.diameter != diameter && self.cut_any;
+        self.diameter = diameter;
+        self.cutter_length = numbers.get(length).map(|length| length * self.scale);
     }
 
     fn cutcom(&mut self, cutcom: Cutcom, emit: &mut impl FnMut(Step)) {
         let side = match cutcom.side {
             Some(Side::Off) => {
+                self.compensated = false;
                 emit(Step::Compensate(Compensation::Off));
                 return;
             }
@@ -864,7 +1014,10 @@ impl Interpreter {
             }
             None => self.side,
         };
-        let register = cutcom.register.or(self.tool).unwrap_or(1);
+        self.register = cutcom.register.or(self.register);
+        let tool = self.loaded.map(|(number, ..)| number);
+        let register = self.register.or(tool).unwrap_or(1);
+        self.compensated |= matches!(side, Some(Side::Left | Side::Right));
         match side {
             Some(Side::Left) => emit(Step::Compensate(Compensation::Left { register })),
             Some(Side::Right) => emit(Step::Compensate(Compensation::Right { register })),

@@ -90,9 +90,9 @@ const IGNORED: &[&str] = &[
 
 /// Words that change where the tool goes.
 const REFUSED: &[&str] = &[
-    "CALL", "CLEARP", "CLRSRF", "COUPLE", "GOFWD", "HEAD", "INDIRV", "MACRO", "MODE", "ORIGIN",
-    "PIVOTZ", "PLUNGE", "POSITN", "POSTN", "PSIS", "READ", "RETRCT", "ROTHED", "TERMAC", "THREAD",
-    "TLON", "TRACUT", "TRANS",
+    "CALL", "CLEARP", "CLRSRF", "COPY", "COUPLE", "GOFWD", "HEAD", "INDEX", "INDIRV", "MACRO",
+    "MODE", "ORIGIN", "PIVOTZ", "PLUNGE", "POSITN", "POSTN", "PSIS", "READ", "RETRCT", "ROTHED",
+    "TERMAC", "THREAD", "TLON", "TRACUT", "TRANS",
 ];
 
 /// What becomes of `word` (in capitals).

@@ -152,6 +152,12 @@ impl IsoMotion {
         self.axes.forget();
     }
 
+    /// Feed and its mode are not known any more.
+    pub fn forget_feed(&mut self) {
+        self.feed_mode.forget();
+        self.feed.forget();
+    }
+
     fn rapid_group(&mut self, words: &[f64], group: Group, out: &mut String) {
         if self.axes.moved_group(words, group) {
             self.motion("G0");

@@ -109,12 +109,16 @@ impl Dialect for Fanuc {
                 name,
             } => {
                 self.clear(out);
+                if self.spindle.is(true) {
+                    self.iso.line("M5", out);
+                }
                 if !name.is_empty() {
                     push_line(out, &remark(&format!("T{number} {name}")));
                 }
                 self.iso.line(&format!("T{number} M6"), out);
                 // The changer may have moved any axis.
                 self.iso.moved_by_line();
+                self.iso.forget_feed();
                 self.register = Some(register);
                 self.offset_active.forget();
                 self.spindle.forget();
@@ -238,6 +242,16 @@ impl Fanuc {
         }
     }
 
+    /// Spindle and coolant off, unless they are.
+    fn stop(&mut self, out: &mut String) {
+        if self.spindle.set(false) {
+            self.iso.line("M5", out);
+        }
+        if self.coolant.set(false) {
+            self.codes(&self.coolant_off.clone(), out);
+        }
+    }
+
     fn go_home(&mut self, out: &mut String) {
         self.clear(out);
         if !self.home.is_empty() {
@@ -248,12 +262,9 @@ impl Fanuc {
     }
 
     fn end(&mut self, out: &mut String) {
-        if self.coolant.set(false) {
-            self.codes(&self.coolant_off.clone(), out);
-        }
-        if self.spindle.set(false) {
-            self.iso.line("M5", out);
-        }
+        // The tool leaves the part first: a spindle that stops in it tears.
+        self.clear(out);
+        self.stop(out);
         self.go_home(out);
         self.iso.line("M30", out);
         push_line(out, "%");

@@ -131,6 +131,10 @@ impl Dialect for Heidenhain {
             }
             Event::ToolChange { number, name, .. } => {
                 self.clear(out);
+                if self.spindle_on.is(true) {
+                    self.block.line("M5", out);
+                    self.spindle_on.set(false);
+                }
                 if !name.is_empty() {
                     self.comment(&format!("T{number} {name}"), out);
                 }
@@ -368,6 +372,18 @@ impl Heidenhain {
         }
     }
 
+    /// Spindle and coolant off, unless they are.
+    fn stop(&mut self, out: &mut String) {
+        if self.spindle_on.set(false) {
+            self.block.line("M5", out);
+        }
+        if self.coolant_on.set(false) {
+            for code in self.coolant[0].1.split_whitespace() {
+                self.block.line(code, out);
+            }
+        }
+    }
+
     fn go_home(&mut self, out: &mut String) {
         self.clear(out);
         if !self.home.is_empty() {
@@ -377,14 +393,9 @@ impl Heidenhain {
     }
 
     fn end(&mut self, out: &mut String) {
-        if self.coolant_on.set(false) {
-            for code in self.coolant[0].1.split_whitespace() {
-                self.block.line(code, out);
-            }
-        }
-        if self.spindle_on.set(false) {
-            self.block.line("M5", out);
-        }
+        // The tool leaves the part first: a spindle that stops in it tears.
+        self.clear(out);
+        self.stop(out);
         self.go_home(out);
         self.block.line("M30", out);
         self.frame("END", out);

@@ -76,6 +76,12 @@ impl Plugin {
         };
         // A name without a folder would be looked for in the system's folders.
         let whole = path.canonicalize().map_err(|error| fault(system(&error)))?;
+        // Reading a pipe or a device might never end.
+        if !whole.is_file() {
+            return Err(fault(Reason::Open {
+                message: "it is no file".to_owned(),
+            }));
+        }
         let bytes = std::fs::read(&whole).map_err(|error| fault(system(&error)))?;
         // SAFETY: the library's initialisers run; the user named this file as one to be run.
         let library = unsafe { libloading::Library::new(whole.as_os_str()) }

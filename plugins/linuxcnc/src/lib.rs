@@ -112,12 +112,16 @@ impl Dialect for LinuxCnc {
                 name,
             } => {
                 self.clear(out);
+                if self.spindle.is(true) {
+                    self.iso.line("M5", out);
+                }
                 if !name.is_empty() {
                     push_line(out, &passive(&format!("T{number} {name}")));
                 }
                 self.iso.line(&format!("T{number} M6"), out);
                 // The changer may have moved any axis.
                 self.iso.moved_by_line();
+                self.iso.forget_feed();
                 self.register = Some(register);
                 self.spindle.forget();
             }
@@ -250,6 +254,16 @@ impl LinuxCnc {
         }
     }
 
+    /// Spindle and coolant off, unless they are.
+    fn stop(&mut self, out: &mut String) {
+        if self.spindle.set(false) {
+            self.iso.line("M5", out);
+        }
+        if self.coolant.set(false) {
+            self.iso.line("M9", out);
+        }
+    }
+
     fn go_home(&mut self, out: &mut String) {
         self.clear(out);
         if !self.home.is_empty() {
@@ -259,12 +273,9 @@ impl LinuxCnc {
     }
 
     fn end(&mut self, out: &mut String) {
-        if self.coolant.set(false) {
-            self.iso.line("M9", out);
-        }
-        if self.spindle.set(false) {
-            self.iso.line("M5", out);
-        }
+        // The tool leaves the part first: a spindle that stops in it tears.
+        self.clear(out);
+        self.stop(out);
         self.go_home(out);
         self.iso.line("M2", out);
         if self.percent {

@@ -53,7 +53,8 @@ impl Look {
     ///
     /// Everything is written where it will stay: putting it together elsewhere and copying it costs more than
     /// the digits do.
-    #[inline]
+    // Always, since five words a block are most of what a dialect does.
+    #[inline(always)]
     pub(crate) fn append(
         self,
         out: &mut String,

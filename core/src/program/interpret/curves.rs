@@ -1,0 +1,199 @@
+//! Arcs and splines become chords.
+
+use nalgebra::Vector3;
+use post_grammar::{Circle, Record, Sense, Statement};
+
+use super::{Interpreter, Pending};
+use crate::program::arc::Arc;
+use crate::program::motion::{Pace, Step};
+use crate::program::spline::Spline;
+
+/// Knots or control points of one spline; a longer one would not stream.
+const MOST_SPLINE_NUMBERS: usize = 1_000_000;
+
+/// Chords of one arc; more is a slip of the decimal point.
+const MOST_CHORDS: u64 = 10_000_000;
+
+/// Ends of an arc whose distances from its centre differ by more are no arc: mm.
+const ARC_MISMATCH: f64 = 0.1;
+
+impl Interpreter {
+    pub(super) fn arc(
+        &mut self,
+        record: &Record<'_>,
+        circle: &Circle,
+        end: Vector3<f64>,
+        start_axis: Vector3<f64>,
+        emit: &mut impl FnMut(Step),
+    ) {
+        let Some(start) = self.tip else {
+            self.fault(
+                record,
+                "arc",
+                "the arc begins at the last point, and there is none".to_owned(),
+                "put a GOTO before the CIRCLE",
+            );
+            return;
+        };
+        let Some(pace) = self.pace(record) else {
+            return;
+        };
+        // The axis and its right hand give the sense; a word (CAMWorks) is seen from the tip of the axis.
+        let axis = match circle.sense {
+            Some(Sense::Clockwise) => -Vector3::from(circle.axis),
+            _ => Vector3::from(circle.axis),
+        };
+        let centre = self.point(circle.centre);
+        let arc = match Arc::new(start, end, centre, axis, circle.turns.unwrap_or(1)) {
+            Ok(arc) => arc,
+            Err(message) => {
+                self.fault(record, "arc", format!("no arc: {message}"), "");
+                self.tip = Some(end);
+                return;
+            }
+        };
+        if self.cycle.is_some() {
+            self.fault(
+                record,
+                "arc",
+                "an arc while a cycle is on".to_owned(),
+                "put a CYCLE/OFF before it",
+            );
+        }
+        if let Some(gap) = arc.doubtful() {
+            self.warn(
+                record,
+                "arc",
+                format!("the ends of this arc lie {gap:.4} mm apart: it is made as that short arc, not as a whole turn"),
+            );
+        }
+        if arc.mismatch() > self.reading.chord_tolerance && arc.mismatch() <= ARC_MISMATCH {
+            self.warn(
+                record,
+                "arc",
+                format!(
+                    "the ends of this arc lie {:.4} mm apart in their distance from its centre; it is made as a spiral",
+                    arc.mismatch()
+                ),
+            );
+        }
+        if arc.mismatch() > ARC_MISMATCH {
+            self.fault(
+                record,
+                "arc",
+                format!(
+                    "the ends of this arc lie {:.4} mm apart in their distance from its centre; {ARC_MISMATCH} mm is allowed",
+                    arc.mismatch()
+                ),
+                "check the CIRCLE before it",
+            );
+        }
+        if let Some(radius) = circle.radius
+            && libm::fabs(arc.radius() - radius * self.scale) > ARC_MISMATCH
+        {
+            self.warn(
+                record,
+                "arc",
+                format!(
+                    "the CIRCLE before this point says radius {radius}, its points lie at {:.4}",
+                    arc.radius() / self.scale
+                ),
+            );
+        }
+        let (count, stray) = arc.chords(self.reading.chord_tolerance);
+        if count > MOST_CHORDS {
+            self.fault(
+                record,
+                "arc",
+                format!(
+                    "this arc needs {count} chords to stay within {} mm",
+                    self.reading.chord_tolerance
+                ),
+                "widen the tolerance",
+            );
+            return;
+        }
+        let end_axis = self.axis;
+        let pace = match pace {
+            // The time is that of the whole arc.
+            Pace::InverseTime(feed) => Pace::InverseTime(feed * count as f64),
+            pace => pace,
+        };
+        for piece in 1..=count {
+            let t = piece as f64 / count as f64;
+            let point = if piece == count { end } else { arc.at(t) };
+            self.axis = if start_axis == end_axis {
+                end_axis
+            } else {
+                (start_axis * (1.0 - t) + end_axis * t)
+                    .try_normalize(1e-9)
+                    .unwrap_or(end_axis)
+            };
+            self.advance(point, pace, stray, emit);
+        }
+        self.axis = end_axis;
+    }
+
+    pub(super) fn spline_data(&mut self, record: &Record<'_>) {
+        let scale = self.scale;
+        let Some(Pending::Spline { knots, points }) = &mut self.pending else {
+            self.fault(
+                record,
+                "spline",
+                "there is no NURBS before it".to_owned(),
+                "",
+            );
+            return;
+        };
+        if knots.len().max(points.len()) > MOST_SPLINE_NUMBERS {
+            self.pending = None;
+            self.fault(
+                record,
+                "spline",
+                format!("a spline of more than {MOST_SPLINE_NUMBERS} points"),
+                "",
+            );
+            return;
+        }
+        match &record.statement {
+            Statement::Knot(numbers) => knots.extend_from_slice(numbers),
+            Statement::Control { point, axis: None } => points.push(Vector3::from(*point) * scale),
+            _ => self.fault(
+                record,
+                "spline",
+                "splines with tool axes are not supported".to_owned(),
+                "let the CAM system write GOTOs",
+            ),
+        }
+    }
+
+    pub(super) fn end_spline(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+        if !matches!(self.pending, Some(Pending::Spline { .. })) {
+            return;
+        }
+        let Some(Pending::Spline { knots, points }) = self.pending.take() else {
+            return;
+        };
+        // The RAPID that may stand behind the spline is meant for the record that ends it.
+        let rapid = std::mem::take(&mut self.rapid);
+        let pace = self.pace(record);
+        self.rapid = rapid;
+        let Some(pace) = pace else {
+            return;
+        };
+        match Spline::new(&knots, points) {
+            Ok(spline) => {
+                let tolerance = self.reading.chord_tolerance;
+                spline.flatten(tolerance, &mut |point, stray| {
+                    self.advance(point, pace, stray, emit);
+                });
+            }
+            Err(message) => self.fault(
+                record,
+                "spline",
+                format!("the NURBS before this: {message}"),
+                "",
+            ),
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Feed words.
+
+use post_grammar::{FeedRate, FeedUnit, Record, Units};
+
+use super::{FeedWord, Interpreter, millimetres};
+use crate::program::motion::Pace;
+
+impl Interpreter {
+    /// A feed word as the spindle turns now.
+    #[inline]
+    pub(super) fn resolved(&mut self, record: &Record<'_>, feed: FeedWord) -> Option<Pace> {
+        match (feed, self.rpm) {
+            (FeedWord::Pace(pace), _) => Some(pace),
+            (FeedWord::PerRevolution(feed), Some(rpm)) if rpm > 0.0 => {
+                Some(Pace::PerMinute(feed * rpm))
+            }
+            (FeedWord::PerRevolution(_), _) => {
+                self.fault(
+                    record,
+                    "feed",
+                    "a feed per revolution needs a spindle speed".to_owned(),
+                    "put a SPINDL before it",
+                );
+                None
+            }
+        }
+    }
+
+    pub(super) fn set_feed(&mut self, record: &Record<'_>, feed: FeedRate) {
+        self.rapid_feed = feed.unit == Some(FeedUnit::Rapid);
+        if self.rapid_feed {
+            return;
+        }
+        if let Some(pace) = self.feed_word(record, feed) {
+            self.feed = Some(pace);
+        }
+    }
+
+    /// A feed in mm.
+    pub(super) fn feed_word(&mut self, record: &Record<'_>, feed: FeedRate) -> Option<FeedWord> {
+        let value = feed.value.unwrap_or(0.0);
+        if value <= 0.0 {
+            self.fault(
+                record,
+                "feed",
+                format!("a feed of {value}: it must be above zero"),
+                "",
+            );
+            return None;
+        }
+        // Where the units are overridden, a word of the units that the file declares goes with its lengths.
+        let length = |this: &Self, units: Units| match (this.reading.units, this.units) {
+            (Some(told), Some(declared)) if is_inch(declared) == is_inch(units) => {
+                millimetres(told)
+            }
+            _ => millimetres(units),
+        };
+        let (per_revolution, scale) = match feed.unit {
+            None | Some(FeedUnit::PerMinute) => (false, self.scale),
+            Some(FeedUnit::MillimetresPerMinute) => {
+                self.feed_units = Some(Units::Millimetre);
+                (false, length(self, Units::Millimetre))
+            }
+            Some(FeedUnit::InchesPerMinute) => {
+                self.feed_units = Some(Units::Inch);
+                (false, length(self, Units::Inch))
+            }
+            Some(FeedUnit::PerRevolution) => (true, self.scale),
+            Some(FeedUnit::MillimetresPerRevolution) => (true, length(self, Units::Millimetre)),
+            Some(FeedUnit::InchesPerRevolution) => (true, length(self, Units::Inch)),
+            Some(FeedUnit::InverseTime) => {
+                return Some(FeedWord::Pace(Pace::InverseTime(value)));
+            }
+            Some(FeedUnit::Rapid) => return Some(FeedWord::Pace(Pace::Rapid)),
+        };
+        Some(if per_revolution {
+            FeedWord::PerRevolution(value * scale)
+        } else {
+            FeedWord::Pace(Pace::PerMinute(value * scale))
+        })
+    }
+}
+
+fn is_inch(units: Units) -> bool {
+    matches!(units, Units::Inch | Units::Foot)
+}

@@ -18,8 +18,8 @@ pub struct Feeds {
     inverse_time: bool,
     length: FeedLength,
     unit: f64,
-    feed_scale: f64,
-    inverse_scale: f64,
+    feed: Printed,
+    inverse: Printed,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +52,6 @@ impl Feeds {
         if wanted && format.inverse_time.is_none() {
             return None;
         }
-        let scale = |decimals: u8| (0..decimals).fold(1.0, |scale, _| scale * 10.0);
         Some(Self {
             axes: machine
                 .axes
@@ -66,8 +65,8 @@ impl Feeds {
             inverse_time: wanted,
             length: machine.control.feed_length,
             unit: unit_length(machine.control.units),
-            feed_scale: scale(format.feed),
-            inverse_scale: scale(format.inverse_time.unwrap_or(0)),
+            feed: Printed::new(format.feed),
+            inverse: Printed::new(format.inverse_time.unwrap_or(0)),
         })
     }
 
@@ -96,7 +95,7 @@ impl Feeds {
         let limited = least > asked * (1.0 + 1e-9);
         let turning = self.turning(from, to);
         let feed = if self.inverse_time && (turning || self.tcp == Tcp::Control) {
-            Feed::InverseTime(floor(1.0 / minutes, self.inverse_scale))
+            Feed::InverseTime(self.inverse.floor(1.0 / minutes))
         } else {
             let per_minute = match pace {
                 // No detour over lengths where the feed of the CL file can stand as it is.
@@ -107,7 +106,7 @@ impl Feeds {
                 }
                 _ => self.measured(&self.travels(from, to), length) / minutes,
             };
-            Feed::PerMinute(floor(per_minute, self.feed_scale))
+            Feed::PerMinute(self.feed.floor(per_minute))
         };
         Paced {
             feed,
@@ -171,9 +170,27 @@ struct Travels {
     rotary_longest: f64,
 }
 
-/// The largest printed number not above `value`; a feed below the least printed number becomes that.
-#[inline]
-fn floor(value: f64, scale: f64) -> f64 {
-    // A value that is a printed number but for its last bits is that number.
-    (value * scale + 1e-6).floor().max(1.0) / scale
+/// Numbers with so many decimals.
+#[derive(Clone, Copy, Debug)]
+struct Printed {
+    /// Ten to the number of decimals.
+    scale: f64,
+    per_scale: f64,
+}
+
+impl Printed {
+    fn new(decimals: u8) -> Self {
+        let scale = (0..decimals).fold(1.0, |scale, _| scale * 10.0);
+        Self {
+            scale,
+            per_scale: 1.0 / scale,
+        }
+    }
+
+    /// The largest printed number not above `value`; a feed below the least printed number becomes that.
+    #[inline]
+    fn floor(&self, value: f64) -> f64 {
+        // A value that is a printed number but for its last bits is that number.
+        (value * self.scale + 1e-6).floor().max(1.0) * self.per_scale
+    }
 }

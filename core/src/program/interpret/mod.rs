@@ -173,7 +173,7 @@ impl Interpreter {
             && self.cycle.is_none()
             && !self.finished
         {
-            self.goto(record, *point, *axis, emit);
+            self.plain_goto(record, *point, *axis, emit);
             return;
         }
         self.other(record, emit);
@@ -431,7 +431,27 @@ impl Interpreter {
         }
     }
 
+    /// A `GOTO` that neither ends a curve nor stands in a cycle: nearly all of a file.
     #[inline]
+    fn plain_goto(
+        &mut self,
+        record: &Record<'_>,
+        point: [f64; 3],
+        axis: Option<[f64; 3]>,
+        emit: &mut impl FnMut(Step),
+    ) {
+        if !self.set_axis(record, axis) {
+            return;
+        }
+        if self.check_axis || self.loaded.is_none() || self.cutter_changed {
+            self.before_move(record, emit);
+        }
+        let tip = self.point(point);
+        if let Some(pace) = self.pace(record) {
+            self.advance(tip, pace, 0.0, emit);
+        }
+    }
+
     fn goto(
         &mut self,
         record: &Record<'_>,
@@ -439,21 +459,38 @@ impl Interpreter {
         axis: Option<[f64; 3]>,
         emit: &mut impl FnMut(Step),
     ) {
+        let pending = match self.pending.take() {
+            Some(Pending::Arc(circle)) => Some(circle),
+            Some(spline) => {
+                self.pending = Some(spline);
+                self.end_spline(record, emit);
+                None
+            }
+            None => None,
+        };
+        if pending.is_none() && self.cycle.is_none() {
+            self.plain_goto(record, point, axis, emit);
+            return;
+        }
         let start_axis = self.axis;
         if !self.set_axis(record, axis) {
             return;
         }
-        if self.loaded.is_none() {
-            self.load_told(record, emit);
+        self.before_move(record, emit);
+        let tip = self.point(point);
+        if let Some(circle) = pending {
+            self.arc(record, &circle, tip, start_axis, emit);
+        } else if let Some((drill, feed)) = self.cycle
+            && let Some(pace) = self.resolved(record, feed)
+        {
+            self.drill(drill, pace, tip, emit);
         }
-        if self.cutter_changed && !self.told_cutter {
-            self.told_cutter = true;
-            self.warn(
-                record,
-                "cutter",
-                "another cutter was described (CUTTER, TLDATA), but no tool was loaded for it: this is cut with the tool before".to_owned(),
-            );
-        }
+    }
+
+    /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
+    /// cutter without a tool.
+    #[cold]
+    fn before_move(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
         if std::mem::take(&mut self.check_axis)
             && let (Some(turned), Some(told)) = (self.frame.turned(), self.told_axis)
             && (turned * self.axis - told).norm() > 1e-3
@@ -466,26 +503,16 @@ impl Interpreter {
                 "one of the two is wrong: check the operation's set-up in the CAM system",
             );
         }
-        let tip = self.point(point);
-        match self.pending.take() {
-            None => {}
-            Some(Pending::Arc(circle)) => {
-                self.arc(record, &circle, tip, start_axis, emit);
-                return;
-            }
-            Some(spline) => {
-                self.pending = Some(spline);
-                self.end_spline(record, emit);
-            }
+        if self.loaded.is_none() {
+            self.load_told(record, emit);
         }
-        if let Some((drill, feed)) = self.cycle {
-            if let Some(pace) = self.resolved(record, feed) {
-                self.drill(drill, pace, tip, emit);
-            }
-            return;
-        }
-        if let Some(pace) = self.pace(record) {
-            self.advance(tip, pace, 0.0, emit);
+        if self.cutter_changed && !self.told_cutter {
+            self.told_cutter = true;
+            self.warn(
+                record,
+                "cutter",
+                "another cutter was described (CUTTER, TLDATA), but no tool was loaded for it: this is cut with the tool before".to_owned(),
+            );
         }
     }
 

@@ -25,7 +25,7 @@ pub trait Output {
 const EQUAL: f64 = 1e-9;
 
 /// Events are handed over in runs of this length: from some dozens on, the plugin boundary costs nothing.
-const BATCH: usize = 256;
+const BATCH: usize = 128;
 
 /// Everything between the steps of a program and its text.
 pub struct Path<'a> {

@@ -76,5 +76,6 @@ impl Interpreter {
         };
         self.cycle = Some((drill, feed));
         self.last_cycle = self.cycle;
+        self.measured = true;
     }
 }

@@ -48,6 +48,7 @@ impl Interpreter {
             );
             return None;
         }
+        self.measured = true;
         // Where the units are overridden, a word of the units that the file declares goes with its lengths.
         let length = |this: &Self, units: Units| match (this.reading.units, this.units) {
             (Some(told), Some(declared)) if is_inch(declared) == is_inch(units) => {

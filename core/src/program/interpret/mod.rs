@@ -72,6 +72,8 @@ pub struct Interpreter {
     loaded: Option<(u32, u32, Option<f64>)>,
     /// A further cutter was described, and no tool was loaded for it.
     cutter_changed: bool,
+    /// Some number was read that the units gave its meaning.
+    measured: bool,
     /// Some move was read since the last tool was loaded.
     cut_any: bool,
     told_cutter: bool,
@@ -93,6 +95,11 @@ enum FeedWord {
     /// mm.
     PerRevolution(f64),
 }
+
+/// Words that, in a form that is not known, would leave the tool in the wrong place.
+const PLACES_THE_TOOL: [&str; 9] = [
+    "CIRCLE", "CUTCOM", "CYCLE", "LOAD", "LOADTL", "MSYS", "ROTABL", "ROTATE", "TLAXIS",
+];
 
 /// A curve that is not yet complete.
 #[derive(Clone, Debug)]
@@ -131,6 +138,7 @@ impl Interpreter {
             side: None,
             loaded: None,
             cutter_changed: false,
+            measured: false,
             cut_any: false,
             told_cutter: false,
             compensated: false,
@@ -237,6 +245,15 @@ impl Interpreter {
                     );
                     return;
                 };
+                if self.cycle.is_some() {
+                    self.fault(
+                        record,
+                        "godlta",
+                        "GODLTA while a cycle is on: from which of its heights?".to_owned(),
+                        "put a CYCLE/OFF before it, or write GOTO",
+                    );
+                    return;
+                }
                 let step = match delta {
                     Delta::Step(step) => Vector3::from(*step),
                     Delta::AlongAxis(length) => self.axis * *length,
@@ -249,6 +266,7 @@ impl Interpreter {
                 if !self.set_axis(record, *axis) {
                     return;
                 }
+                self.measured = true;
                 self.tip = Some(tip);
                 let (tip, axis) = self.frame.to_part(tip, self.axis);
                 emit(Step::From { tip, axis });
@@ -260,7 +278,10 @@ impl Interpreter {
             }
             Statement::Gohome(Some((point, axis))) => {
                 self.rapid = true;
+                // A cycle does not act at home.
+                let cycle = self.cycle.take();
                 self.goto(record, *point, *axis, emit);
+                self.cycle = cycle;
             }
             Statement::Rapid => self.rapid = true,
             Statement::Feed(feed) => self.set_feed(record, *feed),
@@ -293,7 +314,7 @@ impl Interpreter {
             Statement::Cutter(numbers) => self.cutter(numbers, 6),
             Statement::Units(units) => {
                 let scale = millimetres(self.reading.units.unwrap_or(*units));
-                if scale != self.scale && (self.tip.is_some() || self.feed.is_some()) {
+                if scale != self.scale && self.measured {
                     self.fault(
                         record,
                         "units",
@@ -349,7 +370,10 @@ impl Interpreter {
             }
             Statement::Knot(_) | Statement::Control { .. } => self.spline_data(record),
             Statement::Cycle(cycle) => self.cycle(record, cycle),
-            Statement::Cutcom(cutcom) => self.cutcom(*cutcom, emit),
+            Statement::Cutcom(cutcom) => {
+                self.load_told(record, emit);
+                self.cutcom(*cutcom, emit);
+            }
             Statement::Rotate(rotate) => match self.frame.rotate(rotate) {
                 Ok(()) => {
                     self.axis = match (self.frame.turned(), self.told_axis) {
@@ -357,6 +381,8 @@ impl Interpreter {
                         _ => Vector3::z(),
                     };
                     self.check_axis = self.frame.turned().is_some();
+                    // Where the tool stands is not known in the frame that begins here.
+                    self.tip = None;
                 }
                 Err(message) => self.fault(
                     record,
@@ -412,7 +438,12 @@ impl Interpreter {
             } => {
                 let usage = match usage(word) {
                     // A directive is a remark to all but the program it is meant for.
-                    Usage::Unknown if *directive => Usage::Ignored,
+                    Usage::Unknown | Usage::Used | Usage::Passed if *directive => Usage::Ignored,
+                    // A known word in a form that has no statement.
+                    Usage::Used | Usage::Passed if PLACES_THE_TOOL.contains(&word.as_str()) => {
+                        Usage::Refused
+                    }
+                    Usage::Used | Usage::Passed => Usage::Unknown,
                     usage => usage,
                 };
                 self.count(word, record, usage);
@@ -568,6 +599,7 @@ impl Interpreter {
     #[inline]
     fn advance(&mut self, tip: Vector3<f64>, pace: Pace, chord: f64, emit: &mut impl FnMut(Step)) {
         self.tip = Some(tip);
+        self.measured = true;
         self.cut_any = true;
         let (tip, axis) = self.frame.to_part(tip, self.axis);
         emit(Step::Move(Motion {

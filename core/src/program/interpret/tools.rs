@@ -92,6 +92,8 @@ impl Interpreter {
             return;
         }
         self.loaded = loaded;
+        self.measured |= tool.length.is_some();
+        self.register = None;
         self.cutter_changed = false;
         self.cut_any = false;
         if self.compensated {

@@ -1,5 +1,6 @@
 //! The command line.
 
+use std::env;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -175,6 +176,15 @@ pub enum UnknownArgument {
 pub enum TcpArgument {
     Control,
     Post,
+}
+
+/// Folders that the user names: on the command line, then in an environment variable.
+pub fn folders(named: &[PathBuf], variable: &str) -> Vec<PathBuf> {
+    let mut folders = named.to_owned();
+    if let Some(more) = env::var_os(variable) {
+        folders.extend(env::split_paths(&more).filter(|path| !path.as_os_str().is_empty()));
+    }
+    folders
 }
 
 /// `X,Y,Z`.

@@ -1,13 +1,13 @@
 //! Where machines come from: a file, a machine folder, or built in.
 
+use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::{env, fs};
 
 use post_core::diagnostic::Diagnostic;
 use post_core::machine::{self, Machine, Source};
 
-use crate::arguments::PostArguments;
+use crate::arguments::{self, PostArguments};
 
 /// Names and texts of the machines built in.
 const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.rs"));
@@ -33,10 +33,7 @@ pub fn load(arguments: &PostArguments) -> Result<Machine, Vec<Diagnostic>> {
 
 /// The folders of machines: those of the command line, of the environment, and `machines` here.
 fn folders(named: &[PathBuf]) -> Vec<PathBuf> {
-    let mut folders = named.to_owned();
-    if let Some(more) = env::var_os("POST_MACHINES") {
-        folders.extend(env::split_paths(&more).filter(|path| !path.as_os_str().is_empty()));
-    }
+    let mut folders = arguments::folders(named, "POST_MACHINES");
     folders.push(PathBuf::from("machines"));
     folders
 }

@@ -1,6 +1,7 @@
 //! `post`: turns a cutter-location file into the NC program of one machine.
 
 mod arguments;
+mod input;
 mod machines;
 mod output;
 mod plugins;

@@ -1,6 +1,5 @@
 //! The plugins that are part of the command, and those that the user's folders hold.
 
-use std::env;
 use std::path::PathBuf;
 
 use post_core::diagnostic::{Diagnostic, Place};
@@ -13,14 +12,11 @@ use post_host::{
 };
 use post_plugin::Units;
 
-use crate::arguments::PostArguments;
+use crate::arguments::{self, PostArguments};
 
 /// The finder for a run.
 pub fn finder(arguments: &PostArguments) -> Result<Finder, Vec<Diagnostic>> {
-    let mut folders = arguments.plugins.clone();
-    if let Some(more) = env::var_os("POST_PLUGINS") {
-        folders.extend(env::split_paths(&more).filter(|path| !path.as_os_str().is_empty()));
-    }
+    let folders = arguments::folders(&arguments.plugins, "POST_PLUGINS");
     missing(&arguments.plugins)?;
     let linked = [
         post_fanuc::plugin(),

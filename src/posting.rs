@@ -1,7 +1,6 @@
 //! The main job: one CL file, one machine, one program.
 
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use post_core::diagnostic::{Diagnostic, Severity};
@@ -11,6 +10,7 @@ use post_grammar::{ReadError, Reader, Units};
 use post_plugin::DialectSession;
 
 use crate::arguments::{Msys, PostArguments, UnitsArgument, UnknownArgument};
+use crate::input::{Input, one, standard};
 use crate::output::{Target, Whole};
 use crate::progress::Progress;
 use crate::{machines, plugins, render, summary};
@@ -76,11 +76,6 @@ pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
     Ok(())
 }
 
-/// The name of standard input and output.
-fn standard() -> &'static Path {
-    Path::new("-")
-}
-
 fn create(path: &Path) -> Result<Whole, Vec<Diagnostic>> {
     Whole::create(Target::of(path)).map_err(|error| fault_at(path, &error))
 }
@@ -129,39 +124,6 @@ fn summary_file(
         ]);
     }
     Ok(Some((create(path)?, path.clone())))
-}
-
-/// Input and what is known of it.
-struct Input {
-    name: String,
-    bytes: Box<dyn Read>,
-    length: Option<u64>,
-}
-
-impl Input {
-    fn open(path: &Path) -> Result<Self, Vec<Diagnostic>> {
-        if path == standard() {
-            return Ok(Self {
-                name: "standard input".to_owned(),
-                bytes: Box::new(io::stdin().lock()),
-                length: None,
-            });
-        }
-        let fault = |error: io::Error| one("input", format!("{}: {error}", path.display()));
-        let file = File::open(path).map_err(fault)?;
-        let metadata = file.metadata().map_err(fault)?;
-        if metadata.is_dir() {
-            return Err(one(
-                "input",
-                format!("{} is a folder, not a CL file", path.display()),
-            ));
-        }
-        Ok(Self {
-            name: path.display().to_string(),
-            bytes: Box::new(file),
-            length: metadata.is_file().then_some(metadata.len()),
-        })
-    }
 }
 
 fn job(arguments: &PostArguments, file: &str) -> Job {
@@ -226,8 +188,4 @@ fn target(
         return Err(one("output", format!("{} is a folder", path.display())));
     }
     Ok(path)
-}
-
-fn one(code: &'static str, message: String) -> Vec<Diagnostic> {
-    vec![Diagnostic::error(code, message)]
 }

@@ -1,24 +1,20 @@
 //! `post words`: every word of a CL file, how often, and what becomes of it.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use post_core::diagnostic::{Diagnostic, unreadable};
 use post_core::program::{Usage, usage};
-use post_grammar::{ReadError, Reader, Statement};
+use post_grammar::{ReadError, Reader};
+
+use crate::input::{Input, one};
 
 /// Prints the table.
 pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
-    let name = path.display().to_string();
-    let fault = |error: io::Error| vec![Diagnostic::error("input", format!("{name}: {error}"))];
-    let input: Box<dyn Read> = if path == Path::new("-") {
-        Box::new(io::stdin().lock())
-    } else {
-        Box::new(File::open(path).map_err(fault)?)
-    };
-    let mut reader = Reader::new(input);
+    let input = Input::open(path)?;
+    let name = input.name;
+    let mut reader = Reader::new(input.bytes);
     let mut words: BTreeMap<String, (u64, u64, Usage)> = BTreeMap::new();
     let mut faults = Vec::new();
     loop {
@@ -26,22 +22,18 @@ pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
             Ok(None) => break,
             Ok(Some(record)) => {
                 let word = record.statement.word();
-                let usage = match (&record.statement, usage(word)) {
-                    (
-                        Statement::Other {
-                            directive: true, ..
-                        },
-                        Usage::Unknown,
-                    ) => Usage::Ignored,
-                    (_, usage) => usage,
-                };
-                if let Some((count, ..)) = words.get_mut(word) {
+                let usage = usage(&record.statement);
+                if let Some((count, _, known)) = words.get_mut(word) {
                     *count += 1;
+                    // Of several forms the one without effect is told.
+                    if matches!(usage, Usage::Unknown | Usage::Refused) {
+                        *known = usage;
+                    }
                 } else {
                     words.insert(word.to_owned(), (1, record.line, usage));
                 }
             }
-            Err(ReadError::Io(error)) => return Err(fault(error)),
+            Err(ReadError::Io(error)) => return Err(one("input", format!("{name}: {error}"))),
             Err(ReadError::Syntax(fault)) => faults.push(unreadable(&name, &fault)),
         }
     }

@@ -1,5 +1,7 @@
 //! What becomes of each major word.
 
+use post_grammar::Statement;
+
 /// What `post` does with a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Usage {
@@ -95,8 +97,32 @@ const REFUSED: &[&str] = &[
     "TERMAC", "THREAD", "TLON", "TRACUT", "TRANS",
 ];
 
-/// What becomes of `word` (in capitals).
-pub fn usage(word: &str) -> Usage {
+/// Words that, in a form that is not known, would leave the tool in the wrong place.
+const PLACES_THE_TOOL: [&str; 9] = [
+    "CIRCLE", "CUTCOM", "CYCLE", "LOAD", "LOADTL", "MSYS", "ROTABL", "ROTATE", "TLAXIS",
+];
+
+/// What becomes of a record.
+pub fn usage(statement: &Statement) -> Usage {
+    let listed = listed(statement.word());
+    let Statement::Other {
+        word, directive, ..
+    } = statement
+    else {
+        return listed;
+    };
+    match listed {
+        // A directive is a remark to all but the program it is meant for.
+        Usage::Unknown | Usage::Used | Usage::Passed if *directive => Usage::Ignored,
+        // A known word in a form that has no statement.
+        Usage::Used | Usage::Passed if PLACES_THE_TOOL.contains(&word.as_str()) => Usage::Refused,
+        Usage::Used | Usage::Passed => Usage::Unknown,
+        usage => usage,
+    }
+}
+
+/// What becomes of `word` (in capitals), in a form that is known.
+fn listed(word: &str) -> Usage {
     [
         (USED, Usage::Used),
         (PASSED, Usage::Passed),

@@ -22,11 +22,11 @@ impl Interpreter {
             let height = axis.dot(&(tip - point));
             let aside = tip - point - axis * height;
             if aside.norm() > 1e-6 {
-                let level = height.max(drill.retract());
+                let level = drill.retract();
                 if height < level {
                     self.advance(point + aside + axis * level, Pace::Rapid, 0.0, emit);
-                } else if height > drill.retract() {
-                    self.advance(point + axis * level, Pace::Rapid, 0.0, emit);
+                } else if height > level {
+                    self.advance(point + axis * height, Pace::Rapid, 0.0, emit);
                 }
             }
         }

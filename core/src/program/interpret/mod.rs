@@ -96,11 +96,6 @@ enum FeedWord {
     PerRevolution(f64),
 }
 
-/// Words that, in a form that is not known, would leave the tool in the wrong place.
-const PLACES_THE_TOOL: [&str; 9] = [
-    "CIRCLE", "CUTCOM", "CYCLE", "LOAD", "LOADTL", "MSYS", "ROTABL", "ROTATE", "TLAXIS",
-];
-
 /// A curve that is not yet complete.
 #[derive(Clone, Debug)]
 enum Pending {
@@ -433,19 +428,8 @@ impl Interpreter {
                 self.finished = true;
                 self.count("FINI", record, Usage::Used);
             }
-            Statement::Other {
-                word, directive, ..
-            } => {
-                let usage = match usage(word) {
-                    // A directive is a remark to all but the program it is meant for.
-                    Usage::Unknown | Usage::Used | Usage::Passed if *directive => Usage::Ignored,
-                    // A known word in a form that has no statement.
-                    Usage::Used | Usage::Passed if PLACES_THE_TOOL.contains(&word.as_str()) => {
-                        Usage::Refused
-                    }
-                    Usage::Used | Usage::Passed => Usage::Unknown,
-                    usage => usage,
-                };
+            Statement::Other { word, .. } => {
+                let usage = usage(&record.statement);
                 self.count(word, record, usage);
                 if usage == Usage::Refused {
                     self.fault(

@@ -34,6 +34,9 @@ pub(crate) struct MachineFile {
     pub control: Spanned<ControlFile>,
     #[serde(default)]
     pub accuracy: AccuracyFile,
+    #[serde(default)]
+    pub solution: SolutionFile,
+    pub rewind: Option<Spanned<RewindFile>>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -47,6 +50,7 @@ pub(crate) struct WorkpieceFile {
 pub(crate) struct ToolFile {
     pub gauge: [Quantity; 3],
     pub axis: Option<[Quantity; 3]>,
+    pub edge: Option<[Quantity; 3]>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -60,10 +64,83 @@ pub(crate) struct AxisFile {
     pub cyclic: bool,
     #[serde(default)]
     pub reversed: bool,
+    pub zero: Option<Quantity>,
+    pub range: Option<Spanned<[Quantity; 2]>>,
     pub indexed: Option<Quantity>,
+    pub positions: Option<Spanned<Vec<Quantity>>>,
+    pub step: Option<Quantity>,
+    pub clamp: Option<Spanned<String>>,
+    pub unclamp: Option<Spanned<String>>,
+    pub share: Option<Quantity>,
+    pub reserve: Option<Spanned<bool>>,
     pub max_feed: Option<Quantity>,
     pub max_accel: Option<Quantity>,
     pub max_jerk: Option<Quantity>,
+}
+
+/// `[solution]`: which of several solutions is taken.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SolutionFile {
+    pub rule: Option<Spanned<String>>,
+    #[serde(default)]
+    pub prefer: BTreeMap<Spanned<String>, Side>,
+    #[serde(default)]
+    pub require: BTreeMap<Spanned<String>, Side>,
+    #[serde(default)]
+    pub start: BTreeMap<Spanned<String>, Quantity>,
+    #[serde(default)]
+    pub exclusive: Vec<Vec<Spanned<String>>>,
+    pub look_ahead: Option<Spanned<u32>>,
+    #[serde(default)]
+    pub pole: Pole,
+    #[serde(default)]
+    pub edge: EdgeSource,
+    pub corner: Option<Quantity>,
+}
+
+/// `[rewind]`: how the tool leaves the part when a cut cannot go on.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RewindFile {
+    pub distance: Option<Quantity>,
+    pub plane: Option<Quantity>,
+    pub retract_feed: Option<Quantity>,
+    pub turn_feed: Option<Quantity>,
+    pub plunge_feed: Option<Quantity>,
+}
+
+/// A side of zero.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// Zero and above.
+    Positive,
+    /// Zero and below.
+    Negative,
+}
+
+/// What is done close to a singular direction.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Pole {
+    /// The axis that turns the tool by nearly nothing is held, turned early or turned evenly, within
+    /// `axis_tolerance`.
+    #[default]
+    Blend,
+    /// Every point of the CL file is met exactly, whatever the axes must do for it.
+    Exact,
+}
+
+/// Where a leading edge (knife, disc) points.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum EdgeSource {
+    /// Along the direction of travel.
+    #[default]
+    Travel,
+    /// Along the second vector of the CL points.
+    Cl,
 }
 
 /// Who keeps the tip on its path.

@@ -207,7 +207,8 @@ fn check_parameters(layer: &DeTable<'_>, merged: &DeTable<'_>) -> Result<(), Box
     Ok(())
 }
 
-fn overlay<'i>(base: &mut DeTable<'i>, layer: DeTable<'i>) {
+/// Lays a table over another, key by key.
+pub(crate) fn overlay<'i>(base: &mut DeTable<'i>, layer: DeTable<'i>) {
     for (key, value) in layer {
         let name = key.get_ref().to_string();
         let span = value.span();

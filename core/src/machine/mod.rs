@@ -1,13 +1,22 @@
 //! One machine: what its TOML file says, checked and in the core's own units (mm, radians, minutes).
 
+mod axes;
 mod build;
+mod choice;
 mod file;
 mod layers;
+mod numbers;
+mod options;
+
+use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
 pub use build::load;
-pub use file::{FeedLength, FeedMode, Insert, OutputUnits, Placement, Tcp, ToolLength};
+pub use choice::{Retract, Rewind, Rule, Solution};
+pub use file::{
+    EdgeSource, FeedLength, FeedMode, Insert, OutputUnits, Placement, Pole, Side, Tcp, ToolLength,
+};
 pub use layers::Source;
 
 use crate::diagnostic::Place;
@@ -26,12 +35,32 @@ pub struct Machine {
     pub gauge: Vector3<f64>,
     /// Tool axis with all axes at zero, unit vector from the tip to the holder, machine frame.
     pub tool_axis: Vector3<f64>,
+    /// Leading edge of the tool (knife, disc) with all axes at zero, unit vector across the tool axis,
+    /// machine frame; none for a tool that turns.
+    pub edge: Option<Vector3<f64>>,
     /// Tool lengths by tool number, mm, from the gauge point to the tip.
     pub tools: Vec<(u32, f64)>,
     /// Its control.
     pub control: Control,
     /// What it must keep.
     pub accuracy: Accuracy,
+    /// Which of several solutions is taken.
+    pub solution: Solution,
+    /// How the tool leaves the part when a cut cannot go on; none if it must not.
+    pub rewind: Option<Rewind>,
+    /// Heads that a word of the program (`HEAD/name`) swaps in.
+    pub heads: Vec<Head>,
+}
+
+/// A head that the program can swap in.
+#[derive(Clone, Debug)]
+pub struct Head {
+    /// Its name in `HEAD/name`.
+    pub name: String,
+    /// The line of the program that swaps it in, letter for letter; none if the operator does.
+    pub word: Option<String>,
+    /// The machine with this head.
+    pub machine: Machine,
 }
 
 /// One axis.
@@ -43,12 +72,119 @@ pub struct Axis {
     pub carries_part: bool,
     /// Kind, direction and line.
     pub joint: Joint,
+    /// What the control shows where the drawing has the axis at zero, mm or radians. All other values here
+    /// are counted from the drawing's zero.
+    pub zero: f64,
     /// Least and largest value, mm or radians; none for a cyclic axis.
     pub travel: Option<[f64; 2]>,
-    /// It does not move in a cut: it stands at this value, radians.
-    pub indexed: Option<f64>,
+    /// The control shows a cyclic axis within these values, radians, and turns it the shorter way.
+    pub range: Option<[f64; 2]>,
+    /// It moves off the part alone.
+    pub indexed: Option<Indexed>,
+    /// It moves along with another linear axis.
+    pub second: Option<Second>,
+    /// Words that clamp it and let it go.
+    pub clamp: Option<Clamp>,
     /// Largest feed, mm/min or rad/min; infinite if the file does not say.
     pub max_feed: f64,
+}
+
+/// An axis that moves off the part alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Indexed {
+    /// Where it stands until something moves it, mm or radians.
+    pub start: f64,
+    /// Where it can stand.
+    pub positions: Positions,
+}
+
+/// Where an indexed axis can stand.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Positions {
+    /// Anywhere in its travel.
+    Any,
+    /// At these values, mm or radians.
+    List(Vec<f64>),
+    /// At all whole multiples of `step` from `first`, mm or radians.
+    Step {
+        /// One of them.
+        first: f64,
+        /// Their distance.
+        step: f64,
+    },
+}
+
+impl Axis {
+    /// Axis units (mm, radians) in one unit of what the control shows (mm, degrees).
+    pub fn unit(&self) -> f64 {
+        if self.joint.rotary {
+            1f64.to_radians()
+        } else {
+            1.0
+        }
+    }
+
+    /// What the control shows at `value`: mm or degrees.
+    pub fn reading(&self, value: f64) -> f64 {
+        (value + self.zero) / self.unit()
+    }
+}
+
+impl Positions {
+    /// The axis can stand at `value`; where it turns without end, full turns make no difference.
+    pub fn holds(&self, value: f64, cyclic: bool) -> bool {
+        libm::fabs(self.nearest(value, cyclic) - value) < 1e-6
+    }
+
+    /// The position nearest to `value`.
+    pub fn nearest(&self, value: f64, cyclic: bool) -> f64 {
+        match self {
+            Self::Any => value,
+            Self::Step { first, step } => first + libm::rint((value - first) / step) * step,
+            Self::List(values) => {
+                let turned = |position: f64| {
+                    if cyclic {
+                        position + libm::rint((value - position) / TAU) * TAU
+                    } else {
+                        position
+                    }
+                };
+                let mut best = f64::INFINITY;
+                for position in values.iter().copied().map(turned) {
+                    if libm::fabs(position - value) < libm::fabs(best - value) {
+                        best = position;
+                    }
+                }
+                best
+            }
+        }
+    }
+}
+
+/// A linear axis beside the three that place the tip: a quill.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Second {
+    /// It takes this share of the way of axis `of` (a place in the chain).
+    Share {
+        /// The other axis.
+        of: usize,
+        /// From 0 to 1.
+        share: f64,
+    },
+    /// It moves where the travel of axis `of` ends.
+    Reserve {
+        /// The other axis.
+        of: usize,
+    },
+}
+
+/// Words of the program, letter for letter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Clamp {
+    /// Clamps the axis.
+    pub on: String,
+    /// Lets it go.
+    pub off: String,
 }
 
 /// The control of a machine.
@@ -129,8 +265,8 @@ impl Machine {
         let mut held: Joints = Default::default();
         let mut free = Vec::new();
         for (index, axis) in self.axes.iter().enumerate() {
-            match axis.indexed {
-                Some(value) => held[index] = value,
+            match &axis.indexed {
+                Some(indexed) => held[index] = indexed.start,
                 None if axis.joint.rotary => free.push(index),
                 None => {}
             }

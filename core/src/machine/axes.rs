@@ -1,0 +1,456 @@
+//! The axes of a machine file, checked one by one and against the chain.
+
+use std::collections::BTreeSet;
+
+use nalgebra::Vector3;
+use post_grammar::{LinkKind, parse_chain};
+use toml::Spanned;
+
+use super::build::Builder;
+use super::file::{AxisFile, MachineFile, Quantity};
+use super::{Axis, Clamp, Indexed, Positions, Second};
+use crate::kinematics::{Joint, MAX_AXES};
+
+impl Builder<'_> {
+    /// The axes in the order of the chain, each checked against its side of the bed.
+    pub(super) fn axes(&mut self, file: &MachineFile) -> Option<Vec<Axis>> {
+        let chain_span = file.chain.span();
+        let links = match parse_chain(file.chain.get_ref()) {
+            Ok(links) => links,
+            Err(fault) => {
+                // One byte for the opening quote.
+                let start = chain_span.start + 1;
+                let span = start + fault.span.start..start + fault.span.end;
+                self.fault(
+                    "machine-chain",
+                    span,
+                    fault.message,
+                    fault.help.as_deref().unwrap_or_default(),
+                );
+                return None;
+            }
+        };
+        let mut axes = Vec::new();
+        let mut named = BTreeSet::new();
+        let mut carries_part = true;
+        let mut sound = true;
+        for link in links {
+            let span = chain_span.start + 1 + link.span.start..chain_span.start + 1 + link.span.end;
+            match link.kind {
+                LinkKind::Workpiece | LinkKind::Tool | LinkKind::Spindle { .. } => {}
+                LinkKind::Bed => carries_part = false,
+                LinkKind::Axis { name, primed } => {
+                    if primed != carries_part {
+                        sound = false;
+                        self.fault(
+                            "machine-chain",
+                            span.clone(),
+                            if carries_part {
+                                format!("{name} stands between the workpiece and the bed, so it carries the part: write {name}'")
+                            } else {
+                                format!("{name}' is primed, but it stands between the bed and the tool")
+                            },
+                            "a prime marks an axis that carries the workpiece (ISO 841); b is the bed",
+                        );
+                    }
+                    if !named.insert(name.clone()) {
+                        sound = false;
+                        self.fault(
+                            "machine-chain",
+                            span,
+                            format!("{name} stands twice in the chain"),
+                            "",
+                        );
+                        continue;
+                    }
+                    match file.axis.get(&name) {
+                        Some(axis) => match self.axis(&name, axis, carries_part) {
+                            Some(axis) => axes.push(axis),
+                            None => sound = false,
+                        },
+                        None => {
+                            sound = false;
+                            self.fault(
+                                "machine-axis",
+                                span,
+                                format!("the chain has {name}, but there is no [axis.{name}]"),
+                                "describe the axis, or take it out of the chain",
+                            );
+                        }
+                    }
+                }
+            }
+        }
+        for (name, axis) in &file.axis {
+            if !named.contains(name) {
+                sound = false;
+                self.fault(
+                    "machine-axis",
+                    axis.span(),
+                    format!("[axis.{name}] does not stand in the chain"),
+                    "put it where it belongs between w and t",
+                );
+            }
+        }
+        if axes.len() > MAX_AXES {
+            sound = false;
+            self.fault(
+                "machine-chain",
+                chain_span,
+                format!("{} axes; at most {MAX_AXES} are possible", axes.len()),
+                "",
+            );
+        }
+        sound.then_some(axes)
+    }
+
+    fn axis(
+        &mut self,
+        name: &str,
+        spanned: &Spanned<AxisFile>,
+        carries_part: bool,
+    ) -> Option<Axis> {
+        let axis: &AxisFile = spanned.get_ref();
+        let (rotary, direction) = match (&axis.linear, &axis.rotary) {
+            (Some(direction), None) => (false, direction),
+            (None, Some(direction)) => (true, direction),
+            _ => {
+                self.fault(
+                    "machine-axis",
+                    spanned.span(),
+                    format!("{name} must be linear or rotary, one of the two"),
+                    "linear = [1, 0, 0] slides along X, rotary = [0, 0, 1] turns about Z",
+                );
+                return None;
+            }
+        };
+        let unit = if rotary { 1f64.to_radians() } else { 1.0 };
+        let mut direction = self.direction(&format!("the direction of {name}"), direction)?;
+        if axis.reversed {
+            direction = -direction;
+        }
+        let point = match (&axis.point, rotary) {
+            (Some(point), true) => self.vector(point),
+            (None, true) => {
+                self.fault(
+                    "machine-axis",
+                    spanned.span(),
+                    format!("{name} turns, but the file does not say where its axis line runs"),
+                    "point = [x, y, z], any point on the line, in the machine frame with all axes at zero",
+                );
+                return None;
+            }
+            (Some(point), false) => {
+                self.fault(
+                    "machine-axis",
+                    point[0].span(),
+                    format!("{name} slides: a point means nothing to it"),
+                    "take the point out",
+                );
+                return None;
+            }
+            (None, false) => Vector3::zeros(),
+        };
+        if axis.cyclic && !rotary {
+            self.fault(
+                "machine-axis",
+                spanned.span(),
+                format!("{name} slides: it cannot be cyclic"),
+                "give its travel",
+            );
+        }
+        let zero = axis.zero.as_ref().map_or(0.0, |zero| self.number(zero));
+        let travel = match (&axis.travel, axis.cyclic) {
+            (Some(travel), false) => {
+                let [least, most] = [&travel.get_ref()[0], &travel.get_ref()[1]]
+                    .map(|quantity| self.number(quantity));
+                if least >= most {
+                    self.fault(
+                        "machine-travel",
+                        travel.span(),
+                        format!("the travel of {name} goes from {least} to {most}: the first must be the smaller"),
+                        "travel = [least, most]",
+                    );
+                }
+                Some([(least - zero) * unit, (most - zero) * unit])
+            }
+            (None, true) => None,
+            (Some(travel), true) => {
+                self.fault(
+                    "machine-travel",
+                    travel.span(),
+                    format!("{name} is cyclic (endless) and has travel: which of the two?"),
+                    "keep one of them",
+                );
+                None
+            }
+            (None, false) => {
+                self.fault(
+                    "machine-travel",
+                    spanned.span(),
+                    format!("{name} has no travel"),
+                    if rotary {
+                        "travel = [-120, 30] in degrees, or cyclic = true if it turns without end"
+                    } else {
+                        "travel = [-300, 300] in mm, in positions of the axis"
+                    },
+                );
+                None
+            }
+        };
+        let rate = |this: &mut Self, key: &str, quantity: &Option<Quantity>| {
+            let Some(quantity) = quantity else {
+                return f64::INFINITY;
+            };
+            let value = this.number(quantity);
+            if value <= 0.0 {
+                this.fault(
+                    "machine-axis",
+                    quantity.span(),
+                    format!("{key} of {name} is {value}; it must be above zero"),
+                    "",
+                );
+            }
+            value * unit
+        };
+        let max_feed = rate(self, "max_feed", &axis.max_feed);
+        // Acceleration and jerk are checked now and used by the feed planner.
+        rate(self, "max_accel", &axis.max_accel);
+        rate(self, "max_jerk", &axis.max_jerk);
+        let indexed = self.indexed(name, spanned, zero, unit, travel);
+        let clamp = self.clamp(name, spanned);
+        let range = self.range(name, spanned, unit);
+        Some(Axis {
+            name: name.to_owned(),
+            carries_part,
+            joint: Joint {
+                rotary,
+                direction,
+                point,
+            },
+            zero: zero * unit,
+            travel,
+            range,
+            indexed,
+            second: None,
+            clamp,
+            max_feed,
+        })
+    }
+
+    /// `indexed`, `positions` and `step`: values as the control shows them, counted from the drawing's zero here.
+    fn indexed(
+        &mut self,
+        name: &str,
+        spanned: &Spanned<AxisFile>,
+        zero: f64,
+        unit: f64,
+        travel: Option<[f64; 2]>,
+    ) -> Option<Indexed> {
+        let axis = spanned.get_ref();
+        let Some(start) = &axis.indexed else {
+            let stray = axis
+                .positions
+                .as_ref()
+                .map(|positions| (positions.span(), "positions"))
+                .or_else(|| axis.step.as_ref().map(|step| (step.span(), "step")));
+            if let Some((span, key)) = stray {
+                self.fault(
+                    "machine-axis",
+                    span,
+                    format!("{name} has {key}, but is not indexed"),
+                    "indexed = 0 keeps it at 0 during cuts",
+                );
+            }
+            return None;
+        };
+        let value = (self.number(start) - zero) * unit;
+        let inside = |value: f64| {
+            travel.is_none_or(|[least, most]| (least - 1e-9..=most + 1e-9).contains(&value))
+        };
+        if !inside(value) {
+            self.fault(
+                "machine-travel",
+                start.span(),
+                format!(
+                    "{name} is indexed at {}, outside its travel",
+                    value / unit + zero
+                ),
+                "",
+            );
+        }
+        let positions = match (&axis.positions, &axis.step) {
+            (None, None) => Positions::Any,
+            (Some(list), None) => {
+                let values: Vec<f64> = list
+                    .get_ref()
+                    .iter()
+                    .map(|quantity| (self.number(quantity) - zero) * unit)
+                    .collect();
+                if let Some(place) = values.iter().position(|value| !inside(*value)) {
+                    self.fault(
+                        "machine-travel",
+                        list.get_ref()[place].span(),
+                        format!("this position of {name} lies outside its travel"),
+                        "",
+                    );
+                }
+                if values.is_empty() {
+                    self.fault(
+                        "machine-axis",
+                        list.span(),
+                        format!("{name} has no position"),
+                        "positions = [0, 90, 180, 270]",
+                    );
+                }
+                Positions::List(values)
+            }
+            (None, Some(step)) => {
+                let width = self.number(step) * unit;
+                if width <= 0.0 {
+                    self.fault(
+                        "machine-axis",
+                        step.span(),
+                        format!("the step of {name} must be above zero"),
+                        "step = 5 lets it stand at 0, 5, 10 …",
+                    );
+                }
+                Positions::Step {
+                    first: -zero * unit,
+                    step: width.max(1e-6),
+                }
+            }
+            (Some(list), Some(_)) => {
+                self.fault(
+                    "machine-axis",
+                    list.span(),
+                    format!("{name} has both positions and step: which of the two?"),
+                    "keep one of them",
+                );
+                Positions::Any
+            }
+        };
+        if !positions.holds(value, travel.is_none()) {
+            self.fault(
+                "machine-axis",
+                start.span(),
+                format!(
+                    "{name} is indexed at {}, which is none of its positions",
+                    value / unit + zero
+                ),
+                "",
+            );
+        }
+        Some(Indexed {
+            start: value,
+            positions,
+        })
+    }
+
+    fn clamp(&mut self, name: &str, spanned: &Spanned<AxisFile>) -> Option<Clamp> {
+        let axis = spanned.get_ref();
+        let (span, help) = match (&axis.clamp, &axis.unclamp) {
+            (None, None) => return None,
+            (Some(on), Some(off)) if axis.indexed.is_some() => {
+                return Some(Clamp {
+                    on: on.get_ref().clone(),
+                    off: off.get_ref().clone(),
+                });
+            }
+            (Some(on), Some(_)) => (
+                on.span(),
+                "only an axis that stands still in cuts is clamped: indexed = 0",
+            ),
+            (Some(word), None) | (None, Some(word)) => (
+                word.span(),
+                "clamp and unclamp go together: clamp = \"M10\", unclamp = \"M11\"",
+            ),
+        };
+        self.fault(
+            "machine-axis",
+            span,
+            format!("{name} cannot be clamped like this"),
+            help,
+        );
+        None
+    }
+
+    /// What the control shows of a cyclic axis, radians.
+    fn range(&mut self, name: &str, spanned: &Spanned<AxisFile>, unit: f64) -> Option<[f64; 2]> {
+        let axis = spanned.get_ref();
+        let range = axis.range.as_ref()?;
+        let [least, most] =
+            [&range.get_ref()[0], &range.get_ref()[1]].map(|quantity| self.number(quantity));
+        if !axis.cyclic || (most - least - 360.0).abs() > 1e-9 {
+            self.fault(
+                "machine-axis",
+                range.span(),
+                format!("the control cannot show {name} from {least} to {most}"),
+                "a cyclic axis can be shown over one turn: range = [0, 360] or [-180, 180]; its travel is said with travel",
+            );
+            return None;
+        }
+        Some([least * unit, most * unit])
+    }
+
+    /// Finds the axes that quills move along with.
+    pub(super) fn seconds(&mut self, file: &MachineFile, axes: &mut [Axis]) {
+        let main: Vec<(usize, Vector3<f64>)> = axes
+            .iter()
+            .enumerate()
+            .filter(|(_, axis)| !axis.joint.rotary && axis.indexed.is_none())
+            .filter(|(_, axis)| {
+                let spanned = &file.axis[&axis.name];
+                let axis = spanned.get_ref();
+                axis.share.is_none() && axis.reserve.is_none()
+            })
+            .map(|(place, axis)| (place, axis.joint.direction))
+            .collect();
+        for axis in axes {
+            let spanned = &file.axis[&axis.name];
+            let said = spanned.get_ref();
+            let (span, share) = match (&said.share, &said.reserve) {
+                (None, None) => continue,
+                (Some(share), None) => (share.span(), Some(self.number(share))),
+                (None, Some(reserve)) => (reserve.span(), None),
+                (Some(share), Some(_)) => {
+                    self.fault(
+                        "machine-axis",
+                        share.span(),
+                        format!(
+                            "{} has both share and reserve: which of the two?",
+                            axis.name
+                        ),
+                        "keep one of them",
+                    );
+                    continue;
+                }
+            };
+            let along = main
+                .iter()
+                .find(|(_, direction)| direction.dot(&axis.joint.direction).abs() > 1.0 - 1e-6);
+            let Some((of, _)) = along.filter(|_| !axis.joint.rotary && axis.indexed.is_none())
+            else {
+                self.fault(
+                    "machine-axis",
+                    span,
+                    format!("{} can share the way of no other axis", axis.name),
+                    "share and reserve are for a linear axis (a quill) that is parallel to another and not indexed",
+                );
+                continue;
+            };
+            if share.is_some_and(|share| !(0.0..=1.0).contains(&share)) {
+                self.fault(
+                    "machine-axis",
+                    span,
+                    format!("the share of {} must be from 0 to 1", axis.name),
+                    "",
+                );
+            }
+            axis.second = Some(match share {
+                Some(share) => Second::Share { of: *of, share },
+                None => Second::Reserve { of: *of },
+            });
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! What a machine file says of the choice between solutions, and of leaving the part when a cut cannot go on.
+
+use toml::Spanned;
+
+use super::Axis;
+use super::build::Builder;
+use super::file::{EdgeSource, MachineFile, Pole, Quantity, RewindFile, Side};
+use crate::kinematics::Joints;
+
+/// Which of several solutions is taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// What is to be small over the path.
+    pub rule: Rule,
+    /// Sides of zero on which axes should stand, if they can: place in the chain and side.
+    pub prefer: Vec<(usize, Side)>,
+    /// Sides of zero that axes must not leave.
+    pub require: Vec<(usize, Side)>,
+    /// Where the axes stand before the first position, mm or radians.
+    pub start: Joints,
+    /// Axes of which one at most moves in a block: places in the chain.
+    pub exclusive: Vec<Vec<usize>>,
+    /// Points that are looked at before the first of them is settled; 1 takes the nearest solution each time.
+    pub look_ahead: usize,
+    /// What is done close to a singular direction.
+    pub pole: Pole,
+    /// Where a leading edge points.
+    pub edge: EdgeSource,
+    /// Where the direction of travel turns by more, the tool is turned on the spot, radians.
+    pub corner: f64,
+}
+
+/// What is to be small over the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// Travel of every axis over its largest feed, summed.
+    Time,
+    /// Root of the sum of squares of the rotary travels.
+    Travel,
+    /// The largest rotary travel.
+    LargestAxis,
+    /// The travel of one axis: its place in the chain.
+    Axis(usize),
+}
+
+/// How the tool leaves the part when a cut cannot go on: back along its axis, turn, and return.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rewind {
+    /// How far.
+    pub retract: Retract,
+    /// Feed of the way out, mm/min; none is rapid.
+    pub retract_feed: Option<f64>,
+    /// Feed of the turn, degrees a minute; none is rapid.
+    pub turn_feed: Option<f64>,
+    /// Feed of the way back, mm/min; none is the feed of the cut.
+    pub plunge_feed: Option<f64>,
+}
+
+/// How far the tool is drawn back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Retract {
+    /// So many mm along the tool axis.
+    Distance(f64),
+    /// Along the tool axis until the tip stands so high over the part origin, mm along Z of the part.
+    Plane(f64),
+}
+
+/// Points that are looked at where the file does not say.
+const LOOK_AHEAD: u32 = 2000;
+
+impl Builder<'_> {
+    pub(super) fn solution(&mut self, file: &MachineFile, axes: &[Axis]) -> Solution {
+        let said = &file.solution;
+        let rule = match &said.rule {
+            None => Rule::Time,
+            Some(rule) => self.rule(rule, axes),
+        };
+        let sides = |this: &mut Self, sides: &std::collections::BTreeMap<Spanned<String>, Side>| {
+            let places = sides
+                .iter()
+                .filter_map(|(name, side)| Some((this.place_of(name, axes)?, *side)));
+            places.collect::<Vec<_>>()
+        };
+        let prefer = sides(self, &said.prefer);
+        let require = sides(self, &said.require);
+        let mut start: Joints = Default::default();
+        for (place, axis) in axes.iter().enumerate() {
+            start[place] = match &axis.indexed {
+                Some(indexed) => indexed.start,
+                // A rotary axis that cannot stand at the drawing's zero stands at the nearest end.
+                None => axis
+                    .travel
+                    .filter(|_| axis.joint.rotary)
+                    .map_or(0.0, |[least, most]| 0f64.clamp(least, most)),
+            };
+        }
+        for (name, value) in &said.start {
+            let Some(place) = self.place_of(name, axes) else {
+                continue;
+            };
+            let axis = &axes[place];
+            let unit = axis.unit();
+            let value = self.number(value) * unit - axis.zero;
+            if axis
+                .travel
+                .is_some_and(|[least, most]| value < least || value > most)
+            {
+                self.fault(
+                    "machine-travel",
+                    name.span(),
+                    format!("{} cannot start there: it is outside its travel", axis.name),
+                    "",
+                );
+            }
+            start[place] = value;
+        }
+        let exclusive = said
+            .exclusive
+            .iter()
+            .map(|group| {
+                let places = group.iter().filter_map(|name| self.place_of(name, axes));
+                places.collect()
+            })
+            .collect();
+        let look_ahead = match &said.look_ahead {
+            None => LOOK_AHEAD,
+            Some(points) => {
+                if *points.get_ref() == 0 || *points.get_ref() > 100_000 {
+                    self.fault(
+                        "machine-solution",
+                        points.span(),
+                        "look_ahead is a number of points, from 1 to 100000".to_owned(),
+                        "1 takes the nearest solution each time",
+                    );
+                }
+                *points.get_ref()
+            }
+        };
+        let corner = said
+            .corner
+            .as_ref()
+            .map_or(10.0, |corner| self.positive("corner", corner));
+        Solution {
+            rule,
+            prefer,
+            require,
+            start,
+            exclusive,
+            look_ahead: look_ahead as usize,
+            pole: said.pole,
+            edge: said.edge,
+            corner: corner.to_radians(),
+        }
+    }
+
+    fn rule(&mut self, rule: &Spanned<String>, axes: &[Axis]) -> Rule {
+        let text = rule.get_ref();
+        let named = text
+            .strip_prefix("axis:")
+            .and_then(|name| axes.iter().position(|axis| axis.name == name));
+        match (text.as_str(), named) {
+            ("time", _) => Rule::Time,
+            ("travel", _) => Rule::Travel,
+            ("largest-axis", _) => Rule::LargestAxis,
+            (_, Some(place)) => Rule::Axis(place),
+            _ => {
+                self.fault(
+                    "machine-solution",
+                    rule.span(),
+                    format!("there is no rule {text}"),
+                    "\"time\", \"travel\", \"largest-axis\", or \"axis:C\" for an axis of the chain",
+                );
+                Rule::Time
+            }
+        }
+    }
+
+    fn place_of(&mut self, name: &Spanned<String>, axes: &[Axis]) -> Option<usize> {
+        let place = axes.iter().position(|axis| axis.name == *name.get_ref());
+        if place.is_none() {
+            self.fault(
+                "machine-solution",
+                name.span(),
+                format!("the machine has no axis {}", name.get_ref()),
+                "",
+            );
+        }
+        place
+    }
+
+    pub(super) fn rewind(&mut self, spanned: &Spanned<RewindFile>) -> Option<Rewind> {
+        let said = spanned.get_ref();
+        let retract = match (&said.distance, &said.plane) {
+            (Some(distance), None) => {
+                Retract::Distance(self.positive("distance of [rewind]", distance))
+            }
+            (None, Some(plane)) => Retract::Plane(self.number(plane)),
+            _ => {
+                self.fault(
+                    "machine-rewind",
+                    spanned.span(),
+                    "[rewind] must say how far the tool is drawn back".to_owned(),
+                    "distance = 50 draws it back along its axis by 50 mm, plane = 200 until the tip stands 200 mm over the part origin",
+                );
+                return None;
+            }
+        };
+        let feed = |this: &mut Self, name: &str, feed: &Option<Quantity>| {
+            feed.as_ref().map(|feed| this.positive(name, feed))
+        };
+        Some(Rewind {
+            retract,
+            retract_feed: feed(self, "retract_feed", &said.retract_feed),
+            turn_feed: feed(self, "turn_feed", &said.turn_feed),
+            plunge_feed: feed(self, "plunge_feed", &said.plunge_feed),
+        })
+    }
+
+    /// A number that must be above zero.
+    fn positive(&mut self, name: &str, quantity: &Quantity) -> f64 {
+        let value = self.number(quantity);
+        if value <= 0.0 {
+            self.fault(
+                "machine-solution",
+                quantity.span(),
+                format!("{name} is {value}; it must be above zero"),
+                "",
+            );
+        }
+        value
+    }
+}

@@ -1,0 +1,74 @@
+//! The options that a machine file has for plugins.
+
+use std::collections::BTreeMap;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::layers::Sources;
+use super::{GivenOption, OptionValue};
+use crate::diagnostic::Diagnostic;
+
+/// Takes the sub-tables of `[section]` out: they belong to plugins, and only those know their keys.
+pub(super) fn take_options(
+    table: &mut Spanned<DeTable<'_>>,
+    section: &str,
+    sources: &Sources,
+    faults: &mut Vec<Diagnostic>,
+) -> BTreeMap<String, Vec<GivenOption>> {
+    let mut taken = BTreeMap::new();
+    let Some(DeValue::Table(table)) = table.get_mut().get_mut(section).map(Spanned::get_mut) else {
+        return taken;
+    };
+    let names: Vec<String> = table
+        .iter()
+        .filter(|(_, value)| value.get_ref().is_table())
+        .map(|(key, _)| key.get_ref().to_string())
+        .collect();
+    for name in names {
+        let Some(DeValue::Table(options)) = table.remove(name.as_str()).map(Spanned::into_inner)
+        else {
+            continue;
+        };
+        let mut given = Vec::new();
+        for (key, value) in options {
+            let place = sources.place(key.span());
+            let text = value.get_ref().as_str().map(str::to_owned);
+            let value = match value.get_ref() {
+                DeValue::Boolean(flag) => Some(OptionValue::Flag(*flag)),
+                DeValue::Integer(number) => {
+                    i64::from_str_radix(&number.as_str().replace('_', ""), number.radix())
+                        .ok()
+                        .map(OptionValue::Integer)
+                }
+                DeValue::Float(number) => number
+                    .as_str()
+                    .replace('_', "")
+                    .parse()
+                    .ok()
+                    .filter(|number: &f64| number.is_finite())
+                    .map(OptionValue::Number),
+                _ => text.map(OptionValue::Text),
+            };
+            match value {
+                Some(value) => given.push(GivenOption {
+                    key: key.into_inner().into_owned(),
+                    value,
+                    place,
+                }),
+                None => faults.push(
+                    Diagnostic::error(
+                        "machine-option",
+                        format!(
+                            "{} of [{section}.{name}] takes a flag, a number or a text",
+                            key.get_ref()
+                        ),
+                    )
+                    .at(place),
+                ),
+            }
+        }
+        taken.insert(name, given);
+    }
+    taken
+}

@@ -91,7 +91,7 @@ impl Builder<'_> {
                 None => axis
                     .travel
                     .filter(|_| axis.joint.rotary)
-                    .map_or(0.0, |[least, most]| 0f64.clamp(least, most)),
+                    .map_or(0.0, |[least, most]| 0f64.max(least).min(most)),
             };
         }
         for (name, value) in &said.start {

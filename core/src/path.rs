@@ -214,7 +214,15 @@ impl<'a> Path<'a> {
             Step::Move(motion) => self.motion(line, &motion),
             Step::From { tip, axis } => {
                 // The tool stands there: solutions near to it are wanted, but nothing moves.
-                if let Ok(node) = self.placer.place(Pose { tip, axis }, 1.0, &self.near) {
+                if let Ok(node) = self.placer.place(
+                    Pose {
+                        tip,
+                        axis,
+                        ..Pose::default()
+                    },
+                    1.0,
+                    &self.near,
+                ) {
                     self.near = node.trace.joints;
                 }
             }
@@ -307,6 +315,7 @@ impl<'a> Path<'a> {
         let target = Pose {
             tip: motion.tip,
             axis: motion.axis,
+            ..Pose::default()
         };
         let mut node = self.spare.take().unwrap_or_default();
         let near = self
@@ -520,7 +529,7 @@ impl<'a> Path<'a> {
                 chain.forward(&joints).axis
             }
         };
-        let tilt = crate::kinematics::inverse::angle(axis, machine.tool_axis);
+        let tilt = crate::kinematics::orientation::angle(axis, machine.tool_axis);
         let turned = self.last.as_ref().is_some_and(|last| {
             let joints = machine.axes.iter().enumerate();
             joints

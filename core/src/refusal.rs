@@ -28,6 +28,14 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
             "out-of-reach",
             format!("the linear axes of {} cannot bring the tip here at these angles", machine.name),
         ),
+        Refused::Unreachable(Unreachable::Numeric { miss }) => Diagnostic::error(
+            "out-of-reach",
+            format!(
+                "no axis values of {} were found for this point: the nearest pose misses it by {miss:.4} mm",
+                machine.name
+            ),
+        )
+        .help("this machine is solved numerically, from the point before: a point between may help"),
         Refused::OverTravel { over, tried } => {
             let side = u64::from(over.value > over.limit);
             let axis = &machine.axes[over.joint];

@@ -60,7 +60,11 @@ fn sampled(
 
 fn pose(reference: &Reference, q: &Joints) -> Pose {
     let (tip, axis) = reference.forward(q);
-    Pose { tip, axis }
+    Pose {
+        tip,
+        axis,
+        ..Pose::default()
+    }
 }
 
 /// A block of a random machine; `turn` in degrees and `slide` in mm are the largest that an axis makes.
@@ -255,6 +259,7 @@ fn the_swing_head_move_of_the_parabolic_paper() {
             let pose = Pose {
                 tip: Vector3::from(tip),
                 axis: Vector3::new(sine, 0.0, cosine),
+                ..Pose::default()
             };
             let solutions = solver.inverse(&pose, &[0.0; 8], 1e-9).unwrap();
             let wanted = |joints: &&Joints| {
@@ -315,6 +320,7 @@ fn blade() -> Option<Vec<Pose>> {
         .map(|numbers| Pose {
             tip: Vector3::new(numbers[1], numbers[2], numbers[3]),
             axis: Vector3::new(numbers[4], numbers[5], numbers[6]).normalize(),
+            ..Pose::default()
         })
         .collect::<Vec<_>>();
     assert_eq!(points.len(), 20);

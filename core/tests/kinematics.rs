@@ -8,8 +8,17 @@ use std::f64::consts::PI;
 
 use common::{Random, Rng, angle, turned};
 use nalgebra::{UnitQuaternion, Vector3};
-use post_core::kinematics::inverse::{POLE, RotarySet};
+use post_core::kinematics::inverse::POLE;
+use post_core::kinematics::orientation::RotarySet;
 use post_core::kinematics::{Joints, Pose, Solver, Unreachable};
+
+/// A pose of which the tool axis alone matters.
+fn towards(axis: Vector3<f64>) -> Pose {
+    Pose {
+        axis,
+        ..Pose::default()
+    }
+}
 
 fn solver(machine: &Random) -> Solver {
     Solver::new(machine.reference.chain(), &machine.free, machine.held)
@@ -22,7 +31,7 @@ fn sets(
     wanted: Vector3<f64>,
     tolerance: f64,
 ) -> Result<Vec<RotarySet>, Unreachable> {
-    let branches = solver.orient(wanted, tolerance)?;
+    let branches = solver.orient(&towards(wanted), tolerance)?;
     let sets: Vec<RotarySet> = (0..branches.count())
         .map(|index| solver.angles(&branches, index))
         .collect();
@@ -226,7 +235,8 @@ fn one_axis_or_none_takes_the_nearest_orientation() {
             );
         }
         if least > 1e-5 {
-            let Err(Unreachable::Axis { miss }) = solver.orient(wanted, least * 0.999) else {
+            let Err(Unreachable::Axis { miss }) = solver.orient(&towards(wanted), least * 0.999)
+            else {
                 panic!("round {round}: {least} was not refused");
             };
             assert!((miss - least).abs() < 1e-7, "round {round}: {miss} {least}");
@@ -264,7 +274,11 @@ fn on_the_pole_the_first_axis_is_free() {
             continue;
         }
         let tip = reference.forward(&q).0;
-        let pose = Pose { tip, axis: wanted };
+        let pose = Pose {
+            tip,
+            axis: wanted,
+            ..Pose::default()
+        };
         let solutions = solver.inverse(&pose, &q, 1e-9).unwrap();
         for solution in &solutions {
             assert_eq!(solution[machine.free[0]], q[machine.free[0]]);
@@ -319,7 +333,15 @@ fn the_inverse_finds_every_pose_beside_the_pole() {
             continue;
         }
         let (tip, axis) = machine.reference.forward(&q);
-        if let Err(fault) = solver(&machine).inverse(&Pose { tip, axis }, &q, 0.0) {
+        if let Err(fault) = solver(&machine).inverse(
+            &Pose {
+                tip,
+                axis,
+                ..Pose::default()
+            },
+            &q,
+            0.0,
+        ) {
             refused.push((angle(axis, on_pole), fault));
         }
     }
@@ -345,7 +367,15 @@ fn an_axis_along_the_tool_keeps_its_value() {
         }
         let (tip, axis) = machine.reference.forward(&q);
         let solutions = solver(&machine)
-            .inverse(&Pose { tip, axis }, &q, 1e-9)
+            .inverse(
+                &Pose {
+                    tip,
+                    axis,
+                    ..Pose::default()
+                },
+                &q,
+                1e-9,
+            )
             .unwrap();
         let kept = solutions
             .iter()

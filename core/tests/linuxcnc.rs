@@ -161,7 +161,15 @@ fn check(name: &str, rotary: &str, order: &str) {
         let axis = law(order, pose);
         axis_error = axis_error.max(angle(reached.axis, axis));
         let solutions = solver
-            .inverse(&Pose { tip, axis }, &joints, 1e-9)
+            .inverse(
+                &Pose {
+                    tip,
+                    axis,
+                    ..Pose::default()
+                },
+                &joints,
+                1e-9,
+            )
             .unwrap_or_else(|fault| panic!("{name}: {fault:?} at {row:?}"));
         let nearest = solutions
             .iter()

@@ -11,7 +11,7 @@ use post_plugin::{Deviation, ModelSession, Tolerance};
 
 use super::certificate::{self, Bend, chord_angle};
 use super::node::{Node, Placer, Refused};
-use crate::kinematics::inverse::angle;
+use crate::kinematics::orientation::angle;
 use crate::kinematics::{Joints, Pose};
 
 /// What the pieces of a move must stay within.
@@ -279,7 +279,11 @@ fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
     let axis = (from.target.axis + to.target.axis)
         .try_normalize(1e-9)
         .unwrap_or(from.target.axis);
-    let target = Pose { tip, axis };
+    let target = Pose {
+        tip,
+        axis,
+        ..Pose::default()
+    };
     let exact = placer.place_between(target, t, first, last);
     if bound.axis > piece.tolerances.axis {
         return exact;

@@ -153,7 +153,7 @@ impl Placer {
     ) -> Result<(), Refused> {
         let solver = &self.solver;
         let branches = solver
-            .orient(target.axis, self.axis_tolerance)
+            .orient(&target, self.axis_tolerance)
             .map_err(Refused::Unreachable)?;
         let tried = branches.count();
         let choice = self

@@ -30,6 +30,8 @@ pub struct Pose {
     pub tip: Vector3<f64>,
     /// Tool axis, unit vector from the tip to the holder, part frame.
     pub axis: Vector3<f64>,
+    /// Leading edge of a knife or disc, unit vector across the tool axis, part frame; zero for a tool that turns.
+    pub edge: Vector3<f64>,
 }
 
 /// Sine and cosine of every rotary joint, so that a set of angles is evaluated once.
@@ -66,6 +68,8 @@ pub struct Chain {
     tip: Vector3<f64>,
     /// Tool axis with all axes at zero, machine frame, unit vector.
     axis: Vector3<f64>,
+    /// Leading edge with all axes at zero, machine frame, unit vector; none for a tool that turns.
+    edge: Option<Vector3<f64>>,
 }
 
 /// `vector` turned about the unit vector `k` (Rodrigues' formula).
@@ -116,7 +120,18 @@ impl Chain {
             mount,
             tip,
             axis: axis.normalize(),
+            edge: None,
         }
+    }
+
+    /// The chain with a tool that has a leading edge: a direction across the tool axis, all axes at zero,
+    /// machine frame.
+    pub fn with_edge(mut self, edge: Option<Vector3<f64>>) -> Self {
+        self.edge = edge.and_then(|edge| {
+            let across = edge - self.axis * self.axis.dot(&edge);
+            across.try_normalize(1e-9)
+        });
+        self
     }
 
     /// The joints, from the workpiece to the tool.
@@ -139,6 +154,11 @@ impl Chain {
     /// Tool axis with all axes at zero, machine frame.
     pub fn axis(&self) -> Vector3<f64> {
         self.axis
+    }
+
+    /// Leading edge with all axes at zero, machine frame.
+    pub fn edge(&self) -> Option<Vector3<f64>> {
+        self.edge
     }
 
     /// Sines and cosines of the rotary values of `joints`.
@@ -172,6 +192,7 @@ impl Chain {
     pub fn trace(&self, trace: &mut Trace) {
         let mut tip = self.tip;
         let mut axis = self.axis;
+        let mut edge = self.edge;
         for (index, joint) in self.joints().iter().enumerate().rev() {
             if joint.rotary {
                 let (sine, cosine) = trace.turns.of(index);
@@ -180,6 +201,9 @@ impl Chain {
                 trace.axes[index] = axis;
                 tip = joint.point + turn(arm, joint.direction, sine, cosine);
                 axis = turn(axis, joint.direction, sine, cosine);
+                if let Some(edge) = &mut edge {
+                    *edge = turn(*edge, joint.direction, sine, cosine);
+                }
             } else {
                 tip += joint.direction * trace.joints[index];
             }
@@ -187,6 +211,7 @@ impl Chain {
         trace.pose = Pose {
             tip: tip - self.mount,
             axis,
+            edge: edge.unwrap_or_default(),
         };
     }
 }

@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::chain::Joints;
-use super::inverse::{Branches, RotarySet, Solver};
+use super::inverse::Solver;
+use super::orientation::{Branches, RotarySet};
 
 /// What the choice needs to know of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

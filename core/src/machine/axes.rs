@@ -8,8 +8,8 @@ use toml::Spanned;
 
 use super::build::Builder;
 use super::file::{AxisFile, MachineFile, Quantity};
-use super::{Axis, Clamp, Indexed, Positions, Second};
-use crate::kinematics::{Joint, MAX_AXES};
+use super::{Axis, Clamp, Indexed, Positions};
+use crate::kinematics::{Joint, MAX_AXES, Second};
 
 impl Builder<'_> {
     /// The axes in the order of the chain, each checked against its side of the bed.

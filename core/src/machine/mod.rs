@@ -20,7 +20,7 @@ pub use file::{
 pub use layers::Source;
 
 use crate::diagnostic::Place;
-use crate::kinematics::{Chain, Joint, Joints, NoClosedForm, Solver};
+use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
 
 /// A machine.
 #[derive(Clone, Debug)]
@@ -161,23 +161,6 @@ impl Positions {
     }
 }
 
-/// A linear axis beside the three that place the tip: a quill.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Second {
-    /// It takes this share of the way of axis `of` (a place in the chain).
-    Share {
-        /// The other axis.
-        of: usize,
-        /// From 0 to 1.
-        share: f64,
-    },
-    /// It moves where the travel of axis `of` ends.
-    Reserve {
-        /// The other axis.
-        of: usize,
-    },
-}
-
 /// Words of the program, letter for letter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Clamp {
@@ -254,24 +237,80 @@ pub struct Accuracy {
 }
 
 impl Machine {
-    /// The machine with a tool of `length` mm in it, ready to be solved.
+    /// The machine with a tool of `length` mm in it and its indexed axes where they start, ready to be solved.
     ///
     /// # Errors
     /// What its chain lacks.
     pub fn solver(&self, length: f64) -> Result<Solver, NoClosedForm> {
+        self.solver_at(length, &self.solution.start)
+    }
+
+    /// [`Machine::solver`] with the redundant axes held at the values of `held`.
+    ///
+    /// # Errors
+    /// What the chain lacks.
+    pub fn solver_at(&self, length: f64, held: &Joints) -> Result<Solver, NoClosedForm> {
         let joints = self.axes.iter().map(|axis| axis.joint).collect();
         let tip = self.gauge - self.tool_axis * length;
-        let chain = Chain::new(joints, self.mount, tip, self.tool_axis);
-        let mut held: Joints = Default::default();
-        let mut free = Vec::new();
-        for (index, axis) in self.axes.iter().enumerate() {
-            match &axis.indexed {
-                Some(indexed) => held[index] = indexed.start,
-                None if axis.joint.rotary => free.push(index),
-                None => {}
+        let chain = Chain::new(joints, self.mount, tip, self.tool_axis).with_edge(self.edge);
+        let freedom = Freedom {
+            rotary: self.pointing(),
+            still: (0..self.axes.len())
+                .filter(|place| {
+                    let axis = &self.axes[*place];
+                    !axis.joint.rotary && axis.indexed.is_some()
+                })
+                .collect(),
+            held: *held,
+            seconds: self
+                .axes
+                .iter()
+                .enumerate()
+                .filter_map(|(place, axis)| {
+                    let second = axis.second?;
+                    let of = match second {
+                        Second::Share { of, .. } | Second::Reserve { of } => of,
+                    };
+                    let endless = [f64::NEG_INFINITY, f64::INFINITY];
+                    Some((place, second, self.axes[of].travel.unwrap_or(endless)))
+                })
+                .collect(),
+        };
+        Solver::with(chain, &freedom)
+    }
+
+    /// Rotary axes that are solved for from the wanted tool axis: those that move in cuts, and as many of the
+    /// indexed ones (from the tool on) as two need. Places in the chain, in its order.
+    pub fn pointing(&self) -> Vec<usize> {
+        let rotary = |place: &usize| self.axes[*place].joint.rotary;
+        let mut pointing: Vec<usize> = (0..self.axes.len())
+            .filter(rotary)
+            .filter(|place| self.axes[*place].indexed.is_none())
+            .collect();
+        for place in (0..self.axes.len()).rev().filter(rotary) {
+            let joint = &self.axes[place].joint;
+            let of_use = match pointing.as_slice() {
+                [] => true,
+                [other] => {
+                    let other = &self.axes[*other].joint;
+                    joint.direction.cross(&other.direction).norm() > 1e-3
+                }
+                _ => false,
+            };
+            if self.axes[place].indexed.is_some() && of_use {
+                pointing.push(place);
             }
         }
-        Solver::new(chain, &free, held)
+        pointing.sort_unstable();
+        pointing
+    }
+
+    /// Indexed axes that are not solved for: they stand where the program or the choice has put them.
+    pub fn redundant(&self) -> Vec<usize> {
+        let pointing = self.pointing();
+        (0..self.axes.len())
+            .filter(|place| self.axes[*place].indexed.is_some() && !pointing.contains(place))
+            .collect()
     }
 
     /// Some rotary axis turns in a cut.

@@ -1,0 +1,243 @@
+//! The linear part of the inverse: once the rotary axes stand, the tip is put on its place by one small
+//! linear system, whatever side of the rotaries the linear axes stand on and however skewed.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::chain::{Chain, Joints, MAX_AXES, Turns, turn};
+use super::inverse::{NoClosedForm, Unreachable};
+
+/// A linear axis beside the three that place the tip: a quill.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Second {
+    /// It takes this share of the way of axis `of` (a place in the chain).
+    Share {
+        /// The other axis.
+        of: usize,
+        /// From 0 to 1.
+        share: f64,
+    },
+    /// It moves where the travel of axis `of` ends.
+    Reserve {
+        /// The other axis.
+        of: usize,
+    },
+}
+
+/// Which linear joints place the tip, and what the others do.
+#[derive(Clone, Debug)]
+pub(super) struct Linear {
+    joints: [usize; 3],
+    /// Joints in front of the first linear one, and behind the last.
+    first: usize,
+    last: usize,
+    /// Inverse of the three directions, if no rotary axis stands between them and there is no further one.
+    inverse: Option<Matrix3<f64>>,
+    seconds: Vec<Quill>,
+    /// There are linear axes beside the three.
+    more: bool,
+}
+
+/// A linear axis that moves along with another.
+#[derive(Clone, Debug)]
+struct Quill {
+    joint: usize,
+    /// Which of the three.
+    beside: usize,
+    /// Its share of the way; none if it moves where the other's travel ends.
+    share: Option<f64>,
+    /// Travel of the other, mm.
+    travel: [f64; 2],
+}
+
+/// The volume that three directions must span.
+const FLAT: f64 = 1e-6;
+
+impl Linear {
+    /// `held` tells which linear joints stand still, `seconds` which move along with another, and the travel
+    /// of that one.
+    pub(super) fn new(
+        chain: &Chain,
+        held: &[usize],
+        seconds: &[(usize, Second, [f64; 2])],
+    ) -> Result<Self, NoClosedForm> {
+        let all: Vec<usize> = (0..chain.joints().len())
+            .filter(|index| !chain.joints()[*index].rotary)
+            .collect();
+        let places: Vec<usize> = all
+            .iter()
+            .copied()
+            .filter(|index| !held.contains(index))
+            .filter(|index| seconds.iter().all(|(joint, ..)| joint != index))
+            .collect();
+        let joints: [usize; 3] =
+            places
+                .as_slice()
+                .try_into()
+                .map_err(|_| NoClosedForm::LinearAxes {
+                    count: places.len(),
+                })?;
+        let columns = joints.map(|index| chain.joints()[index].direction);
+        let between = chain.joints()[joints[0]..joints[2]]
+            .iter()
+            .any(|joint| joint.rotary);
+        let matrix = Matrix3::from_columns(&columns);
+        if !between && libm::fabs(matrix.determinant()) < FLAT {
+            return Err(NoClosedForm::FlatLinearAxes);
+        }
+        let more = all.len() > 3;
+        let inverse = if between || more {
+            None
+        } else {
+            matrix.try_inverse()
+        };
+        let seconds = seconds
+            .iter()
+            .filter_map(|(joint, second, travel)| {
+                let (of, share) = match *second {
+                    Second::Share { of, share } => (of, Some(share)),
+                    Second::Reserve { of } => (of, None),
+                };
+                Some(Quill {
+                    joint: *joint,
+                    beside: joints.iter().position(|joint| *joint == of)?,
+                    share,
+                    travel: *travel,
+                })
+            })
+            .collect();
+        Ok(Self {
+            joints,
+            first: joints[0],
+            last: joints[2],
+            inverse,
+            seconds,
+            more,
+        })
+    }
+
+    /// Puts the linear axes of `joints` where the tip stands on `tip` (mm, part frame).
+    #[inline]
+    pub(super) fn place(
+        &self,
+        chain: &Chain,
+        tip: Vector3<f64>,
+        joints: &mut Joints,
+        turns: &Turns,
+    ) -> Result<(), Unreachable> {
+        if self.more {
+            return self.place_all(chain, tip, joints, turns);
+        }
+        let axes = chain.joints();
+        // The target, taken through the rotary joints in front of the first linear one …
+        let mut target = tip + chain.mount();
+        for (index, joint) in axes[..self.first].iter().enumerate() {
+            let (sine, cosine) = turns.of(index);
+            target = joint.point + turn(target - joint.point, joint.direction, -sine, cosine);
+        }
+        // … and the tip through those behind the last.
+        let mut tip = chain.tip();
+        for index in (self.last + 1..axes.len()).rev() {
+            let joint = &axes[index];
+            let (sine, cosine) = turns.of(index);
+            tip = joint.point + turn(tip - joint.point, joint.direction, sine, cosine);
+        }
+        let values = if let Some(inverse) = &self.inverse {
+            inverse * (target - tip)
+        } else {
+            let mut columns = [Vector3::zeros(); 3];
+            let mut filled = 3;
+            for index in (self.first..=self.last).rev() {
+                let joint = &axes[index];
+                if joint.rotary {
+                    let (sine, cosine) = turns.of(index);
+                    tip = joint.point + turn(tip - joint.point, joint.direction, sine, cosine);
+                    for column in &mut columns[filled..] {
+                        *column = turn(*column, joint.direction, sine, cosine);
+                    }
+                } else {
+                    filled -= 1;
+                    columns[filled] = joint.direction;
+                }
+            }
+            solve(&columns, target - tip)?
+        };
+        for (value, joint) in values.iter().zip(self.joints) {
+            joints[joint] = *value;
+        }
+        Ok(())
+    }
+
+    /// [`Linear::place`] with more than three linear axes; those that are held stand where `joints` has them.
+    fn place_all(
+        &self,
+        chain: &Chain,
+        tip: Vector3<f64>,
+        joints: &mut Joints,
+        turns: &Turns,
+    ) -> Result<(), Unreachable> {
+        // Everything in the part frame: where the tip stands with the moving axes at zero, and how each moves it.
+        for joint in self.joints {
+            joints[joint] = 0.0;
+        }
+        for quill in &self.seconds {
+            joints[quill.joint] = 0.0;
+        }
+        let mut columns = [Vector3::zeros(); MAX_AXES];
+        let mut from = chain.tip();
+        for (index, joint) in chain.joints().iter().enumerate().rev() {
+            if joint.rotary {
+                let (sine, cosine) = turns.of(index);
+                from = joint.point + turn(from - joint.point, joint.direction, sine, cosine);
+                for column in &mut columns[index + 1..] {
+                    *column = turn(*column, joint.direction, sine, cosine);
+                }
+            } else {
+                columns[index] = joint.direction;
+                from += joint.direction * joints[index];
+            }
+        }
+        let way = tip + chain.mount() - from;
+        let mut main = self.joints.map(|joint| columns[joint]);
+        for quill in &self.seconds {
+            if let Some(share) = quill.share {
+                let beside = &mut main[quill.beside];
+                *beside = *beside * (1.0 - share) + columns[quill.joint] * share;
+            }
+        }
+        let mut values = solve(&main, way)?;
+        for quill in &self.seconds {
+            let value = values[quill.beside];
+            match quill.share {
+                Some(share) => {
+                    joints[quill.joint] = value * share;
+                    values[quill.beside] = value * (1.0 - share);
+                }
+                None => {
+                    let [least, most] = quill.travel;
+                    let end = value.max(least).min(most);
+                    if end != value {
+                        // The other stands at its end, and the quill takes its place.
+                        let stood = main[quill.beside] * end;
+                        main[quill.beside] = columns[quill.joint];
+                        let rest = solve(&main, way - stood)?;
+                        joints[quill.joint] = rest[quill.beside];
+                        values = rest;
+                        values[quill.beside] = end;
+                    }
+                }
+            }
+        }
+        for (value, joint) in values.iter().zip(self.joints) {
+            joints[joint] = *value;
+        }
+        Ok(())
+    }
+}
+
+fn solve(columns: &[Vector3<f64>; 3], way: Vector3<f64>) -> Result<Vector3<f64>, Unreachable> {
+    let matrix = Matrix3::from_columns(columns);
+    if libm::fabs(matrix.determinant()) < FLAT {
+        return Err(Unreachable::Linear);
+    }
+    Ok(matrix.try_inverse().ok_or(Unreachable::Linear)? * way)
+}

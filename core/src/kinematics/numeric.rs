@@ -1,0 +1,119 @@
+//! The inverse of chains without a closed form (fewer than three linear axes): Levenberg's damped Newton steps
+//! from a known point, verified by the forward product.
+//!
+//! Residual: the tip (mm) and the tool axis, whose error in radians counts as an arm of [`ARM`] mm. Where the
+//! chain has more axes than the pose needs, each step is the shortest that there is.
+
+use nalgebra::{SMatrix, SVector, Vector3};
+
+use super::chain::{Chain, Joints, MAX_AXES, Pose, turn};
+
+/// mm that a radian of the tool axis counts as.
+const ARM: f64 = 300.0;
+
+/// Steps from one start; quadratic convergence needs a handful.
+const STEPS: usize = 60;
+
+/// Residuals below this are taken as none, mm.
+const SOLVED: f64 = 1e-10;
+
+type Rows = SVector<f64, 9>;
+
+/// Axis values near `start` that reach `pose`, moving the joints of `free` alone. The best that was found, and
+/// by how much it misses (mm, the axis on its arm).
+pub(super) fn solve(chain: &Chain, free: &[usize], pose: &Pose, start: &Joints) -> (Joints, f64) {
+    let mut joints = *start;
+    let (mut residual, mut jacobian) = linearised(chain, free, pose, &joints);
+    let mut damping = 1e-6;
+    for _ in 0..STEPS {
+        let size = residual.norm();
+        if size < SOLVED {
+            break;
+        }
+        // Square in the joints, whose number never exceeds eight; unused rows are the identity.
+        let mut normal: SMatrix<f64, MAX_AXES, MAX_AXES> = jacobian.transpose() * jacobian;
+        let scale = normal.diagonal().max();
+        for index in 0..MAX_AXES {
+            normal[(index, index)] += if index < free.len() {
+                damping * scale
+            } else {
+                1.0
+            };
+        }
+        let Some(factor) = normal.cholesky() else {
+            break;
+        };
+        let step = factor.solve(&(jacobian.transpose() * residual));
+        let mut next = joints;
+        for (index, joint) in free.iter().enumerate() {
+            next[*joint] -= step[index];
+        }
+        let (next_residual, next_jacobian) = linearised(chain, free, pose, &next);
+        if next_residual.norm() < size {
+            joints = next;
+            residual = next_residual;
+            jacobian = next_jacobian;
+            damping = (damping * 0.1).max(1e-15);
+        } else {
+            damping *= 10.0;
+            if damping > 1e6 {
+                break;
+            }
+        }
+    }
+    (joints, residual.norm())
+}
+
+/// Residual at `joints`, and how it changes with each free joint.
+fn linearised(
+    chain: &Chain,
+    free: &[usize],
+    pose: &Pose,
+    joints: &Joints,
+) -> (Rows, SMatrix<f64, 9, MAX_AXES>) {
+    let reached = chain.forward(joints);
+    let wanted_edge = chain.edge().is_some();
+    let mut residual = Rows::zeros();
+    let tip = reached.tip - pose.tip;
+    let axis = (reached.axis - pose.axis) * ARM;
+    residual.fixed_rows_mut::<3>(0).copy_from(&tip);
+    residual.fixed_rows_mut::<3>(3).copy_from(&axis);
+    if wanted_edge {
+        let edge = (reached.edge - pose.edge) * ARM;
+        residual.fixed_rows_mut::<3>(6).copy_from(&edge);
+    }
+    let mut jacobian = SMatrix::<f64, 9, MAX_AXES>::zeros();
+    let turns = chain.turns(joints);
+    // A point and a direction of the chain as joint `index` finds them, taken to the part frame.
+    let out = |index: usize, mut point: Vector3<f64>, mut direction: Vector3<f64>| {
+        for (before, joint) in chain.joints()[..index].iter().enumerate().rev() {
+            if joint.rotary {
+                let (sine, cosine) = turns.of(before);
+                point = joint.point + turn(point - joint.point, joint.direction, sine, cosine);
+                direction = turn(direction, joint.direction, sine, cosine);
+            } else {
+                point += joint.direction * joints[before];
+            }
+        }
+        (point - chain.mount(), direction)
+    };
+    for (column, index) in free.iter().enumerate() {
+        let joint = &chain.joints()[*index];
+        let (point, direction) = out(*index, joint.point, joint.direction);
+        let (tip, axis, edge) = if joint.rotary {
+            (
+                direction.cross(&(reached.tip - point)),
+                direction.cross(&reached.axis) * ARM,
+                direction.cross(&reached.edge) * ARM,
+            )
+        } else {
+            (direction, Vector3::zeros(), Vector3::zeros())
+        };
+        jacobian.fixed_view_mut::<3, 1>(0, column).copy_from(&tip);
+        jacobian.fixed_view_mut::<3, 1>(3, column).copy_from(&axis);
+        if wanted_edge {
+            jacobian.fixed_view_mut::<3, 1>(6, column).copy_from(&edge);
+        }
+    }
+    (residual, jacobian)
+}

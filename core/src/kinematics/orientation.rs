@@ -1,0 +1,472 @@
+//! The rotary part of the inverse: axes that point the tool, in closed form, in any direction.
+//!
+//! With two rotary axes k1 (nearer the workpiece) and k2, tool axis a at zero and wanted axis u, the vector z
+//! between the two turns satisfies k1·z = k1·u, k2·z = k2·a, |z| = 1; k2 turns a into z and k1 turns z into u
+//! (the second Paden–Kahan subproblem, with the axes on lines of any kind since directions alone matter here).
+//!
+//! Three axes follow a whole tool frame: with R the turn from the tool's frame to the wanted one, k3 must come
+//! to lie along R·k3, which the first two do as above with k3 in the place of a; k3 then turns the rest.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::chain::{Chain, Joints, Pose, turn};
+use super::inverse::{NoClosedForm, POLE, Unreachable};
+
+/// The one or two ways to point the tool along one axis. Their angles are worked out when asked for: where
+/// solutions are far apart, the nearer one is all that is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct Branches {
+    count: usize,
+    /// The first free joint turns nothing here.
+    pole: bool,
+    /// Sine of the angle between the wanted axis and the first free joint.
+    sine: f64,
+    /// The wanted axis behind the held turns in front of the first free joint. With two free axes, in
+    /// coordinates: along k1, along `towards`, along `aside`.
+    u: Vector3<f64>,
+    /// The tool axis between the two turns: the coordinate along k1 is that of u, these are along `towards`
+    /// and, up to the sign that tells the branches apart, along `aside`.
+    x: f64,
+    y: f64,
+    /// With three free axes: where a vector across k3 is to point, behind the held turns in front of k1.
+    ahead: Vector3<f64>,
+}
+
+/// One set of rotary angles.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RotarySet {
+    /// The angles, radians, in -π to π; places of linear axes are zero.
+    pub joints: Joints,
+    /// Joints whose angle is free here (on the pole, or an axis along the tool), one bit each: they keep
+    /// their last value.
+    pub free: u8,
+}
+
+impl RotarySet {
+    /// Puts the free joints where they were.
+    #[inline]
+    pub fn keep(&mut self, last: &Joints) {
+        if self.free == 0 {
+            return;
+        }
+        for (joint, value) in self.joints.iter_mut().enumerate() {
+            if self.free & (1 << joint) != 0 {
+                *value = last[joint];
+            }
+        }
+    }
+}
+
+/// The rotary axes that are solved for.
+#[derive(Clone, Debug)]
+pub(super) enum Orientation {
+    /// No free rotary axis: the tool axis is constant.
+    Fixed { axis: Vector3<f64> },
+    /// One free rotary axis.
+    One {
+        joint: usize,
+        before: Option<Matrix3<f64>>,
+        k: Vector3<f64>,
+        a: Vector3<f64>,
+    },
+    /// Two, or the first two of three.
+    Two(Box<Two>),
+}
+
+/// Two rotary axes. Directions are taken as they stand behind the held axes in front of them.
+#[derive(Clone, Debug)]
+pub(super) struct Two {
+    joints: [usize; 2],
+    /// Inverse of the held turns in front of k1, if there are any.
+    before: Option<Matrix3<f64>>,
+    k1: Vector3<f64>,
+    k2: Vector3<f64>,
+    /// What is pointed: the tool axis, or the third rotary axis.
+    a: Vector3<f64>,
+    /// Across k1, towards k2; and k1 × `towards`.
+    towards: Vector3<f64>,
+    aside: Vector3<f64>,
+    /// k1·k2, and one over the sine of the angle between them.
+    dot: f64,
+    per_sine: f64,
+    /// k2·a.
+    cone: f64,
+    /// The part of a across k2, and k2 × that, in the coordinates k1, `towards`, `aside`.
+    across: Vector3<f64>,
+    ahead: Vector3<f64>,
+    third: Option<Third>,
+}
+
+/// The third of three rotary axes.
+#[derive(Clone, Debug)]
+struct Third {
+    joint: usize,
+    /// Inverse of the frame of the tool at zero: axis, edge and their product as columns.
+    frame: Matrix3<f64>,
+    /// k3, and of tool axis and edge the one farther from it.
+    k: Vector3<f64>,
+    p: Vector3<f64>,
+}
+
+impl Branches {
+    const ONE: Self = Self {
+        count: 1,
+        pole: false,
+        sine: 1.0,
+        u: Vector3::new(0.0, 0.0, 0.0),
+        x: 0.0,
+        y: 0.0,
+        ahead: Vector3::new(0.0, 0.0, 0.0),
+    };
+
+    /// How many there are: one or two.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The axis nearer the tool stands at least so far apart in the two branches, radians.
+    #[inline]
+    pub fn apart(&self) -> f64 {
+        // The chord of a turn is no longer than its arc.
+        2.0 * self.y
+    }
+
+    /// Sine of the angle between what is pointed and the first of two free axes: how far the pole is.
+    #[inline]
+    pub fn from_pole(&self) -> f64 {
+        self.sine
+    }
+}
+
+impl Orientation {
+    /// The rotary part, and which free joints are idle.
+    pub(super) fn new(
+        chain: &Chain,
+        free: &[usize],
+        held: &Joints,
+    ) -> Result<(Self, u8), NoClosedForm> {
+        let turns = chain.turns(held);
+        // Rotation of the held joints in `range`, as one matrix.
+        let hold = |range: std::ops::Range<usize>| {
+            let mut columns = [Vector3::x(), Vector3::y(), Vector3::z()];
+            for index in range.rev() {
+                let joint = &chain.joints()[index];
+                if joint.rotary && !free.contains(&index) {
+                    let (sine, cosine) = turns.of(index);
+                    for column in &mut columns {
+                        *column = turn(*column, joint.direction, sine, cosine);
+                    }
+                }
+            }
+            Matrix3::from_columns(&columns)
+        };
+        let count = chain.joints().len();
+        let direction = |joint: usize| chain.joints()[joint].direction;
+        // Inverse of the held turns in front of a joint, if there are any.
+        let in_front = |joint: usize| {
+            let turns = hold(0..joint);
+            (turns != Matrix3::identity()).then(|| turns.transpose())
+        };
+        match *free {
+            [] => Ok((
+                Self::Fixed {
+                    axis: hold(0..count) * chain.axis(),
+                },
+                0,
+            )),
+            [joint] => Ok((
+                Self::One {
+                    joint,
+                    before: in_front(joint),
+                    k: direction(joint),
+                    a: hold(joint + 1..count) * chain.axis(),
+                },
+                0,
+            )),
+            [first, second] => {
+                let between = hold(first + 1..second);
+                let k1 = direction(first);
+                let k2 = between * direction(second);
+                let a = between * hold(second + 1..count) * chain.axis();
+                let apart = k1.cross(&k2).norm_squared() >= 1e-6;
+                if apart && k2.cross(&a).norm() < POLE {
+                    let one = Self::One {
+                        joint: first,
+                        before: in_front(first),
+                        k: k1,
+                        a,
+                    };
+                    return Ok((one, 1 << second));
+                }
+                let two = Two::new([first, second], in_front(first), k1, k2, a)?;
+                Ok((Self::Two(Box::new(two)), 0))
+            }
+            [first, second, third] if chain.edge().is_some() => {
+                let between = hold(first + 1..second);
+                let behind = between * hold(second + 1..third);
+                let tool = behind * hold(third + 1..count);
+                let k3 = behind * direction(third);
+                let mut two = Two::new(
+                    [first, second],
+                    in_front(first),
+                    direction(first),
+                    between * direction(second),
+                    k3,
+                )?;
+                let axis = tool * chain.axis();
+                let edge = tool * chain.edge().unwrap_or_default();
+                two.third = Some(Third {
+                    joint: third,
+                    frame: frame(axis, edge).transpose(),
+                    k: k3,
+                    p: if k3.dot(&axis).abs() < k3.dot(&edge).abs() {
+                        axis
+                    } else {
+                        edge
+                    },
+                });
+                Ok((Self::Two(Box::new(two)), 0))
+            }
+            _ => Err(NoClosedForm::RotaryAxes {
+                joints: free.to_vec(),
+            }),
+        }
+    }
+
+    /// See [`super::Solver::orient`].
+    #[inline]
+    pub(super) fn orient(&self, pose: &Pose, tolerance: f64) -> Result<Branches, Unreachable> {
+        let within = |miss: f64| {
+            if miss > tolerance {
+                Err(Unreachable::Axis { miss })
+            } else {
+                Ok(())
+            }
+        };
+        match self {
+            Self::Fixed { axis } => {
+                within(angle(*axis, pose.axis))?;
+                Ok(Branches::ONE)
+            }
+            Self::One { before, k, a, .. } => {
+                let u = before.map_or(pose.axis, |before| before * pose.axis);
+                let pole = k.cross(a).norm() < POLE || k.cross(&u).norm() < POLE;
+                within(if pole {
+                    angle(*a, u)
+                } else {
+                    (angle(*k, u) - angle(*k, *a)).abs()
+                })?;
+                Ok(Branches {
+                    u,
+                    pole,
+                    ..Branches::ONE
+                })
+            }
+            Self::Two(two) => two.orient(pose, tolerance),
+        }
+    }
+
+    /// The rotary angles of a branch, put into `set`.
+    #[inline]
+    pub(super) fn angles(&self, branches: &Branches, index: usize, set: &mut RotarySet) {
+        match self {
+            Self::Fixed { .. } => {}
+            Self::One { joint, k, a, .. } => {
+                if branches.pole {
+                    set.free |= 1 << joint;
+                } else {
+                    set.joints[*joint] = angle_about(*k, *a, branches.u);
+                }
+            }
+            Self::Two(two) => two.angles(branches, index, set),
+        }
+    }
+
+    /// The free joint nearest to the tool.
+    pub(super) fn last(&self) -> usize {
+        match self {
+            Self::Fixed { .. } => 0,
+            Self::One { joint, .. } => *joint,
+            Self::Two(two) => two.joints[1],
+        }
+    }
+
+    /// The first of two or three free joints: the one that turns nothing on the pole.
+    pub(super) fn first(&self) -> Option<usize> {
+        match self {
+            Self::Two(two) => Some(two.joints[0]),
+            _ => None,
+        }
+    }
+
+    /// With the first free joint where `joints` has it, puts the others so that the tool axis comes as near as
+    /// it can to that of `pose`.
+    pub(super) fn follow(&self, pose: &Pose, joints: &mut Joints) {
+        if let Self::Two(two) = self {
+            two.follow(pose, joints);
+        }
+    }
+}
+
+impl Two {
+    fn new(
+        joints: [usize; 2],
+        before: Option<Matrix3<f64>>,
+        k1: Vector3<f64>,
+        k2: Vector3<f64>,
+        a: Vector3<f64>,
+    ) -> Result<Self, NoClosedForm> {
+        let cross = k1.cross(&k2);
+        let sine_squared = cross.norm_squared();
+        if sine_squared < 1e-6 {
+            return Err(NoClosedForm::Parallel { joints });
+        }
+        let towards = (k2 - k1 * k1.dot(&k2)).normalize();
+        let aside = cross.normalize();
+        let coordinates =
+            |v: Vector3<f64>| Vector3::new(k1.dot(&v), towards.dot(&v), aside.dot(&v));
+        let across = a - k2 * k2.dot(&a);
+        Ok(Self {
+            joints,
+            before,
+            k1,
+            k2,
+            a,
+            towards,
+            aside,
+            across: coordinates(across),
+            ahead: coordinates(k2.cross(&across)),
+            dot: k1.dot(&k2),
+            per_sine: 1.0 / sine_squared.sqrt(),
+            cone: k2.dot(&a),
+            third: None,
+        })
+    }
+
+    /// What is to be pointed where, and where the vector across k3 goes.
+    #[inline]
+    fn wanted(&self, pose: &Pose) -> (Vector3<f64>, Vector3<f64>) {
+        let before = |v: Vector3<f64>| self.before.as_ref().map_or(v, |before| before * v);
+        match &self.third {
+            None => (before(pose.axis), Vector3::zeros()),
+            Some(third) => {
+                let turn = frame(pose.axis, pose.edge) * third.frame;
+                (before(turn * third.k), before(turn * third.p))
+            }
+        }
+    }
+
+    #[inline]
+    fn orient(&self, pose: &Pose, tolerance: f64) -> Result<Branches, Unreachable> {
+        let (u, ahead) = self.wanted(pose);
+        // z = k1·cosine + towards·x ± aside·y keeps k1·z = k1·u and |z| = 1; x follows from
+        // k2·z = k2·a. Beside a pole cosines say little: the sine is taken from the part of u across
+        // k1, and 1 - |cosine| from the sine.
+        let mut cosine = self.k1.dot(&u);
+        let across = u - self.k1 * cosine;
+        let sine_squared = across.norm_squared();
+        let rest = sine_squared / (1.0 + cosine.abs());
+        let mut x = if cosine >= 0.0 {
+            (self.cone - self.dot) + self.dot * rest
+        } else {
+            (self.cone + self.dot) - self.dot * rest
+        } * self.per_sine;
+        let square = sine_squared - x * x;
+        // A tangent solution may come out a rounding error below zero.
+        if square < -POLE * POLE {
+            let (miss, latitude) = self.miss(u);
+            if miss > tolerance.max(POLE) {
+                return Err(Unreachable::Axis { miss });
+            }
+            // The nearest that there is: z where k2's cone touches the latitude.
+            cosine = libm::cos(latitude);
+            x = (self.cone - self.dot * cosine) * self.per_sine;
+        }
+        let y = square.max(0.0).sqrt();
+        Ok(Branches {
+            // Both roots are one at the edge of reach, and at a pole that k2 meets.
+            count: if y == 0.0 { 1 } else { 2 },
+            pole: sine_squared < POLE * POLE,
+            sine: sine_squared.sqrt(),
+            u: Vector3::new(cosine, self.towards.dot(&across), self.aside.dot(&across)),
+            x,
+            y,
+            ahead,
+        })
+    }
+
+    #[inline]
+    fn angles(&self, branches: &Branches, index: usize, set: &mut RotarySet) {
+        let [first, second] = self.joints;
+        let Branches { u, x, y, .. } = branches;
+        let y = if index == 0 { *y } else { -y };
+        let z = Vector3::new(u.x, *x, y);
+        // k2 takes a, which lies along `across`, into z; k1 takes z into u, seen along k1.
+        let turn = libm::atan2(self.ahead.dot(&z), self.across.dot(&z));
+        set.joints[second] = turn;
+        if branches.pole {
+            set.free |= 1 << first;
+        } else {
+            set.joints[first] = libm::atan2(x * u.z - y * u.y, x * u.y + y * u.z);
+        }
+        if let Some(third) = &self.third {
+            set.joints[third.joint] =
+                self.third_angle(third, branches.ahead, set.joints[first], turn);
+        }
+    }
+
+    /// The angle of k3 that takes its vector to `ahead`, the others standing at `q1` and `q2`.
+    fn third_angle(&self, third: &Third, ahead: Vector3<f64>, q1: f64, q2: f64) -> f64 {
+        let back = |v: Vector3<f64>, k: Vector3<f64>, angle: f64| {
+            let (sine, cosine) = libm::sincos(angle);
+            turn(v, k, -sine, cosine)
+        };
+        let ahead = back(back(ahead, self.k1, q1), self.k2, q2);
+        angle_about(third.k, third.p, ahead)
+    }
+
+    fn follow(&self, pose: &Pose, joints: &mut Joints) {
+        let (u, ahead) = self.wanted(pose);
+        let [first, second] = self.joints;
+        let (sine, cosine) = libm::sincos(joints[first]);
+        let behind = turn(u, self.k1, -sine, cosine);
+        joints[second] = angle_about(self.k2, self.a, behind);
+        if let Some(third) = &self.third {
+            joints[third.joint] = self.third_angle(third, ahead, joints[first], joints[second]);
+        }
+    }
+
+    /// By how much the nearest orientation misses `u`, and at which angle from k1 it lies: k2 keeps a on a cone
+    /// about itself, and k1 sweeps that cone over a band of latitudes about k1.
+    fn miss(&self, u: Vector3<f64>) -> (f64, f64) {
+        let (tilt, cone) = (angle(self.k1, self.k2), angle(self.k2, self.a));
+        let latitude = angle(self.k1, u);
+        let least = libm::fabs(tilt - cone);
+        let sum = tilt + cone;
+        let most = sum.min(2.0 * std::f64::consts::PI - sum);
+        if least - latitude > latitude - most {
+            ((least - latitude).max(0.0), least)
+        } else {
+            ((latitude - most).max(0.0), most)
+        }
+    }
+}
+
+/// Axis, edge and their product as columns.
+fn frame(axis: Vector3<f64>, edge: Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::from_columns(&[axis, edge, axis.cross(&edge)])
+}
+
+/// Angle between two unit vectors, radians, exact for small angles too.
+pub fn angle(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
+    libm::atan2(a.cross(&b).norm(), a.dot(&b))
+}
+
+/// The angle about the unit vector `k` that turns the part of `from` across `k` into that of `to`.
+#[inline]
+fn angle_about(k: Vector3<f64>, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
+    // Across k first: beside a pole little is left of either, and differences of products would lose it.
+    let from = from - k * k.dot(&from);
+    let to = to - k * k.dot(&to);
+    libm::atan2(k.dot(&from.cross(&to)), from.dot(&to))
+}

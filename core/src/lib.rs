@@ -13,8 +13,10 @@ pub mod machine;
 mod path;
 mod post;
 pub mod program;
+mod recent;
 mod refusal;
 pub mod report;
+mod route;
 pub mod words;
 
 pub use path::Output;

@@ -7,6 +7,7 @@ use crate::diagnostic::{Diagnostic, Extreme, Place, Severity, unreadable};
 use crate::machine::{Machine, Tcp};
 use crate::path::{Output, Path};
 use crate::program::{Interpreter, Reading, record_place};
+use crate::recent::Recent;
 use crate::report::{AxisRange, Deviation, Report};
 use crate::words;
 
@@ -35,6 +36,7 @@ pub struct Post<'a> {
     findings: Vec<Diagnostic>,
     repeats: Vec<Repeat>,
     faults: usize,
+    recent: Recent,
 }
 
 /// A limit that is passed again and again.
@@ -84,6 +86,7 @@ impl<'a> Post<'a> {
             findings: Vec::new(),
             repeats: Vec::new(),
             faults: 0,
+            recent: Recent::default(),
         })
     }
 
@@ -93,6 +96,8 @@ impl<'a> Post<'a> {
         self.records += 1;
         self.last_line = record.line;
         let path = &mut self.path;
+        self.recent
+            .keep(record.line, record.raw, || path.settled_line());
         self.interpreter
             .record(record, &mut |step| path.step(record.line, step));
         if self.path.has_findings() || self.interpreter.has_findings() {
@@ -147,8 +152,13 @@ impl<'a> Post<'a> {
         for mut finding in self.path.take_findings() {
             match &mut finding.place {
                 None => finding.place = place.cloned(),
-                // A dialect's fault names its line; the text is no longer at hand.
-                Some(known) => known.file.clone_from(&self.file),
+                Some(known) => {
+                    known.file.clone_from(&self.file);
+                    if let Some(text) = self.recent.text(known.line) {
+                        known.span = 0..text.len();
+                        known.text = text;
+                    }
+                }
             }
             if finding.code == "dialect" && finding.help.is_none() && !self.interpreter.has_tool() {
                 finding.help =
@@ -221,16 +231,12 @@ impl<'a> Post<'a> {
             .into_iter()
             .map(|index| {
                 let axis = &machine.axes[index];
-                let unit = if axis.joint.rotary {
-                    1f64.to_radians()
-                } else {
-                    1.0
-                };
                 AxisRange {
                     name: axis.name.clone(),
-                    min: tally.least[index] / unit,
-                    max: tally.most[index] / unit,
-                    travel: axis.travel.map(|travel| travel.map(|end| end / unit)),
+                    min: axis.reading(tally.least[index]),
+                    max: axis.reading(tally.most[index]),
+                    travel: axis.travel.map(|travel| travel.map(|end| axis.reading(end))),
+                    way: tally.travel[index] / axis.unit(),
                 }
             })
             .collect();
@@ -258,6 +264,9 @@ impl<'a> Post<'a> {
             tolerance_mm: machine.accuracy.tolerance,
             axis_tolerance_deg: machine.accuracy.axis_tolerance.to_degrees(),
             axes,
+            branch_changes: tally.branch_changes,
+            rewinds: tally.rewinds,
+            points_eased: tally.eased,
             time_s: (tally.cutting + tally.other) * 60.0,
             cutting_time_s: tally.cutting * 60.0,
             blocks_limited: tally.limited,

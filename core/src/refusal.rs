@@ -2,7 +2,8 @@
 
 use crate::accuracy::{Refused, Stuck};
 use crate::diagnostic::{Diagnostic, Extreme};
-use crate::kinematics::Unreachable;
+use crate::kinematics::choose::OverTravel;
+use crate::kinematics::{Joints, Unreachable};
 use crate::machine::Machine;
 use crate::program::Motion;
 
@@ -39,18 +40,14 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
         Refused::OverTravel { over, tried } => {
             let side = u64::from(over.value > over.limit);
             let axis = &machine.axes[over.joint];
-            let (unit, sign) = if axis.joint.rotary {
-                (1f64.to_radians(), "°")
-            } else {
-                (1.0, " mm")
-            };
+            let sign = if axis.joint.rotary { "°" } else { " mm" };
             let diagnostic = Diagnostic::error(
                 "over-travel",
                 format!(
                     "{} would be {:.3}{sign}, its limit is {:.3}{sign}; {}",
                     axis.name,
-                    over.value / unit,
-                    over.limit / unit,
+                    axis.reading(over.value),
+                    axis.reading(over.limit),
                     match tried {
                         1 => "there is no other solution".to_owned(),
                         tried => format!("none of the {tried} solutions stays inside travel"),
@@ -59,8 +56,8 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
             );
             let diagnostic = diagnostic.extreme(Extreme {
                 key: over.joint as u64 * 2 + side,
-                by: libm::fabs(over.value - over.limit) / unit,
-                value: format!("{} {:.3}{sign}", axis.name, over.value / unit),
+                by: libm::fabs(over.value - over.limit) / axis.unit(),
+                value: format!("{} {:.3}{sign}", axis.name, axis.reading(over.value)),
             });
             if axis.joint.rotary {
                 diagnostic.help("another set-up of the part, or a machine that tilts so far")
@@ -77,6 +74,62 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
         )
         .help("this is a fault of post: please report it with the machine file and this line"),
     }
+}
+
+/// Why a cut cannot go on: what each solution asks of the axes, whether it is on the branch that the cut is
+/// on, and where the axes stand before.
+pub(crate) fn no_way(
+    machine: &Machine,
+    from: &Joints,
+    tried: &[(Result<Joints, OverTravel>, bool, Joints)],
+) -> Diagnostic {
+    let rotary = |joints: &Joints| {
+        let axes = machine.axes.iter().zip(joints);
+        axes.filter(|(axis, _)| axis.joint.rotary && axis.indexed.is_none())
+            .map(|(axis, value)| format!("{} {:.3}°", axis.name, axis.reading(*value)))
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    let reasons: Vec<String> = tried
+        .iter()
+        .map(|(carried, same, joints)| match carried {
+            Err(over) => {
+                let axis = &machine.axes[over.joint];
+                let travel = axis.travel.map_or(String::new(), |[least, most]| {
+                    format!(
+                        " (travel {:.3}° to {:.3}°)",
+                        axis.reading(least),
+                        axis.reading(most)
+                    )
+                });
+                format!(
+                    "going on to {} takes {} to {:.3}°{travel}",
+                    rotary(joints),
+                    axis.name,
+                    axis.reading(over.value)
+                )
+            }
+            Ok(joints) if *same => format!(
+                "{} lies on the same branch, but no path of the axes keeps the tolerance",
+                rotary(joints)
+            ),
+            Ok(joints) => format!("{} lies on the other branch: the axes must jump", rotary(joints)),
+        })
+        .collect();
+    let help = if machine.rewind.is_some() {
+        "[rewind] finds no way either: drawn back, the tool would leave the travel; set the part differently"
+    } else {
+        "retract before this line, give the machine a [rewind], or let it start elsewhere: [solution] start, prefer"
+    };
+    Diagnostic::error(
+        "jump",
+        format!(
+            "this cut cannot go on from {}: {}",
+            rotary(from),
+            reasons.join("; ")
+        ),
+    )
+    .help(help)
 }
 
 /// Why a move cannot be brought within tolerance.
@@ -102,8 +155,8 @@ pub(crate) fn stuck(machine: &Machine, stuck: &Stuck, motion: &Motion) -> Diagno
             format!(
                 "{} must jump from {:.3}° to {:.3}° within this cut: no path of the axes keeps the tolerance",
                 machine.axes[*joint].name,
-                from.to_degrees(),
-                to.to_degrees()
+                machine.axes[*joint].reading(*from),
+                machine.axes[*joint].reading(*to)
             ),
         )
         .help("its travel ends here and the other solution lies far away: retract before this line, or set the part differently"),

@@ -37,6 +37,12 @@ pub struct Report {
     pub axis_tolerance_deg: f64,
     /// What of each axis was used.
     pub axes: Vec<AxisRange>,
+    /// Times that another branch of the solution or another full turn was taken, off the part.
+    pub branch_changes: u64,
+    /// Times that the tool was drawn back in a cut, turned and brought back.
+    pub rewinds: u64,
+    /// Points at which a rotary axis was held or turned early close to a pole, within the tolerance of the axis.
+    pub points_eased: u64,
     /// Time of cuts, rapids and dwells, s; tool changes not among it.
     pub time_s: f64,
     /// Of it, in cuts, s.
@@ -73,6 +79,8 @@ pub struct AxisRange {
     pub max: f64,
     /// Its travel; none for a cyclic axis.
     pub travel: Option<[f64; 2]>,
+    /// Its way over all blocks, mm or degrees.
+    pub way: f64,
 }
 
 /// A plugin that took part.

@@ -25,6 +25,10 @@ struct Word {
     /// Place in the chain.
     joint: usize,
     rotary: bool,
+    /// What the control shows where the drawing has the axis at zero, mm or radians.
+    reading: f64,
+    /// The control shows the axis within one turn from here, degrees.
+    turn_from: Option<f64>,
     /// Coordinate of the part frame, for a linear word when the control keeps the tip.
     coordinate: usize,
     /// Axis units (mm, radians) in one unit of the word (mm or inch, degrees).
@@ -88,6 +92,8 @@ impl Words {
                 Word {
                     joint,
                     rotary: axis.joint.rotary,
+                    reading: axis.zero,
+                    turn_from: axis.range.map(|[least, _]| least / unit),
                     coordinate: match axis.name.as_str() {
                         "X" => 0,
                         "Y" => 1,
@@ -121,6 +127,9 @@ impl Words {
     /// origin and every rotary axis at zero. None if the linear axes cannot bring it there.
     pub fn set_zero(&mut self, solver: &Solver) -> Option<()> {
         let mut zero = [0.0; MAX_AXES];
+        for word in self.words.iter().filter(|word| word.rotary) {
+            zero[word.joint] = -word.reading;
+        }
         let turns = solver.chain().turns(&zero);
         solver.place(Vector3::zeros(), &mut zero, &turns).ok()?;
         self.zero = zero;
@@ -132,8 +141,13 @@ impl Words {
     pub fn print_rotary(&self, joints: &mut Joints, values: &mut WordValues) {
         for (place, word) in self.words.iter().enumerate() {
             if word.rotary {
-                values[place] = word.printed(joints[word.joint] * word.per_unit);
-                joints[word.joint] = values[place] * word.unit;
+                let asked = joints[word.joint] + word.reading;
+                let value = word.printed(asked * word.per_unit);
+                joints[word.joint] = value * word.unit - word.reading;
+                values[place] = match word.turn_from {
+                    None => value,
+                    Some(from) => word.printed(value - 360.0 * libm::floor((value - from) / 360.0)),
+                };
             }
         }
     }

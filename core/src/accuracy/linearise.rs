@@ -7,7 +7,7 @@
 //! long as the tool axis stays within tolerance.
 
 use nalgebra::Vector3;
-use post_plugin::{Deviation, ModelSession, Tolerance};
+use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
 use super::certificate::{self, Bend, chord_angle};
 use super::node::{Node, Placer, Refused};
@@ -74,6 +74,30 @@ const BLIND: f64 = 0.02;
 
 /// A piece that needs more samples than this to be certified is split instead.
 const MOST_SAMPLES: f64 = 64.0;
+
+/// A model that is always content: the certificate alone decides.
+#[derive(Clone, Copy, Debug)]
+pub struct Silent;
+
+impl ModelSession for Silent {
+    fn fit(
+        &mut self,
+        _: &Tolerance,
+        _: &mut dyn FnMut(&[f64], &mut [Deviation]),
+    ) -> Result<Curve, String> {
+        Ok(Curve {
+            tip_peak: 0.0,
+            tip_at: 0.0,
+            axis_peak: 0.0,
+            axis_at: 0.0,
+            terms: [0.0; 60],
+        })
+    }
+
+    fn value(&self, _: &Curve, _: f64) -> Deviation {
+        Deviation::default()
+    }
+}
 
 /// Puts points in.
 #[derive(Debug, Default)]
@@ -279,15 +303,11 @@ fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
     let axis = (from.target.axis + to.target.axis)
         .try_normalize(1e-9)
         .unwrap_or(from.target.axis);
-    let target = Pose {
-        tip,
-        axis,
-        ..Pose::default()
-    };
+    let edge = (from.target.edge + to.target.edge)
+        .try_normalize(1e-9)
+        .unwrap_or(from.target.edge);
+    let target = Pose { tip, axis, edge };
     let exact = placer.place_between(target, t, first, last);
-    if bound.axis > piece.tolerances.axis {
-        return exact;
-    }
     let mut halfway: Joints = Default::default();
     for (joint, value) in halfway.iter_mut().enumerate() {
         *value = (first[joint] + last[joint]) / 2.0;
@@ -303,11 +323,13 @@ fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
             })
     });
     if straight {
-        exact
-    } else {
-        let mut node = Node::default();
-        placer.settle(&mut node, target, t, &halfway)?;
-        Ok(node)
+        return exact;
+    }
+    // A pole joint is turned evenly, the others keep the tool axis as well as they can.
+    match placer.place_halfway(target, t, first, last) {
+        Some(node) if node.axis_error < piece.tolerances.axis => Ok(node),
+        _ if bound.axis <= piece.tolerances.axis => placer.settled(target, t, &halfway),
+        _ => exact,
     }
 }
 

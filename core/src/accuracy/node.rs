@@ -1,10 +1,14 @@
 //! A node: one point of the path with the axis values chosen for it, as they will be printed.
 
 use std::cell::Cell;
+use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
 use super::certificate::chord_angle;
+use post_plugin::Format;
+
+use crate::diagnostic::Diagnostic;
 use crate::kinematics::choose::{Limit, OverTravel, Turning};
 use crate::kinematics::{Joints, Pose, Solver, Trace, Unreachable};
 use crate::machine::Machine;
@@ -50,15 +54,6 @@ pub enum Refused {
     },
 }
 
-/// Which solution is wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
-    /// The nearest inside travel.
-    Nearest,
-    /// The other one.
-    Other,
-}
-
 /// Solves points one after the other.
 #[derive(Clone, Debug)]
 pub struct Placer {
@@ -77,6 +72,29 @@ pub struct Placer {
 const SLACK: f64 = 1e-9;
 
 impl Placer {
+    /// For a machine with a tool of `length` mm in it, its redundant axes held at the values of `held`.
+    ///
+    /// # Errors
+    /// What the machine lacks for being solved.
+    pub fn for_machine(
+        machine: &Machine,
+        format: &Format,
+        length: f64,
+        held: &Joints,
+    ) -> Result<Self, Box<Diagnostic>> {
+        let fault = |message: String| Diagnostic::error("machine-chain", message).boxed();
+        let solver = machine
+            .solver_at(length, held)
+            .map_err(|lack| fault(format!("the chain cannot be solved: {lack:?}")))?;
+        let mut words = Words::new(machine, format);
+        words.set_zero(&solver).ok_or_else(|| {
+            fault(
+                "with every rotary axis at zero the linear axes do not span the space".to_owned(),
+            )
+        })?;
+        Ok(Self::new(machine, solver, words))
+    }
+
     /// For a machine with the tool of `solver` in it.
     pub fn new(machine: &Machine, solver: Solver, words: Words) -> Self {
         let limits = |rotary: bool| {
@@ -123,35 +141,13 @@ impl Placer {
     /// # Errors
     /// Why there is none.
     pub fn place(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
-        let mut node = Node::default();
-        self.fill(&mut node, target, t, last, Which::Nearest)?;
-        Ok(node)
-    }
-
-    /// The second nearest node of `target`: the other solution, if it is inside travel.
-    ///
-    /// # Errors
-    /// Why there is none.
-    pub fn place_other(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
-        let mut node = Node::default();
-        self.fill(&mut node, target, t, last, Which::Other)?;
-        Ok(node)
-    }
-
-    /// [`Placer::place`] into a node that is there already (it is large).
-    ///
-    /// # Errors
-    /// Why there is none.
-    #[inline]
-    pub fn fill(
-        &self,
-        node: &mut Node,
-        target: Pose,
-        t: f64,
-        last: &Joints,
-        which: Which,
-    ) -> Result<(), Refused> {
         let solver = &self.solver;
+        if !solver.closed_form() {
+            let joints = solver
+                .search(&target, last, self.axis_tolerance)
+                .map_err(Refused::Unreachable)?;
+            return self.settled(target, t, &joints);
+        }
         let branches = solver
             .orient(&target, self.axis_tolerance)
             .map_err(Refused::Unreachable)?;
@@ -159,33 +155,45 @@ impl Placer {
         let choice = self
             .turning
             .nearest(solver, &branches, last, self.branch.get());
-        let refused = match (which, choice.joints) {
-            (Which::Nearest, Ok(joints)) => match self.settle(node, target, t, &joints) {
-                Ok(()) => {
-                    self.branch.set(choice.index);
-                    return Ok(());
-                }
-                Err(refused) => refused,
-            },
-            (Which::Other, _) => Refused::Unreachable(Unreachable::Linear),
-            (_, Err(over)) => Refused::OverTravel { over, tried },
-        };
-        let refused = match self.turning.other(solver, &branches, last, choice.index) {
-            Some(joints) => match self.settle(node, target, t, &joints) {
-                Ok(()) => {
-                    self.branch.set(1 - choice.index);
-                    return Ok(());
-                }
-                // What stops the solution whose angles are inside travel is what the user can mend.
-                Err(other) if choice.joints.is_err() => other,
-                Err(_) => refused,
-            },
-            None => refused,
-        };
-        Err(match refused {
-            Refused::OverTravel { over, .. } => Refused::OverTravel { over, tried },
-            other => other,
-        })
+        match choice.joints {
+            Ok(joints) => {
+                self.branch.set(choice.index);
+                self.settled(target, t, &joints)
+            }
+            Err(over) => Err(Refused::OverTravel { over, tried }),
+        }
+    }
+
+    /// [`Placer::settle`] into a new node.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn settled(&self, target: Pose, t: f64, rotary: &Joints) -> Result<Node, Refused> {
+        let mut node = Node::default();
+        self.settle(&mut node, target, t, rotary)?;
+        Ok(node)
+    }
+
+    /// The node of `target` with the pole joint halfway between two sets of axis values and the others as near
+    /// to the wanted axis as they come; none where the chain has no pole.
+    pub fn place_halfway(
+        &self,
+        target: Pose,
+        t: f64,
+        first: &Joints,
+        last: &Joints,
+    ) -> Option<Node> {
+        let pole = self.solver.pole_joint()?;
+        let mut joints: Joints = std::array::from_fn(|joint| (first[joint] + last[joint]) / 2.0);
+        let halfway = joints;
+        self.solver.follow(&target, &mut joints);
+        for (joint, axis) in self.solver.chain().joints().iter().enumerate() {
+            if axis.rotary && joint != pole {
+                let turns = libm::rint((halfway[joint] - joints[joint]) / TAU);
+                joints[joint] += TAU * turns;
+            }
+        }
+        self.settled(target, t, &joints).ok()
     }
 
     /// The node of a `target` between two sets of axis values: the nearest to either of them. (The mean of
@@ -261,6 +269,10 @@ impl Placer {
         chain.trace(&mut node.trace);
         let pose = &node.trace.pose;
         node.axis_error = chord_angle((pose.axis - target.axis).norm());
+        if chain.edge().is_some() {
+            let edge_error = chord_angle((pose.edge - target.edge).norm());
+            node.axis_error = node.axis_error.max(edge_error);
+        }
         node.tip = pose.tip;
         node.tip_error = (pose.tip - target.tip).norm();
         // The forward chain stands behind every node: what it misses by must be rounding.
@@ -273,6 +285,11 @@ impl Placer {
                 axis: node.axis_error,
             })
         }
+    }
+
+    /// How far a rotary value may pass its limit and still be printed as the limit, radians.
+    pub fn grace(&self, joint: usize) -> f64 {
+        self.words.grace(joint)
     }
 
     /// The largest error of the tool axis that rounding can make, radians.

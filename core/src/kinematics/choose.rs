@@ -79,20 +79,6 @@ impl Turning {
         if better { second } else { first }
     }
 
-    /// The other branch than `index`, if there is one inside travel.
-    pub fn other(
-        &self,
-        solver: &Solver,
-        branches: &Branches,
-        last: &Joints,
-        index: usize,
-    ) -> Option<Joints> {
-        if branches.count() == 1 {
-            return None;
-        }
-        self.choice(solver, branches, last, 1 - index).0.joints.ok()
-    }
-
     /// A branch, and the sum of its turns from `last`; infinite outside travel.
     #[inline]
     fn choice(

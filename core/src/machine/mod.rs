@@ -48,6 +48,8 @@ pub struct Machine {
     pub solution: Solution,
     /// How the tool leaves the part when a cut cannot go on; none if it must not.
     pub rewind: Option<Rewind>,
+    /// Some axis is clamped and let go by words.
+    pub clamps: bool,
     /// Heads that a word of the program (`HEAD/name`) swaps in.
     pub heads: Vec<Head>,
 }

@@ -17,6 +17,15 @@ pub enum Step {
     },
     /// Tool change.
     Tool(Tool),
+    /// An index axis of the part is at an angle (`ROTABL`).
+    Index {
+        /// `A`, `B` or `C`.
+        axis: char,
+        /// Radians, from the part's own frame.
+        angle: f64,
+    },
+    /// Another head (`HEAD`).
+    Head(String),
     /// The next tool is made ready.
     Preselect(u32),
     /// Spindle.
@@ -46,6 +55,9 @@ pub struct Motion {
     pub tip: Vector3<f64>,
     /// The tool axis there, unit vector from the tip to the holder, part frame.
     pub axis: Vector3<f64>,
+    /// Leading edge of a knife or disc there, unit vector across the tool axis, part frame; zero if the file
+    /// does not say.
+    pub edge: Vector3<f64>,
     /// How fast.
     pub pace: Pace,
     /// How far this line strays from the curve that the CL file asks for (arcs, splines), mm, proven.

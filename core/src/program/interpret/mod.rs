@@ -589,6 +589,7 @@ impl Interpreter {
         emit(Step::Move(Motion {
             tip,
             axis,
+            edge: Vector3::zeros(),
             pace,
             chord,
         }));

@@ -1,0 +1,471 @@
+//! Moves whose axis values are chosen: points put in, feeds, and the events that say them.
+
+use post_plugin::Event;
+
+use super::tally::{AXIS, RAPID, TIP};
+use super::Path;
+use crate::accuracy::{Bound, Node, Placer};
+use crate::diagnostic::Diagnostic;
+use crate::kinematics::orientation::angle;
+use crate::kinematics::{Joints, Pose};
+use crate::machine::Tcp;
+use crate::program::{Motion, Pace};
+use crate::refusal;
+use crate::report::Deviation;
+use crate::route::{Chosen, planned, pose, retracted};
+
+/// Deviations that differ by less are the same: mm or radians.
+const EQUAL: f64 = 1e-9;
+
+/// Turns that differ by less are the same, radians.
+const TURN: f64 = 1e-6;
+
+/// A control that shows an axis over one turn takes the shorter way: no block turns it by more, radians.
+const LONGEST: f64 = 2.9;
+
+/// A move on its way to the dialect.
+#[derive(Clone, Copy, Debug)]
+struct Leg {
+    line: u64,
+    motion: Motion,
+    /// Off the part: the tolerance of a rapid is enough.
+    loose: bool,
+    setting: usize,
+}
+
+impl Path<'_> {
+    /// Carries out a point that was decided.
+    #[inline]
+    pub(super) fn carry_out(&mut self, chosen: &Chosen) {
+        let leg = Leg {
+            line: chosen.line,
+            motion: chosen.motion,
+            loose: chosen.motion.pace == Pace::Rapid,
+            setting: chosen.setting,
+        };
+        if chosen.arrives {
+            self.tally.branch_changes += u64::from(chosen.changed);
+            self.tally.eased += u64::from(chosen.eased);
+            self.travel(&leg, &chosen.joints);
+        }
+        if let Some(joints) = &chosen.rewind {
+            self.rewind(&leg, joints);
+        }
+    }
+
+    #[inline]
+    fn travel(&mut self, leg: &Leg, joints: &Joints) {
+        let target = pose(&leg.motion);
+        let mut node = self.spare.take().unwrap_or_default();
+        let placer = self.route.placer(leg.setting);
+        if let Err(refused) = placer.settle(&mut node, target, 1.0, joints) {
+            self.spare = Some(node);
+            self.find(leg.line, refusal::refused(self.machine, &refused));
+            return;
+        }
+        if self.compensating {
+            self.check_compensation(leg.line, &node);
+        }
+        let cuts = leg.motion.pace != Pace::Rapid;
+        if !self.turning && cuts && !self.told_spindle {
+            self.told_spindle = true;
+            self.find(
+                leg.line,
+                Diagnostic::warning(
+                    "spindle",
+                    "the tool cuts, and the spindle was not switched on",
+                )
+                .help("the CAM system should write SPINDL before this line"),
+            );
+        }
+        match self.last.take() {
+            None => self.first(leg, &node),
+            Some(last) => self.spare = Some(self.go(leg, last, &mut node)),
+        }
+        self.on_part = cuts;
+        self.last = Some(node);
+    }
+
+    /// The first position after the start or a tool change.
+    fn first(&mut self, leg: &Leg, node: &Node) {
+        let line = leg.line;
+        let none = node.trace.joints;
+        let feed = match leg.motion.pace {
+            Pace::Rapid => None,
+            // A time for a way that nobody knows has no meaning; the way is made at rapid.
+            Pace::InverseTime(_) => None,
+            Pace::PerMinute(_) => Some(
+                self.feeds
+                    .cut(leg.motion.pace, 1.0, 1.0, &none, &none)
+                    .feed,
+            ),
+        };
+        let count = self.format.words.len();
+        self.tally.reach(&node.trace.joints, self.machine.axes.len());
+        self.tally.blocks += 1;
+        if let (false, Some(spindle)) = (self.turning, self.commanded) {
+            // The tool change stopped it, and the CL file takes it to be turning.
+            self.turning = true;
+            self.push(line, Event::Spindle(spindle));
+            self.find(
+                line,
+                Diagnostic::warning(
+                    "spindle",
+                    "no SPINDL since the tool change; the spindle was switched on again as before it",
+                )
+                .help("check that the speed fits the new tool"),
+            );
+        }
+        // Nobody knows whether they are clamped.
+        for joint in 0..self.machine.axes.len() {
+            self.set_clamp(line, joint, false, true);
+        }
+        self.push(
+            line,
+            Event::Position {
+                words: &node.words[..count],
+                feed,
+            },
+        );
+        self.positioned = true;
+    }
+
+    /// A move from where the tool stands to `node`; gives the node that it left.
+    #[inline]
+    fn go(&mut self, leg: &Leg, mut last: Box<Node>, node: &mut Node) -> Box<Node> {
+        if leg.loose && self.on_part {
+            // The tool leaves the part as it stands, and turns when it is away.
+            let placer = self.route.placer(leg.setting);
+            if let Ok(stay) = placer.place(node.target, 1.0, &last.trace.joints)
+                && self.turn_between(&last, &stay) + TURN < self.turn_between(&last, node)
+            {
+                self.cut(leg, &last, &stay);
+                *last = stay;
+            }
+        }
+        if self.special(&last, node) {
+            self.by_stages(leg, &last, node);
+        } else {
+            self.cut(leg, &last, node);
+        }
+        last
+    }
+
+    /// The sum of all rotary moves between two nodes, radians.
+    fn turn_between(&self, from: &Node, to: &Node) -> f64 {
+        let axes = self.machine.axes.iter().enumerate();
+        axes.filter(|(_, axis)| axis.joint.rotary)
+            .map(|(joint, _)| (to.trace.joints[joint] - from.trace.joints[joint]).abs())
+            .sum()
+    }
+
+    /// The move cannot be made in one go: an axis shown over one turn would take the other way round, or axes
+    /// that exclude one another would move together.
+    #[inline]
+    fn special(&self, from: &Node, to: &Node) -> bool {
+        let way = |joint: usize| (to.trace.joints[joint] - from.trace.joints[joint]).abs();
+        let machine = self.machine;
+        let wrapped = machine.axes.iter().enumerate();
+        wrapped
+            .into_iter()
+            .any(|(joint, axis)| axis.range.is_some() && way(joint) > LONGEST)
+            || machine
+                .solution
+                .exclusive
+                .iter()
+                .any(|group| group.iter().filter(|joint| way(**joint) > EQUAL).count() > 1)
+    }
+
+    fn by_stages(&mut self, leg: &Leg, from: &Node, to: &Node) {
+        let (first, last) = (from.trace.joints, to.trace.joints);
+        let way = |joint: usize| (last[joint] - first[joint]).abs();
+        let mut at = *from;
+        for group in &self.machine.solution.exclusive {
+            let moving: Vec<usize> = group
+                .iter()
+                .copied()
+                .filter(|joint| way(*joint) > EQUAL)
+                .collect();
+            if moving.len() < 2 {
+                continue;
+            }
+            if !leg.loose {
+                let names: Vec<&str> = moving
+                    .iter()
+                    .map(|joint| self.machine.axes[*joint].name.as_str())
+                    .collect();
+                self.find(
+                    leg.line,
+                    Diagnostic::error(
+                        "exclusive",
+                        format!(
+                            "this cut moves {} at once, and the machine moves one of them at a time",
+                            names.join(" and ")
+                        ),
+                    )
+                    .help("it can be reached in a rapid; or the machine file's [solution] exclusive is wrong"),
+                );
+                return;
+            }
+            // One after the other, the tip where it was.
+            for joint in &moving[..moving.len() - 1] {
+                let mut joints = at.trace.joints;
+                joints[*joint] = last[*joint];
+                self.stage(leg, &mut at, from.target, 1.0, &joints);
+            }
+        }
+        let begin = at.trace.joints;
+        let longest = self
+            .machine
+            .axes
+            .iter()
+            .enumerate()
+            .filter(|(_, axis)| axis.range.is_some())
+            .map(|(joint, _)| (last[joint] - begin[joint]).abs())
+            .fold(0.0, f64::max);
+        let count = libm::ceil(longest / LONGEST).max(1.0) as u32;
+        for part in 1..count {
+            let t = f64::from(part) / f64::from(count);
+            let joints: Joints =
+                std::array::from_fn(|joint| begin[joint] * (1.0 - t) + last[joint] * t);
+            let target = Pose {
+                tip: from.target.tip * (1.0 - t) + to.target.tip * t,
+                axis: (from.target.axis * (1.0 - t) + to.target.axis * t)
+                    .try_normalize(1e-6)
+                    .unwrap_or(to.target.axis),
+                ..to.target
+            };
+            self.stage(leg, &mut at, target, t, &joints);
+        }
+        self.cut(leg, &at, to);
+    }
+
+    /// A stop on the way of a move that is made in stages.
+    fn stage(&mut self, leg: &Leg, at: &mut Node, target: Pose, t: f64, joints: &Joints) {
+        let settled = self
+            .route
+            .placer(leg.setting)
+            .settled(target, t, joints);
+        match settled {
+            Ok(node) => {
+                self.cut(leg, at, &node);
+                *at = node;
+            }
+            Err(refused) => self.find(leg.line, refusal::refused(self.machine, &refused)),
+        }
+    }
+
+    /// Draws the tool back along its axis, turns it to `joints`, and brings it back.
+    fn rewind(&mut self, leg: &Leg, joints: &Joints) {
+        let (Some(rewind), Some(last)) = (self.machine.rewind, self.last.take()) else {
+            return;
+        };
+        self.tally.rewinds += 1;
+        let away = retracted(&rewind, &leg.motion).unwrap_or(leg.motion);
+        let pace = |feed: Option<f64>| feed.map_or(Pace::Rapid, Pace::PerMinute);
+        let back = rewind.plunge_feed.map_or(leg.motion.pace, Pace::PerMinute);
+        let stops = [
+            (away, pace(rewind.retract_feed), last.trace.joints, true),
+            (away, pace(rewind.turn_feed), *joints, true),
+            (leg.motion, back, *joints, false),
+        ];
+        let mut at = last;
+        for (motion, pace, joints, loose) in stops {
+            let leg = Leg {
+                motion: Motion {
+                    pace,
+                    chord: 0.0,
+                    ..motion
+                },
+                loose: loose || pace == Pace::Rapid,
+                ..*leg
+            };
+            let placer = self.route.placer(leg.setting);
+            match placer.settled(pose(&leg.motion), 1.0, &joints) {
+                Ok(mut node) => {
+                    self.on_part = false;
+                    self.go(&leg, at, &mut node);
+                    at = Box::new(node);
+                }
+                Err(refused) => {
+                    self.find(leg.line, refusal::refused(self.machine, &refused));
+                    break;
+                }
+            }
+        }
+        self.on_part = true;
+        self.last = Some(at);
+    }
+
+    /// A straight move, cut into pieces where it strays.
+    #[inline]
+    fn cut(&mut self, leg: &Leg, last: &Node, node: &Node) {
+        let placer = self.route.placer(leg.setting);
+        let whole = planned(self.machine, placer, &leg.motion, leg.loose, last, node).whole();
+        match whole {
+            Some(bound) => self.piece(leg, last, node, 1.0, bound),
+            None => self.split(leg, last, node),
+        }
+    }
+
+    /// A move that needs points.
+    fn split(&mut self, leg: &Leg, last: &Node, node: &Node) {
+        let mut linearise = std::mem::take(&mut self.linearise);
+        let (machine, placer) = (self.machine, self.route.placer(leg.setting));
+        let planned = planned(machine, placer, &leg.motion, leg.loose, last, node);
+        match linearise.split(&planned, self.model) {
+            Ok(()) => {
+                let mut from = *last;
+                from.t = 0.0;
+                for (index, piece) in linearise.pieces().iter().enumerate() {
+                    self.tally.points_added += u64::from(index > 0);
+                    let share = piece.to.t - from.t;
+                    self.piece(leg, &from, &piece.to, share, piece.bound);
+                    from = piece.to;
+                }
+            }
+            Err(stuck) => {
+                let finding = refusal::stuck(self.machine, &stuck, &leg.motion);
+                self.find(leg.line, finding);
+            }
+        }
+        self.linearise = linearise;
+    }
+
+    /// One block, a `share` of its move.
+    #[inline]
+    fn piece(&mut self, leg: &Leg, from: &Node, to: &Node, share: f64, bound: Bound) {
+        // A block without a changed word moves nothing and is not written.
+        if from.words == to.words {
+            return;
+        }
+        let (first, last) = (&from.trace.joints, &to.trace.joints);
+        self.tally.reach(last, self.machine.axes.len());
+        self.tally.go(first, last);
+        let words = &to.words[..self.format.words.len()];
+        let rapid = leg.motion.pace == Pace::Rapid;
+        let event = if rapid {
+            self.tally.other += self.feeds.least_time(first, last);
+            Event::Rapid { words }
+        } else {
+            // Between the printed tips: that is the way that the control will time.
+            let length = (to.tip - from.tip).norm();
+            let paced = self.feeds.cut(leg.motion.pace, length, share, first, last);
+            self.tally.limited += u64::from(paced.limited);
+            self.tally.cutting += paced.minutes;
+            Event::Linear {
+                words,
+                feed: paced.feed,
+            }
+        };
+        self.tally.blocks += 1;
+        if self.machine.clamps {
+            self.clamp(leg, from, to);
+        }
+        self.mark(leg, from, to, bound);
+        self.push(leg.line, event);
+    }
+
+    /// Lets go the axes that this block moves, and clamps the others before the tool cuts.
+    fn clamp(&mut self, leg: &Leg, from: &Node, to: &Node) {
+        for joint in 0..self.machine.axes.len() {
+            let moves = from.trace.joints[joint] != to.trace.joints[joint];
+            if moves {
+                self.set_clamp(leg.line, joint, false, false);
+            } else if leg.motion.pace != Pace::Rapid {
+                self.set_clamp(leg.line, joint, true, false);
+            }
+        }
+    }
+
+    /// Writes the word that clamps an axis or lets it go, unless it is so already.
+    fn set_clamp(&mut self, line: u64, joint: usize, on: bool, unknown: bool) {
+        let Some(clamp) = &self.machine.axes[joint].clamp else {
+            return;
+        };
+        let bit = 1 << joint;
+        if unknown || (self.clamped & bit != 0) != on {
+            self.clamped = self.clamped & !bit | if on { bit } else { 0 };
+            let text = if on { &clamp.on } else { &clamp.off };
+            self.push(line, Event::Literal { text });
+        }
+    }
+
+    /// Keeps the largest deviations: the cheap bound decides whether a block can hold one, the tight one is kept.
+    #[inline]
+    fn mark(&mut self, leg: &Leg, from: &Node, to: &Node, bound: Bound) {
+        let chord = leg.motion.chord;
+        let values = |bound: Bound| [bound.tip + chord, bound.axis, bound.tip + chord];
+        let slots: &[usize] = if leg.loose { &[RAPID] } else { &[TIP, AXIS] };
+        let cheap = values(bound);
+        if slots
+            .iter()
+            .all(|slot| cheap[*slot] <= self.tally.deviations[*slot].value)
+        {
+            return;
+        }
+        let placer: &Placer = self.route.placer(leg.setting);
+        let tight = planned(self.machine, placer, &leg.motion, leg.loose, from, to).measured();
+        let tight = values(Bound {
+            tip: bound.tip.min(tight.tip),
+            axis: bound.axis.min(tight.axis),
+        });
+        for &slot in slots {
+            let deviation = &mut self.tally.deviations[slot];
+            // Of blocks that are equal but for rounding errors, the first is named.
+            if tight[slot] > deviation.value + EQUAL {
+                *deviation = Deviation {
+                    value: tight[slot],
+                    block: 0,
+                    line: leg.line,
+                };
+                self.marks[slot] = Some(self.batch.len());
+            } else {
+                deviation.value = deviation.value.max(tight[slot]);
+            }
+        }
+    }
+
+    /// Radius compensation works in the plane of X and Y of the machine (of the part, where the control keeps
+    /// the tip): a tool that does not stand upright in it would be moved sideways into the part.
+    fn check_compensation(&mut self, line: u64, node: &Node) {
+        let machine = self.machine;
+        let chain = self.route.present().solver().chain();
+        let axis = match machine.control.tcp {
+            Tcp::Control => node.trace.pose.axis,
+            Tcp::Post => {
+                let mut joints = node.trace.joints;
+                for (value, axis) in joints.iter_mut().zip(&machine.axes) {
+                    if axis.carries_part {
+                        *value = 0.0;
+                    }
+                }
+                chain.forward(&joints).axis
+            }
+        };
+        let tilt = angle(axis, machine.tool_axis);
+        let turned = self
+            .last
+            .as_ref()
+            .is_some_and(|last| self.turn_between(last, node) > 0.0);
+        let what = if tilt > 1e-3 {
+            format!("the tool tilted by {:.3}°", tilt.to_degrees())
+        } else if turned {
+            "rotary axes turning".to_owned()
+        } else {
+            return;
+        };
+        self.compensating = false;
+        if std::mem::replace(&mut self.told_compensation, true) {
+            return;
+        }
+        self.find(
+            line,
+            Diagnostic::error(
+                "compensation",
+                format!("cutter radius compensation (CUTCOM) with {what}: the control would offset in the wrong plane"),
+            )
+            .help("let the CAM system write the tool centre path, with CUTCOM/OFF"),
+        );
+    }
+}

@@ -1,0 +1,514 @@
+//! The lattice of a path: at each point every way to stand there, and between neighbouring points every way to
+//! go on. What has cost least so far is kept for each state (Viterbi), so that the cheapest path through all of
+//! them is known at every point.
+
+use crate::accuracy::Placer;
+use crate::kinematics::{Joints, Pose, Unreachable};
+use crate::machine::{Machine, Pole};
+use crate::program::{Motion, Pace};
+use crate::route::rule::Measure;
+use crate::route::stand::{Axes, Found, Stand};
+
+/// One point of the path with the ways to stand there.
+#[derive(Clone, Debug)]
+pub(crate) struct Layer {
+    /// Line of the CL file.
+    pub line: u64,
+    /// The move that ends here.
+    pub motion: Motion,
+    pub kind: Kind,
+    /// Which placer solves it.
+    pub setting: usize,
+    /// Its states.
+    pub first: usize,
+    pub count: usize,
+    pub apart: f64,
+    pub from_pole: f64,
+}
+
+/// How a point is come to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// From nowhere: the first position after a start or a tool change.
+    First,
+    Rapid,
+    Cut,
+}
+
+/// One way to stand at a point, and the cheapest way to have come there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct State {
+    pub cost: f64,
+    pub joints: Joints,
+    /// Which state of the point before.
+    pub from: usize,
+    /// Which state of the marked point this one comes from.
+    pub root: usize,
+    pub branch: u8,
+    /// The point is come to with the values of this state of the lattice's `rewound`; there the tool is drawn
+    /// back, turned to the values here, and brought back.
+    pub rewind: Option<usize>,
+}
+
+/// The branch of states whose pole joint stands where it stood.
+pub(crate) const HELD: u8 = u8::MAX;
+
+/// More states than this at one point are not followed: the cheapest of them are.
+const MOST_STATES: usize = 64;
+
+/// Of the tool axis' tolerance so much may be used close to a pole; the rest is for what happens between points.
+const SHARE: f64 = 0.75;
+
+/// A rotary move in a cut that is smaller than this goes on by itself, radians; a larger one may too, if the
+/// tool axis turns by a good part of it.
+const SMALL: f64 = 0.35;
+const PART: f64 = 0.25;
+
+/// A tie is decided by order: costs differ if they differ by more than this share.
+const EQUAL: f64 = 1e-9;
+
+/// A cut from one of two states to another: does the machine come through, within tolerance?
+pub(crate) trait Judge {
+    fn passes(
+        &mut self,
+        placer: &Placer,
+        motion: &Motion,
+        from: (&Pose, &Joints),
+        to: (&Pose, &Joints),
+    ) -> bool;
+}
+
+/// The points that are not settled yet; the first of them is, if `anchored`.
+#[derive(Debug)]
+pub(crate) struct Lattice {
+    pub measure: Measure,
+    pub axes: Axes,
+    pub layers: Vec<Layer>,
+    pub states: Vec<State>,
+    stands: Vec<Stand>,
+    /// Tool axes closer to the pole than this (sine) leave the pole joint free.
+    pub cone: f64,
+    /// What a pole joint may be off by, as an angle of the tool axis, radians.
+    pub freedom: f64,
+}
+
+/// Where a point is wanted.
+pub(crate) fn pose(motion: &Motion) -> Pose {
+    Pose {
+        tip: motion.tip,
+        axis: motion.axis,
+        edge: motion.edge,
+    }
+}
+
+impl Lattice {
+    pub(crate) fn new(machine: &Machine, placer: &Placer) -> Self {
+        let freedom = match machine.solution.pole {
+            Pole::Blend => SHARE * machine.accuracy.axis_tolerance - placer.axis_rounding(),
+            Pole::Exact => 0.0,
+        };
+        Self {
+            measure: Measure::new(machine),
+            axes: Axes::new(machine, |joint| placer.grace(joint)),
+            layers: Vec::new(),
+            states: Vec::new(),
+            stands: Vec::new(),
+            cone: libm::sin(freedom.max(0.0)).max(crate::kinematics::inverse::POLE),
+            freedom: freedom.max(0.0),
+        }
+    }
+
+    /// The states of a layer.
+    pub(crate) fn states_of(&self, layer: usize) -> &[State] {
+        let layer = &self.layers[layer];
+        &self.states[layer.first..layer.first + layer.count]
+    }
+
+    /// Adds a point; `near` is where the axes stand if it is the first. Gives what was found at the point; the
+    /// layer has no state if the path cannot go on to it.
+    ///
+    /// # Errors
+    /// The point has no solution at all, and is not added.
+    pub(crate) fn push(
+        &mut self,
+        line: u64,
+        motion: &Motion,
+        setting: usize,
+        placer: &Placer,
+        near: &Joints,
+        judge: &mut dyn Judge,
+    ) -> Result<Found, Unreachable> {
+        let kind = match (self.layers.is_empty(), motion.pace) {
+            (true, _) => Kind::First,
+            (false, Pace::Rapid) => Kind::Rapid,
+            (false, _) => Kind::Cut,
+        };
+        let target = pose(motion);
+        let before = self.layers.last().map(|layer| layer.first..layer.first + layer.count);
+        let mut stands = std::mem::take(&mut self.stands);
+        stands.clear();
+        let last = before
+            .clone()
+            .and_then(|range| self.states.get(range.start))
+            .map_or(*near, |state| state.joints);
+        let found = self.axes.stands(placer.solver(), &target, &last, &mut stands);
+        let found = match found {
+            Ok(found) => found,
+            Err(unreachable) => {
+                self.stands = stands;
+                return Err(unreachable);
+            }
+        };
+        let first = self.states.len();
+        let on_pole = found.from_pole <= self.cone && placer.solver().pole_joint().is_some();
+        if kind != Kind::Cut {
+            // A tie goes to the larger value of the axis nearest to the tool.
+            let joint = placer.solver().last_rotary();
+            stands.sort_by(|a, b| b.joints[joint].total_cmp(&a.joints[joint]));
+        }
+        let range = before.unwrap_or(0..0);
+        if on_pole {
+            self.hold(placer, &target, range.clone(), near, kind);
+        }
+        if self.states.len() == first {
+            match kind {
+                Kind::First => {
+                    for stand in &stands {
+                        self.reach(stand, None, near);
+                    }
+                }
+                Kind::Rapid => self.turn(&stands, range),
+                Kind::Cut => {
+                    if placer.solver().closed_form() {
+                        self.go_on(placer, motion, &stands, &found, range, judge);
+                    } else {
+                        self.search_on(placer, &target, range);
+                    }
+                }
+            }
+        }
+        self.stands = stands;
+        self.thin(first);
+        self.layers.push(Layer {
+            line,
+            motion: *motion,
+            kind,
+            setting,
+            first,
+            count: self.states.len() - first,
+            apart: found.apart,
+            from_pole: if placer.solver().pole_joint().is_some() {
+                found.from_pole
+            } else {
+                1.0
+            },
+        });
+        Ok(found)
+    }
+
+    /// A state, unless there is one like it that is no dearer.
+    fn keep(&mut self, first: usize, state: State) {
+        let same = |known: &State| {
+            known
+                .joints
+                .iter()
+                .zip(&state.joints)
+                .all(|(a, b)| (a - b).abs() < 1e-9)
+        };
+        match self.states[first..].iter_mut().find(|known| same(known)) {
+            Some(known) if cheaper(state.cost, known.cost) => *known = state,
+            Some(_) => {}
+            None => self.states.push(state),
+        }
+    }
+
+    /// On the pole the pole joint stands where it stood. Where the tip cannot be reached so, it is turned by
+    /// quarter turns.
+    fn hold(
+        &mut self,
+        placer: &Placer,
+        target: &Pose,
+        before: std::ops::Range<usize>,
+        near: &Joints,
+        kind: Kind,
+    ) {
+        let first = self.states.len();
+        for quarter in [0.0, 1.0, -1.0, 2.0] {
+            if kind == Kind::First {
+                self.hold_from(placer, target, None, near, quarter, first);
+            }
+            for index in before.clone() {
+                if self.states[index].cost < f64::INFINITY {
+                    self.hold_from(placer, target, Some(index), near, quarter, first);
+                }
+            }
+            if self.states.len() > first {
+                return;
+            }
+        }
+    }
+
+    fn hold_from(
+        &mut self,
+        placer: &Placer,
+        target: &Pose,
+        from: Option<usize>,
+        near: &Joints,
+        quarter: f64,
+        first: usize,
+    ) {
+        let before = from.map(|index| self.states[index]);
+        let mut last = before.map_or(*near, |state| state.joints);
+        if let Some(pole) = placer.solver().pole_joint() {
+            last[pole] += quarter * std::f64::consts::FRAC_PI_2;
+        }
+        let Some(stand) = self.axes.held(placer.solver(), target, &last) else {
+            return;
+        };
+        let way = match &before {
+            Some(state) => state.cost + self.measure.between(&state.joints, &stand.joints),
+            None => self.measure.approach(near, &stand.joints),
+        };
+        self.keep(
+            first,
+            State {
+                cost: way + self.measure.standing(&stand.joints),
+                joints: stand.joints,
+                from: from.unwrap_or(0),
+                root: before.map_or(0, |state| state.root),
+                branch: HELD,
+                rewind: None,
+            },
+        );
+    }
+
+    /// Every set of turns of a stand, come to from one state or from nowhere.
+    fn reach(&mut self, stand: &Stand, from: Option<usize>, near: &Joints) {
+        let Self {
+            axes,
+            measure,
+            states,
+            ..
+        } = self;
+        let before = from.map(|index| states[index]);
+        let last = before.map_or(*near, |state| state.joints);
+        axes.turned(stand, &last, &mut |joints| {
+            let way = match &before {
+                Some(state) => state.cost + measure.between(&state.joints, joints),
+                None => measure.approach(near, joints),
+            };
+            states.push(State {
+                cost: way + measure.standing(joints),
+                joints: *joints,
+                from: from.unwrap_or(0),
+                root: before.map_or(0, |state| state.root),
+                branch: stand.branch,
+                rewind: None,
+            });
+        });
+    }
+
+    /// Off the part every state can be reached from every other.
+    fn turn(&mut self, stands: &[Stand], before: std::ops::Range<usize>) {
+        let first = self.states.len();
+        let mut begun = false;
+        for index in before {
+            if self.states[index].cost == f64::INFINITY {
+                continue;
+            }
+            let near = self.states[index].joints;
+            let from = self.states.len();
+            for stand in stands {
+                self.reach(stand, Some(index), &near);
+            }
+            if !begun {
+                begun = true;
+                continue;
+            }
+            // The same turns in the same order: the cheaper of each two stays.
+            let count = self.states.len() - from;
+            for place in 0..count {
+                let new = self.states[from + place];
+                let known = &mut self.states[first + place];
+                if cheaper(new.cost, known.cost) {
+                    *known = new;
+                }
+            }
+            self.states.truncate(from);
+        }
+    }
+
+    /// In a cut each state goes on by itself; to the other branch only where the two meet.
+    #[inline]
+    fn go_on(
+        &mut self,
+        placer: &Placer,
+        motion: &Motion,
+        stands: &[Stand],
+        found: &Found,
+        before: std::ops::Range<usize>,
+        judge: &mut dyn Judge,
+    ) {
+        let first = self.states.len();
+        let Some(last) = self.layers.last() else {
+            return;
+        };
+        let from_pose = pose(&last.motion);
+        let apart = last.apart;
+        let target = pose(motion);
+        // The chord is enough to tell small sweeps from large ones.
+        let sweep = (from_pose.axis - target.axis).norm();
+        let closest = apart.min(found.apart);
+        // Branches meet where they are no farther apart than the tool axis moves.
+        let meet = closest * closest <= 16.0 * (sweep + self.freedom);
+        for index in before {
+            let state = self.states[index];
+            if state.cost == f64::INFINITY {
+                continue;
+            }
+            for stand in stands {
+                if state.branch == HELD {
+                    self.leave_pole(stand, index, first);
+                    continue;
+                }
+                let same = stand.branch == state.branch;
+                if !same && !meet {
+                    continue;
+                }
+                let Ok(joints) = self.axes.carried(stand, &state.joints) else {
+                    continue;
+                };
+                if !self.stand_still(&state.joints, &joints) {
+                    continue;
+                }
+                let largest = self.axes.largest_turn(&state.joints, &joints);
+                let sure = same && (largest < SMALL || largest * PART < sweep) && largest < 3.0;
+                if !sure
+                    && !judge.passes(
+                        placer,
+                        motion,
+                        (&from_pose, &state.joints),
+                        (&target, &joints),
+                    )
+                {
+                    continue;
+                }
+                let new = State {
+                    cost: state.cost
+                        + self.measure.between(&state.joints, &joints)
+                        + self.measure.standing(&joints),
+                    joints,
+                    from: index,
+                    root: state.root,
+                    branch: stand.branch,
+                    rewind: None,
+                };
+                if sure && !meet {
+                    self.states.push(new);
+                } else {
+                    self.keep(first, new);
+                }
+            }
+        }
+    }
+
+    /// From a held pole joint every stand can be gone to: it is turned while it turns nothing.
+    fn leave_pole(&mut self, stand: &Stand, from: usize, first: usize) {
+        let state = self.states[from];
+        let mut reached = Vec::new();
+        self.axes
+            .turned(stand, &state.joints, &mut |joints| reached.push(*joints));
+        for joints in reached {
+            if !self.stand_still(&state.joints, &joints) {
+                continue;
+            }
+            let cost = state.cost
+                + self.measure.between(&state.joints, &joints)
+                + self.measure.standing(&joints);
+            self.keep(
+                first,
+                State {
+                    cost,
+                    joints,
+                    from,
+                    root: state.root,
+                    branch: stand.branch,
+                    rewind: None,
+                },
+            );
+        }
+    }
+
+    /// In a cut without a closed form each state goes on to the solution next to it.
+    fn search_on(&mut self, placer: &Placer, target: &Pose, before: std::ops::Range<usize>) {
+        let first = self.states.len();
+        for index in before {
+            let state = self.states[index];
+            if state.cost == f64::INFINITY {
+                continue;
+            }
+            let Some(joints) = self.axes.followed(placer.solver(), target, &state.joints) else {
+                continue;
+            };
+            let cost = state.cost
+                + self.measure.between(&state.joints, &joints)
+                + self.measure.standing(&joints);
+            self.keep(
+                first,
+                State {
+                    cost,
+                    joints,
+                    from: index,
+                    root: state.root,
+                    branch: state.branch,
+                    rewind: None,
+                },
+            );
+        }
+    }
+
+    /// Indexed axes do not move.
+    #[inline]
+    fn stand_still(&self, from: &Joints, to: &Joints) -> bool {
+        self.axes
+            .indexed
+            .iter()
+            .all(|joint| (from[*joint] - to[*joint]).abs() < 1e-9)
+    }
+
+    /// Keeps the cheapest states of the newest layer, if there are too many.
+    fn thin(&mut self, first: usize) {
+        if self.states.len() - first > MOST_STATES {
+            self.states[first..].sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            self.states.truncate(first + MOST_STATES);
+        }
+    }
+
+    /// The newest layer's cheapest state.
+    pub(crate) fn best(&self) -> Option<usize> {
+        let layer = self.layers.last()?;
+        let mut best: Option<usize> = None;
+        for index in layer.first..layer.first + layer.count {
+            let cost = self.states[index].cost;
+            if cost < f64::INFINITY
+                && best.is_none_or(|best| cheaper(cost, self.states[best].cost))
+            {
+                best = Some(index);
+            }
+        }
+        best
+    }
+
+    /// Takes the newest layer back.
+    pub(crate) fn pop(&mut self) -> Option<Layer> {
+        let layer = self.layers.pop()?;
+        self.states.truncate(layer.first);
+        Some(layer)
+    }
+}
+
+/// `a` is cheaper than `b`, and not by rounding alone.
+#[inline]
+pub(crate) fn cheaper(a: f64, b: f64) -> bool {
+    a + EQUAL * (1.0 + a.abs()) < b
+}

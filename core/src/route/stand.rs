@@ -1,0 +1,417 @@
+//! The ways to stand at a point: every branch of the inverse on every full turn inside travel.
+
+use std::f64::consts::TAU;
+
+use super::rule::wrong_side;
+use crate::kinematics::choose::{Limit, OverTravel};
+use crate::kinematics::orientation::Branches;
+use crate::kinematics::{Joints, Pose, Solver, Unreachable};
+use crate::machine::{Machine, Positions, Side};
+
+/// One solution, its angles on the turn around zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stand {
+    /// Axis values: pointing angles in -π to π.
+    pub joints: Joints,
+    /// Which branch of the inverse; stands of one branch at neighbouring points go on from one another.
+    pub branch: u8,
+    /// Joints that turn nothing here and keep their last value, one bit each.
+    pub free: u8,
+}
+
+/// What the choice needs to know of the axes.
+#[derive(Clone, Debug)]
+pub(crate) struct Axes {
+    turning: Vec<Turning>,
+    linear: Vec<Limit>,
+    /// Joints that move off the part alone.
+    pub indexed: Vec<usize>,
+    axis_tolerance: f64,
+}
+
+/// A rotary axis that is solved for.
+#[derive(Clone, Debug)]
+struct Turning {
+    joint: usize,
+    travel: Option<[f64; 2]>,
+    positions: Option<Positions>,
+    require: Option<Side>,
+}
+
+/// What was found at a point beside the stands themselves.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Found {
+    /// See [`Branches::apart`]; infinite where there are no branches.
+    pub apart: f64,
+    /// See [`Branches::from_pole`].
+    pub from_pole: f64,
+    /// Solutions, inside travel or not.
+    pub solutions: usize,
+    /// Why the first solution that is no stand is none.
+    pub over: Option<OverTravel>,
+}
+
+/// Linear positions are checked before they are rounded: so far beyond the end is left to the rounding, mm.
+const SLACK: f64 = 2e-3;
+
+impl Axes {
+    /// `grace` is how far a rotary value may pass its limit and still be printed as the limit, radians.
+    pub(crate) fn new(machine: &Machine, grace: impl Fn(usize) -> f64) -> Self {
+        let pointing = machine.pointing();
+        let side = |joint: usize| {
+            let require = &machine.solution.require;
+            require
+                .iter()
+                .find(|(place, _)| *place == joint)
+                .map(|(_, side)| *side)
+        };
+        let turning = pointing
+            .iter()
+            .map(|&joint| {
+                let axis = &machine.axes[joint];
+                let positions = axis
+                    .indexed
+                    .as_ref()
+                    .map(|indexed| indexed.positions.clone());
+                Turning {
+                    joint,
+                    travel: axis
+                        .travel
+                        .map(|[least, most]| [least - grace(joint), most + grace(joint)]),
+                    positions: positions.filter(|positions| *positions != Positions::Any),
+                    require: side(joint),
+                }
+            })
+            .collect();
+        let linear = machine
+            .axes
+            .iter()
+            .enumerate()
+            .filter(|(_, axis)| !axis.joint.rotary)
+            .filter_map(|(joint, axis)| {
+                axis.travel.map(|[least, most]| Limit {
+                    joint,
+                    travel: [least - SLACK, most + SLACK],
+                })
+            })
+            .collect();
+        let indexed = (0..machine.axes.len())
+            .filter(|joint| machine.axes[*joint].indexed.is_some())
+            .collect();
+        Self {
+            turning,
+            linear,
+            indexed,
+            axis_tolerance: machine.accuracy.axis_tolerance,
+        }
+    }
+
+    /// Adds the stands at `pose` to `stands`; `last` is kept by joints that are free there.
+    ///
+    /// # Errors
+    /// Why there is no solution at all.
+    #[inline]
+    pub(crate) fn stands(
+        &self,
+        solver: &Solver,
+        pose: &Pose,
+        last: &Joints,
+        stands: &mut Vec<Stand>,
+    ) -> Result<Found, Unreachable> {
+        if !solver.closed_form() {
+            return self.searched(solver, pose, last, stands);
+        }
+        let branches = solver.orient(pose, self.axis_tolerance)?;
+        self.branches(solver, pose, &branches, last, stands)
+    }
+
+    #[inline]
+    fn branches(
+        &self,
+        solver: &Solver,
+        pose: &Pose,
+        branches: &Branches,
+        last: &Joints,
+        stands: &mut Vec<Stand>,
+    ) -> Result<Found, Unreachable> {
+        let mut found = Found {
+            apart: branches.apart(),
+            from_pole: branches.from_pole(),
+            solutions: branches.count(),
+            over: None,
+        };
+        let mut flat = None;
+        for index in 0..branches.count() {
+            let mut set = solver.angles(branches, index);
+            if set.free != 0 {
+                set.keep(last);
+            }
+            let mut joints = set.joints;
+            if let Err(over) = self.at_rest(&mut joints) {
+                found.over.get_or_insert(over);
+                continue;
+            }
+            let turns = solver.chain().turns(&joints);
+            if let Err(unreachable) = solver.place(pose.tip, &mut joints, &turns) {
+                flat = Some(unreachable);
+                continue;
+            }
+            if let Some(over) = self.beyond(&joints) {
+                found.over.get_or_insert(over);
+                continue;
+            }
+            stands.push(Stand {
+                joints,
+                branch: index as u8,
+                free: set.free,
+            });
+        }
+        match flat {
+            Some(unreachable) if stands.is_empty() && found.over.is_none() => Err(unreachable),
+            _ => Ok(found),
+        }
+    }
+
+    /// The stands of a chain without a closed form.
+    fn searched(
+        &self,
+        solver: &Solver,
+        pose: &Pose,
+        last: &Joints,
+        stands: &mut Vec<Stand>,
+    ) -> Result<Found, Unreachable> {
+        let solutions = solver.inverse(pose, last, self.axis_tolerance)?;
+        let mut found = Found {
+            apart: f64::INFINITY,
+            from_pole: 1.0,
+            solutions: solutions.len(),
+            over: None,
+        };
+        for (branch, mut joints) in solutions.into_iter().enumerate() {
+            let over = match self.at_rest(&mut joints) {
+                Ok(()) => self.beyond(&joints),
+                Err(over) => Some(over),
+            };
+            match over {
+                None => stands.push(Stand {
+                    joints,
+                    branch: branch as u8,
+                    free: 0,
+                }),
+                Some(over) => {
+                    found.over.get_or_insert(over);
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// Brings angles onto the positions of index axes, and checks that every axis can stand there at all.
+    #[inline]
+    fn at_rest(&self, joints: &mut Joints) -> Result<(), OverTravel> {
+        for axis in &self.turning {
+            let joint = axis.joint;
+            if let Some(positions) = &axis.positions {
+                let value = joints[joint];
+                // Full turns make other positions of a list: the nearest of all.
+                let nearest = (-1..=1)
+                    .map(|turn| f64::from(turn) * TAU)
+                    .map(|turn| positions.nearest(value + turn, axis.travel.is_none()) - turn)
+                    .min_by(|a, b| libm::fabs(a - value).total_cmp(&libm::fabs(b - value)))
+                    .unwrap_or(value);
+                if libm::fabs(nearest - value) > self.axis_tolerance {
+                    return Err(OverTravel {
+                        joint,
+                        value,
+                        limit: nearest,
+                    });
+                }
+                joints[joint] = nearest;
+            }
+            if let Some([least, most]) = axis.travel {
+                let first = joints[joint] + TAU * f64::ceil((least - joints[joint]) / TAU);
+                if first > most {
+                    let middle = (least + most) / 2.0;
+                    let asked = unwound(joints[joint], middle);
+                    return Err(OverTravel {
+                        joint,
+                        value: asked,
+                        limit: if asked > most { most } else { least },
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn beyond(&self, joints: &Joints) -> Option<OverTravel> {
+        for limit in &self.linear {
+            let value = joints[limit.joint];
+            let [least, most] = limit.travel;
+            if value < least || value > most {
+                return Some(OverTravel {
+                    joint: limit.joint,
+                    value,
+                    limit: if value < least {
+                        least + SLACK
+                    } else {
+                        most - SLACK
+                    },
+                });
+            }
+        }
+        None
+    }
+
+    /// Puts the pointing joints of `stand` on the turns nearest to `last`.
+    ///
+    /// # Errors
+    /// The axis that this takes out of its travel.
+    #[inline]
+    pub(crate) fn carried(&self, stand: &Stand, last: &Joints) -> Result<Joints, OverTravel> {
+        let mut joints = stand.joints;
+        for axis in &self.turning {
+            let joint = axis.joint;
+            if stand.free & (1 << joint) != 0 {
+                joints[joint] = last[joint];
+                continue;
+            }
+            let turn = f64::round((last[joint] - joints[joint]) / TAU);
+            joints[joint] += TAU * turn;
+            let value = joints[joint];
+            if let Some([least, most]) = axis.travel
+                && (value < least || value > most)
+            {
+                return Err(OverTravel {
+                    joint,
+                    value,
+                    limit: if value < least { least } else { most },
+                });
+            }
+            if let Some(side) = axis.require
+                && wrong_side(value, side)
+            {
+                return Err(OverTravel {
+                    joint,
+                    value,
+                    limit: 0.0,
+                });
+            }
+        }
+        Ok(joints)
+    }
+
+    /// Calls `take` with every set of turns that `stand` can have inside travel; axes without travel are put on
+    /// the turn nearest to `last`, free ones where they were.
+    pub(crate) fn turned(
+        &self,
+        stand: &Stand,
+        last: &Joints,
+        take: &mut dyn FnMut(&Joints),
+    ) {
+        let mut joints = stand.joints;
+        self.turn_from(0, stand, last, &mut joints, take);
+    }
+
+    fn turn_from(
+        &self,
+        place: usize,
+        stand: &Stand,
+        last: &Joints,
+        joints: &mut Joints,
+        take: &mut dyn FnMut(&Joints),
+    ) {
+        let Some(axis) = self.turning.get(place) else {
+            take(joints);
+            return;
+        };
+        let joint = axis.joint;
+        let base = stand.joints[joint];
+        let mut go = |value: f64| {
+            if axis.require.is_some_and(|side| wrong_side(value, side)) {
+                return;
+            }
+            joints[joint] = value;
+            self.turn_from(place + 1, stand, last, joints, take);
+        };
+        if stand.free & (1 << joint) != 0 {
+            go(last[joint]);
+            return;
+        }
+        match axis.travel {
+            None => {
+                let turn = f64::round((last[joint] - base) / TAU);
+                go(base + TAU * turn);
+            }
+            Some([least, most]) => {
+                let mut turn = f64::ceil((least - base) / TAU);
+                while base + TAU * turn <= most {
+                    go(base + TAU * turn);
+                    turn += 1.0;
+                }
+            }
+        }
+    }
+
+    /// With the pole joint where `last` has it: the stand that misses the wanted axis least.
+    pub(crate) fn held(&self, solver: &Solver, pose: &Pose, last: &Joints) -> Option<Stand> {
+        let pole = solver.pole_joint()?;
+        let mut joints = *last;
+        solver.follow(pose, &mut joints);
+        for axis in &self.turning {
+            if axis.joint != pole {
+                joints[axis.joint] = unwound(joints[axis.joint], last[axis.joint]);
+            }
+            if axis.positions.is_some() {
+                return None;
+            }
+        }
+        let turns = solver.chain().turns(&joints);
+        solver.place(pose.tip, &mut joints, &turns).ok()?;
+        let stand = Stand {
+            joints,
+            branch: 0,
+            free: 0,
+        };
+        let inside = |axis: &Turning| {
+            let value = joints[axis.joint];
+            axis.travel
+                .is_none_or(|[least, most]| (least..=most).contains(&value))
+                && !axis.require.is_some_and(|side| wrong_side(value, side))
+        };
+        (self.turning.iter().all(inside) && self.beyond(&joints).is_none()).then_some(stand)
+    }
+
+    /// Where there is no closed form: the solution next to `last`, if it is inside travel.
+    pub(crate) fn followed(&self, solver: &Solver, pose: &Pose, last: &Joints) -> Option<Joints> {
+        let joints = solver.search(pose, last, self.axis_tolerance).ok()?;
+        let inside = self.turning.iter().all(|axis| {
+            axis.travel
+                .is_none_or(|[least, most]| (least..=most).contains(&joints[axis.joint]))
+        });
+        (inside && self.beyond(&joints).is_none()).then_some(joints)
+    }
+
+    /// The largest turn of a pointing axis, radians.
+    #[inline]
+    pub(crate) fn largest_turn(&self, from: &Joints, to: &Joints) -> f64 {
+        self.turning.iter().fold(0.0, |largest: f64, axis| {
+            largest.max((to[axis.joint] - from[axis.joint]).abs())
+        })
+    }
+
+    /// Travel of a rotary axis that is solved for.
+    pub(crate) fn travel(&self, joint: usize) -> [f64; 2] {
+        self.turning
+            .iter()
+            .find(|axis| axis.joint == joint)
+            .and_then(|axis| axis.travel)
+            .unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
+    }
+}
+
+/// `angle` on the turn nearest to `last`.
+fn unwound(angle: f64, last: f64) -> f64 {
+    angle + TAU * f64::round((last - angle) / TAU)
+}

@@ -235,7 +235,9 @@ impl<'a> Post<'a> {
                     name: axis.name.clone(),
                     min: axis.reading(tally.least[index]),
                     max: axis.reading(tally.most[index]),
-                    travel: axis.travel.map(|travel| travel.map(|end| axis.reading(end))),
+                    travel: axis
+                        .travel
+                        .map(|travel| travel.map(|end| axis.reading(end))),
                     way: tally.travel[index] / axis.unit(),
                 }
             })

@@ -46,7 +46,11 @@ impl Recent {
             .lines
             .get(place + 1)
             .map_or(self.text.len(), |(_, next)| *next);
-        Some(String::from_utf8_lossy(&self.text[start..end]).trim_end().to_owned())
+        Some(
+            String::from_utf8_lossy(&self.text[start..end])
+                .trim_end()
+                .to_owned(),
+        )
     }
 }
 

@@ -113,7 +113,10 @@ pub(crate) fn no_way(
                 "{} lies on the same branch, but no path of the axes keeps the tolerance",
                 rotary(joints)
             ),
-            Ok(joints) => format!("{} lies on the other branch: the axes must jump", rotary(joints)),
+            Ok(joints) => format!(
+                "{} lies on the other branch: the axes must jump",
+                rotary(joints)
+            ),
         })
         .collect();
     let help = if machine.rewind.is_some() {

@@ -7,7 +7,7 @@
 //! long as the tool axis stays within tolerance.
 
 use nalgebra::Vector3;
-use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
+use post_plugin::{Deviation, ModelSession, Tolerance};
 
 use super::certificate::{self, Bend, chord_angle};
 use super::node::{Node, Placer, Refused};
@@ -74,30 +74,6 @@ const BLIND: f64 = 0.02;
 
 /// A piece that needs more samples than this to be certified is split instead.
 const MOST_SAMPLES: f64 = 64.0;
-
-/// A model that is always content: the certificate alone decides.
-#[derive(Clone, Copy, Debug)]
-pub struct Silent;
-
-impl ModelSession for Silent {
-    fn fit(
-        &mut self,
-        _: &Tolerance,
-        _: &mut dyn FnMut(&[f64], &mut [Deviation]),
-    ) -> Result<Curve, String> {
-        Ok(Curve {
-            tip_peak: 0.0,
-            tip_at: 0.0,
-            axis_peak: 0.0,
-            axis_at: 0.0,
-            terms: [0.0; 60],
-        })
-    }
-
-    fn value(&self, _: &Curve, _: f64) -> Deviation {
-        Deviation::default()
-    }
-}
 
 /// Puts points in.
 #[derive(Debug, Default)]
@@ -202,6 +178,40 @@ impl Linearise {
     /// The pieces of the last move that was split.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
+    }
+
+    /// Can the axes follow this move with the tool axis within tolerance, whatever points that takes? Nothing is
+    /// sampled, no model asked.
+    pub fn comes_through(&mut self, whole: &Move<'_>) -> bool {
+        let whole = Move {
+            tolerances: Tolerances {
+                tip: f64::INFINITY,
+                ..whole.tolerances
+            },
+            ..*whole
+        };
+        let mut from = *whole.from;
+        from.t = 0.0;
+        self.stack.clear();
+        self.stack.push(*whole.to);
+        while let Some(to) = self.stack.pop() {
+            let piece = Move {
+                from: &from,
+                to: &to,
+                ..whole
+            };
+            let bound = piece.measured();
+            if whole.tolerances.hold(bound) {
+                from = to;
+                continue;
+            }
+            let (None, Ok(middle)) = (stuck(&piece), middle(&piece, bound)) else {
+                return false;
+            };
+            self.stack.push(to);
+            self.stack.push(middle);
+        }
+        true
     }
 
     /// Cuts a move into pieces within tolerance, in order: see [`Linearise::pieces`].

@@ -4,5 +4,5 @@ pub mod certificate;
 mod linearise;
 mod node;
 
-pub use linearise::{Bound, Linearise, Move, Piece, Silent, Stuck, Tolerances};
+pub use linearise::{Bound, Linearise, Move, Piece, Stuck, Tolerances};
 pub use node::{Node, Placer, Refused};

@@ -88,9 +88,7 @@ impl Placer {
             .map_err(|lack| fault(format!("the chain cannot be solved: {lack:?}")))?;
         let mut words = Words::new(machine, format);
         words.set_zero(&solver).ok_or_else(|| {
-            fault(
-                "with every rotary axis at zero the linear axes do not span the space".to_owned(),
-            )
+            fault("with every rotary axis at zero the linear axes do not span the space".to_owned())
         })?;
         Ok(Self::new(machine, solver, words))
     }

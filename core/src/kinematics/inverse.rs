@@ -206,6 +206,15 @@ impl Solver {
         }
     }
 
+    /// Angles from the pole joint's axis between which there are two branches, radians; where they end the
+    /// branches meet. None where nothing turns so.
+    pub fn band(&self) -> Option<[f64; 2]> {
+        match &self.form {
+            Form::Closed { orientation, .. } => orientation.band(),
+            Form::Numeric { .. } => None,
+        }
+    }
+
     /// With the [`Solver::pole_joint`] where `joints` has it, puts the other rotary joints so that the tool
     /// axis comes as near as it can to that of `pose`; their angles in -π to π.
     pub fn follow(&self, pose: &Pose, joints: &mut Joints) {

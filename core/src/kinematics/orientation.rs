@@ -131,10 +131,10 @@ impl Branches {
         2.0 * self.y
     }
 
-    /// Sine of the angle between what is pointed and the first of two free axes: how far the pole is.
+    /// Sine and cosine of the angle between what is pointed and the first of two free axes: how far the poles are.
     #[inline]
-    pub fn from_pole(&self) -> f64 {
-        self.sine
+    pub fn latitude(&self) -> (f64, f64) {
+        (self.sine, self.u.x)
     }
 }
 
@@ -299,6 +299,15 @@ impl Orientation {
         }
     }
 
+    /// Latitudes (angles from the first of two free axes) between which two branches are, radians: where they
+    /// end the branches meet. None with fewer free axes.
+    pub(super) fn band(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Two(two) => Some(two.band()),
+            _ => None,
+        }
+    }
+
     /// With the first free joint where `joints` has it, puts the others so that the tool axis comes as near as
     /// it can to that of `pose`.
     pub(super) fn follow(&self, pose: &Pose, joints: &mut Joints) {
@@ -436,14 +445,21 @@ impl Two {
         }
     }
 
+    /// Least and largest angle from k1 that can be reached.
+    fn band(&self) -> [f64; 2] {
+        let (tilt, cone) = (angle(self.k1, self.k2), angle(self.k2, self.a));
+        let sum = tilt + cone;
+        [
+            libm::fabs(tilt - cone),
+            sum.min(2.0 * std::f64::consts::PI - sum),
+        ]
+    }
+
     /// By how much the nearest orientation misses `u`, and at which angle from k1 it lies: k2 keeps a on a cone
     /// about itself, and k1 sweeps that cone over a band of latitudes about k1.
     fn miss(&self, u: Vector3<f64>) -> (f64, f64) {
-        let (tilt, cone) = (angle(self.k1, self.k2), angle(self.k2, self.a));
         let latitude = angle(self.k1, u);
-        let least = libm::fabs(tilt - cone);
-        let sum = tilt + cone;
-        let most = sum.min(2.0 * std::f64::consts::PI - sum);
+        let [least, most] = self.band();
         if least - latitude > latitude - most {
             ((least - latitude).max(0.0), least)
         } else {

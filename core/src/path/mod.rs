@@ -374,7 +374,8 @@ impl<'a> Path<'a> {
         let axis = &self.machine.axes[joint];
         let value = angle - axis.zero;
         let positions = axis.indexed.as_ref().map(|indexed| &indexed.positions);
-        let possible = positions.is_none_or(|positions| positions.holds(value, axis.travel.is_none()))
+        let possible = positions
+            .is_none_or(|positions| positions.holds(value, axis.travel.is_none()))
             && axis
                 .travel
                 .is_none_or(|[least, most]| (least - 1e-9..=most + 1e-9).contains(&value));

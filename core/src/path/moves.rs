@@ -2,8 +2,8 @@
 
 use post_plugin::Event;
 
-use super::tally::{AXIS, RAPID, TIP};
 use super::Path;
+use super::tally::{AXIS, RAPID, TIP};
 use crate::accuracy::{Bound, Node, Placer};
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::orientation::angle;
@@ -94,14 +94,13 @@ impl Path<'_> {
             Pace::Rapid => None,
             // A time for a way that nobody knows has no meaning; the way is made at rapid.
             Pace::InverseTime(_) => None,
-            Pace::PerMinute(_) => Some(
-                self.feeds
-                    .cut(leg.motion.pace, 1.0, 1.0, &none, &none)
-                    .feed,
-            ),
+            Pace::PerMinute(_) => {
+                Some(self.feeds.cut(leg.motion.pace, 1.0, 1.0, &none, &none).feed)
+            }
         };
         let count = self.format.words.len();
-        self.tally.reach(&node.trace.joints, self.machine.axes.len());
+        self.tally
+            .reach(&node.trace.joints, self.machine.axes.len());
         self.tally.blocks += 1;
         if let (false, Some(spindle)) = (self.turning, self.commanded) {
             // The tool change stopped it, and the CL file takes it to be turning.
@@ -242,10 +241,7 @@ impl Path<'_> {
 
     /// A stop on the way of a move that is made in stages.
     fn stage(&mut self, leg: &Leg, at: &mut Node, target: Pose, t: f64, joints: &Joints) {
-        let settled = self
-            .route
-            .placer(leg.setting)
-            .settled(target, t, joints);
+        let settled = self.route.placer(leg.setting).settled(target, t, joints);
         match settled {
             Ok(node) => {
                 self.cut(leg, at, &node);

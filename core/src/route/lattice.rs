@@ -22,8 +22,8 @@ pub(crate) struct Layer {
     /// Its states.
     pub first: usize,
     pub count: usize,
-    pub apart: f64,
-    pub from_pole: f64,
+    /// Sine and cosine of the angle between the tool axis and the pole.
+    pub latitude: (f64, f64),
 }
 
 /// How a point is come to.
@@ -58,11 +58,6 @@ const MOST_STATES: usize = 64;
 
 /// Of the tool axis' tolerance so much may be used close to a pole; the rest is for what happens between points.
 const SHARE: f64 = 0.75;
-
-/// A rotary move in a cut that is smaller than this goes on by itself, radians; a larger one may too, if the
-/// tool axis turns by a good part of it.
-const SMALL: f64 = 0.35;
-const PART: f64 = 0.25;
 
 /// A tie is decided by order: costs differ if they differ by more than this share.
 const EQUAL: f64 = 1e-9;
@@ -109,7 +104,7 @@ impl Lattice {
         };
         Self {
             measure: Measure::new(machine),
-            axes: Axes::new(machine, |joint| placer.grace(joint)),
+            axes: Axes::new(machine, placer.solver(), |joint| placer.grace(joint)),
             layers: Vec::new(),
             states: Vec::new(),
             stands: Vec::new(),
@@ -144,14 +139,19 @@ impl Lattice {
             (false, _) => Kind::Cut,
         };
         let target = pose(motion);
-        let before = self.layers.last().map(|layer| layer.first..layer.first + layer.count);
+        let before = self
+            .layers
+            .last()
+            .map(|layer| layer.first..layer.first + layer.count);
         let mut stands = std::mem::take(&mut self.stands);
         stands.clear();
         let last = before
             .clone()
             .and_then(|range| self.states.get(range.start))
             .map_or(*near, |state| state.joints);
-        let found = self.axes.stands(placer.solver(), &target, &last, &mut stands);
+        let found = self
+            .axes
+            .stands(placer.solver(), &target, &last, &mut stands);
         let found = match found {
             Ok(found) => found,
             Err(unreachable) => {
@@ -160,7 +160,7 @@ impl Lattice {
             }
         };
         let first = self.states.len();
-        let on_pole = found.from_pole <= self.cone && placer.solver().pole_joint().is_some();
+        let on_pole = found.latitude.0 <= self.cone && placer.solver().pole_joint().is_some();
         if kind != Kind::Cut {
             // A tie goes to the larger value of the axis nearest to the tool.
             let joint = placer.solver().last_rotary();
@@ -196,12 +196,7 @@ impl Lattice {
             setting,
             first,
             count: self.states.len() - first,
-            apart: found.apart,
-            from_pole: if placer.solver().pole_joint().is_some() {
-                found.from_pole
-            } else {
-                1.0
-            },
+            latitude: found.latitude,
         });
         Ok(found)
     }
@@ -354,13 +349,16 @@ impl Lattice {
             return;
         };
         let from_pose = pose(&last.motion);
-        let apart = last.apart;
+        let latitude = last.latitude;
         let target = pose(motion);
-        // The chord is enough to tell small sweeps from large ones.
-        let sweep = (from_pose.axis - target.axis).norm();
-        let closest = apart.min(found.apart);
-        // Branches meet where they are no farther apart than the tool axis moves.
-        let meet = closest * closest <= 16.0 * (sweep + self.freedom);
+        // The chord is a little less than the arc; small sweeps are all that counts here.
+        let way = 1.1 * (from_pose.axis - target.axis).norm();
+        // The way leads past where the branches meet only if both ends are close enough to there. Else each
+        // branch goes on by itself; there it has to be tried.
+        let meet = !self.axes.far(latitude, way + 2.0 * self.freedom)
+            && !self.axes.far(found.latitude, way + 2.0 * self.freedom)
+            && self.axes.margin(latitude) + self.axes.margin(found.latitude)
+                <= way + 2.0 * self.freedom;
         for index in before {
             let state = self.states[index];
             if state.cost == f64::INFINITY {
@@ -381,8 +379,7 @@ impl Lattice {
                 if !self.stand_still(&state.joints, &joints) {
                     continue;
                 }
-                let largest = self.axes.largest_turn(&state.joints, &joints);
-                let sure = same && (largest < SMALL || largest * PART < sweep) && largest < 3.0;
+                let sure = same && !meet;
                 if !sure
                     && !judge.passes(
                         placer,
@@ -403,7 +400,7 @@ impl Lattice {
                     branch: stand.branch,
                     rewind: None,
                 };
-                if sure && !meet {
+                if sure {
                     self.states.push(new);
                 } else {
                     self.keep(first, new);
@@ -490,8 +487,7 @@ impl Lattice {
         let mut best: Option<usize> = None;
         for index in layer.first..layer.first + layer.count {
             let cost = self.states[index].cost;
-            if cost < f64::INFINITY
-                && best.is_none_or(|best| cheaper(cost, self.states[best].cost))
+            if cost < f64::INFINITY && best.is_none_or(|best| cheaper(cost, self.states[best].cost))
             {
                 best = Some(index);
             }

@@ -1,8 +1,8 @@
 //! Where the path cannot go on: another index position off the part, a rewind, or a fault that says what was tried.
 
+use super::Route;
 use super::lattice::{Kind, State, pose};
 use super::stand::Found;
-use super::Route;
 use crate::accuracy::Refused;
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::{Joints, Unreachable};
@@ -38,7 +38,9 @@ impl Route<'_> {
         let found = match pushed {
             Ok(found) => found,
             Err(unreachable) => {
-                return Err(refusal::refused(self.machine, &Refused::Unreachable(unreachable)).boxed());
+                return Err(
+                    refusal::refused(self.machine, &Refused::Unreachable(unreachable)).boxed(),
+                );
             }
         };
         if kind != Kind::Cut {
@@ -69,7 +71,15 @@ impl Route<'_> {
             &mut self.judge,
         );
         match pushed {
-            Ok(_) if self.lattice.layers.last().is_some_and(|layer| layer.count > 0) => true,
+            Ok(_)
+                if self
+                    .lattice
+                    .layers
+                    .last()
+                    .is_some_and(|layer| layer.count > 0) =>
+            {
+                true
+            }
             Ok(_) => {
                 self.lattice.pop();
                 false
@@ -177,7 +187,10 @@ impl Route<'_> {
         };
         let reaches = |joints: &Joints| placer.settled(pose(&back), 1.0, joints).is_ok();
         let mut stands = Vec::new();
-        let states: Vec<State> = self.lattice.states_of(self.lattice.layers.len() - 1).to_vec();
+        let states: Vec<State> = self
+            .lattice
+            .states_of(self.lattice.layers.len() - 1)
+            .to_vec();
         let mut added = Vec::new();
         for (place, state) in states.iter().enumerate() {
             if state.cost == f64::INFINITY || !reaches(&state.joints) {

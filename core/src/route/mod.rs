@@ -16,14 +16,14 @@ mod stand;
 
 use post_plugin::Format;
 
-use crate::accuracy::{Linearise, Move, Placer, Silent, Tolerances};
+use crate::accuracy::{Linearise, Move, Placer, Tolerances};
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::{Joints, Pose};
 use crate::machine::{Machine, Tcp};
 use crate::program::{Motion, Pace};
 
-use lattice::{Judge, Lattice};
 pub(crate) use lattice::pose;
+use lattice::{Judge, Lattice};
 pub(crate) use lost::retracted;
 
 /// A point of the path with the axis values that were chosen for it.
@@ -90,7 +90,7 @@ impl Judge for Trial<'_> {
         };
         let loose = motion.pace == Pace::Rapid;
         let planned = planned(self.machine, placer, motion, loose, &from, &to);
-        planned.whole().is_some() || self.linearise.split(&planned, &mut Silent).is_ok()
+        planned.whole().is_some() || self.linearise.comes_through(&planned)
     }
 }
 

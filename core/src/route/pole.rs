@@ -139,7 +139,10 @@ mod tests {
 
     #[test]
     fn it_holds_where_nothing_is_asked() {
-        assert_eq!(taut(Some(2.0), &[wide(1.0), gate(1.0, -3.0, 3.0)]), [2.0, 2.0]);
+        assert_eq!(
+            taut(Some(2.0), &[wide(1.0), gate(1.0, -3.0, 3.0)]),
+            [2.0, 2.0]
+        );
     }
 
     #[test]
@@ -154,7 +157,11 @@ mod tests {
 
     #[test]
     fn it_kinks_at_the_gates_that_hold_it() {
-        let gates = [gate(1.0, 2.0, 9.0), gate(1.0, -9.0, 1.0), gate(2.0, 1.0, 1.0)];
+        let gates = [
+            gate(1.0, 2.0, 9.0),
+            gate(1.0, -9.0, 1.0),
+            gate(2.0, 1.0, 1.0),
+        ];
         assert_eq!(taut(Some(0.0), &gates), [2.0, 1.0, 1.0]);
     }
 

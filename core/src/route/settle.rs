@@ -35,7 +35,7 @@ impl Route<'_> {
         };
         let waiting = layers.len() - usize::from(self.anchored);
         let look_ahead = self.machine.solution.look_ahead;
-        if layer.count == 1 && !self.eased(layer.from_pole) {
+        if layer.count == 1 && !self.eased(layer.latitude.0) {
             self.settle_all();
         } else if waiting >= look_ahead {
             let last = layers.len() - 1;
@@ -57,8 +57,8 @@ impl Route<'_> {
     }
 
     /// So close to the pole that its joint has room.
-    fn eased(&self, from_pole: f64) -> bool {
-        from_pole * WORTH < self.lattice.freedom || from_pole <= self.lattice.cone
+    fn eased(&self, sine: f64) -> bool {
+        sine * WORTH < self.lattice.freedom || sine <= self.lattice.cone
     }
 
     /// Settles the points up to `upto`, the best way to the newest point decides.
@@ -98,7 +98,7 @@ impl Route<'_> {
             return;
         };
         let roomy = |stop: &Stop| {
-            stop.state.rewind.is_none() && self.eased(lattice.layers[stop.layer].from_pole)
+            stop.state.rewind.is_none() && self.eased(lattice.layers[stop.layer].latitude.0)
         };
         let first = usize::from(self.anchored);
         let mut at = first;
@@ -148,7 +148,7 @@ impl Route<'_> {
         if stop.state.branch == HELD {
             return [least, most];
         }
-        let sine = lattice.layers[stop.layer].from_pole;
+        let sine = lattice.layers[stop.layer].latitude.0;
         let half = lattice.freedom / sine.max(1e-12);
         let value = stop.joints[pole];
         [(value - half).max(least), (value + half).min(most)]
@@ -198,10 +198,7 @@ impl Route<'_> {
     fn has_changed(&self, before: &Stop, stop: &Stop) -> bool {
         let (a, b) = (before.state.branch, stop.state.branch);
         (a != b && a != HELD && b != HELD)
-            || self
-                .lattice
-                .axes
-                .largest_turn(&before.joints, &stop.joints)
+            || self.lattice.axes.largest_turn(&before.joints, &stop.joints)
                 > std::f64::consts::PI + SAME
     }
 
@@ -252,9 +249,9 @@ impl Route<'_> {
 /// Time of a cut, minutes.
 fn minutes(lattice: &Lattice, layer: usize) -> f64 {
     let motion = &lattice.layers[layer].motion;
-    let way = layer
-        .checked_sub(1)
-        .map_or(0.0, |before| distance(&lattice.layers[before].motion, motion));
+    let way = layer.checked_sub(1).map_or(0.0, |before| {
+        distance(&lattice.layers[before].motion, motion)
+    });
     match motion.pace {
         Pace::PerMinute(feed) => way / feed,
         Pace::InverseTime(feed) => 1.0 / feed,

@@ -27,6 +27,9 @@ pub(crate) struct Axes {
     /// Joints that move off the part alone.
     pub indexed: Vec<usize>,
     axis_tolerance: f64,
+    /// See [`Solver::band`]; and the cosines of the two.
+    band: Option<[f64; 2]>,
+    cosines: Option<[f64; 2]>,
 }
 
 /// A rotary axis that is solved for.
@@ -41,10 +44,8 @@ struct Turning {
 /// What was found at a point beside the stands themselves.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Found {
-    /// See [`Branches::apart`]; infinite where there are no branches.
-    pub apart: f64,
-    /// See [`Branches::from_pole`].
-    pub from_pole: f64,
+    /// See [`Branches::latitude`].
+    pub latitude: (f64, f64),
     /// Solutions, inside travel or not.
     pub solutions: usize,
     /// Why the first solution that is no stand is none.
@@ -56,7 +57,7 @@ const SLACK: f64 = 2e-3;
 
 impl Axes {
     /// `grace` is how far a rotary value may pass its limit and still be printed as the limit, radians.
-    pub(crate) fn new(machine: &Machine, grace: impl Fn(usize) -> f64) -> Self {
+    pub(crate) fn new(machine: &Machine, solver: &Solver, grace: impl Fn(usize) -> f64) -> Self {
         let pointing = machine.pointing();
         let side = |joint: usize| {
             let require = &machine.solution.require;
@@ -103,7 +104,29 @@ impl Axes {
             linear,
             indexed,
             axis_tolerance: machine.accuracy.axis_tolerance,
+            band: solver.band(),
+            cosines: solver.band().map(|band| band.map(libm::cos)),
         }
+    }
+
+    /// How far the tool axis is from where the branches meet, radians; infinite where they never do.
+    pub(crate) fn margin(&self, (sine, cosine): (f64, f64)) -> f64 {
+        let Some([least, most]) = self.band else {
+            return f64::INFINITY;
+        };
+        let latitude = libm::atan2(sine, cosine);
+        (latitude - least).min(most - latitude).max(0.0)
+    }
+
+    /// Is the tool axis certainly farther than `way` from where the branches meet? Cheap, and often enough.
+    #[inline]
+    pub(crate) fn far(&self, (sine, cosine): (f64, f64), way: f64) -> bool {
+        let Some([least, most]) = self.cosines else {
+            return true;
+        };
+        // The cosine changes by no more than the angle.
+        let _ = sine;
+        cosine < least - way && cosine > most + way
     }
 
     /// Adds the stands at `pose` to `stands`; `last` is kept by joints that are free there.
@@ -135,8 +158,7 @@ impl Axes {
         stands: &mut Vec<Stand>,
     ) -> Result<Found, Unreachable> {
         let mut found = Found {
-            apart: branches.apart(),
-            from_pole: branches.from_pole(),
+            latitude: branches.latitude(),
             solutions: branches.count(),
             over: None,
         };
@@ -182,8 +204,7 @@ impl Axes {
     ) -> Result<Found, Unreachable> {
         let solutions = solver.inverse(pose, last, self.axis_tolerance)?;
         let mut found = Found {
-            apart: f64::INFINITY,
-            from_pole: 1.0,
+            latitude: (1.0, 0.0),
             solutions: solutions.len(),
             over: None,
         };
@@ -304,12 +325,7 @@ impl Axes {
 
     /// Calls `take` with every set of turns that `stand` can have inside travel; axes without travel are put on
     /// the turn nearest to `last`, free ones where they were.
-    pub(crate) fn turned(
-        &self,
-        stand: &Stand,
-        last: &Joints,
-        take: &mut dyn FnMut(&Joints),
-    ) {
+    pub(crate) fn turned(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
         let mut joints = stand.joints;
         self.turn_from(0, stand, last, &mut joints, take);
     }

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use common::read_back::{Model, Point, angle, blocks, points, table};
+use common::read_back::{Model, Point, V, angle, blocks, points, table};
 use common::{check_numbers, post, read_json, root};
 
 /// A machine with its program, `tests/machines/<machine>.<ending>`, and the one that it must refuse,
@@ -359,5 +359,108 @@ fn every_machine_says_where_its_numbers_come_from() {
             "machines/README.md does not list {}",
             row.machine
         );
+    }
+}
+
+/// A table of poses that LinuxCNC computed, the machine of the library that it must be, parameters, and the
+/// tool's length.
+type Poses = (
+    &'static str,
+    &'static str,
+    &'static [(&'static str, f64)],
+    f64,
+);
+
+const LINUXCNC: &[Poses] = &[
+    (
+        "ik_xyzac_plain",
+        "xyzac-trt",
+        &[("y_offset", 0.0), ("z_offset", 0.0)],
+        0.0,
+    ),
+    (
+        "ik_xyzac_offsets",
+        "xyzac-trt",
+        &[("x_rot", 3.0), ("y_rot", -4.0), ("z_rot", 5.0)],
+        75.0,
+    ),
+    (
+        "ik_xyzbc_plain",
+        "xyzbc-trt",
+        &[("x_offset", 0.0), ("z_offset", 0.0)],
+        0.0,
+    ),
+    ("ik_5axiskins_headhead", "linuxcnc-5axis", &[], 0.0),
+];
+
+/// The machines that claim the law of a LinuxCNC module stand where it says.
+#[test]
+fn the_machines_of_linuxcnc_are_its_own() {
+    let data = root().join("../shared/data/kinematics");
+    if !data.is_dir() {
+        assert!(std::env::var_os("CI").is_none());
+        eprintln!("skipped: {} is not there", data.display());
+        return;
+    }
+    for (file, machine, parameters, length) in LINUXCNC {
+        let mut table = table(machine);
+        for (name, value) in *parameters {
+            table["parameters"][*name] = toml::Value::Float(*value);
+        }
+        let model = Model::from_table(table, None);
+        let text = fs::read_to_string(data.join(format!("{file}.csv"))).unwrap();
+        let order = if machine.starts_with("xyzac") {
+            "XYZAC"
+        } else {
+            "XYZBC"
+        };
+        let mut count = 0;
+        for line in text.lines() {
+            let numbers: Vec<f64> = line.split(',').filter_map(|n| n.parse().ok()).collect();
+            if numbers.len() != 18 {
+                continue;
+            }
+            let places = model
+                .axes
+                .iter()
+                .map(|axis| order.find(&axis.name).unwrap());
+            let values: Vec<f64> = places.map(|place| numbers[9 + place]).collect();
+            // The module's pose has the tool's length in its Z.
+            let tip = V::new(numbers[0], numbers[1], numbers[2] - length);
+            let off = (model.reach(&values, *length).tip - tip).norm();
+            assert!(off < 1e-6, "{file}: {line}: off by {off}");
+            count += 1;
+        }
+        assert_eq!(count, 500, "{file}");
+    }
+}
+
+/// The maker's module says where the axes stand: A and B count against ISO 841 and cross.
+#[test]
+fn the_pocket_nc_is_its_own() {
+    let model = Model::new("pocketnc", None);
+    let place = |name| {
+        model
+            .axes
+            .iter()
+            .position(|axis| axis.name == name)
+            .unwrap()
+    };
+    for (a, b, x, y, z) in [
+        (30.0, -50.0, 10.0, -20.0, 5.0),
+        (120.0, 200.0, -30.0, 15.0, -40.0),
+    ] {
+        let mut values = vec![0.0; 5];
+        for (name, value) in [("A", a), ("B", b), ("X", x), ("Y", y), ("Z", z)] {
+            values[place(name)] = value;
+        }
+        // With a tool as long as the gauge line stands over the crossing, the tip is at (x, y, z) at zero.
+        let pose = model.reach(&values, 150.0);
+        let (sa, ca) = libm::sincos(f64::to_radians(a));
+        let (sb, cb) = libm::sincos(f64::to_radians(b));
+        let (across, along) = (y * sa - z * ca, y * ca + z * sa);
+        let tip = V::new(x * cb + across * sb, along, x * sb - across * cb);
+        assert!((pose.tip - tip).norm() < 1e-9, "{:?} {tip}", pose.tip);
+        assert!(angle(pose.axis, V::new(-sb * ca, sa, cb * ca)) < 1e-9);
     }
 }

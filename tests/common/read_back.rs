@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use nalgebra::{DMatrix, Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use post_grammar::parse_expression;
 use toml::{Table, Value};
 
@@ -118,7 +118,10 @@ impl Numbers<'_> {
 impl Model {
     /// A machine of the library, with `head` if it has more than one.
     pub fn new(machine: &str, head: Option<&str>) -> Self {
-        let mut table = table(machine);
+        Self::from_table(table(machine), head)
+    }
+
+    pub fn from_table(mut table: Table, head: Option<&str>) -> Self {
         let heads = table.remove("head");
         if let Some(head) = head {
             let Value::Table(overrides) = heads.unwrap()[head].clone() else {
@@ -210,50 +213,57 @@ impl Model {
         offset
     }
 
-    /// The tool as the words of a block place it, with a tool of `length` mm.
-    pub fn pose(&self, words: &[f64], length: f64) -> Pose {
-        let offset = self.work_offset(length);
+    /// The tool where the axes stand at `values`, as the control shows them, mm and degrees.
+    pub fn reach(&self, values: &[f64], length: f64) -> Pose {
         let mut motion = Isometry3::identity();
-        for ((axis, word), offset) in self.axes.iter().zip(words).zip(offset) {
+        for (axis, value) in self.axes.iter().zip(values) {
+            let value = value - axis.zero;
             if axis.rotary {
-                let angle = (word - axis.zero).to_radians();
-                let turn =
-                    UnitQuaternion::from_axis_angle(&Unit::new_unchecked(axis.direction), angle);
+                let direction = Unit::new_unchecked(axis.direction);
+                let turn = UnitQuaternion::from_axis_angle(&direction, value.to_radians());
                 let there = Translation3::from(axis.point);
                 motion *= there * turn * there.inverse();
-            } else if !self.control_keeps_tip {
-                motion *= Translation3::from(axis.direction * (word * self.unit + offset));
+            } else {
+                motion *= Translation3::from(axis.direction * value);
             }
         }
-        let tip = if self.control_keeps_tip {
-            let coordinate = |name: &str| {
-                let place = self.axes.iter().position(|axis| axis.name == name);
-                words[place.unwrap()] * self.unit
-            };
-            V::new(coordinate("X"), coordinate("Y"), coordinate("Z"))
-        } else {
-            motion * nalgebra::Point3::from(self.home(length)) - nalgebra::Point3::from(self.mount)
-        };
         Pose {
-            tip,
+            tip: motion * Point3::from(self.home(length)) - Point3::from(self.mount),
             axis: motion * self.tool_axis,
             edge: motion * self.edge,
         }
     }
 
+    /// Positions of the axes, as the control shows them, from the words of a block.
+    fn values(&self, words: &[f64], length: f64) -> Vec<f64> {
+        let offset = self.work_offset(length);
+        let value = |((axis, word), offset): ((&Axis, &f64), f64)| match axis.rotary {
+            true => *word,
+            false => word * self.unit + offset + axis.zero,
+        };
+        self.axes.iter().zip(words).zip(offset).map(value).collect()
+    }
+
+    /// The tool as the words of a block place it, with a tool of `length` mm.
+    pub fn pose(&self, words: &[f64], length: f64) -> Pose {
+        let mut pose = self.reach(&self.values(words, length), length);
+        if self.control_keeps_tip {
+            let coordinate = |name: &str| {
+                let place = self.axes.iter().position(|axis| axis.name == name);
+                words[place.unwrap()] * self.unit
+            };
+            pose.tip = V::new(coordinate("X"), coordinate("Y"), coordinate("Z"));
+        }
+        pose
+    }
+
     /// An axis that these words drive out of its travel. Where the control keeps the tip, or a quill shares the
     /// way, the words do not say where the linear axes stand.
     pub fn over_travel(&self, words: &[f64], length: f64) -> Option<String> {
-        let offset = self.work_offset(length);
         let linear = !self.control_keeps_tip && !self.axes.iter().any(|axis| axis.quill);
-        for ((axis, word), offset) in self.axes.iter().zip(words).zip(offset) {
-            let Some([least, most]) = axis.travel else {
+        for (axis, value) in self.axes.iter().zip(self.values(words, length)) {
+            let Some([least, most]) = axis.travel.filter(|_| axis.rotary || linear) else {
                 continue;
-            };
-            let value = match axis.rotary {
-                true => *word,
-                false if linear => word * self.unit + offset + axis.zero,
-                false => continue,
             };
             if value < least - 2e-3 || value > most + 2e-3 {
                 return Some(format!(

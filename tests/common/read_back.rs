@@ -348,11 +348,14 @@ pub struct Point {
     pub head: Option<String>,
 }
 
-/// The points of a CL file whose moves are GOTOs and drilling cycles; a hole is meant by its bottom.
+/// The points of a CL file whose moves are GOTOs, drilling cycles and index moves of B; a hole is meant by its
+/// bottom.
 pub fn points(text: &str) -> Vec<Point> {
     let mut unit = 1.0;
     let mut axis = V::z();
     let (mut rapid, mut depth, mut head) = (false, None, None);
+    // The frame that an index move of B turns the points into, seen from the part.
+    let mut turned = UnitQuaternion::identity();
     let mut points = Vec::new();
     for (index, line) in text.lines().enumerate() {
         let (word, rest) = line.split_once('/').unwrap_or((line, ""));
@@ -375,13 +378,17 @@ pub fn points(text: &str) -> Vec<Point> {
                 }
                 let tip = V::from_column_slice(&numbers[..3]) * unit;
                 points.push(Point {
-                    tip: tip - axis * depth.unwrap_or(0.0),
-                    axis,
+                    tip: turned * (tip - axis * depth.unwrap_or(0.0)),
+                    axis: turned * axis,
                     rapid,
                     line: index + 1,
                     head: head.clone(),
                 });
                 rapid = false;
+            }
+            "ROTABL" if items[0] == "BAXIS" => {
+                let angle = number(&items[1]).unwrap().to_radians();
+                turned = UnitQuaternion::from_axis_angle(&V::y_axis(), angle);
             }
             "CIRCLE" | "NURBS" | "ROTABL" | "GODLTA" => {
                 panic!("line {}: this reader does not know it", index + 1)

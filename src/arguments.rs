@@ -52,6 +52,8 @@ pub enum Command {
         #[arg(long, value_name = "FOLDER")]
         machines: Vec<PathBuf>,
     },
+    /// Prints the JSON Schema of machine files, by which an editor completes and checks them.
+    Schema,
 }
 
 #[derive(Debug, Args)]

@@ -118,3 +118,9 @@ pub fn print(named: &[PathBuf]) -> Result<(), Vec<Diagnostic>> {
     }
     Ok(())
 }
+
+/// Prints the JSON Schema of machine files.
+pub fn print_schema() {
+    // A reader that has seen enough closes the pipe.
+    let _ = writeln!(std::io::stdout().lock(), "{:#}", machine::schema());
+}

@@ -27,6 +27,10 @@ fn main() -> ExitCode {
     let done = match &arguments.command {
         Some(Command::Words { file, unknown_only }) => words::print(file, *unknown_only),
         Some(Command::Machines { machines }) => machines::print(machines),
+        Some(Command::Schema) => {
+            machines::print_schema();
+            Ok(())
+        }
         None => posting::run(&arguments.post),
     };
     match done {

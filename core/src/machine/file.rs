@@ -1,8 +1,12 @@
 //! What a machine file may say: its keys and their types. Meaning is settled in [`super::build`].
+//!
+//! The JSON Schema is made from these types, and their doc comments are what an editor shows.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
@@ -17,101 +21,202 @@ pub(crate) enum Number {
 /// A number or expression and where it stands.
 pub(crate) type Quantity = Spanned<Number>;
 
-/// The whole file, `[control.<dialect>]` and `[accuracy.<model>]` apart.
-#[derive(Debug, Deserialize)]
+/// A machine tool as `post` knows it. Positions are in mm in the machine frame with every axis at zero;
+/// directions are those of the tool as seen from the part (ISO 841). Any number may be an expression of the
+/// parameters, in quotes.
+// `[control.<dialect>]` and `[accuracy.<model>]` are taken out before.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MachineFile {
+    /// What the machine is called in programs and messages.
+    #[schemars(with = "String")]
     pub name: Spanned<String>,
+    /// Structural code of ISO 10791 from the workpiece w over the bed b to the tool t, such as
+    /// `[w C' A' b Y X Z (S) t]`; a prime marks an axis that carries the workpiece.
+    #[schemars(with = "String", extend("pattern" = r"^\s*\[.*\]\s*$"))]
     pub chain: Spanned<String>,
+    /// Named numbers for expressions; `--set NAME=VALUE` overrules them.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Number>")]
     pub parameters: BTreeMap<String, Quantity>,
+    /// Where the part sits.
     #[serde(default)]
     pub workpiece: WorkpieceFile,
+    /// The gauge point and the tool's directions.
     pub tool: ToolFile,
+    /// Tool lengths by tool number, mm from the gauge point to the tip.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Number>", extend("propertyNames" = { "pattern": "^[0-9]+$" }))]
     pub tools: BTreeMap<String, Quantity>,
+    /// The axes of the chain by their letters.
+    #[schemars(with = "BTreeMap<String, AxisFile>", extend("propertyNames" = { "pattern": "^[A-Z][0-9]*$" }))]
     pub axis: BTreeMap<String, Spanned<AxisFile>>,
+    /// The control and its language.
+    #[schemars(with = "ControlFile")]
     pub control: Spanned<ControlFile>,
+    /// What the program must keep.
     #[serde(default)]
     pub accuracy: AccuracyFile,
+    /// Which of several solutions is taken.
     #[serde(default)]
     pub solution: SolutionFile,
+    /// How the tool leaves the part when a cut cannot go on; without it such a cut is refused.
+    #[schemars(with = "Option<RewindFile>")]
     pub rewind: Option<Spanned<RewindFile>>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+/// Where the part sits.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct WorkpieceFile {
+    /// The part origin (the origin of the CL file) with all axes at zero, mm; [0, 0, 0] if not said, and
+    /// `--mount X,Y,Z` for one job.
+    #[schemars(with = "Option<[Number; 3]>")]
     pub mount: Option<[Quantity; 3]>,
 }
 
-#[derive(Debug, Deserialize)]
+/// The gauge point and the tool's directions.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ToolFile {
+    /// The gauge point (spindle nose, gauge line) with all axes at zero, mm.
+    #[schemars(with = "[Number; 3]")]
     pub gauge: [Quantity; 3],
+    /// From the tip to the holder with all axes at zero, a direction of any length; [0, 0, 1] if not said.
+    #[schemars(with = "Option<[Number; 3]>")]
     pub axis: Option<[Quantity; 3]>,
+    /// Where the leading edge of a knife or disc points with all axes at zero, across the tool axis, a
+    /// direction of any length; leave it out for a tool that turns.
+    #[schemars(with = "Option<[Number; 3]>")]
     pub edge: Option<[Quantity; 3]>,
 }
 
-#[derive(Debug, Deserialize)]
+/// One axis: its kind and line, how far it goes and how fast.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AxisFile {
+    /// A linear axis: the way the tool goes as seen from the part when the axis counts up, of any length.
+    #[schemars(with = "Option<[Number; 3]>")]
     pub linear: Option<[Quantity; 3]>,
+    /// A rotary axis: the direction about which the tool, as seen from the part, turns counter-clockwise when
+    /// the axis counts up, of any length.
+    #[schemars(with = "Option<[Number; 3]>")]
     pub rotary: Option<[Quantity; 3]>,
+    /// Any point on the line of a rotary axis, mm.
+    #[schemars(with = "Option<[Number; 3]>")]
     pub point: Option<[Quantity; 3]>,
+    /// Least and largest position, mm or degrees, as the control shows them.
+    #[schemars(with = "Option<[Number; 2]>")]
     pub travel: Option<Spanned<[Quantity; 2]>>,
+    /// A rotary axis that turns without end; instead of travel.
     #[serde(default)]
     pub cyclic: bool,
+    /// It counts the other way.
     #[serde(default)]
     pub reversed: bool,
+    /// What the control shows where the drawing has the axis at zero, mm or degrees; 0 if not said.
+    #[schemars(with = "Option<Number>")]
     pub zero: Option<Quantity>,
+    /// The one turn over which the control shows a cyclic axis, degrees: [0, 360] or [-180, 180].
+    #[schemars(with = "Option<[Number; 2]>")]
     pub range: Option<Spanned<[Quantity; 2]>>,
+    /// It moves off the part alone, and stands here until something moves it, mm or degrees.
+    #[schemars(with = "Option<Number>")]
     pub indexed: Option<Quantity>,
+    /// The only positions that an indexed axis can stand at, mm or degrees.
+    #[schemars(with = "Option<Vec<Number>>", extend("minItems" = 1))]
     pub positions: Option<Spanned<Vec<Quantity>>>,
+    /// An indexed axis stands at whole multiples of this alone, mm or degrees.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub step: Option<Quantity>,
+    /// The line of the program that clamps an indexed axis, such as M10.
+    #[schemars(with = "Option<String>")]
     pub clamp: Option<Spanned<String>>,
+    /// The line of the program that lets it go, such as M11.
+    #[schemars(with = "Option<String>")]
     pub unclamp: Option<Spanned<String>>,
+    /// A quill: it takes this share, 0 to 1, of the way of the axis it runs along.
+    #[schemars(with = "Option<Number>", extend("minimum" = 0, "maximum" = 1))]
     pub share: Option<Quantity>,
+    /// A quill: it moves only where the travel of the axis it runs along ends.
+    #[schemars(with = "Option<bool>")]
     pub reserve: Option<Spanned<bool>>,
+    /// Largest feed, mm/min or degrees a minute; no block asks for more.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_feed: Option<Quantity>,
+    /// Largest acceleration, mm/s² or degrees/s².
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_accel: Option<Quantity>,
+    /// Largest jerk, mm/s³ or degrees/s³.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_jerk: Option<Quantity>,
 }
 
-/// `[solution]`: which of several solutions is taken.
-#[derive(Debug, Default, Deserialize)]
+/// Which of several solutions is taken.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SolutionFile {
+    /// What is to be small over a pass: `time` (each axis' way over its `max_feed`), `travel` (root of the sum
+    /// of squares of the rotary ways), `largest-axis` (the largest rotary way), or the way of one axis,
+    /// `axis:C`. `time` if not said.
+    #[schemars(with = "Option<String>", extend("pattern" = "^(time|travel|largest-axis|axis:[A-Z][0-9]*)$"))]
     pub rule: Option<Spanned<String>>,
+    /// Sides of zero on which axes should stand if they can: `{ A = "negative" }`.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Side>")]
     pub prefer: BTreeMap<Spanned<String>, Side>,
+    /// Sides of zero that axes must not leave.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Side>")]
     pub require: BTreeMap<Spanned<String>, Side>,
+    /// Where axes stand before the first position, mm or degrees.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Number>")]
     pub start: BTreeMap<Spanned<String>, Quantity>,
+    /// Groups of axes of which one at most moves in a block: `[["A", "C"]]`.
     #[serde(default)]
+    #[schemars(with = "Vec<Vec<String>>")]
     pub exclusive: Vec<Vec<Spanned<String>>>,
+    /// Points that are looked at before the first of them is settled; 2000 if not said, 1 takes the nearest
+    /// solution each time.
+    #[schemars(with = "Option<u32>", extend("minimum" = 1, "maximum" = 100_000))]
     pub look_ahead: Option<Spanned<u32>>,
+    /// What is done close to a singular direction; blend if not said.
     #[serde(default)]
     pub pole: Pole,
+    /// Where the leading edge points; travel if not said.
     #[serde(default)]
     pub edge: EdgeSource,
+    /// Where the direction of travel turns by more, a tool with an edge is turned on the spot, degrees; 10 if
+    /// not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub corner: Option<Quantity>,
 }
 
-/// `[rewind]`: how the tool leaves the part when a cut cannot go on.
-#[derive(Debug, Deserialize)]
+/// How the tool leaves the part when a cut cannot go on: back along its axis, turn, and return.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RewindFile {
+    /// How far the tool is drawn back along its axis, mm; this or `plane`.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub distance: Option<Quantity>,
+    /// The tool is drawn back along its axis until its tip stands so high over the part origin, mm along Z of
+    /// the part; this or `distance`.
+    #[schemars(with = "Option<Number>")]
     pub plane: Option<Quantity>,
+    /// Feed of the way out, mm/min; rapid if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub retract_feed: Option<Quantity>,
+    /// Feed of the turn, degrees a minute; rapid if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub turn_feed: Option<Quantity>,
+    /// Feed of the way back, mm/min; that of the cut if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub plunge_feed: Option<Quantity>,
 }
 
 /// A side of zero.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// Zero and above.
@@ -121,7 +226,7 @@ pub enum Side {
 }
 
 /// What is done close to a singular direction.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Pole {
     /// The axis that turns the tool by nearly nothing is held, turned early or turned evenly, within
@@ -133,7 +238,7 @@ pub enum Pole {
 }
 
 /// Where a leading edge (knife, disc) points.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum EdgeSource {
     /// Along the direction of travel.
@@ -144,7 +249,7 @@ pub enum EdgeSource {
 }
 
 /// Who keeps the tip on its path.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Tcp {
     /// The control: linear words are the tip, rotary words the axes.
@@ -155,7 +260,7 @@ pub enum Tcp {
 }
 
 /// How a cutting feed is written.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum FeedMode {
     /// Inverse time where rotary axes move and the control does not keep the tip, if the dialect has it; else per minute.
@@ -168,7 +273,7 @@ pub enum FeedMode {
 }
 
 /// The length that a control's feed a minute is meant along when it does not keep the tip.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum FeedLength {
     /// The linear axes alone; the rotary ones, in degrees, where no linear axis moves.
@@ -181,7 +286,7 @@ pub enum FeedLength {
 }
 
 /// Which of the lengths that the CL file knows is the tool length.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToolLength {
     /// `--tool-length`, the `[tools]` table, `LOADTL/…,LENGTH`.
@@ -192,7 +297,7 @@ pub enum ToolLength {
 }
 
 /// What becomes of `INSERT text`.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Insert {
     /// A comment: SolidWorks CAM describes stock and tools with it, and `X85. Y38.` would be a move.
@@ -203,7 +308,7 @@ pub enum Insert {
 }
 
 /// Units of the NC program.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum OutputUnits {
     /// mm, mm/min.
@@ -213,25 +318,34 @@ pub enum OutputUnits {
     Inch,
 }
 
-#[derive(Debug, Deserialize)]
+/// The control and its language; `[control.<dialect>]` holds the dialect's own options.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ControlFile {
+    /// The plugin that writes the program, such as fanuc, heidenhain or linuxcnc.
+    #[schemars(with = "String")]
     pub dialect: Spanned<String>,
+    /// Who keeps the tip on its path while rotary axes turn; must be said if there are any.
     pub tcp: Option<Tcp>,
+    /// Units of the NC program; mm if not said.
     #[serde(default)]
     pub units: OutputUnits,
+    /// How a cutting feed is written; auto if not said.
     #[serde(default)]
     pub feed: FeedMode,
+    /// The length that the control divides by F when it does not keep the tip; linear if not said.
     #[serde(default)]
     pub feed_length: FeedLength,
+    /// Which of the lengths that the CL file knows is the tool length; assembly if not said.
     #[serde(default)]
     pub tool_length: ToolLength,
+    /// What becomes of `INSERT text`; comment if not said.
     #[serde(default)]
     pub insert: Insert,
 }
 
 /// Where points are put in.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Placement {
     /// In the middle of every piece that is over.
@@ -239,15 +353,27 @@ pub enum Placement {
     Bisect,
 }
 
-#[derive(Debug, Default, Deserialize)]
+/// What the program must keep; `[accuracy.<model>]` holds the error model's own options.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AccuracyFile {
+    /// The error model, a plugin; sampled if not said.
+    #[schemars(with = "Option<String>")]
     pub model: Option<Spanned<String>>,
+    /// Where points are put in; bisect if not said.
     #[serde(default)]
     pub placement: Placement,
+    /// Largest deviation of the tip in cuts, mm; 0.005 if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub tolerance: Option<Quantity>,
+    /// Largest deviation of the tool axis in cuts, degrees; 0.05 if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub axis_tolerance: Option<Quantity>,
+    /// Largest deviation of the tip in rapids, mm; 0.5 if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub rapid_tolerance: Option<Quantity>,
+    /// Drop CL points that the tolerance makes needless; not possible yet.
+    #[schemars(with = "Option<bool>")]
     pub reduce: Option<Spanned<bool>>,
 }
 
@@ -274,5 +400,19 @@ impl<'de> Deserialize<'de> for Number {
             }
         }
         deserializer.deserialize_any(NumberVisitor)
+    }
+}
+
+impl JsonSchema for Number {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Number".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": ["number", "string"] })
     }
 }

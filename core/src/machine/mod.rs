@@ -7,6 +7,7 @@ mod file;
 mod layers;
 mod numbers;
 mod options;
+mod schema;
 
 use std::f64::consts::TAU;
 
@@ -18,6 +19,7 @@ pub use file::{
     EdgeSource, FeedLength, FeedMode, Insert, OutputUnits, Placement, Pole, Side, Tcp, ToolLength,
 };
 pub use layers::Source;
+pub use schema::schema;
 
 use crate::diagnostic::Place;
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};

@@ -92,8 +92,24 @@ fn text(report: &Report, input: &str, target: &Path) -> String {
         };
         row(
             &format!("axis {}", axis.name),
-            format!("{:.3} to {:.3} {travel}", axis.min, axis.max),
+            format!(
+                "{:.3} to {:.3} {travel}, {:.1} in all",
+                axis.min, axis.max, axis.way
+            ),
         );
+    }
+    let mut choices = Vec::new();
+    for (count, what) in [
+        (report.branch_changes, "changes of solution off the part"),
+        (report.rewinds, "rewinds"),
+        (report.points_eased, "points eased close to a pole"),
+    ] {
+        if count > 0 {
+            choices.push(format!("{count} {what}"));
+        }
+    }
+    if !choices.is_empty() {
+        row("solutions", choices.join(", "));
     }
     row(
         "time",

@@ -67,31 +67,6 @@ const LIBRARY: &[Row] = &[
     row("xyzbc-trt", "ncl", 40.0, "over-travel"),
 ];
 
-/// Machines whose program is not made yet, and why. One that is made after all must be taken off the list: a
-/// test sees to it.
-const NOT_YET: &[(&str, &str)] = &[
-    (
-        "ac-trunnion",
-        "a cut over the pole needs a look ahead to begin on the right branch",
-    ),
-    ("bc-fork", "C ends in a cut: [rewind]"),
-    ("boring-mill", "reserve = true, index moves"),
-    ("head-change", "HEAD/name"),
-    ("hmc-b-pallet", "index moves that follow from the tool axis"),
-    ("mill-turn", "zero = 90"),
-    (
-        "nutating-head-50",
-        "C ends in a cut that needs a look ahead to begin on the right turn",
-    ),
-    ("quill-mill", "share = 0.3"),
-    ("ultrasonic-knife", "three free rotary axes with an edge"),
-    ("vertical-lathe", "no closed form"),
-    (
-        "xyzbc-trt",
-        "B ends in a cut that needs a look ahead to begin on the right branch",
-    ),
-];
-
 /// Words that are rounded move the tip by so much, mm.
 const ROUNDING: f64 = 0.003;
 
@@ -277,14 +252,10 @@ fn edge_faults(points: &[Point], poses: &[common::read_back::Pose]) -> Vec<Strin
     faults
 }
 
-fn is_made(row: &Row) -> bool {
-    !NOT_YET.iter().any(|(machine, _)| *machine == row.machine)
-}
-
 #[test]
 fn every_machine_makes_its_program() {
     let mut failed = Vec::new();
-    for row in LIBRARY.iter().filter(|row| is_made(row)) {
+    for row in LIBRARY.iter() {
         let faults = faults(row);
         if !faults.is_empty() {
             failed.push(format!("{}:\n{}", row.machine, faults.join("\n")));
@@ -294,21 +265,8 @@ fn every_machine_makes_its_program() {
 }
 
 #[test]
-fn what_is_not_made_yet_is_told() {
-    for (machine, why) in NOT_YET {
-        let row = LIBRARY.iter().find(|row| row.machine == *machine).unwrap();
-        let faults = faults(row);
-        eprintln!(
-            "{machine}: {why}: {}",
-            faults.first().map_or("", |fault| fault)
-        );
-        assert!(!faults.is_empty(), "{machine} is made: take it off NOT_YET");
-    }
-}
-
-#[test]
 fn every_machine_refuses_what_it_cannot_make() {
-    for row in LIBRARY.iter().filter(|row| is_made(row)) {
+    for row in LIBRARY.iter() {
         let file = format!("{}.refused.{}", row.machine, row.ending);
         let (run, summary) = make(row, &file);
         assert_eq!((run.code, run.out.as_str()), (1, ""), "{}", row.machine);

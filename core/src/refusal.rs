@@ -4,7 +4,7 @@ use crate::accuracy::{Refused, Stuck};
 use crate::diagnostic::{Diagnostic, Extreme};
 use crate::kinematics::choose::OverTravel;
 use crate::kinematics::{Joints, Unreachable};
-use crate::machine::Machine;
+use crate::machine::{Machine, Positions};
 use crate::program::Motion;
 
 /// Why a point has no axis values.
@@ -37,6 +37,19 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
             ),
         )
         .help("this machine is solved numerically, from the point before: a point between may help"),
+        Refused::OverTravel { over, .. } if no_position(machine, over) => {
+            let axis = &machine.axes[over.joint];
+            Diagnostic::error(
+                "out-of-reach",
+                format!(
+                    "{} would have to stand at {:.3}°, and the nearest of its positions is {:.3}°",
+                    axis.name,
+                    axis.reading(over.value),
+                    axis.reading(over.limit)
+                ),
+            )
+            .help("an index axis stands at its positions alone: another set-up of the part")
+        }
         Refused::OverTravel { over, tried } => {
             let side = u64::from(over.value > over.limit);
             let axis = &machine.axes[over.joint];
@@ -74,6 +87,19 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
         )
         .help("this is a fault of post: please report it with the machine file and this line"),
     }
+}
+
+/// An index axis that has no position there, inside its travel.
+fn no_position(machine: &Machine, over: OverTravel) -> bool {
+    let axis = &machine.axes[over.joint];
+    let inside = axis
+        .travel
+        .is_none_or(|[least, most]| (least..=most).contains(&over.value));
+    inside
+        && axis
+            .indexed
+            .as_ref()
+            .is_some_and(|indexed| indexed.positions != Positions::Any)
 }
 
 /// Why a cut cannot go on: what each solution asks of the axes, whether it is on the branch that the cut is

@@ -40,6 +40,18 @@ pub enum Statement {
         /// The tool axis, from the tip to the holder.
         axis: Option<Direction>,
     },
+    /// `GOTO/x,y,z,i,j,k,u,v,w`: move to a point with a tool axis and a second direction across it, where the
+    /// leading edge of a knife or disc points.
+    GotoEdge {
+        /// The point.
+        point: Point,
+        /// The tool axis, from the tip to the holder.
+        axis: Direction,
+        /// The leading edge.
+        edge: Direction,
+    },
+    /// `HEAD/name`: the head that the machine works with from here on.
+    Head(String),
     /// `GODLTA/dx,dy,dz` or `GODLTA/d`.
     Godlta(Delta),
     /// `FROM/`: where the tool stands at the start; no move.

@@ -112,7 +112,8 @@ impl Statement {
     /// The major word: of the spellings that mean the same (`UNIT` and `UNITS`, `LOAD/TOOL` and `LOADTL`) always one.
     pub fn word(&self) -> &str {
         match self {
-            Self::Goto { .. } => "GOTO",
+            Self::Goto { .. } | Self::GotoEdge { .. } => "GOTO",
+            Self::Head(_) => "HEAD",
             Self::Godlta(_) => "GODLTA",
             Self::From { .. } => "FROM",
             Self::Gohome(_) => "GOHOME",

@@ -57,6 +57,7 @@ fn reader(word: &str) -> Option<Reader> {
         "GOTO" => goto,
         "GODLTA" => godlta,
         "FROM" => from,
+        "HEAD" => head,
         "GOHOME" => gohome,
         "RAPID" => |items| items.nothing(Statement::Rapid),
         "FEDRAT" => fedrat,
@@ -229,8 +230,26 @@ fn word(item: &Item<'_>) -> String {
 }
 
 fn goto(items: &mut Items<'_, '_>) -> Read<Statement> {
-    let (point, axis) = items.point("GOTO/x,y,z or GOTO/x,y,z,i,j,k")?;
+    const FORM: &str =
+        "GOTO/x,y,z, GOTO/x,y,z,i,j,k or, with the direction of an edge, GOTO/x,y,z,i,j,k,u,v,w";
+    if items.line.items.len() == 9 {
+        let [x, y, z, i, j, k, u, v, w] = items.array(FORM)?;
+        return Ok(Statement::GotoEdge {
+            point: [x, y, z],
+            axis: [i, j, k],
+            edge: [u, v, w],
+        });
+    }
+    let (point, axis) = items.point(FORM)?;
     Ok(Statement::Goto { point, axis })
+}
+
+/// A name or a number; anything else is left to those who know it.
+fn head(items: &mut Items<'_, '_>) -> Read<Statement> {
+    match items.line.items.as_slice() {
+        [name] if !name.text.is_empty() => Ok(Statement::Head(name.text.to_owned())),
+        _ => items.other(),
+    }
 }
 
 fn from(items: &mut Items<'_, '_>) -> Read<Statement> {

@@ -106,7 +106,12 @@ impl Move<'_> {
     #[inline]
     pub fn whole(&self) -> Option<Bound> {
         // An upper bound on the sweep is enough here, and cheaper than the angle.
-        let sweep = chord_angle((self.from.target.axis - self.to.target.axis).norm());
+        let (from, to) = (&self.from.target, &self.to.target);
+        let sweep = chord_angle(
+            (from.axis - to.axis)
+                .norm()
+                .max((from.edge - to.edge).norm()),
+        );
         let chain = self.placer.solver().chain();
         let bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
         let bound = self.bound(bend);
@@ -121,7 +126,11 @@ impl Move<'_> {
     fn bend(&self) -> Bend {
         let (from, to) = (self.from, self.to);
         let chain = self.placer.solver().chain();
-        let sweep = angle(from.target.axis, to.target.axis);
+        let mut sweep = angle(from.target.axis, to.target.axis);
+        let edged = chain.edge().is_some();
+        if edged {
+            sweep = sweep.max(angle(from.target.edge, to.target.edge));
+        }
         let quick = certificate::quick(chain, &from.trace, &to.trace, sweep);
         let tight = certificate::tight(
             chain,
@@ -133,7 +142,12 @@ impl Move<'_> {
         );
         Bend {
             tip: quick.tip.min(tight.tip),
-            axis: quick.axis.min(tight.axis),
+            // The bound from norms holds for every direction of the tool, the other for its axis alone.
+            axis: if edged {
+                quick.axis
+            } else {
+                quick.axis.min(tight.axis)
+            },
         }
     }
 
@@ -313,7 +327,8 @@ fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
     let axis = (from.target.axis + to.target.axis)
         .try_normalize(1e-9)
         .unwrap_or(from.target.axis);
-    let edge = (from.target.edge + to.target.edge)
+    let edge = from.target.edge + to.target.edge;
+    let edge = (edge - axis * axis.dot(&edge))
         .try_normalize(1e-9)
         .unwrap_or(from.target.edge);
     let target = Pose { tip, axis, edge };
@@ -332,7 +347,7 @@ fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
                 off <= turn / 4.0 + placer.axis_rounding()
             })
     });
-    if straight {
+    if straight || !placer.solver().closed_form() {
         return exact;
     }
     // A pole joint is turned evenly, the others keep the tool axis as well as they can.
@@ -357,17 +372,29 @@ fn deviation(piece: &Move<'_>, t: f64) -> Deviation {
         pose.tip
     };
     let tip = reached - (from.target.tip * (1.0 - t) + to.target.tip * t);
-    let wanted = great_circle(from.target.axis, to.target.axis, t);
-    let cross = wanted.cross(&pose.axis);
-    let sine = cross.norm();
-    let turn = if sine > 0.0 {
-        cross * (libm::atan2(sine, wanted.dot(&pose.axis)).to_degrees() / sine)
-    } else {
-        Vector3::zeros()
-    };
+    let mut turn = turned(great_circle(from.target.axis, to.target.axis, t), pose.axis);
+    if piece.placer.solver().chain().edge().is_some() {
+        let edge = great_circle(from.target.edge, to.target.edge, t);
+        let edge = turned(edge, pose.edge);
+        // Whichever of axis and edge is farther off.
+        if edge.norm() > turn.norm() {
+            turn = edge;
+        }
+    }
     Deviation {
         tip: tip.into(),
         axis: turn.into(),
+    }
+}
+
+/// The turn from `wanted` to `reached`, degrees, along its axis.
+fn turned(wanted: Vector3<f64>, reached: Vector3<f64>) -> Vector3<f64> {
+    let cross = wanted.cross(&reached);
+    let sine = cross.norm();
+    if sine > 0.0 {
+        cross * (libm::atan2(sine, wanted.dot(&reached)).to_degrees() / sine)
+    } else {
+        Vector3::zeros()
     }
 }
 

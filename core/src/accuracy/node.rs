@@ -120,7 +120,12 @@ impl Placer {
                 cyclic,
             },
             linear: limits(false),
-            tip_rounding: words.rounding() + 1e-6,
+            tip_rounding: if solver.closed_form() {
+                words.rounding() + 1e-6
+            } else {
+                // What rounded angles do to the tip is not made up for: it stays with the tolerance.
+                f64::INFINITY
+            },
             axis_rounding: words.axis_rounding() + 1e-8,
             solver,
             words,
@@ -190,6 +195,13 @@ impl Placer {
                 let turns = libm::rint((halfway[joint] - joints[joint]) / TAU);
                 joints[joint] += TAU * turns;
             }
+        }
+        let inside = self.turning.limits.iter().all(|limit| {
+            let [least, most] = limit.travel;
+            (least..=most).contains(&joints[limit.joint])
+        });
+        if !inside {
+            return None;
         }
         self.settled(target, t, &joints).ok()
     }

@@ -237,9 +237,22 @@ impl Solver {
     ) -> Result<(), Unreachable> {
         match &self.form {
             Form::Closed { linear, .. } => linear.place(&self.chain, tip, joints, turns),
-            // The search has put them.
-            Form::Numeric { .. } => Ok(()),
+            Form::Numeric { free } => {
+                // There are too few of them to reach the tip alone; they make up for what they can.
+                let linear: Vec<usize> = free
+                    .iter()
+                    .copied()
+                    .filter(|joint| !self.chain.joints()[*joint].rotary)
+                    .collect();
+                numeric::approach(&self.chain, &linear, tip, joints);
+                Ok(())
+            }
         }
+    }
+
+    /// Values of the joints that stand still, mm or radians.
+    pub fn held(&self) -> &Joints {
+        &self.held
     }
 
     /// For a chain without a closed form: the solution next to `from`, verified.
@@ -255,7 +268,11 @@ impl Solver {
         let Form::Numeric { free } = &self.form else {
             return Err(Unreachable::Linear);
         };
-        let (joints, miss) = numeric::solve(&self.chain, free, pose, from);
+        let mut start = self.held;
+        for joint in free {
+            start[*joint] = from[*joint];
+        }
+        let (joints, miss) = numeric::solve(&self.chain, free, pose, &start);
         if self.verified(&joints, pose, tolerance.max(VERIFIED)) {
             Ok(joints)
         } else {

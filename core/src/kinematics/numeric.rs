@@ -64,6 +64,39 @@ pub(super) fn solve(chain: &Chain, free: &[usize], pose: &Pose, start: &Joints) 
     (joints, residual.norm())
 }
 
+/// Puts the linear joints of `linear` (fewer than three) where the tip comes closest to `tip`: least squares,
+/// exact in one step since the tip is linear in them.
+pub(super) fn approach(chain: &Chain, linear: &[usize], tip: Vector3<f64>, joints: &mut Joints) {
+    let from = chain.forward(joints).tip;
+    let mut columns = [Vector3::zeros(); MAX_AXES];
+    for (column, joint) in columns.iter_mut().zip(linear) {
+        let mut moved = *joints;
+        moved[*joint] += 1.0;
+        *column = chain.forward(&moved).tip - from;
+    }
+    let columns = &columns[..linear.len()];
+    let way = tip - from;
+    let values = match *columns {
+        [a] => vec![a.dot(&way) / a.norm_squared()],
+        [a, b] => {
+            let (aa, ab, bb) = (a.dot(&a), a.dot(&b), b.dot(&b));
+            let determinant = aa * bb - ab * ab;
+            if determinant < 1e-9 {
+                return;
+            }
+            let (aw, bw) = (a.dot(&way), b.dot(&way));
+            vec![
+                (bb * aw - ab * bw) / determinant,
+                (aa * bw - ab * aw) / determinant,
+            ]
+        }
+        _ => return,
+    };
+    for (joint, value) in linear.iter().zip(values) {
+        joints[*joint] += value;
+    }
+}
+
 /// Residual at `joints`, and how it changes with each free joint.
 fn linearised(
     chain: &Chain,

@@ -103,6 +103,8 @@ struct Third {
     joint: usize,
     /// Inverse of the frame of the tool at zero: axis, edge and their product as columns.
     frame: Matrix3<f64>,
+    /// The edge at zero.
+    edge: Vector3<f64>,
     /// k3, and of tool axis and edge the one farther from it.
     k: Vector3<f64>,
     p: Vector3<f64>,
@@ -218,6 +220,7 @@ impl Orientation {
                 two.third = Some(Third {
                     joint: third,
                     frame: frame(axis, edge).transpose(),
+                    edge,
                     k: k3,
                     p: if k3.dot(&axis).abs() < k3.dot(&edge).abs() {
                         axis
@@ -359,7 +362,13 @@ impl Two {
         match &self.third {
             None => (before(pose.axis), Vector3::zeros()),
             Some(third) => {
-                let turn = frame(pose.axis, pose.edge) * third.frame;
+                let edge = if pose.edge.norm_squared() > 0.5 {
+                    pose.edge
+                } else {
+                    // Nothing said: as it is with all axes at zero, as nearly as the axis allows.
+                    square(third.edge, pose.axis)
+                };
+                let turn = frame(pose.axis, edge) * third.frame;
                 (before(turn * third.k), before(turn * third.p))
             }
         }
@@ -466,6 +475,15 @@ impl Two {
             ((latitude - most).max(0.0), most)
         }
     }
+}
+
+/// The direction across `axis` that is nearest to `edge`.
+fn square(edge: Vector3<f64>, axis: Vector3<f64>) -> Vector3<f64> {
+    let across = |v: Vector3<f64>| (v - axis * axis.dot(&v)).try_normalize(1e-6);
+    across(edge)
+        .or_else(|| across(Vector3::x()))
+        .or_else(|| across(Vector3::y()))
+        .unwrap_or(edge)
 }
 
 /// Axis, edge and their product as columns.

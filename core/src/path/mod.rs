@@ -14,7 +14,7 @@ use crate::diagnostic::{Diagnostic, Place};
 use crate::feed::Feeds;
 use crate::kinematics::Pose;
 use crate::machine::{Machine, Tcp, ToolLength};
-use crate::program::{Motion, Step, Tool};
+use crate::program::{Edges, Motion, Step, Tool};
 use crate::route::{Chosen, Route};
 
 pub use tally::Tally;
@@ -43,6 +43,8 @@ pub struct Path<'a> {
     model: &'a mut dyn ModelSession,
     output: &'a mut dyn Output,
     format: Format,
+    /// For a tool with a leading edge.
+    edges: Option<Edges>,
     route: Route<'a>,
     /// Moves that the route has taken, and of them those that it has decided.
     taken: u64,
@@ -122,6 +124,7 @@ impl<'a> Path<'a> {
             model,
             output,
             format,
+            edges: Edges::new(machine),
             route,
             taken: 0,
             decided: 0,
@@ -199,6 +202,7 @@ impl<'a> Path<'a> {
 
     /// The last events.
     pub fn end(&mut self, line: u64) {
+        self.with_edge(|edges, emit| edges.finish(emit));
         self.settle();
         self.release(line);
         self.push(line, Event::End);
@@ -208,10 +212,28 @@ impl<'a> Path<'a> {
     /// Takes a step that comes from `line`.
     #[inline]
     pub fn step(&mut self, line: u64, step: Step) {
+        if self.edges.is_some() {
+            self.with_edge(|edges, emit| edges.step(line, step, emit));
+        } else {
+            self.enter(line, step);
+        }
+    }
+
+    #[inline]
+    fn enter(&mut self, line: u64, step: Step) {
         match step {
             Step::Move(motion) => self.take(line, &motion),
             other => self.arrange(line, other),
         }
+    }
+
+    /// Lets the edges' stage work; what it settles comes in.
+    fn with_edge(&mut self, work: impl FnOnce(&mut Edges, &mut dyn FnMut(u64, Step))) {
+        let Some(mut edges) = self.edges.take() else {
+            return;
+        };
+        work(&mut edges, &mut |line, step| self.enter(line, step));
+        self.edges = Some(edges);
     }
 
     #[inline]
@@ -228,11 +250,7 @@ impl<'a> Path<'a> {
 
     /// A command is carried out between the moves that it stands between.
     fn arrange(&mut self, line: u64, step: Step) {
-        let leaves = matches!(
-            step,
-            Step::Tool(_) | Step::Home | Step::From { .. } | Step::Index { .. } | Step::Head(_)
-        );
-        if leaves || self.waiting.len() >= MOST_WAITING {
+        if step.leaves() || self.waiting.len() >= MOST_WAITING {
             self.settle();
         }
         if self.decided == self.taken {

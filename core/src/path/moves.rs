@@ -80,6 +80,14 @@ impl Path<'_> {
         }
         match self.last.take() {
             None => self.first(leg, &node),
+            Some(last) if self.indexes(&last, &node) => {
+                // An index axis turns with the tool at the reference, not somewhere over the part.
+                self.push(leg.line, Event::Release);
+                self.push(leg.line, Event::Home);
+                self.tally.go(&last.trace.joints, &node.trace.joints);
+                self.first(leg, &node);
+                self.spare = Some(last);
+            }
             Some(last) => self.spare = Some(self.go(leg, last, &mut node)),
         }
         self.on_part = cuts;
@@ -148,6 +156,13 @@ impl Path<'_> {
             self.cut(leg, &last, node);
         }
         last
+    }
+
+    /// An indexed axis stands differently.
+    fn indexes(&self, from: &Node, to: &Node) -> bool {
+        let axes = self.machine.axes.iter().zip(&from.trace.joints);
+        axes.zip(&to.trace.joints)
+            .any(|((axis, from), to)| axis.indexed.is_some() && (from - to).abs() > TURN)
     }
 
     /// The sum of all rotary moves between two nodes, radians.

@@ -50,11 +50,12 @@ impl Frame {
         Ok(())
     }
 
-    /// Takes an index move (`ROTABL`): the points that follow are written in the turned part's frame.
+    /// Takes an index move (`ROTABL`): the points that follow are written in the turned part's frame. Gives the
+    /// axis (`A`, `B`, `C`) and where it stands, radians.
     ///
     /// # Errors
     /// If no axis is named.
-    pub(crate) fn rotate(&mut self, rotate: &Rotate) -> Result<(), &'static str> {
+    pub(crate) fn rotate(&mut self, rotate: &Rotate) -> Result<(char, f64), &'static str> {
         let place = rotate
             .axis
             .and_then(|axis| "ABC".find(axis))
@@ -86,12 +87,17 @@ impl Frame {
         let [a, b, c] = self.index;
         let rotation = turn(Vector3::x(), a) * turn(Vector3::y(), b) * turn(Vector3::z(), c);
         self.turned = (self.index != [0.0; 3]).then(|| rotation.into_inner());
-        Ok(())
+        Ok((['A', 'B', 'C'][place], self.index[place]))
     }
 
     /// The turned part's frame seen from the part, if an index axis is turned.
     pub(crate) fn turned(&self) -> Option<&Matrix3<f64>> {
         self.turned.as_ref()
+    }
+
+    /// A direction, taken to the frame of the part.
+    pub(crate) fn direction_to_part(&self, direction: Vector3<f64>) -> Vector3<f64> {
+        self.to_part(Vector3::zeros(), direction).1
     }
 
     /// A point (mm) and an axis, taken to the frame of the part.

@@ -2,6 +2,7 @@
 
 mod arc;
 mod cycle;
+mod edge;
 mod frame;
 mod interpret;
 mod met;
@@ -9,6 +10,7 @@ mod motion;
 mod spline;
 mod words;
 
+pub(crate) use edge::Edges;
 pub(crate) use interpret::record_place;
 pub use interpret::{Interpreter, Reading};
 pub use met::Unknown;

@@ -48,6 +48,16 @@ pub enum Step {
     Home,
 }
 
+impl Step {
+    /// The tool leaves the part: what comes behind begins anew.
+    pub(crate) fn leaves(&self) -> bool {
+        matches!(
+            self,
+            Self::Tool(_) | Self::Home | Self::From { .. } | Self::Index { .. } | Self::Head(_)
+        )
+    }
+}
+
 /// A move along a straight line of the part frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {

@@ -35,6 +35,7 @@ const USED: &[&str] = &[
     "GODLTA",
     "GOHOME",
     "GOTO",
+    "HEAD",
     "KNOT",
     "LOAD",
     "LOADTL",
@@ -92,14 +93,14 @@ const IGNORED: &[&str] = &[
 
 /// Words that change where the tool goes.
 const REFUSED: &[&str] = &[
-    "CALL", "CLEARP", "CLRSRF", "COPY", "COUPLE", "GOFWD", "HEAD", "INDEX", "INDIRV", "MACRO",
-    "MODE", "ORIGIN", "PIVOTZ", "PLUNGE", "POSITN", "POSTN", "PSIS", "READ", "RETRCT", "ROTHED",
-    "TERMAC", "THREAD", "TLON", "TRACUT", "TRANS",
+    "CALL", "CLEARP", "CLRSRF", "COPY", "COUPLE", "GOFWD", "INDEX", "INDIRV", "MACRO", "MODE",
+    "ORIGIN", "PIVOTZ", "PLUNGE", "POSITN", "POSTN", "PSIS", "READ", "RETRCT", "ROTHED", "TERMAC",
+    "THREAD", "TLON", "TRACUT", "TRANS",
 ];
 
 /// Words that, in a form that is not known, would leave the tool in the wrong place.
-const PLACES_THE_TOOL: [&str; 9] = [
-    "CIRCLE", "CUTCOM", "CYCLE", "LOAD", "LOADTL", "MSYS", "ROTABL", "ROTATE", "TLAXIS",
+const PLACES_THE_TOOL: [&str; 10] = [
+    "CIRCLE", "CUTCOM", "CYCLE", "HEAD", "LOAD", "LOADTL", "MSYS", "ROTABL", "ROTATE", "TLAXIS",
 ];
 
 /// What becomes of a record.

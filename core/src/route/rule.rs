@@ -21,14 +21,18 @@ pub(crate) struct Measure {
     /// Minutes for one mm or radian at the largest feed.
     slowness: Joints,
     prefer: Vec<(usize, Side)>,
+    /// What the control shows at zero of each axis.
+    zero: Joints,
 }
 
 impl Measure {
     pub(crate) fn new(machine: &Machine) -> Self {
         let mut slowness = [0.0; MAX_AXES];
         let mut rotary = [false; MAX_AXES];
+        let mut zero = [0.0; MAX_AXES];
         for (place, axis) in machine.axes.iter().enumerate() {
             rotary[place] = axis.joint.rotary;
+            zero[place] = axis.zero;
             slowness[place] = if axis.max_feed.is_finite() {
                 1.0 / axis.max_feed
             } else {
@@ -41,6 +45,7 @@ impl Measure {
             rotary,
             slowness,
             prefer: machine.solution.prefer.clone(),
+            zero,
         }
     }
 
@@ -92,7 +97,7 @@ impl Measure {
     pub(crate) fn standing(&self, joints: &Joints) -> f64 {
         let mut cost = 0.0;
         for (place, side) in &self.prefer {
-            if wrong_side(joints[*place], *side) {
+            if wrong_side(joints[*place] + self.zero[*place], *side) {
                 cost += AGAINST;
             }
         }
@@ -100,7 +105,7 @@ impl Measure {
     }
 }
 
-/// The value lies on the other side of zero.
+/// The value that the control shows lies on the other side of zero.
 pub(crate) fn wrong_side(value: f64, side: Side) -> bool {
     match side {
         Side::Positive => value < -NEAR_ZERO,

@@ -38,7 +38,17 @@ struct Turning {
     joint: usize,
     travel: Option<[f64; 2]>,
     positions: Option<Positions>,
+    /// What the control shows must lie on this side, and what it shows at zero.
     require: Option<Side>,
+    zero: f64,
+}
+
+impl Turning {
+    #[inline]
+    fn forbids(&self, value: f64) -> bool {
+        self.require
+            .is_some_and(|side| wrong_side(value + self.zero, side))
+    }
 }
 
 /// What was found at a point beside the stands themselves.
@@ -81,6 +91,7 @@ impl Axes {
                         .map(|[least, most]| [least - grace(joint), most + grace(joint)]),
                     positions: positions.filter(|positions| *positions != Positions::Any),
                     require: side(joint),
+                    zero: axis.zero,
                 }
             })
             .collect();
@@ -310,13 +321,11 @@ impl Axes {
                     limit: if value < least { least } else { most },
                 });
             }
-            if let Some(side) = axis.require
-                && wrong_side(value, side)
-            {
+            if axis.forbids(value) {
                 return Err(OverTravel {
                     joint,
                     value,
-                    limit: 0.0,
+                    limit: -axis.zero,
                 });
             }
         }
@@ -345,7 +354,7 @@ impl Axes {
         let joint = axis.joint;
         let base = stand.joints[joint];
         let mut go = |value: f64| {
-            if axis.require.is_some_and(|side| wrong_side(value, side)) {
+            if axis.forbids(value) {
                 return;
             }
             joints[joint] = value;
@@ -373,7 +382,10 @@ impl Axes {
     /// With the pole joint where `last` has it: the stand that misses the wanted axis least.
     pub(crate) fn held(&self, solver: &Solver, pose: &Pose, last: &Joints) -> Option<Stand> {
         let pole = solver.pole_joint()?;
-        let mut joints = *last;
+        let mut joints = *solver.held();
+        for axis in &self.turning {
+            joints[axis.joint] = last[axis.joint];
+        }
         solver.follow(pose, &mut joints);
         for axis in &self.turning {
             if axis.joint != pole {
@@ -394,7 +406,7 @@ impl Axes {
             let value = joints[axis.joint];
             axis.travel
                 .is_none_or(|[least, most]| (least..=most).contains(&value))
-                && !axis.require.is_some_and(|side| wrong_side(value, side))
+                && !axis.forbids(value)
         };
         (self.turning.iter().all(inside) && self.beyond(&joints).is_none()).then_some(stand)
     }

@@ -50,6 +50,8 @@ pub struct Interpreter {
     feed_units: Option<Units>,
     /// Modal tool axis, frame of the file.
     axis: Vector3<f64>,
+    /// Modal leading edge, frame of the file; zero until the file gives one.
+    edge: Vector3<f64>,
     /// `TLAXIS`, part frame.
     told_axis: Option<Vector3<f64>>,
     /// An index move came since the last move: see whether it agrees with `TLAXIS`.
@@ -117,6 +119,7 @@ impl Interpreter {
             scale,
             feed_units: None,
             axis: Vector3::z(),
+            edge: Vector3::zeros(),
             told_axis: None,
             check_axis: false,
             tip: None,
@@ -230,6 +233,24 @@ impl Interpreter {
         }
         match &record.statement {
             Statement::Goto { point, axis } => self.goto(record, *point, *axis, emit),
+            Statement::GotoEdge { point, axis, edge } => {
+                match Vector3::from(*edge).try_normalize(1e-9) {
+                    Some(edge) => {
+                        self.edge = edge;
+                        self.goto(record, *point, Some(*axis), emit);
+                    }
+                    None => self.fault(
+                        record,
+                        "axis",
+                        "the direction of the leading edge is null".to_owned(),
+                        "the last three of nine numbers say where the edge points",
+                    ),
+                }
+            }
+            Statement::Head(name) => {
+                self.tip = None;
+                emit(Step::Head(name.clone()));
+            }
             Statement::Godlta(delta) => {
                 let Some(tip) = self.tip else {
                     self.fault(
@@ -370,7 +391,8 @@ impl Interpreter {
                 self.cutcom(*cutcom, emit);
             }
             Statement::Rotate(rotate) => match self.frame.rotate(rotate) {
-                Ok(()) => {
+                Ok((axis, angle)) => {
+                    emit(Step::Index { axis, angle });
                     self.axis = match (self.frame.turned(), self.told_axis) {
                         (None, Some(axis)) => axis,
                         _ => Vector3::z(),
@@ -586,10 +608,15 @@ impl Interpreter {
         self.measured = true;
         self.cut_any = true;
         let (tip, axis) = self.frame.to_part(tip, self.axis);
+        let edge = if self.edge == Vector3::zeros() {
+            self.edge
+        } else {
+            self.frame.direction_to_part(self.edge)
+        };
         emit(Step::Move(Motion {
             tip,
             axis,
-            edge: Vector3::zeros(),
+            edge,
             pace,
             chord,
         }));

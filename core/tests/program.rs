@@ -47,8 +47,14 @@ impl Run {
 
     /// `R 1,2,3`, `F100 1,2,3`, `V4 1,2,3` (inverse time), with `@i,j,k` where the axis is not Z; `T5/7` is tool and
     /// register, `G41 7` compensation and register, `# text` a comment.
+    /// Index moves apart: the points that follow are turned.
     fn steps(&self) -> String {
-        let steps: Vec<String> = self.steps.iter().map(step).collect();
+        let steps: Vec<String> = self
+            .steps
+            .iter()
+            .filter(|step| !matches!(step, Step::Index { .. }))
+            .map(step)
+            .collect();
         steps.join("; ")
     }
 
@@ -773,7 +779,7 @@ fn words_that_move_the_tool_are_refused() {
         "INDEX/1",
         "MACRO/1",
         "CALL/M1",
-        "HEAD/1",
+        "HEAD/1,2",
         "PIVOTZ/10",
         "COUPLE/1",
         "GOFWD/1",

@@ -350,10 +350,12 @@ fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
     if straight || !placer.solver().closed_form() {
         return exact;
     }
+    if bound.axis <= piece.tolerances.axis {
+        return placer.settled(target, t, &halfway);
+    }
     // A pole joint is turned evenly, the others keep the tool axis as well as they can.
     match placer.place_halfway(target, t, first, last) {
         Some(node) if node.axis_error < piece.tolerances.axis => Ok(node),
-        _ if bound.axis <= piece.tolerances.axis => placer.settled(target, t, &halfway),
         _ => exact,
     }
 }

@@ -373,10 +373,10 @@ impl Lattice {
                 if !same && !meet {
                     continue;
                 }
-                let Ok(joints) = self.axes.carried(stand, &state.joints) else {
+                let Ok(mut joints) = self.axes.carried(stand, &state.joints) else {
                     continue;
                 };
-                if !self.stand_still(&state.joints, &joints) {
+                if !self.axes.stand_still(&state.joints, &mut joints) {
                     continue;
                 }
                 let sure = same && !meet;
@@ -415,8 +415,8 @@ impl Lattice {
         let mut reached = Vec::new();
         self.axes
             .turned(stand, &state.joints, &mut |joints| reached.push(*joints));
-        for joints in reached {
-            if !self.stand_still(&state.joints, &joints) {
+        for mut joints in reached {
+            if !self.axes.stand_still(&state.joints, &mut joints) {
                 continue;
             }
             let cost = state.cost
@@ -462,15 +462,6 @@ impl Lattice {
                 },
             );
         }
-    }
-
-    /// Indexed axes do not move.
-    #[inline]
-    fn stand_still(&self, from: &Joints, to: &Joints) -> bool {
-        self.axes
-            .indexed
-            .iter()
-            .all(|joint| (from[*joint] - to[*joint]).abs() < 1e-9)
     }
 
     /// Keeps the cheapest states of the newest layer, if there are too many.

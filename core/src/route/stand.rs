@@ -25,7 +25,7 @@ pub(crate) struct Axes {
     turning: Vec<Turning>,
     linear: Vec<Limit>,
     /// Joints that move off the part alone.
-    pub indexed: Vec<usize>,
+    indexed: Vec<usize>,
     axis_tolerance: f64,
     /// See [`Solver::band`]; and the cosines of the two.
     band: Option<[f64; 2]>,
@@ -409,6 +409,19 @@ impl Axes {
                 && !axis.forbids(value)
         };
         (self.turning.iter().all(inside) && self.beyond(&joints).is_none()).then_some(stand)
+    }
+
+    /// In a cut indexed axes stay where they are; false if they would have to move by more than the decimals of
+    /// a CL file make them.
+    #[inline]
+    pub(crate) fn stand_still(&self, from: &Joints, to: &mut Joints) -> bool {
+        for &joint in &self.indexed {
+            if (to[joint] - from[joint]).abs() > 0.5 * self.axis_tolerance {
+                return false;
+            }
+            to[joint] = from[joint];
+        }
+        true
     }
 
     /// Where there is no closed form: the solution next to `last`, if it is inside travel.

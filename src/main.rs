@@ -1,8 +1,10 @@
 //! `post`: turns a cutter-location file into the NC program of one machine.
 
 mod arguments;
+mod check;
 mod input;
 mod machines;
+mod new;
 mod output;
 mod plugins;
 mod posting;
@@ -27,6 +29,8 @@ fn main() -> ExitCode {
     let done = match &arguments.command {
         Some(Command::Words { file, unknown_only }) => words::print(file, *unknown_only),
         Some(Command::Machines { machines }) => machines::print(machines),
+        Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::New(arguments)) => new::run(arguments),
         None => posting::run(&arguments.post),
     };
     match done {

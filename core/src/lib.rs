@@ -6,6 +6,7 @@
 //! There is no input or output here, no unsafe code and no dialect's name.
 
 pub mod accuracy;
+pub mod check;
 pub mod diagnostic;
 pub mod feed;
 pub mod kinematics;

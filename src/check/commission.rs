@@ -71,6 +71,9 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Vec<Di
     Ok(())
 }
 
+/// A blank that a line is not broken at.
+const KEEP: char = '\u{a0}';
+
 struct Writer<'a> {
     machine: &'a Machine,
     /// Places of the axes in the order of their words.
@@ -87,7 +90,8 @@ impl Writer<'_> {
         let mut trials = plan.trials.iter().peekable();
         if let Some(first) = trials.peek() {
             // Whoever has set it up as told sees no move here; else it is a slow one.
-            let feed = self.feed(first.feed);
+            let length = self.length(&self.machine.axes[first.place]);
+            let feed = self.feed(first.feed / length);
             let words = self.words(&plan.start);
             self.batch.push(
                 0,
@@ -153,7 +157,7 @@ impl Writer<'_> {
             number(by / length, 3)
         ));
         if axis.joint.rotary {
-            self.say(&format!("seen from the part, {tool}"));
+            self.say(&format!("the tool, seen from the part, {tool}"));
         }
         self.batch.push(0, Event::Stop);
         if let Some(clamp) = &axis.clamp {
@@ -194,7 +198,7 @@ impl Writer<'_> {
     /// A remark, over as many lines as it needs.
     fn say(&mut self, text: &str) {
         let mut line = String::new();
-        for word in text.split_whitespace() {
+        for word in text.split(' ') {
             if !line.is_empty() && line.len() + 1 + word.len() > REMARK {
                 self.batch.push(0, Event::Comment { text: &line });
                 line.clear();
@@ -202,7 +206,7 @@ impl Writer<'_> {
             if !line.is_empty() {
                 line.push(' ');
             }
-            line.push_str(word);
+            line.push_str(&word.replace(KEEP, " "));
         }
         self.batch.push(0, Event::Comment { text: &line });
     }
@@ -243,7 +247,7 @@ impl Writer<'_> {
         let each = self.order.iter().zip(&self.format.words).zip(values);
         let each = each.map(|((place, decimals), value)| {
             let name = &self.machine.axes[*place].name;
-            format!("{name} {value:.*}", usize::from(*decimals))
+            format!("{name}{KEEP}{value:.*}", usize::from(*decimals))
         });
         each.collect::<Vec<_>>().join(" ")
     }

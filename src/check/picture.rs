@@ -8,11 +8,11 @@ use post_core::check::{Check, number};
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 700.0;
 /// Middle of the map, px.
-const MIDDLE: [f64; 2] = [320.0, 330.0];
+const MIDDLE: [f64; 2] = [320.0, 334.0];
 /// Radius of a tilt of 180°, px.
 const RADIUS: f64 = 250.0;
-/// Fills for 0, 1, 2, 3, 4 and more solutions.
-const GREYS: [&str; 5] = ["#ffffff", "#d9d9d9", "#ababab", "#7a7a7a", "#4a4a4a"];
+/// Fills: none for directions out of reach, then the numbers of solutions that there are, the fewest first.
+const GREYS: [&str; 5] = ["#ffffff", "#dedede", "#bcbcbc", "#999999", "#767676"];
 
 /// The picture of a check.
 pub fn draw(check: &Check) -> String {
@@ -27,15 +27,15 @@ pub fn draw(check: &Check) -> String {
     );
     label(
         &mut svg,
-        [320.0, 24.0],
+        [320.0, 20.0],
         "middle",
         &format!("{}: reachable directions of the tool", check.machine),
     );
     label(
         &mut svg,
-        [320.0, 44.0],
+        [320.0, 38.0],
         "middle",
-        "tool axis seen from the part; outwards tilt from +Z, around azimuth from +X towards +Y, degrees",
+        "Tool axis seen from the part: tilt from +Z (outwards) and azimuth (around), degrees",
     );
     cells(&mut svg, check);
     curve(&mut svg, check);
@@ -54,6 +54,8 @@ fn place(tilt: f64, azimuth: f64) -> [f64; 2] {
 
 fn cells(svg: &mut String, check: &Check) {
     let rows = &check.reach.map.cells;
+    let shades = shades(check);
+    let grey = |ways: usize| grey(&shades, ways);
     for (band, row) in rows.iter().enumerate() {
         let [near, far] = [band, band + 1].map(|edge| PI * edge as f64 / rows.len() as f64);
         let width = TAU / row.len() as f64;
@@ -74,8 +76,19 @@ fn cells(svg: &mut String, check: &Check) {
     }
 }
 
-fn grey(ways: usize) -> usize {
-    ways.min(GREYS.len() - 1)
+/// The numbers of solutions that there are, the fewest first.
+fn shades(check: &Check) -> Vec<usize> {
+    let shares = check.reach.shares_by_solutions.iter().enumerate();
+    shares
+        .filter(|(ways, share)| *ways > 0 && **share > 0.0)
+        .map(|(ways, _)| ways)
+        .collect()
+}
+
+/// Which of the greys a number of solutions has.
+fn grey(shades: &[usize], ways: usize) -> usize {
+    let place = shades.iter().position(|shade| *shade == ways);
+    place.map_or(0, |place| (place + 1).min(GREYS.len() - 1))
 }
 
 /// A piece of a ring between two tilts and two azimuths. Arcs are drawn in thirds at most, since the ends of a whole
@@ -103,7 +116,7 @@ fn sector(svg: &mut String, [near, far]: [f64; 2], [from, to]: [f64; 2], fill: &
     }
     let _ = writeln!(
         svg,
-        "<path d=\"{path}Z\" fill=\"{fill}\" stroke=\"{fill}\" stroke-width=\"0.4\"/>"
+        "<path d=\"{path}Z\" fill=\"{fill}\" stroke=\"{fill}\" stroke-width=\"0.8\"/>"
     );
 }
 
@@ -188,30 +201,34 @@ fn legend(svg: &mut String, check: &Check) {
         );
         return;
     }
-    label(svg, [40.0, top + 14.0], "start", "solutions inside travel:");
-    let most = check.reach.shares_by_solutions.len().saturating_sub(1);
-    let shown = grey(most);
-    for (count, fill) in GREYS.iter().enumerate().take(shown + 1) {
-        let left = 200.0 + 82.0 * count as f64;
+    label(svg, [30.0, top + 14.0], "start", "Solutions inside travel:");
+    let shades = shades(check);
+    for (place, fill) in GREYS.iter().enumerate().take(shades.len() + 1) {
+        let left = 205.0 + 85.0 * place as f64;
         let _ = writeln!(
             svg,
             "<rect x=\"{left:.2}\" y=\"{top:.2}\" width=\"20\" height=\"18\" fill=\"{fill}\" stroke=\"#000000\" stroke-width=\"0.8\"/>"
         );
-        let name = match count {
-            0 => "0 (none)".to_owned(),
-            count if count == GREYS.len() - 1 && most > count => format!("{count} to {most}"),
-            count => count.to_string(),
+        let name = match place.checked_sub(1) {
+            None => "none".to_owned(),
+            Some(place) if place + 2 == GREYS.len() && shades.len() > place + 1 => {
+                format!("{} and more", shades[place])
+            }
+            Some(place) => shades[place].to_string(),
         };
         label(svg, [left + 26.0, top + 14.0], "start", &name);
     }
-    let tilt =
-        |tilt: Option<f64>| tilt.map_or("none".to_owned(), |tilt| format!("{}°", number(tilt, 1)));
+    let tilt = |tilt: Option<f64>| {
+        tilt.map_or("not even +Z".to_owned(), |tilt| {
+            format!("{}°", number(tilt, 1))
+        })
+    };
     label(
         svg,
-        [40.0, top + 42.0],
+        [30.0, top + 42.0],
         "start",
         &format!(
-            "{} % of all directions; tilt up to {} in all azimuths, up to {} in some",
+            "{} % of all directions; tilt in all azimuths: {}; largest in some: {}",
             number(100.0 * check.reach.share_of_sphere, 1),
             tilt(check.reach.tilt_in_all_azimuths_deg),
             tilt(check.reach.tilt_in_some_azimuth_deg),

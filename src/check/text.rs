@@ -64,6 +64,7 @@ fn class(text: &mut String, class: &Class) {
     row(text, "class", &class.name);
     row(text, "turn the tool", &list(&class.turn_the_tool));
     row(text, "carry the part", &list(&class.carry_the_part));
+    row(text, "carry the tool", &list(&class.carry_the_tool));
     for angle in &class.angles {
         row(
             text,
@@ -130,18 +131,22 @@ fn axes(text: &mut String, axes: &[AxisLine]) {
 
 fn signs(text: &mut String, signs: &[Sign]) {
     text.push_str(
-        "Signs. All other axes at rest; +X, +Y, +Z are those of the machine frame, Z along the spindle. Seen from\n\
-         +Z is from above where the spindle is upright. First what the tool does seen from the part, then what\n\
-         the eye sees.\n",
+        "Signs: each axis moved by itself, all others at rest. +X, +Y, +Z are those of the machine frame, Z along the\n\
+         spindle; seen from +Z is from above where the spindle is upright. Compare with the machine, line by line.\n",
+    );
+    let _ = writeln!(
+        text,
+        "  {:<10}{:<38}  what the eye sees",
+        "move", "the tool, seen from the part"
     );
     for sign in signs {
         let by = number(sign.by, 3);
         let plus = if sign.by > 0.0 { "+" } else { "" };
         let _ = writeln!(
             text,
-            "  {:<10}{:<50} {}",
+            "  {:<10}{:<38}  {}",
             format!("{} {plus}{by}", sign.axis),
-            format!("{};", sign.tool),
+            sign.tool,
             sign.seen
         );
     }
@@ -182,10 +187,27 @@ fn solutions(text: &mut String, found: &Solutions) {
 }
 
 fn reach(text: &mut String, reach: &Reach) {
-    let tilt =
-        |tilt: Option<f64>| tilt.map_or("none".to_owned(), |tilt| format!("{}°", number(tilt, 2)));
+    let tilt = |tilt: Option<f64>| {
+        tilt.map_or("not even +Z".to_owned(), |tilt| {
+            format!("{}°", number(tilt, 2))
+        })
+    };
+    if reach.freedom < 2 {
+        let told = match reach.freedom {
+            0 => format!(
+                "one direction alone, tilted {} from +Z",
+                tilt(reach.tilt_in_some_azimuth_deg)
+            ),
+            _ => format!(
+                "a curve of directions, tilted up to {} from +Z",
+                tilt(reach.tilt_in_some_azimuth_deg)
+            ),
+        };
+        row(text, "reach", &told);
+        return;
+    }
     let mut told = format!(
-        "{} % of all directions; tilt from +Z: up to {} in all azimuths, up to {} in some",
+        "{} % of all directions; tilt from +Z in all azimuths: {}; largest in some: {}",
         number(100.0 * reach.share_of_sphere, 1),
         tilt(reach.tilt_in_all_azimuths_deg),
         tilt(reach.tilt_in_some_azimuth_deg),
@@ -207,7 +229,7 @@ fn reach(text: &mut String, reach: &Reach) {
             .collect();
         row(
             text,
-            "solutions by share",
+            "solutions inside",
             &format!("of all directions: {}", each.join(", ")),
         );
     }

@@ -19,10 +19,12 @@ pub struct Class {
     pub chain: String,
     /// `five-axis, table-table: C on A, orthogonal`.
     pub name: String,
-    /// Axes that turn the tool, from the bed to the tool.
+    /// Axes that turn the tool as seen from the part, in chain order; those of the table turn the part under it.
     pub turn_the_tool: Vec<String>,
     /// Axes that carry the part, from the part to the bed.
     pub carry_the_part: Vec<String>,
+    /// Axes that carry the tool, from the bed to the tool.
+    pub carry_the_tool: Vec<String>,
     /// Angles between neighbouring rotary axes, and between the last and the tool, degrees from 0 to 90.
     pub angles: Vec<Between>,
     /// Shortest distances between neighbouring rotary lines, and from the last to the gauge point, mm.
@@ -73,10 +75,9 @@ impl Class {
         Self {
             chain: sentence(&machine.axes),
             name: name(probe, &rotary, &angles),
-            turn_the_tool: names(&machine.axes, |axis| {
-                !axis.carries_part && axis.joint.rotary
-            }),
+            turn_the_tool: names(&machine.axes, |axis| axis.joint.rotary),
             carry_the_part: names(&machine.axes, |axis| axis.carries_part),
+            carry_the_tool: names(&machine.axes, |axis| !axis.carries_part),
             angles,
             distances,
             axes: machine.axes.iter().map(AxisLine::of).collect(),

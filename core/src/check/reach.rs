@@ -10,7 +10,7 @@ use super::probe::Probe;
 use crate::kinematics::inverse::angle;
 
 /// Cells of the map: azimuths around, tilts from +Z to -Z.
-const AZIMUTHS: usize = 72;
+const AZIMUTHS: usize = 144;
 const TILTS: usize = 72;
 
 /// Steps of a tilt that is followed from +Z to -Z, before the border is narrowed down.
@@ -22,6 +22,8 @@ const CURVE: usize = 361;
 /// The reachable cone.
 #[derive(Clone, Debug, Serialize)]
 pub struct Reach {
+    /// In how many independent ways the tool axis can move in a cut: 0, 1 (along a curve), 2 (over an area).
+    pub freedom: usize,
     /// Share of the sphere of directions that can be made, 0 to 1.
     pub share_of_sphere: f64,
     /// For each number of solutions inside travel (place in the list), the share of the sphere that has as many.
@@ -87,6 +89,7 @@ impl Reach {
             }
         }
         Self {
+            freedom: probe.freedom(),
             share_of_sphere,
             shares_by_solutions: shares,
             tilt_in_all_azimuths_deg: (all >= 0.0).then(|| all.to_degrees()),
@@ -118,6 +121,7 @@ impl Reach {
         let largest = curve.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]));
         let upright = curve.iter().any(|[tilt, _]| *tilt < 1e-9) || ways_upright > 0;
         Self {
+            freedom: probe.freedom(),
             share_of_sphere: 0.0,
             shares_by_solutions: vec![1.0],
             tilt_in_all_azimuths_deg: upright.then_some(0.0),

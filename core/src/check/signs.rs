@@ -107,11 +107,11 @@ fn rotary(probe: &Probe<'_>, place: usize, by: f64) -> Sign {
     let [from, to] = [home, &there].map(|joints| probe.chain().forward(joints).axis);
     let tilts = angle(from, to) > 0.02;
     let tool = if tilts {
-        format!("the tool axis {}", goes(from, to, direction, by))
+        format!("its axis goes {}", goes(from, to, direction, by))
     } else {
         let side = beside(direction);
         format!(
-            "it {}",
+            "goes round {}",
             goes(side, about(direction, by, side), direction, by)
         )
     };
@@ -207,11 +207,7 @@ fn beside(direction: Vector3<f64>) -> Vector3<f64> {
 }
 
 fn goes(from: Vector3<f64>, to: Vector3<f64>, direction: Vector3<f64>, by: f64) -> String {
-    format!(
-        "goes from {} {}",
-        named(from),
-        where_to(from, to, direction, by)
-    )
+    format!("from {} {}", named(from), where_to(from, to, direction, by))
 }
 
 /// `to -Y` for a whole quarter or half turn, else `30° towards -Y`.

@@ -37,7 +37,7 @@ pub struct NewArguments {
     class: Option<Class>,
 
     /// The dialect of its control: fanuc, heidenhain, linuxcnc, or a plugin's name. [default: fanuc]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = dialect)]
     dialect: Option<String>,
 
     /// Who keeps the tip on its path while rotary axes turn. [default: post]
@@ -284,6 +284,15 @@ pub fn range(text: &str) -> Result<[f64; 2], String> {
         return Err(format!("`{text}`: the first must be the smaller"));
     }
     Ok(range)
+}
+
+/// The name of a dialect, which stands in the file as it is.
+pub fn dialect(text: &str) -> Result<String, String> {
+    let allowed = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
+    if text.is_empty() || !text.chars().all(allowed) {
+        return Err("the name of a dialect has letters and digits alone".to_owned());
+    }
+    Ok(text.to_ascii_lowercase())
 }
 
 fn feed(text: &str) -> Result<Given<f64>, String> {

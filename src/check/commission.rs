@@ -157,7 +157,7 @@ impl Writer<'_> {
             number(by / length, 3)
         ));
         if axis.joint.rotary {
-            self.say(&format!("the tool, seen from the part, {tool}"));
+            self.say(&format!("The tool, seen from the part: {tool}"));
         }
         self.batch.push(0, Event::Stop);
         if let Some(clamp) = &axis.clamp {

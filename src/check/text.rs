@@ -315,15 +315,23 @@ pub fn comparison(compared: &Comparison) -> String {
         "axis deviation",
         &format!("at most {:.6}°", compared.axis_deg),
     );
-    let rotary: Vec<Reading> = compared.axis_at.clone();
     if compared.axis_deg > 0.0 {
-        row(&mut text, "", &format!("at {}", readings(&rotary)));
+        row(
+            &mut text,
+            "",
+            &format!("at {}", readings(&compared.axis_at)),
+        );
         shares(&mut text, &compared.axis_shares, "°");
     }
     text
 }
 
 fn shares(text: &mut String, shares: &[Share], unit: &str) {
+    row(
+        text,
+        "",
+        "each difference by itself there; as vectors they add up:",
+    );
     let mut said = false;
     for share in shares {
         let (size, decimals) = match unit {
@@ -337,8 +345,10 @@ fn shares(text: &mut String, shares: &[Share], unit: &str) {
         let [x, y, z] = share.vector.map(|value| number(value, decimals));
         let differs = if share.of.starts_with("direction") {
             format!("{}°", number(share.differs_by, 6))
+        } else if share.of.starts_with("zero") {
+            number(share.differs_by, 6)
         } else {
-            number(share.differs_by, 5)
+            format!("{} mm", number(share.differs_by, 5))
         };
         row(
             text,

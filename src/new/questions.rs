@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use post_core::diagnostic::Diagnostic;
 
 use super::template::Class;
-use super::{Given, NewArguments, Wishes, range};
+use super::{Given, NewArguments, Wishes, dialect, range};
 use crate::arguments::finite;
 use crate::input::one;
 
@@ -44,15 +44,7 @@ pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Vec<Diag
         let said = question(
             "dialect of the control: fanuc, heidenhain, linuxcnc",
             &usual,
-            |answer| {
-                let known = answer
-                    .chars()
-                    .all(|letter| letter.is_ascii_alphanumeric() || "_-".contains(letter));
-                match known {
-                    true => Ok(answer.to_ascii_lowercase()),
-                    false => Err("a dialect's name has letters and digits alone".to_owned()),
-                }
-            },
+            dialect,
         )?;
         wishes.dialect = said.unwrap_or(usual);
     }

@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::pointing::Reading;
 use crate::kinematics::inverse::angle;
 use crate::kinematics::{Chain, Joints, MAX_AXES, Pose, Solver};
-use crate::machine::Machine;
+use crate::machine::{Axis, Machine};
 
 /// Settings of each rotary axis on the first grid.
 const GRID: usize = 37;
@@ -42,7 +42,7 @@ pub struct Comparison {
     pub tip_shares: Vec<Share>,
     /// Largest angle between the two tool axes, degrees.
     pub axis_deg: f64,
-    /// Axis values there; the linear ones do not matter.
+    /// Values of the rotary axes there.
     pub axis_at: Vec<Reading>,
     /// What each difference contributes there, the largest first.
     pub axis_shares: Vec<Share>,
@@ -169,10 +169,10 @@ pub fn compare(machine: &Machine, nominal: &Machine, length: f64) -> Result<Comp
         tool_length_mm: length,
         tip_mm: (a.tip - b.tip).norm(),
         tip: (a.tip - b.tip).into(),
-        tip_at: readings(machine, &tip_worst),
+        tip_at: readings(machine, &tip_worst, |_| true),
         tip_shares: shares(&real, &drawn, length, &tip_worst, |a, b| a.tip - b.tip)?,
         axis_deg: axis(&axis_worst).to_degrees(),
-        axis_at: readings(machine, &axis_worst),
+        axis_at: readings(machine, &axis_worst, |axis| axis.joint.rotary),
         axis_shares: shares(&real, &drawn, length, &axis_worst, |a, b| {
             // For so small an angle the rotation vector is the cross product, scaled to the angle.
             let turn = b.axis.cross(&a.axis);
@@ -188,13 +188,14 @@ fn both(real: &Worded<'_>, drawn: &Worded<'_>, joints: &Joints) -> [Pose; 2] {
     ]
 }
 
-fn readings(machine: &Machine, joints: &Joints) -> Vec<Reading> {
+fn readings(machine: &Machine, joints: &Joints, of: impl Fn(&Axis) -> bool) -> Vec<Reading> {
     let axes = machine.axes.iter().zip(joints);
-    axes.map(|(axis, value)| Reading {
-        axis: axis.name.clone(),
-        value: axis.reading(*value),
-    })
-    .collect()
+    axes.filter(|(axis, _)| of(axis))
+        .map(|(axis, value)| Reading {
+            axis: axis.name.clone(),
+            value: axis.reading(*value),
+        })
+        .collect()
 }
 
 /// Least and largest value of an axis over the workspace; one turn of an endless one.

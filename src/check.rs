@@ -58,6 +58,10 @@ pub struct CheckArguments {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 
+    /// Checks the machine with this head, one of those that the program can swap in (`[head.NAME]`).
+    #[arg(long, value_name = "NAME")]
+    head: Option<String>,
+
     /// Length of the tool from the gauge point to the tip, mm.
     #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true, value_parser = arguments::not_negative)]
     tool_length: f64,
@@ -86,6 +90,10 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
     let mut settings = arguments.set.clone();
     settings.extend(mount.clone());
     let machine = machines::load_named(&arguments.machine, &arguments.machines, &settings)?;
+    let machine = match &arguments.head {
+        Some(name) => with_head(machine, name)?,
+        None => machine,
+    };
     if arguments.commission {
         return commission::write(arguments, &machine);
     }
@@ -108,7 +116,32 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
         }
     }
     print(&text::check(&check));
+    if !machine.heads.is_empty() {
+        let heads = machine.heads.iter().map(|head| head.name.as_str());
+        let heads: Vec<&str> = heads.collect();
+        print(&format!(
+            "further heads, see --head: {}\n",
+            heads.join(", ")
+        ));
+    }
     Ok(())
+}
+
+/// The machine with a head that the program can swap in.
+fn with_head(machine: Machine, name: &str) -> Result<Machine, Vec<Diagnostic>> {
+    let heads = &machine.heads;
+    if let Some(head) = heads.iter().find(|head| head.name == name) {
+        return Ok(head.machine.clone());
+    }
+    let known: Vec<&str> = heads.iter().map(|head| head.name.as_str()).collect();
+    Err(vec![
+        Diagnostic::error("check", format!("{} has no head {name}", machine.name)).help(
+            match known.as_slice() {
+                [] => "its file has no [head.NAME]".to_owned(),
+                known => format!("its heads are {}", known.join(", ")),
+            },
+        ),
+    ])
 }
 
 /// What can be derived; a chain that cannot be solved was refused when the file was loaded.

@@ -685,6 +685,20 @@ fn an_indexed_table_is_let_go_and_clamped() {
 
 // Under review.
 
+const REVIEWED: &[&str] = &[
+    "ac-trunnion",
+    "head-head",
+    "nutating-head",
+    "disc-cutter",
+    "vmc",
+];
+
+const COMMISSIONED: &[(&str, &str)] = &[
+    ("ac-trunnion", "commission_fanuc"),
+    ("disc-cutter", "commission_linuxcnc"),
+    ("dmu50", "commission_heidenhain"),
+];
+
 /// The whole output for machines of each kind: after a change read it beside the machine file, then accept it.
 #[test]
 fn the_checks_are_those_that_were_reviewed() {
@@ -693,13 +707,7 @@ fn the_checks_are_those_that_were_reviewed() {
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     settings.bind(|| {
-        for machine in [
-            "ac-trunnion",
-            "head-head",
-            "nutating-head",
-            "disc-cutter",
-            "vmc",
-        ] {
+        for machine in REVIEWED {
             let run = post(&["check", machine]);
             assert_eq!(run.code, 0, "{}", run.err);
             // Rounding errors of the round trip are no matter of review.
@@ -711,7 +719,7 @@ fn the_checks_are_those_that_were_reviewed() {
                     None => line,
                 });
             let text: Vec<&str> = lines.collect();
-            insta::assert_snapshot!(machine, format!("{}{}", run.err, text.join("\n")));
+            insta::assert_snapshot!(*machine, format!("{}{}", run.err, text.join("\n")));
         }
         let run = post(&[
             "check",
@@ -722,14 +730,10 @@ fn the_checks_are_those_that_were_reviewed() {
             "100",
         ]);
         insta::assert_snapshot!("measured_nominal", run.out);
-        for (machine, dialect) in [
-            ("ac-trunnion", "fanuc"),
-            ("disc-cutter", "linuxcnc"),
-            ("dmu50", "heidenhain"),
-        ] {
+        for (machine, name) in COMMISSIONED {
             let run = post(&["check", machine, "--commission", "-o", "-"]);
             assert_eq!(run.code, 0, "{}", run.err);
-            insta::assert_snapshot!(format!("commission_{dialect}"), run.out);
+            insta::assert_snapshot!(*name, run.out);
         }
     });
 }
@@ -742,4 +746,41 @@ fn the_files_for_tests_are_machines() {
         assert_eq!(run.code, 0, "{}: {}", path.display(), run.err);
     }
     assert!(Path::new(root()).join(MEASURED).is_file());
+}
+
+#[test]
+fn a_head_that_the_program_swaps_in_is_checked_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("two.toml");
+    let text =
+        "extends = \"head-head\"\nname = \"two heads\"\n[head.long.tool]\ngauge = [0, 0, -150]\n";
+    fs::write(&path, text).unwrap();
+    let path = path.to_str().unwrap();
+    let (first, run) = check(&[path]);
+    assert!(
+        run.out.contains("further heads, see --head: long"),
+        "{}",
+        run.out
+    );
+    let (long, _) = check(&[path, "--head", "long"]);
+    close(&first["class"]["distances"][1]["value"], 250.0, 1e-9);
+    close(&long["class"]["distances"][1]["value"], 400.0, 1e-9);
+    let none = post(&["check", path, "--head", "short"]);
+    assert_eq!(none.code, 1);
+    assert!(none.err.contains("its heads are long"), "{}", none.err);
+}
+
+#[test]
+fn no_reviewed_check_is_left_over() {
+    let mut found: Vec<String> = fs::read_dir(root().join("tests/snapshots/check"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    found.sort();
+    let mut names = REVIEWED.to_vec();
+    names.extend(["measured_nominal"]);
+    names.extend(COMMISSIONED.iter().map(|(_, name)| *name));
+    names.sort_unstable();
+    let names: Vec<String> = names.iter().map(|name| format!("{name}.snap")).collect();
+    assert_eq!(found, names);
 }

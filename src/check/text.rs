@@ -19,6 +19,16 @@ pub fn check(check: &Check) -> String {
     text.push('\n');
     axes(&mut text, &check.class.axes);
     signs(&mut text, &check.signs);
+    for axis in check.class.axes.iter().filter(|axis| axis.rotary) {
+        if let Some(at) = axis.indexed {
+            let told = format!(
+                "what follows holds with {} at {}°",
+                axis.name,
+                number(at, 3)
+            );
+            row(&mut text, "set between cuts", &told);
+        }
+    }
     if let Some(typical) = &check.typical {
         solutions(&mut text, typical);
     }

@@ -232,12 +232,16 @@ pub fn write(wishes: &Wishes) -> String {
     line("[tool]", "");
     line("gauge = [0, 0, \"gauge\"]", "");
     line("axis  = [0, 0, 1]", "from the tip to the holder");
-    for (name, direction) in [("X", "[1, 0, 0]"), ("Y", "[0, 1, 0]"), ("Z", "[0, 0, 1]")] {
+    for (name, direction, lean) in [
+        ("X", "[1, 0, 0]", "20 µm/m towards Y: [1, 20e-6, 0]"),
+        ("Y", "[0, 1, 0]", "20 µm/m towards X: [20e-6, 1, 0]"),
+        ("Z", "[0, 0, 1]", "20 µm/m towards X: [20e-6, 0, 1]"),
+    ] {
         line("", "");
         line(&format!("[axis.{name}]"), "");
         line(
             &format!("linear   = {direction}"),
-            "as measured: a lean of 20 µm/m to Y is [1, 20e-6, 0]",
+            &format!("as measured; a lean of {lean}"),
         );
         travel(&mut line, wishes, name);
         reversed(&mut line, wishes, name);

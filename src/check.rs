@@ -14,7 +14,7 @@ use post_core::diagnostic::Diagnostic;
 use post_core::machine::Machine;
 
 use crate::arguments::{self, Point};
-use crate::input::standard;
+use crate::input::{one, standard};
 use crate::output::Target;
 use crate::{machines, posting, render};
 
@@ -66,12 +66,11 @@ pub struct CheckArguments {
     #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true, value_parser = arguments::not_negative)]
     tool_length: f64,
 
-    /// Where the part origin sits, all axes at zero, machine frame, mm.
+    /// Where the part origin sits, all axes at zero, machine frame, mm; in both machines of --nominal.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = arguments::point)]
     mount: Option<Point>,
 
-    /// Sets a parameter of the machine (`Lm=312`) or any key, in the other machine of --nominal too if it is
-    /// the mount.
+    /// Sets a parameter of the machine (`Lm=312`) or any key; in MACHINE alone, not in the other of --nominal.
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
 
@@ -86,6 +85,12 @@ pub struct CheckArguments {
 
 /// Checks as the arguments say.
 pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
+    if arguments.svg.is_some() && arguments.svg == arguments.json {
+        return Err(one(
+            "output",
+            "picture and JSON cannot go to one place".to_owned(),
+        ));
+    }
     let mount = arguments.mount.map(|mount| mount.setting());
     let mut settings = arguments.set.clone();
     settings.extend(mount.clone());
@@ -106,14 +111,14 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
     }
     let check = derive(&machine, arguments.tool_length)?;
     if let Some(path) = &arguments.svg {
-        write(path, &picture::draw(&check))?;
+        write(arguments, path, &picture::draw(&check))?;
     }
     render::findings(&check.findings());
     if let Some(path) = &arguments.json {
-        write(path, &json(&check))?;
-        if path == standard() {
-            return Ok(());
-        }
+        write(arguments, path, &json(&check))?;
+    }
+    if taken(arguments) {
+        return Ok(());
     }
     print(&text::check(&check));
     if !machine.heads.is_empty() {
@@ -159,10 +164,10 @@ fn print_comparison(
     compared: &Comparison,
 ) -> Result<(), Vec<Diagnostic>> {
     if let Some(path) = &arguments.json {
-        write(path, &json(compared))?;
-        if path == standard() {
-            return Ok(());
-        }
+        write(arguments, path, &json(compared))?;
+    }
+    if taken(arguments) {
+        return Ok(());
     }
     print(&text::comparison(compared));
     Ok(())
@@ -192,8 +197,15 @@ fn json(value: &impl serde::Serialize) -> String {
     text
 }
 
-/// Writes a text whole, or not at all.
-fn write(path: &Path, text: &str) -> Result<(), Vec<Diagnostic>> {
+/// Standard output is for a picture or for JSON, so nothing else is printed there.
+fn taken(arguments: &CheckArguments) -> bool {
+    let to = |path: &Option<PathBuf>| path.as_deref() == Some(standard());
+    to(&arguments.svg) || to(&arguments.json)
+}
+
+/// Writes a text whole, or not at all; never over the machine file.
+fn write(arguments: &CheckArguments, path: &Path, text: &str) -> Result<(), Vec<Diagnostic>> {
+    spare(arguments, path)?;
     let mut file = posting::create(path)?;
     file.write(text.as_bytes())
         .map_err(io::Error::other)
@@ -212,14 +224,23 @@ fn program_path(arguments: &CheckArguments, extension: &str) -> Result<PathBuf, 
         Some(path) => path.clone(),
         None => Path::new("commission").with_extension(extension),
     };
-    if Target::of(&path).is(Path::new(&arguments.machine)) {
-        return Err(vec![Diagnostic::error(
-            "output",
-            format!(
-                "the program would overwrite the machine file {}",
-                path.display()
-            ),
-        )]);
-    }
+    spare(arguments, &path)?;
     Ok(path)
+}
+
+/// Refuses to write over a machine file that is read.
+fn spare(arguments: &CheckArguments, path: &Path) -> Result<(), Vec<Diagnostic>> {
+    let read = [Some(&arguments.machine), arguments.nominal.as_ref()];
+    let target = Target::of(path);
+    if read
+        .into_iter()
+        .flatten()
+        .any(|name| target.is(Path::new(name)))
+    {
+        return Err(one(
+            "output",
+            format!("{} is the machine file that is checked", path.display()),
+        ));
+    }
+    Ok(())
 }

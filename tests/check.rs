@@ -293,6 +293,77 @@ fn the_sign_table_agrees_with_the_laws_of_linuxcnc() {
     );
 }
 
+/// A shifted zero and a reversed count change what is shown, not what can be reached.
+#[test]
+fn readings_are_those_of_the_control() {
+    let (drawn, _) = check(&["ac-trunnion"]);
+    let (shifted, _) = check(&[
+        "ac-trunnion",
+        "--set",
+        "axis.A.zero=10",
+        "--set",
+        "axis.A.travel=[-110, 40]",
+    ]);
+    let shown = |check: &Value| {
+        check["typical"]["ways"][0]["readings"][1]["value"]
+            .as_f64()
+            .unwrap()
+    };
+    close(&Value::from(shown(&shifted)), shown(&drawn) + 10.0, 1e-9);
+    let tilt = |check: &Value| check["reach"]["tilt_in_all_azimuths_deg"].as_f64().unwrap();
+    close(&Value::from(tilt(&shifted)), tilt(&drawn), 1e-6);
+    close(&shifted["class"]["axes"][1]["travel"][0], -110.0, 1e-9);
+}
+
+/// With A at rest at 40° the line of C leans to +Y as the eye sees it, and stays where it is for the part.
+#[test]
+fn the_eye_sees_the_table_where_it_rests() {
+    let (leaning, _) = check(&["ac-trunnion", "--set", "axis.A.travel=[40, 60]"]);
+    let table = signs(&leaning);
+    let eye = "the table turns clockwise seen from (0.000, 0.643, 0.766)";
+    // At 40° of tilt C sweeps the tool axis around a cone: from azimuth -90° to 0°.
+    sign(
+        &table,
+        "C +90",
+        "from (0.000, -0.643, 0.766) to (0.643, 0.000, 0.766)",
+        eye,
+    );
+    // A has 20° of room.
+    sign(
+        &table,
+        "A +20",
+        "from (0.000, -0.643, 0.766) 20° towards",
+        "clockwise seen from +X",
+    );
+}
+
+#[test]
+fn the_machine_file_is_never_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    fs::copy(root().join("machines/vmc.toml"), &path).unwrap();
+    let before = fs::read_to_string(&path).unwrap();
+    let path_text = path.to_str().unwrap();
+    for flags in [
+        ["--json", path_text].as_slice(),
+        &["--svg", path_text],
+        &["--commission", "-o", path_text],
+    ] {
+        let mut all = vec!["check", path_text];
+        all.extend(flags);
+        let run = post(&all);
+        assert_eq!(run.code, 1, "{flags:?}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), before);
+    }
+}
+
+#[test]
+fn json_on_standard_output_is_alone_there() {
+    let run = post(&["check", "vmc", "--json", "-"]);
+    let check: Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!(check["machine"], "VMC");
+}
+
 // Measured against nominal.
 
 const MEASURED: &str = "tests/machines/measured.toml";

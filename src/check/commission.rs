@@ -105,7 +105,6 @@ impl Writer<'_> {
             let following = trials.peek().copied();
             self.trial(trial, following);
         }
-        self.say("All axes are tried. At the end the control retracts the depth axis as after every program.");
         self.batch.push(0, Event::End);
     }
 
@@ -126,7 +125,7 @@ impl Writer<'_> {
         let at = self.told(&self.start, false);
         self.say(&at);
         let mut set = format!(
-            "There set the work offset in use so that {} show 0",
+            "There set the work offset of this program so that {} show 0",
             names(&linear)
         );
         if !rotary.is_empty() {
@@ -191,6 +190,7 @@ impl Writer<'_> {
         if following.is_none() {
             let shown = self.told(&self.start, true);
             self.say(&format!("The display shows {shown}"));
+            self.say("All axes are tried. After this stop the depth axis retracts at rapid, as after every program");
             self.batch.push(0, Event::Stop);
         }
     }

@@ -417,6 +417,53 @@ fn a_leaning_c_turns_the_tool_axis_by_twice_its_lean() {
     assert_eq!(compared["axis_shares"][0]["of"], "direction of C");
 }
 
+/// A table that is set between cuts may start anywhere; words still count from its zero. Its line 30 µm aside
+/// moves the tip by the diameter after half a turn.
+#[test]
+fn an_indexed_table_is_compared_over_its_travel() {
+    for start in ["0", "30"] {
+        let start = format!("axis.B.indexed={start}");
+        let (compared, _) = check(&[
+            "disc-cutter",
+            "--nominal",
+            "disc-cutter",
+            "--set",
+            &start,
+            "--set",
+            "axis.B.point=[0.03, 0, -500]",
+        ]);
+        close(&compared["tip_mm"], 0.06, 1e-9);
+        assert_eq!(compared["tip_shares"][0]["of"], "position of B");
+    }
+}
+
+/// Every line of the fork head that was measured is told with its own part.
+#[test]
+fn a_measured_head_is_compared() {
+    let (compared, _) = check(&[
+        "tests/machines/measured-head.toml",
+        "--nominal",
+        "head-head",
+        "--tool-length",
+        "150",
+    ]);
+    let shares = compared["tip_shares"].as_array().unwrap();
+    let named: Vec<&str> = shares
+        .iter()
+        .map(|share| share["of"].as_str().unwrap())
+        .collect();
+    for of in [
+        "direction of A",
+        "position of A",
+        "direction of C",
+        "position of C",
+        "direction of Y",
+        "direction of Z",
+    ] {
+        assert!(named.contains(&of), "{of} is not in {named:?}");
+    }
+}
+
 #[test]
 fn machines_with_other_axes_are_not_compared() {
     let run = post(&["check", "ac-trunnion", "--nominal", "dmu50"]);

@@ -92,11 +92,33 @@ impl<'a> Worded<'a> {
             machine: machine.name.clone(),
         };
         let solver = machine.solver(length).map_err(|_| no_zero())?;
-        let mut zero = [0.0; MAX_AXES];
-        let turns = solver.chain().turns(&zero);
-        solver
-            .place(Vector3::zeros(), &mut zero, &turns)
+        // The tool on the part origin, pointing as it does with every rotary axis at zero, those that are set between
+        // cuts too: of the ways to stand so, the one with the rotary axes there.
+        let mut at_zero = machine.clone();
+        for axis in &mut at_zero.axes {
+            if let (true, Some(indexed)) = (axis.joint.rotary, &mut axis.indexed) {
+                indexed.start = 0.0;
+            }
+        }
+        let upright = at_zero.solver(length).map_err(|_| no_zero())?;
+        let still = [0.0; MAX_AXES];
+        let pose = Pose {
+            tip: Vector3::zeros(),
+            axis: upright.chain().forward(&still).axis,
+        };
+        let found = upright
+            .inverse(&pose, &still, 1e-7)
             .map_err(|_| no_zero())?;
+        let turned = |joints: &Joints| {
+            let axes = machine.axes.iter().zip(joints);
+            axes.filter(|(axis, _)| axis.joint.rotary && axis.indexed.is_none())
+                .fold(0f64, |largest, (_, value)| largest.max(value.abs()))
+        };
+        let zero = found
+            .into_iter()
+            .min_by(|a, b| turned(a).total_cmp(&turned(b)))
+            .filter(|joints| turned(joints) < 1e-6)
+            .ok_or_else(no_zero)?;
         Ok(Self {
             machine,
             solver,

@@ -90,8 +90,7 @@ impl Writer<'_> {
         let mut trials = plan.trials.iter().peekable();
         if let Some(first) = trials.peek() {
             // Whoever has set it up as told sees no move here; else it is a slow one.
-            let length = self.length(&self.machine.axes[first.place]);
-            let feed = self.feed(first.feed / length);
+            let feed = self.feed(first);
             let words = self.words(&plan.start);
             self.batch.push(
                 0,
@@ -153,7 +152,7 @@ impl Writer<'_> {
         self.say(&format!(
             "Next {} {plus}{} {unit}: {seen}",
             axis.name,
-            number(by / length, 3)
+            number(by / length, 4)
         ));
         if axis.joint.rotary {
             self.say(&format!("The tool, seen from the part: {tool}"));
@@ -164,7 +163,7 @@ impl Writer<'_> {
         }
         let mut there = self.start;
         there[trial.place] += trial.by;
-        let feed = self.feed(trial.feed / length);
+        let feed = self.feed(trial);
         let words = self.words(&there);
         self.batch.push(
             0,
@@ -252,7 +251,14 @@ impl Writer<'_> {
         each.collect::<Vec<_>>().join(" ")
     }
 
-    fn feed(&self, per_minute: f64) -> Feed {
+    fn feed(&self, trial: &Trial) -> Feed {
+        let axis = &self.machine.axes[trial.place];
+        let inch = self.machine.control.units == OutputUnits::Inch;
+        let per_minute = match (axis.joint.rotary, inch) {
+            // Controls that count tenths of an inch read ten times the degrees: the first run stays slow on them.
+            (true, true) => trial.feed / 10.0,
+            _ => trial.feed / self.length(axis),
+        };
         let scale = (0..self.format.feed).fold(1.0, |scale, _| scale * 10.0);
         Feed::PerMinute((per_minute * scale).floor().max(1.0) / scale)
     }

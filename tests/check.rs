@@ -127,6 +127,17 @@ fn an_axis_across_shuts_out_the_upright_tool() {
     );
 }
 
+/// Where C leans by e against the plane across A, a cone of e about C is out of reach: A cannot turn the tool into it.
+#[test]
+fn a_measured_table_has_a_small_hole_at_its_pole() {
+    let (check, _) = check(&["ac-trunnion", "--set", "axis.C.rotary=[45e-6, 0, 1]"]);
+    let pole = &check["poles"]["at"][0];
+    close(&pole["missed_by_deg"], 45e-6f64.to_degrees(), 1e-9);
+    assert_eq!(pole["inside"], false);
+    // The tool is upright with both at zero all the same.
+    assert_ne!(check["reach"]["ways_upright"], 0);
+}
+
 #[test]
 fn what_looks_wrong_is_told() {
     let (_, run) = check(&["ac-trunnion", "--mount", "0,0,500"]);

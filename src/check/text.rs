@@ -246,13 +246,13 @@ fn reach(text: &mut String, reach: &Reach) {
 }
 
 fn pole(pole: &Pole) -> String {
-    let [x, y, z] = pole.axis.map(|value| number(value, 5));
+    let [x, y, z] = pole.axis.map(|value| number(value, 6));
     let others = match pole.others.as_slice() {
         [] => String::new(),
         others => format!(", with {}", readings(others)),
     };
     let state = if pole.missed_by_deg > 0.0 {
-        format!("out of reach by {}°", number(pole.missed_by_deg, 2))
+        format!("out of reach by {}°", number(pole.missed_by_deg, 4))
     } else if pole.inside {
         "inside travel".to_owned()
     } else {

@@ -1,13 +1,11 @@
 //! In which ways the tool can be pointed: one direction written out, and the directions without a single way.
 
-use std::f64::consts::TAU;
-
 use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::probe::Probe;
-use crate::kinematics::Joints;
 use crate::kinematics::inverse::angle;
+use crate::kinematics::{Joints, Unreachable};
 
 /// All solutions for one direction.
 #[derive(Clone, Debug, Serialize)]
@@ -163,7 +161,11 @@ impl Poles {
 
 fn pole(probe: &Probe<'_>, axis: Vector3<f64>, free: &[usize]) -> Pole {
     let name = probe.machine().axes[free[0]].name.clone();
-    let found = probe.inverse(Vector3::zeros(), axis).unwrap_or_default();
+    let (found, miss) = match probe.inverse(Vector3::zeros(), axis) {
+        Ok(found) => (found, 0.0),
+        Err(Unreachable::Axis { miss }) => (Vec::new(), miss),
+        Err(_) => (Vec::new(), 0.0),
+    };
     let inside = found.iter().find_map(|joints| probe.inside(joints));
     let shown = inside.or(found.first().copied());
     let others = shown.map_or_else(Vec::new, |joints| readings(probe, &joints).split_off(1));
@@ -171,24 +173,7 @@ fn pole(probe: &Probe<'_>, axis: Vector3<f64>, free: &[usize]) -> Pole {
         axis: axis.into(),
         free: name,
         inside: inside.is_some(),
-        missed_by_deg: if found.is_empty() {
-            missed(probe, axis, free)
-        } else {
-            0.0
-        },
+        missed_by_deg: miss.to_degrees(),
         others,
     }
-}
-
-/// How near the second axis brings the tool to a direction along the first, degrees: its whole turn is tried,
-/// travel left aside.
-fn missed(probe: &Probe<'_>, axis: Vector3<f64>, free: &[usize]) -> f64 {
-    const STEPS: usize = 3600;
-    let mut joints = *probe.home();
-    let mut least = f64::INFINITY;
-    for step in 0..STEPS {
-        joints[free[1]] = TAU * step as f64 / STEPS as f64;
-        least = least.min(angle(probe.chain().forward(&joints).axis, axis));
-    }
-    least.to_degrees()
 }

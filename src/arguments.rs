@@ -5,6 +5,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::check::CheckArguments;
+use crate::new::NewArguments;
+
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
 ///
 /// The machine is a TOML file: its kinematic chain, its control and the tolerance that the program must
@@ -21,6 +24,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
   post --machine dmu50.toml part.ncl -o part.h --mount 0,0,120 --summary part.json
   post --machine disc-cutter --set Lm=250 blade.cls -o -
   post words part.cls
+  post new my-mill --class table-table-ac --dialect linuxcnc
+  post check my-mill.toml --svg reach.svg
 
 Exit codes: 0 the program is written; 1 refused, the messages say why; 2 the command line is wrong.",
     max_term_width = 100
@@ -54,6 +59,8 @@ pub enum Command {
     },
     /// Prints the JSON Schema of machine files, by which an editor completes and checks them.
     Schema,
+    Check(CheckArguments),
+    New(NewArguments),
 }
 
 #[derive(Debug, Args)]
@@ -193,7 +200,7 @@ pub fn folders(named: &[PathBuf], variable: &str) -> Vec<PathBuf> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point([f64; 3]);
 
-fn point(text: &str) -> Result<Point, String> {
+pub fn point(text: &str) -> Result<Point, String> {
     let numbers = text
         .split(',')
         .map(|number| finite(number.trim()))
@@ -207,24 +214,32 @@ fn point(text: &str) -> Result<Point, String> {
     }
 }
 
-fn finite(text: &str) -> Result<f64, String> {
+pub fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ => Err(format!("`{text}` is no number")),
     }
 }
 
-fn not_negative(text: &str) -> Result<f64, String> {
+pub fn not_negative(text: &str) -> Result<f64, String> {
     match finite(text)? {
         number if number >= 0.0 => Ok(number),
         number => Err(format!("{number} is below zero")),
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {
         number if number > 0.0 => Ok(number),
         number => Err(format!("{number} is not above zero")),
+    }
+}
+
+impl Point {
+    /// As the mount of the part, for `--set`.
+    pub fn setting(&self) -> String {
+        let [x, y, z] = &self.0;
+        format!("workpiece.mount=[{x:?}, {y:?}, {z:?}]")
     }
 }
 
@@ -232,8 +247,8 @@ impl PostArguments {
     /// What the short flags set, after what `--set` sets.
     pub fn settings(&self) -> Vec<String> {
         let mut settings = self.set.clone();
-        if let Some(Point([x, y, z])) = &self.mount {
-            settings.push(format!("workpiece.mount=[{x:?}, {y:?}, {z:?}]"));
+        if let Some(mount) = &self.mount {
+            settings.push(mount.setting());
         }
         if let Some(tolerance) = self.tolerance {
             settings.push(format!("accuracy.tolerance={tolerance:?}"));

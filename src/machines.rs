@@ -15,7 +15,17 @@ const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.r
 /// Loads the machine that the arguments name.
 pub fn load(arguments: &PostArguments) -> Result<Machine, Vec<Diagnostic>> {
     let name = arguments.machine.as_deref().unwrap_or_default();
-    let folders = folders(&arguments.machines);
+    load_named(name, &arguments.machines, &arguments.settings())
+}
+
+/// Loads the machine `name` from the folders that the user `named`, the usual ones, or those built in, with
+/// `settings` over it.
+pub fn load_named(
+    name: &str,
+    named: &[PathBuf],
+    settings: &[String],
+) -> Result<Machine, Vec<Diagnostic>> {
+    let folders = folders(named);
     let fault = |message| vec![Diagnostic::error("machine", message)];
     let source = find(name, &folders).map_err(fault)?;
     // A machine extends its neighbours first.
@@ -26,9 +36,7 @@ pub fn load(arguments: &PostArguments) -> Result<Machine, Vec<Diagnostic>> {
         .into_iter()
         .collect();
     near.extend(folders);
-    machine::load(source, &arguments.settings(), &mut |parent| {
-        find(parent, &near)
-    })
+    machine::load(source, settings, &mut |parent| find(parent, &near))
 }
 
 /// The folders of machines: those of the command line, of the environment, and `machines` here.

@@ -1,8 +1,10 @@
 //! `post`: turns a cutter-location file into the NC program of one machine.
 
 mod arguments;
+mod check;
 mod input;
 mod machines;
+mod new;
 mod output;
 mod plugins;
 mod posting;
@@ -31,6 +33,8 @@ fn main() -> ExitCode {
             machines::print_schema();
             Ok(())
         }
+        Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::New(arguments)) => new::run(arguments),
         None => posting::run(&arguments.post),
     };
     match done {

@@ -12,12 +12,12 @@ use post_host::{
 };
 use post_plugin::Units;
 
-use crate::arguments::{self, PostArguments};
+use crate::arguments;
 
-/// The finder for a run.
-pub fn finder(arguments: &PostArguments) -> Result<Finder, Vec<Diagnostic>> {
-    let folders = arguments::folders(&arguments.plugins, "POST_PLUGINS");
-    missing(&arguments.plugins)?;
+/// The finder for a run, with the folders that the user `named`.
+pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
+    let folders = arguments::folders(named, "POST_PLUGINS");
+    missing(named)?;
     let linked = [
         post_fanuc::plugin(),
         post_heidenhain::plugin(),

@@ -19,7 +19,7 @@ use crate::{machines, plugins, render, summary};
 pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
     let input_path = arguments.input.as_deref().unwrap_or(standard());
     let machine = machines::load(arguments)?;
-    let finder = plugins::finder(arguments)?;
+    let finder = plugins::finder(&arguments.plugins)?;
     let program = program_name(input_path, arguments.output.as_deref());
     let (mut dialect, dialect_use) = plugins::dialect(&finder, &machine, &program)?;
     let (mut model, model_use) = plugins::model(&finder, &machine)?;
@@ -76,11 +76,11 @@ pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
     Ok(())
 }
 
-fn create(path: &Path) -> Result<Whole, Vec<Diagnostic>> {
+pub fn create(path: &Path) -> Result<Whole, Vec<Diagnostic>> {
     Whole::create(Target::of(path)).map_err(|error| fault_at(path, &error))
 }
 
-fn fault_at(path: &Path, error: &io::Error) -> Vec<Diagnostic> {
+pub fn fault_at(path: &Path, error: &io::Error) -> Vec<Diagnostic> {
     if path == standard() {
         return one("output", format!("standard output: {error}"));
     }

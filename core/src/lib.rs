@@ -3,9 +3,11 @@
 //! A record of the CL file takes one way through, never back:
 //! [`program`] settles what is meant, [`kinematics`] finds the axis values, [`accuracy`] puts points in and
 //! proves the deviation, [`feed`] says how fast, and the events go to a dialect. [`Post`] joins them.
+//! [`check`] derives from a machine what its builder can compare.
 //! There is no input or output here, no unsafe code and no dialect's name.
 
 pub mod accuracy;
+pub mod check;
 pub mod diagnostic;
 pub mod feed;
 pub mod kinematics;

@@ -841,6 +841,6 @@ fn faults_say_where_and_what() {
     let fault = parse_record("GOTO/1,2").unwrap_err();
     assert_eq!(
         fault.to_string(),
-        "line 1: GOTO takes 3 or 6 numbers, 2 are given (expected GOTO/x,y,z or GOTO/x,y,z,i,j,k)"
+        "line 1: GOTO takes 3 or 6 numbers, 2 are given (expected GOTO/x,y,z, GOTO/x,y,z,i,j,k or, with the direction of an edge, GOTO/x,y,z,i,j,k,u,v,w)"
     );
 }

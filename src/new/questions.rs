@@ -1,0 +1,156 @@
+//! The few questions of `post new`: on a terminal, or answered through a pipe.
+
+use std::io::{self, BufRead, Write as _};
+
+use clap::ValueEnum;
+use post_core::diagnostic::Diagnostic;
+
+use super::template::Class;
+use super::{Given, NewArguments, Wishes, dialect, range};
+use crate::arguments::finite;
+use crate::input::one;
+
+/// How often a wrong answer is asked again.
+const PATIENCE: usize = 3;
+
+/// Asks for what no flag says. An empty answer, or the end of the input, takes what stands in brackets; only the
+/// class must be said.
+pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Vec<Diagnostic>> {
+    let classes: Vec<String> = Class::value_variants()
+        .iter()
+        .map(|class| class.name())
+        .collect();
+    tell("How do the rotary axes stand?\n");
+    for class in Class::value_variants() {
+        let help = class.to_possible_value();
+        let help = help.as_ref().and_then(|value| value.get_help());
+        let help = help.map_or_else(String::new, ToString::to_string);
+        tell(&format!("  {:<22}{help}\n", class.name()));
+    }
+    wishes.class = question("class", "", |answer| {
+        if answer.is_empty() {
+            return Err(format!("one of {}", classes.join(", ")));
+        }
+        Class::from_str(answer, true)
+    })?
+    .ok_or_else(|| {
+        vec![
+            Diagnostic::error("new", "nobody says what class the machine is of")
+                .help(format!("--class {}", classes.join("|"))),
+        ]
+    })?;
+    if arguments.dialect.is_none() {
+        let usual = wishes.dialect.clone();
+        let said = question(
+            "dialect of the control: fanuc, heidenhain, linuxcnc",
+            &usual,
+            dialect,
+        )?;
+        wishes.dialect = said.unwrap_or(usual);
+    }
+    if wishes.class.turns() && arguments.tcp.is_none() {
+        let said = question(
+            "who keeps the tip on its path: post or control",
+            wishes.tcp,
+            |answer| match answer.to_ascii_lowercase().as_str() {
+                "post" => Ok("post"),
+                "control" => Ok("control"),
+                _ => Err("post or control".to_owned()),
+            },
+        )?;
+        wishes.tcp = said.unwrap_or(wishes.tcp);
+    }
+    if arguments.gauge.is_none() {
+        wishes.gauge = length(
+            "gauge line over the table's face, all axes at zero, mm",
+            wishes.gauge,
+        )?;
+    }
+    if wishes.class.has_pivot() && arguments.pivot.is_none() {
+        wishes.pivot = length(
+            "swivel axis of the head to the gauge line, mm",
+            wishes.pivot,
+        )?;
+    }
+    if wishes.class.has_tilt() && arguments.tilt.is_none() {
+        wishes.tilt = length(
+            "tilting axis over the table's face (below is negative), mm",
+            wishes.tilt,
+        )?;
+    }
+    for axis in wishes.class.axes() {
+        let said = |given: &Given<[f64; 2]>| given.axis == axis;
+        if wishes.travel.iter().any(said) || wishes.cyclic.iter().any(|name| name == axis) {
+            continue;
+        }
+        let rotary = !matches!(axis, "X" | "Y" | "Z");
+        let usual = match wishes.class.usual_travel(axis, wishes.gauge) {
+            Some([least, most]) => format!("{least}:{most}"),
+            None => "endless".to_owned(),
+        };
+        let what = match rotary {
+            true => format!("travel of {axis}, degrees, or endless"),
+            false => format!("travel of {axis}, mm"),
+        };
+        let travel = question(&what, &usual, |answer| match answer {
+            "endless" if rotary => Ok(None),
+            travel => range(travel).map(Some),
+        })?;
+        match travel.flatten() {
+            Some(value) => wishes.travel.push(Given {
+                axis: axis.to_owned(),
+                value,
+            }),
+            None if rotary => wishes.cyclic.push(axis.to_owned()),
+            None => {}
+        }
+    }
+    Ok(())
+}
+
+fn length(what: &str, usual: f64) -> Result<f64, Vec<Diagnostic>> {
+    Ok(question(what, &usual.to_string(), finite)?.unwrap_or(usual))
+}
+
+/// Asks until the answer can be read; an empty one is `usual`. None at the end of the input.
+fn question<T>(
+    what: &str,
+    usual: &str,
+    read: impl Fn(&str) -> Result<T, String>,
+) -> Result<Option<T>, Vec<Diagnostic>> {
+    let mut fault = String::new();
+    for _ in 0..PATIENCE {
+        tell(&match usual {
+            "" => format!("{what}: "),
+            usual => format!("{what} [{usual}]: "),
+        });
+        let mut answer = String::new();
+        let length = io::stdin()
+            .lock()
+            .read_line(&mut answer)
+            .map_err(|error| one("new", format!("standard input: {error}")))?;
+        let ended = length == 0;
+        let answer = match answer.trim() {
+            "" => usual,
+            answer => answer,
+        };
+        if ended && usual.is_empty() {
+            return Ok(None);
+        }
+        match read(answer) {
+            Ok(value) => return Ok(Some(value)),
+            Err(message) => {
+                tell(&format!("{message}\n"));
+                fault = message;
+            }
+        }
+    }
+    Err(one("new", format!("{what}: {fault}")))
+}
+
+/// Questions go to standard error: standard output is for results.
+fn tell(text: &str) {
+    let mut stderr = io::stderr().lock();
+    let _ = stderr.write_all(text.as_bytes());
+    let _ = stderr.flush();
+}

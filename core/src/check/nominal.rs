@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::pointing::Reading;
 use crate::kinematics::orientation::angle;
-use crate::kinematics::{Chain, Joints, Solver};
+use crate::kinematics::{Chain, Joints, Pose, Solver};
 use crate::machine::{Axis, Machine};
 
 /// Settings of each rotary axis on the first grid.

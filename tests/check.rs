@@ -377,7 +377,7 @@ fn json_on_standard_output_is_alone_there() {
 
 // Measured against nominal.
 
-const MEASURED: &str = "tests/machines/measured.toml";
+const MEASURED: &str = "tests/measured/measured.toml";
 
 fn compare(arguments: &[&str]) -> Value {
     let mut all = vec!["ac-trunnion", "--nominal", "ac-trunnion"];
@@ -452,7 +452,7 @@ fn an_indexed_table_is_compared_over_its_travel() {
 #[test]
 fn a_measured_head_is_compared() {
     let (compared, _) = check(&[
-        "tests/machines/measured-head.toml",
+        "tests/measured/measured-head.toml",
         "--nominal",
         "head-head",
         "--tool-length",
@@ -482,7 +482,7 @@ fn machines_with_other_axes_are_not_compared() {
     assert!(run.err.contains("error[check-nominal]"), "{}", run.err);
 }
 
-/// The machine of `tests/machines/measured.toml`, from its numbers and by isometries alone: where the tip stands
+/// The machine of `tests/measured/measured.toml`, from its numbers and by isometries alone: where the tip stands
 /// at the words of a program.
 struct Measured {
     length: f64,
@@ -869,7 +869,7 @@ fn the_checks_are_those_that_were_reviewed() {
 
 #[test]
 fn the_files_for_tests_are_machines() {
-    for entry in fs::read_dir(root().join("tests/machines")).unwrap() {
+    for entry in fs::read_dir(root().join("tests/measured")).unwrap() {
         let path = entry.unwrap().path();
         let run = post(&["check", path.to_str().unwrap()]);
         assert_eq!(run.code, 0, "{}: {}", path.display(), run.err);

@@ -69,6 +69,9 @@ pub enum Stuck {
 /// The shortest piece, as a share of its move.
 const SHORTEST: f64 = 1.0 / (1u64 << 22) as f64;
 
+/// Points put in may use so much of the tool axis' tolerance.
+const ROOM: f64 = 0.75;
+
 /// Between samples the certificate may be blind by this share of the tolerance.
 const BLIND: f64 = 0.02;
 
@@ -350,12 +353,17 @@ fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
     if straight || !placer.solver().closed_form() {
         return exact;
     }
-    if bound.axis <= piece.tolerances.axis {
-        return placer.settled(target, t, &halfway);
+    // A point that is off by all of the tolerance leaves nothing to the pieces beside it.
+    let room = ROOM * piece.tolerances.axis;
+    if bound.axis <= piece.tolerances.axis
+        && let Ok(node) = placer.settled(target, t, &halfway)
+        && node.axis_error <= room
+    {
+        return Ok(node);
     }
     // A pole joint is turned evenly, the others keep the tool axis as well as they can.
     match placer.place_halfway(target, t, first, last) {
-        Some(node) if node.axis_error < piece.tolerances.axis => Ok(node),
+        Some(node) if node.axis_error <= room => Ok(node),
         _ => exact,
     }
 }

@@ -88,6 +88,10 @@ pub struct Solver {
 
 /// The way to the solution.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one a machine, and a box would cost every point"
+)]
 enum Form {
     Closed {
         orientation: Orientation,

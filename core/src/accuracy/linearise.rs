@@ -110,12 +110,12 @@ impl Move<'_> {
     pub fn whole(&self) -> Option<Bound> {
         // An upper bound on the sweep is enough here, and cheaper than the angle.
         let (from, to) = (&self.from.target, &self.to.target);
-        let sweep = chord_angle(
-            (from.axis - to.axis)
-                .norm()
-                .max((from.edge - to.edge).norm()),
-        );
         let chain = self.placer.solver().chain();
+        let mut sweep = (from.axis - to.axis).norm();
+        if chain.edge().is_some() {
+            sweep = sweep.max((from.edge - to.edge).norm());
+        }
+        let sweep = chord_angle(sweep);
         let bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
         let bound = self.bound(bend);
         self.tolerances.hold(bound).then_some(bound)

@@ -99,6 +99,13 @@ fn turn_askew(vector: Vector3<f64>, k: Vector3<f64>, sine: f64, cosine: f64) -> 
 }
 
 impl Turns {
+    /// Puts sine and cosine of joint `index`.
+    #[inline]
+    pub(super) fn set(&mut self, index: usize, sine: f64, cosine: f64) {
+        self.sines[index] = sine;
+        self.cosines[index] = cosine;
+    }
+
     /// Sine and cosine of joint `index`.
     #[inline]
     pub(crate) fn of(&self, index: usize) -> (f64, f64) {

@@ -182,7 +182,7 @@ impl Solver {
     pub fn angles(&self, branches: &Branches, index: usize) -> RotarySet {
         let mut set = RotarySet {
             joints: self.held,
-            free: 0,
+            ..RotarySet::default()
         };
         if let Form::Closed {
             orientation, idle, ..
@@ -192,6 +192,15 @@ impl Solver {
             orientation.angles(branches, index, &mut set);
         }
         set
+    }
+
+    /// Sines and cosines of a set whose free joints were put where they are.
+    #[inline]
+    pub fn turns(&self, set: &RotarySet) -> Turns {
+        match set.turns {
+            Some(turns) if set.free == 0 => turns,
+            _ => self.chain.turns(&set.joints),
+        }
     }
 
     /// The free joint nearest to the tool.

@@ -9,7 +9,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::chain::{Chain, Joints, Pose, turn};
+use super::chain::{Chain, Joints, Pose, Turns, turn};
 use super::inverse::{NoClosedForm, POLE, Unreachable};
 
 /// The one or two ways to point the tool along one axis. Their angles are worked out when asked for: where
@@ -40,6 +40,8 @@ pub struct RotarySet {
     /// Joints whose angle is free here (on the pole, or an axis along the tool), one bit each: they keep
     /// their last value.
     pub free: u8,
+    /// Sines and cosines of the angles, if they came with them.
+    pub(super) turns: Option<Turns>,
 }
 
 impl RotarySet {
@@ -94,6 +96,10 @@ pub(super) struct Two {
     /// The part of a across k2, and k2 × that, in the coordinates k1, `towards`, `aside`.
     across: Vector3<f64>,
     ahead: Vector3<f64>,
+    /// One over the square of the part of a across k2.
+    per_square: f64,
+    /// Sines and cosines of the held joints.
+    held: Turns,
     third: Option<Third>,
 }
 
@@ -200,7 +206,8 @@ impl Orientation {
                     };
                     return Ok((one, 1 << second));
                 }
-                let two = Two::new([first, second], in_front(first), k1, k2, a)?;
+                let mut two = Two::new([first, second], in_front(first), k1, k2, a)?;
+                two.held = turns;
                 Ok((Self::Two(Box::new(two)), 0))
             }
             [first, second, third] if chain.edge().is_some() => {
@@ -351,6 +358,8 @@ impl Two {
             dot: k1.dot(&k2),
             per_sine: 1.0 / sine_squared.sqrt(),
             cone: k2.dot(&a),
+            per_square: 1.0 / across.norm_squared(),
+            held: Turns::default(),
             third: None,
         })
     }
@@ -420,12 +429,22 @@ impl Two {
         let y = if index == 0 { *y } else { -y };
         let z = Vector3::new(u.x, *x, y);
         // k2 takes a, which lies along `across`, into z; k1 takes z into u, seen along k1.
-        let turn = libm::atan2(self.ahead.dot(&z), self.across.dot(&z));
+        let (sine, cosine) = (self.ahead.dot(&z), self.across.dot(&z));
+        let turn = libm::atan2(sine, cosine);
         set.joints[second] = turn;
         if branches.pole {
             set.free |= 1 << first;
         } else {
-            set.joints[first] = libm::atan2(x * u.z - y * u.y, x * u.y + y * u.z);
+            let (first_sine, first_cosine) = (x * u.z - y * u.y, x * u.y + y * u.z);
+            set.joints[first] = libm::atan2(first_sine, first_cosine);
+            if self.third.is_none() {
+                // Of vectors whose lengths are known: the turns need no further sines and cosines.
+                let mut turns = self.held;
+                turns.set(second, sine * self.per_square, cosine * self.per_square);
+                let per_square = 1.0 / (x * x + y * y);
+                turns.set(first, first_sine * per_square, first_cosine * per_square);
+                set.turns = Some(turns);
+            }
         }
         if let Some(third) = &self.third {
             set.joints[third.joint] =

@@ -249,9 +249,13 @@ impl Builder<'_> {
         let tolerance = positive(self, "tolerance", &accuracy.tolerance, 0.005);
         let axis_tolerance = positive(self, "axis_tolerance", &accuracy.axis_tolerance, 0.05);
         let rapid_tolerance = positive(self, "rapid_tolerance", &accuracy.rapid_tolerance, 0.5);
+        let stages = axes.iter().any(|axis| axis.range.is_some()) || !solution.exclusive.is_empty();
+        let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
         let machine = Machine {
             clamps,
+            indexes,
+            stages,
             name: file.name.get_ref().clone(),
             axes,
             mount,

@@ -25,9 +25,9 @@ const LONGEST: f64 = 2.9;
 
 /// A move on its way to the dialect.
 #[derive(Clone, Copy, Debug)]
-struct Leg {
+struct Leg<'m> {
     line: u64,
-    motion: Motion,
+    motion: &'m Motion,
     /// Off the part: the tolerance of a rapid is enough.
     loose: bool,
     setting: usize,
@@ -39,7 +39,7 @@ impl Path<'_> {
     pub(super) fn carry_out(&mut self, chosen: &Chosen) {
         let leg = Leg {
             line: chosen.line,
-            motion: chosen.motion,
+            motion: &chosen.motion,
             loose: chosen.motion.pace == Pace::Rapid,
             setting: chosen.setting,
         };
@@ -54,8 +54,8 @@ impl Path<'_> {
     }
 
     #[inline]
-    fn travel(&mut self, leg: &Leg, joints: &Joints) {
-        let target = pose(&leg.motion);
+    fn travel(&mut self, leg: &Leg<'_>, joints: &Joints) {
+        let target = pose(leg.motion);
         let mut node = self.spare.take().unwrap_or_default();
         let placer = self.route.placer(leg.setting);
         if let Err(refused) = placer.settle(&mut node, target, 1.0, joints) {
@@ -80,7 +80,7 @@ impl Path<'_> {
         }
         match self.last.take() {
             None => self.first(leg, &node),
-            Some(last) if self.indexes(&last, &node) => {
+            Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
                 // An index axis turns with the tool at the reference, not somewhere over the part.
                 self.push(leg.line, Event::Release);
                 self.push(leg.line, Event::Home);
@@ -95,7 +95,7 @@ impl Path<'_> {
     }
 
     /// The first position after the start or a tool change.
-    fn first(&mut self, leg: &Leg, node: &Node) {
+    fn first(&mut self, leg: &Leg<'_>, node: &Node) {
         let line = leg.line;
         let none = node.trace.joints;
         let feed = match leg.motion.pace {
@@ -139,7 +139,7 @@ impl Path<'_> {
 
     /// A move from where the tool stands to `node`; gives the node that it left.
     #[inline]
-    fn go(&mut self, leg: &Leg, mut last: Box<Node>, node: &mut Node) -> Box<Node> {
+    fn go(&mut self, leg: &Leg<'_>, mut last: Box<Node>, node: &mut Node) -> Box<Node> {
         if leg.loose && self.on_part {
             // The tool leaves the part as it stands, and turns when it is away.
             let placer = self.route.placer(leg.setting);
@@ -150,7 +150,7 @@ impl Path<'_> {
                 *last = stay;
             }
         }
-        if self.special(&last, node) {
+        if self.machine.stages && self.special(&last, node) {
             self.by_stages(leg, &last, node);
         } else {
             self.cut(leg, &last, node);
@@ -190,7 +190,7 @@ impl Path<'_> {
                 .any(|group| group.iter().filter(|joint| way(**joint) > EQUAL).count() > 1)
     }
 
-    fn by_stages(&mut self, leg: &Leg, from: &Node, to: &Node) {
+    fn by_stages(&mut self, leg: &Leg<'_>, from: &Node, to: &Node) {
         let (first, last) = (from.trace.joints, to.trace.joints);
         let way = |joint: usize| (last[joint] - first[joint]).abs();
         let mut at = *from;
@@ -255,7 +255,7 @@ impl Path<'_> {
     }
 
     /// A stop on the way of a move that is made in stages.
-    fn stage(&mut self, leg: &Leg, at: &mut Node, target: Pose, t: f64, joints: &Joints) {
+    fn stage(&mut self, leg: &Leg<'_>, at: &mut Node, target: Pose, t: f64, joints: &Joints) {
         let settled = self.route.placer(leg.setting).settled(target, t, joints);
         match settled {
             Ok(node) => {
@@ -267,32 +267,33 @@ impl Path<'_> {
     }
 
     /// Draws the tool back along its axis, turns it to `joints`, and brings it back.
-    fn rewind(&mut self, leg: &Leg, joints: &Joints) {
+    fn rewind(&mut self, leg: &Leg<'_>, joints: &Joints) {
         let (Some(rewind), Some(last)) = (self.machine.rewind, self.last.take()) else {
             return;
         };
         self.tally.rewinds += 1;
-        let away = retracted(&rewind, &leg.motion).unwrap_or(leg.motion);
+        let away = retracted(&rewind, leg.motion).unwrap_or(*leg.motion);
         let pace = |feed: Option<f64>| feed.map_or(Pace::Rapid, Pace::PerMinute);
         let back = rewind.plunge_feed.map_or(leg.motion.pace, Pace::PerMinute);
         let stops = [
             (away, pace(rewind.retract_feed), last.trace.joints, true),
             (away, pace(rewind.turn_feed), *joints, true),
-            (leg.motion, back, *joints, false),
+            (*leg.motion, back, *joints, false),
         ];
         let mut at = last;
         for (motion, pace, joints, loose) in stops {
+            let motion = Motion {
+                pace,
+                chord: 0.0,
+                ..motion
+            };
             let leg = Leg {
-                motion: Motion {
-                    pace,
-                    chord: 0.0,
-                    ..motion
-                },
+                motion: &motion,
                 loose: loose || pace == Pace::Rapid,
                 ..*leg
             };
             let placer = self.route.placer(leg.setting);
-            match placer.settled(pose(&leg.motion), 1.0, &joints) {
+            match placer.settled(pose(leg.motion), 1.0, &joints) {
                 Ok(mut node) => {
                     self.on_part = false;
                     self.go(&leg, at, &mut node);
@@ -310,9 +311,9 @@ impl Path<'_> {
 
     /// A straight move, cut into pieces where it strays.
     #[inline]
-    fn cut(&mut self, leg: &Leg, last: &Node, node: &Node) {
+    fn cut(&mut self, leg: &Leg<'_>, last: &Node, node: &Node) {
         let placer = self.route.placer(leg.setting);
-        let whole = planned(self.machine, placer, &leg.motion, leg.loose, last, node).whole();
+        let whole = planned(self.machine, placer, leg.motion, leg.loose, last, node).whole();
         match whole {
             Some(bound) => self.piece(leg, last, node, 1.0, bound),
             None => self.split(leg, last, node),
@@ -320,10 +321,10 @@ impl Path<'_> {
     }
 
     /// A move that needs points.
-    fn split(&mut self, leg: &Leg, last: &Node, node: &Node) {
+    fn split(&mut self, leg: &Leg<'_>, last: &Node, node: &Node) {
         let mut linearise = std::mem::take(&mut self.linearise);
         let (machine, placer) = (self.machine, self.route.placer(leg.setting));
-        let planned = planned(machine, placer, &leg.motion, leg.loose, last, node);
+        let planned = planned(machine, placer, leg.motion, leg.loose, last, node);
         match linearise.split(&planned, self.model) {
             Ok(()) => {
                 let mut from = *last;
@@ -336,7 +337,7 @@ impl Path<'_> {
                 }
             }
             Err(stuck) => {
-                let finding = refusal::stuck(self.machine, &stuck, &leg.motion);
+                let finding = refusal::stuck(self.machine, &stuck, leg.motion);
                 self.find(leg.line, finding);
             }
         }
@@ -345,7 +346,7 @@ impl Path<'_> {
 
     /// One block, a `share` of its move.
     #[inline]
-    fn piece(&mut self, leg: &Leg, from: &Node, to: &Node, share: f64, bound: Bound) {
+    fn piece(&mut self, leg: &Leg<'_>, from: &Node, to: &Node, share: f64, bound: Bound) {
         // A block without a changed word moves nothing and is not written.
         if from.words == to.words {
             return;
@@ -378,7 +379,7 @@ impl Path<'_> {
     }
 
     /// Lets go the axes that this block moves, and clamps the others before the tool cuts.
-    fn clamp(&mut self, leg: &Leg, from: &Node, to: &Node) {
+    fn clamp(&mut self, leg: &Leg<'_>, from: &Node, to: &Node) {
         for joint in 0..self.machine.axes.len() {
             let moves = from.trace.joints[joint] != to.trace.joints[joint];
             if moves {
@@ -404,7 +405,7 @@ impl Path<'_> {
 
     /// Keeps the largest deviations: the cheap bound decides whether a block can hold one, the tight one is kept.
     #[inline]
-    fn mark(&mut self, leg: &Leg, from: &Node, to: &Node, bound: Bound) {
+    fn mark(&mut self, leg: &Leg<'_>, from: &Node, to: &Node, bound: Bound) {
         let chord = leg.motion.chord;
         let values = |bound: Bound| [bound.tip + chord, bound.axis, bound.tip + chord];
         let slots: &[usize] = if leg.loose { &[RAPID] } else { &[TIP, AXIS] };
@@ -416,7 +417,7 @@ impl Path<'_> {
             return;
         }
         let placer: &Placer = self.route.placer(leg.setting);
-        let tight = planned(self.machine, placer, &leg.motion, leg.loose, from, to).measured();
+        let tight = planned(self.machine, placer, leg.motion, leg.loose, from, to).measured();
         let tight = values(Bound {
             tip: bound.tip.min(tight.tip),
             axis: bound.axis.min(tight.axis),

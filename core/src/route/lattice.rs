@@ -3,6 +3,7 @@
 //! them is known at every point.
 
 use crate::accuracy::Placer;
+use crate::kinematics::orientation::Branches;
 use crate::kinematics::{Joints, Pose, Unreachable};
 use crate::machine::{Machine, Pole};
 use crate::program::{Motion, Pace};
@@ -61,6 +62,38 @@ const SHARE: f64 = 0.75;
 
 /// A tie is decided by order: costs differ if they differ by more than this share.
 const EQUAL: f64 = 1e-9;
+
+/// What the states at a point can go on to.
+struct Ways {
+    /// Branches that have a state.
+    alive: [bool; 2],
+    /// Of the point before.
+    latitude: (f64, f64),
+    /// So far the tool axis can get on the way, radians.
+    reach: f64,
+}
+
+impl Ways {
+    /// Does the way lead past where the branches meet? Only if both its ends are close enough to there. Else each
+    /// branch goes on by itself; there it has to be tried.
+    #[inline]
+    fn meet(&self, axes: &Axes, latitude: (f64, f64)) -> bool {
+        !axes.far(self.latitude, self.reach)
+            && !axes.far(latitude, self.reach)
+            && axes.margin(self.latitude) + axes.margin(latitude) <= self.reach
+    }
+
+    /// Branches that are worth being worked out.
+    #[inline]
+    fn going(&self, axes: &Axes, branches: &Branches) -> [bool; 2] {
+        if self.alive == [true; 2] || branches.count() == 1 || self.meet(axes, branches.latitude())
+        {
+            [true; 2]
+        } else {
+            self.alive
+        }
+    }
+}
 
 /// A cut from one of two states to another: does the machine come through, within tolerance?
 pub(crate) trait Judge {
@@ -149,9 +182,11 @@ impl Lattice {
             .clone()
             .and_then(|range| self.states.get(range.start))
             .map_or(*near, |state| state.joints);
+        let ways = self.ways(&target, kind);
+        let going = |branches: &Branches| ways.going(&self.axes, branches);
         let found = self
             .axes
-            .stands(placer.solver(), &target, &last, &mut stands);
+            .stands(placer.solver(), &target, &last, &going, &mut stands);
         let found = match found {
             Ok(found) => found,
             Err(unreachable) => {
@@ -180,7 +215,7 @@ impl Lattice {
                 Kind::Rapid => self.turn(&stands, range),
                 Kind::Cut => {
                     if placer.solver().closed_form() {
-                        self.go_on(placer, motion, &stands, &found, range, judge);
+                        self.go_on(placer, motion, &stands, &ways, &found, range, judge);
                     } else {
                         self.search_on(placer, &target, range);
                     }
@@ -199,6 +234,31 @@ impl Lattice {
             latitude: found.latitude,
         });
         Ok(found)
+    }
+
+    /// What the states of the newest layer can go on to.
+    #[inline]
+    fn ways(&self, target: &Pose, kind: Kind) -> Ways {
+        let mut ways = Ways {
+            alive: [true; 2],
+            latitude: (0.0, 0.0),
+            reach: f64::INFINITY,
+        };
+        let Some(last) = self.layers.last().filter(|_| kind == Kind::Cut) else {
+            return ways;
+        };
+        ways.alive = [false; 2];
+        for state in &self.states[last.first..last.first + last.count] {
+            match ways.alive.get_mut(usize::from(state.branch)) {
+                Some(alive) => *alive = true,
+                // From a held joint every branch can be gone to.
+                None => ways.alive = [true; 2],
+            }
+        }
+        ways.latitude = last.latitude;
+        // The chord is a little less than the arc; small sweeps are all that counts here.
+        ways.reach = 1.1 * (last.motion.axis - target.axis).norm() + 2.0 * self.freedom;
+        ways
     }
 
     /// A state, unless there is one like it that is no dearer.
@@ -340,6 +400,7 @@ impl Lattice {
         placer: &Placer,
         motion: &Motion,
         stands: &[Stand],
+        ways: &Ways,
         found: &Found,
         before: std::ops::Range<usize>,
         judge: &mut dyn Judge,
@@ -349,16 +410,8 @@ impl Lattice {
             return;
         };
         let from_pose = pose(&last.motion);
-        let latitude = last.latitude;
         let target = pose(motion);
-        // The chord is a little less than the arc; small sweeps are all that counts here.
-        let way = 1.1 * (from_pose.axis - target.axis).norm();
-        // The way leads past where the branches meet only if both ends are close enough to there. Else each
-        // branch goes on by itself; there it has to be tried.
-        let meet = !self.axes.far(latitude, way + 2.0 * self.freedom)
-            && !self.axes.far(found.latitude, way + 2.0 * self.freedom)
-            && self.axes.margin(latitude) + self.axes.margin(found.latitude)
-                <= way + 2.0 * self.freedom;
+        let meet = ways.meet(&self.axes, found.latitude);
         for index in before {
             let state = self.states[index];
             if state.cost == f64::INFINITY {

@@ -2,7 +2,7 @@
 
 use super::Route;
 use super::lattice::{Kind, State, pose};
-use super::stand::Found;
+use super::stand::{Found, both};
 use crate::accuracy::Refused;
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::{Joints, Unreachable};
@@ -198,7 +198,7 @@ impl Route<'_> {
             }
             stands.clear();
             let axes = &self.lattice.axes;
-            let found = axes.stands(placer.solver(), &target, &state.joints, &mut stands);
+            let found = axes.stands(placer.solver(), &target, &state.joints, &both, &mut stands);
             if found.is_err() {
                 continue;
             }
@@ -256,7 +256,7 @@ impl Route<'_> {
         };
         let mut stands = Vec::new();
         let axes = &self.lattice.axes;
-        let solved = axes.stands(placer.solver(), &target, &from.joints, &mut stands);
+        let solved = axes.stands(placer.solver(), &target, &from.joints, &both, &mut stands);
         if solved.is_err() || stands.is_empty() {
             return self.over_travel(found);
         }

@@ -67,6 +67,7 @@ pub(crate) struct Route<'a> {
     rewound: Vec<Joints>,
     judge: Trial<'a>,
     chosen: Vec<Chosen>,
+    way: settle::Way,
 }
 
 /// Tries whether a cut comes through, by cutting it into pieces.
@@ -150,6 +151,7 @@ impl<'a> Route<'a> {
                 linearise: Linearise::new(false),
             },
             chosen: Vec::new(),
+            way: settle::Way::default(),
         })
     }
 

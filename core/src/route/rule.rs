@@ -63,6 +63,14 @@ impl Measure {
 
     #[inline]
     fn weigh(&self, from: &Joints, to: &Joints, linear: bool) -> f64 {
+        if linear && self.rule == Rule::Time {
+            // Unused places cost nothing.
+            let mut time = 0.0;
+            for index in 0..MAX_AXES {
+                time += (to[index] - from[index]).abs() * self.slowness[index];
+            }
+            return time;
+        }
         let mut time = 0.0;
         let (mut squares, mut largest): (f64, f64) = (0.0, 0.0);
         for index in 0..self.count {
@@ -95,6 +103,9 @@ impl Measure {
     /// What standing here costs.
     #[inline]
     pub(crate) fn standing(&self, joints: &Joints) -> f64 {
+        if self.prefer.is_empty() {
+            return 0.0;
+        }
         let mut cost = 0.0;
         for (place, side) in &self.prefer {
             if wrong_side(joints[*place] + self.zero[*place], *side) {

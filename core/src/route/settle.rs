@@ -13,11 +13,23 @@ const WORTH: f64 = 0.087_266_462_599_716_48;
 /// Values that differ by less are the same, radians.
 const SAME: f64 = 1e-9;
 
-/// One point of the way that was walked back.
-struct Stop {
-    layer: usize,
-    state: State,
-    joints: Joints,
+/// The way that was walked back.
+#[derive(Debug, Default)]
+pub(super) struct Way {
+    /// Of each layer the state that it goes through.
+    states: Vec<usize>,
+    /// Layers where the axes are eased, in order, and where they stand there.
+    eased: Vec<(usize, Joints)>,
+}
+
+impl Way {
+    /// Where the axes stand at a layer.
+    fn joints(&self, lattice: &Lattice, layer: usize) -> Joints {
+        match self.eased.binary_search_by_key(&layer, |(layer, _)| *layer) {
+            Ok(place) => self.eased[place].1,
+            Err(_) => lattice.states[self.states[layer]].joints,
+        }
+    }
 }
 
 impl Route<'_> {
@@ -37,7 +49,11 @@ impl Route<'_> {
         let waiting = layers.len() - usize::from(self.anchored);
         let look_ahead = self.machine.solution.look_ahead;
         if layer.count == 1 && !self.eased(layer.latitude.0) {
-            self.settle_all();
+            if self.anchored && layers.len() == 2 {
+                self.settle_only();
+            } else {
+                self.settle_all();
+            }
         } else if waiting >= look_ahead {
             let last = layers.len() - 1;
             self.settle(if self.mark > 0 { self.mark } else { last });
@@ -45,6 +61,42 @@ impl Route<'_> {
         } else if self.mark == 0 && 2 * waiting >= look_ahead {
             self.set_mark();
         }
+    }
+
+    /// Settles the only point that waits, which has one state.
+    #[inline]
+    fn settle_only(&mut self) {
+        let lattice = &mut self.lattice;
+        let at = &lattice.layers[1];
+        let (before, state) = (lattice.states[at.first].from, lattice.states[at.first]);
+        let before = lattice.states[before];
+        if before.rewind.is_some() || state.rewind.is_some() {
+            self.settle_all();
+            return;
+        }
+        self.chosen.push(Chosen {
+            line: at.line,
+            motion: at.motion,
+            setting: at.setting,
+            arrives: true,
+            joints: state.joints,
+            rewind: None,
+            changed: lattice.has_changed(
+                (before.branch, &before.joints),
+                (state.branch, &state.joints),
+            ),
+            eased: state.branch == HELD,
+        });
+        lattice.layers.swap_remove(0);
+        lattice.layers[0].first = 0;
+        lattice.states.clear();
+        lattice.states.push(State {
+            cost: 0.0,
+            from: 0,
+            root: 0,
+            ..state
+        });
+        self.mark = 0;
     }
 
     /// From here on every state knows which state of the newest layer it comes from.
@@ -62,149 +114,147 @@ impl Route<'_> {
         sine * WORTH < self.lattice.freedom || sine <= self.lattice.cone
     }
 
-    /// Settles the points up to `upto`, the best way to the newest point decides.
+    /// Settles the points up to `upto`; the best way to the newest point decides.
     fn settle(&mut self, upto: usize) {
         let Some(best) = self.lattice.best() else {
             return;
         };
-        let begin = usize::from(self.anchored);
-        if self.lattice.layers.len() <= begin {
+        let count = self.lattice.layers.len();
+        if count <= usize::from(self.anchored) {
             return;
         }
-        let mut stops: Vec<Stop> = Vec::with_capacity(self.lattice.layers.len());
-        let mut index = best;
-        for layer in (0..self.lattice.layers.len()).rev() {
-            let state = self.lattice.states[index];
-            stops.push(Stop {
-                layer,
-                state,
-                joints: state.joints,
-            });
-            index = state.from;
+        let mut way = std::mem::take(&mut self.way);
+        way.eased.clear();
+        way.states.clear();
+        way.states.resize(count, best);
+        for layer in (1..count).rev() {
+            way.states[layer - 1] = self.lattice.states[way.states[layer]].from;
         }
-        stops.reverse();
-        self.ease(&mut stops);
-        self.hand_out(&stops[..=upto]);
-        self.drop_before(upto, &stops[upto], best);
+        self.ease(&mut way);
+        self.hand_out(&way, upto);
+        let joints = way.joints(&self.lattice, upto);
+        let branch = self.lattice.states[way.states[upto]].branch;
+        self.drop_before(upto, joints, branch, best);
+        self.way = way;
     }
 
     /// Pulls the pole joint taut wherever the tolerance leaves it room.
-    fn ease(&self, stops: &mut [Stop]) {
+    fn ease(&self, way: &mut Way) {
         let lattice = &self.lattice;
-        let Some(pole) = self.settings[lattice.layers[stops[0].layer].setting]
-            .1
-            .solver()
-            .pole_joint()
-        else {
+        let layers = &lattice.layers;
+        let Some(pole) = self.settings[layers[0].setting].1.solver().pole_joint() else {
             return;
         };
-        let roomy = |stop: &Stop| {
-            stop.state.rewind.is_none() && self.eased(lattice.layers[stop.layer].latitude.0)
+        let state = |way: &Way, layer: usize| lattice.states[way.states[layer]];
+        let roomy = |way: &Way, layer: usize| {
+            self.eased(layers[layer].latitude.0) && state(way, layer).rewind.is_none()
         };
-        let first = usize::from(self.anchored);
-        let mut at = first;
-        while at < stops.len() {
-            if !roomy(&stops[at]) {
+        let mut at = usize::from(self.anchored);
+        while at < layers.len() {
+            if !roomy(way, at) {
                 at += 1;
                 continue;
             }
-            let end = (at..stops.len())
-                .find(|index| !roomy(&stops[*index]))
-                .unwrap_or(stops.len());
+            let end = (at..layers.len())
+                .find(|layer| !roomy(way, *layer))
+                .unwrap_or(layers.len());
             // The point behind the run, if there is one, is where the string must arrive.
             let gates: Vec<Gate> = (at..end)
-                .chain((end < stops.len()).then_some(end))
-                .map(|index| {
-                    let stop = &stops[index];
-                    let layer = &lattice.layers[stop.layer];
-                    Gate {
-                        time: match layer.kind {
-                            Kind::Cut => Some(minutes(lattice, stop.layer)),
-                            Kind::First | Kind::Rapid => None,
-                        },
-                        range: if index < end {
-                            self.room(lattice, stop, pole)
-                        } else {
-                            let value = match stop.state.rewind {
-                                Some(before) => self.rewound[before][pole],
-                                None => stop.joints[pole],
-                            };
-                            [value, value]
-                        },
-                    }
+                .chain((end < layers.len()).then_some(end))
+                .map(|layer| Gate {
+                    time: match layers[layer].kind {
+                        Kind::Cut => Some(minutes(lattice, layer)),
+                        Kind::First | Kind::Rapid => None,
+                    },
+                    range: if layer < end {
+                        self.room(layer, &state(way, layer), pole)
+                    } else {
+                        let state = state(way, layer);
+                        let value = match state.rewind {
+                            Some(before) => self.rewound[before][pole],
+                            None => state.joints[pole],
+                        };
+                        [value, value]
+                    },
                 })
                 .collect();
-            let start = (at > 0).then(|| stops[at - 1].joints[pole]);
-            let values = taut(start.or(Some(self.near[pole])), &gates);
-            for (index, value) in (at..end).zip(values) {
-                self.turn_to(stops, index, pole, value);
+            let start = if at > 0 {
+                way.joints(lattice, at - 1)[pole]
+            } else {
+                self.near[pole]
+            };
+            let values = taut(Some(start), &gates);
+            for (layer, value) in (at..end).zip(values) {
+                if let Some(joints) = self.turned_to(way, layer, pole, value) {
+                    way.eased.push((layer, joints));
+                }
             }
             at = end;
         }
     }
 
     /// What the tolerance leaves the pole joint at a point.
-    fn room(&self, lattice: &Lattice, stop: &Stop, pole: usize) -> [f64; 2] {
-        let [least, most] = lattice.axes.travel(pole);
-        if stop.state.branch == HELD {
+    fn room(&self, layer: usize, state: &State, pole: usize) -> [f64; 2] {
+        let [least, most] = self.lattice.axes.travel(pole);
+        if state.branch == HELD {
             return [least, most];
         }
-        let sine = lattice.layers[stop.layer].latitude.0;
-        let half = lattice.freedom / sine.max(1e-12);
-        let value = stop.joints[pole];
+        let sine = self.lattice.layers[layer].latitude.0;
+        let half = self.lattice.freedom / sine.max(1e-12);
+        let value = state.joints[pole];
         [(value - half).max(least), (value + half).min(most)]
     }
 
-    /// Puts the pole joint of a stop at `value`, the others behind it.
-    fn turn_to(&self, stops: &mut [Stop], index: usize, pole: usize, value: f64) {
-        let before = (index > 0).then(|| stops[index - 1].joints);
-        let stop = &mut stops[index];
-        if (value - stop.joints[pole]).abs() < SAME {
-            return;
+    /// Where the axes stand with the pole joint at `value`; none if it stands there, or the others cannot follow.
+    fn turned_to(&self, way: &Way, layer: usize, pole: usize, value: f64) -> Option<Joints> {
+        let lattice = &self.lattice;
+        let joints = lattice.states[way.states[layer]].joints;
+        if (value - joints[pole]).abs() < SAME {
+            return None;
         }
-        let layer = &self.lattice.layers[stop.layer];
-        let solver = self.settings[layer.setting].1.solver();
-        let mut last = before.unwrap_or(stop.joints);
+        let at = &lattice.layers[layer];
+        let solver = self.settings[at.setting].1.solver();
+        let mut last = match layer {
+            0 => joints,
+            layer => way.joints(lattice, layer - 1),
+        };
         last[pole] = value;
         // The others come as near as they can, on the turns where they are.
-        let held = self.lattice.axes.held(solver, &pose(&layer.motion), &last);
-        if let Some(stand) = held {
-            stop.joints = stand.joints;
-        }
+        let stand = lattice.axes.held(solver, &pose(&at.motion), &last)?;
+        Some(stand.joints)
     }
 
-    fn hand_out(&mut self, stops: &[Stop]) {
-        for (index, stop) in stops.iter().enumerate() {
-            let settled = index == 0 && self.anchored;
-            let before = stop.state.rewind.map(|before| self.rewound[before]);
-            if settled && before.is_none() {
-                continue;
+    fn hand_out(&mut self, way: &Way, upto: usize) {
+        let lattice = &self.lattice;
+        let mut eased = way.eased.iter().peekable();
+        let mut last: Option<(u8, Joints)> = None;
+        for layer in 0..=upto {
+            let state = &lattice.states[way.states[layer]];
+            let turned = eased.next_if(|(place, _)| *place == layer);
+            let joints = turned.map_or(state.joints, |(_, joints)| *joints);
+            let before = state.rewind.map(|before| self.rewound[before]);
+            let settled = layer == 0 && self.anchored;
+            if !settled || before.is_some() {
+                let at = &lattice.layers[layer];
+                self.chosen.push(Chosen {
+                    line: at.line,
+                    motion: at.motion,
+                    setting: at.setting,
+                    arrives: !settled,
+                    joints: before.unwrap_or(joints),
+                    rewind: before.map(|_| joints),
+                    changed: last.is_some_and(|(branch, last)| {
+                        lattice.has_changed((branch, &last), (state.branch, &joints))
+                    }),
+                    eased: turned.is_some() || state.branch == HELD,
+                });
             }
-            let layer = &self.lattice.layers[stop.layer];
-            let last = index.checked_sub(1).map(|last| &stops[last]);
-            self.chosen.push(Chosen {
-                line: layer.line,
-                motion: layer.motion,
-                setting: layer.setting,
-                arrives: !settled,
-                joints: before.unwrap_or(stop.joints),
-                rewind: before.map(|_| stop.joints),
-                changed: last.is_some_and(|last| self.has_changed(last, stop)),
-                eased: stop.joints != stop.state.joints || stop.state.branch == HELD,
-            });
+            last = Some((state.branch, joints));
         }
-    }
-
-    /// Did the path take another branch or another full turn here?
-    fn has_changed(&self, before: &Stop, stop: &Stop) -> bool {
-        let (a, b) = (before.state.branch, stop.state.branch);
-        (a != b && a != HELD && b != HELD)
-            || self.lattice.axes.largest_turn(&before.joints, &stop.joints)
-                > std::f64::consts::PI + SAME
     }
 
     /// Forgets what is settled; what does not come from it is no way any more.
-    fn drop_before(&mut self, upto: usize, stop: &Stop, best: usize) {
+    fn drop_before(&mut self, upto: usize, joints: Joints, branch: u8, best: usize) {
         let lattice = &mut self.lattice;
         let last = lattice.layers.len() - 1;
         let (base, root) = (lattice.states[best].cost, lattice.states[best].root);
@@ -233,10 +283,10 @@ impl Route<'_> {
         lattice.layers[0].count = 1;
         lattice.states[0] = State {
             cost: 0.0,
-            joints: stop.joints,
+            joints,
             from: 0,
             root: 0,
-            branch: stop.state.branch,
+            branch,
             rewind: None,
         };
         self.anchored = true;
@@ -244,6 +294,14 @@ impl Route<'_> {
         if upto == last {
             self.rewound.clear();
         }
+    }
+}
+
+impl Lattice {
+    /// Did the path take another branch or another full turn?
+    fn has_changed(&self, (a, before): (u8, &Joints), (b, after): (u8, &Joints)) -> bool {
+        (a != b && a != HELD && b != HELD)
+            || self.axes.largest_turn(before, after) > std::f64::consts::PI + SAME
     }
 }
 

@@ -1,6 +1,6 @@
 //! The ways to stand at a point: every branch of the inverse on every full turn inside travel.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use super::rule::wrong_side;
 use crate::kinematics::choose::{Limit, OverTravel};
@@ -60,6 +60,11 @@ pub(crate) struct Found {
     pub solutions: usize,
     /// Why the first solution that is no stand is none.
     pub over: Option<OverTravel>,
+}
+
+/// All branches are asked for.
+pub(crate) fn both(_: &Branches) -> [bool; 2] {
+    [true; 2]
 }
 
 /// Linear positions are checked before they are rounded: so far beyond the end is left to the rounding, mm.
@@ -140,7 +145,8 @@ impl Axes {
         cosine < least - way && cosine > most + way
     }
 
-    /// Adds the stands at `pose` to `stands`; `last` is kept by joints that are free there.
+    /// Adds the stands at `pose` to `stands`; `last` is kept by joints that are free there, and `going` says
+    /// which branches are asked for.
     ///
     /// # Errors
     /// Why there is no solution at all.
@@ -150,13 +156,15 @@ impl Axes {
         solver: &Solver,
         pose: &Pose,
         last: &Joints,
+        going: &dyn Fn(&Branches) -> [bool; 2],
         stands: &mut Vec<Stand>,
     ) -> Result<Found, Unreachable> {
         if !solver.closed_form() {
             return self.searched(solver, pose, last, stands);
         }
         let branches = solver.orient(pose, self.axis_tolerance)?;
-        self.branches(solver, pose, &branches, last, stands)
+        let going = going(&branches);
+        self.branches(solver, pose, &branches, last, going, stands)
     }
 
     #[inline]
@@ -166,6 +174,7 @@ impl Axes {
         pose: &Pose,
         branches: &Branches,
         last: &Joints,
+        going: [bool; 2],
         stands: &mut Vec<Stand>,
     ) -> Result<Found, Unreachable> {
         let mut found = Found {
@@ -174,17 +183,19 @@ impl Axes {
             over: None,
         };
         let mut flat = None;
-        for index in 0..branches.count() {
+        for index in (0..branches.count()).filter(|index| going[*index]) {
             let mut set = solver.angles(branches, index);
             if set.free != 0 {
                 set.keep(last);
             }
-            let mut joints = set.joints;
-            if let Err(over) = self.at_rest(&mut joints) {
+            if let Err(over) = self.at_rest(&mut set.joints) {
                 found.over.get_or_insert(over);
                 continue;
             }
-            let turns = solver.chain().turns(&joints);
+            // Where an angle was brought onto a position its sine is not that of the set: a little off, and
+            // the place is settled later.
+            let turns = solver.turns(&set);
+            let mut joints = set.joints;
             if let Err(unreachable) = solver.place(pose.tip, &mut joints, &turns) {
                 flat = Some(unreachable);
                 continue;
@@ -261,7 +272,15 @@ impl Axes {
                 joints[joint] = nearest;
             }
             if let Some([least, most]) = axis.travel {
-                let first = joints[joint] + TAU * f64::ceil((least - joints[joint]) / TAU);
+                // Angles lie around zero, so few turns lead to the least value inside travel; a loop costs less
+                // than a call.
+                let mut first = joints[joint];
+                while first < least {
+                    first += TAU;
+                }
+                while first - TAU >= least {
+                    first -= TAU;
+                }
                 if first > most {
                     let middle = (least + most) / 2.0;
                     let asked = unwound(joints[joint], middle);
@@ -309,8 +328,10 @@ impl Axes {
                 joints[joint] = last[joint];
                 continue;
             }
-            let turn = f64::round((last[joint] - joints[joint]) / TAU);
-            joints[joint] += TAU * turn;
+            let away = last[joint] - joints[joint];
+            if away.abs() > PI {
+                joints[joint] += TAU * f64::round(away / TAU);
+            }
             let value = joints[joint];
             if let Some([least, most]) = axis.travel
                 && (value < least || value > most)

@@ -62,6 +62,9 @@ pub(crate) struct Found {
     pub over: Option<OverTravel>,
 }
 
+/// A cosine beyond this is that of a pole.
+const AT_POLE: f64 = 1.0 - 1e-12;
+
 /// All branches are asked for.
 pub(crate) fn both(_: &Branches) -> [bool; 2] {
     [true; 2]
@@ -134,15 +137,24 @@ impl Axes {
         (latitude - least).min(most - latitude).max(0.0)
     }
 
-    /// Is the tool axis certainly farther than `way` from where the branches meet? Cheap, and often enough.
+    /// Is the tool axis certainly farther than `way` from where the branches meet? Cheap, and nearly always enough.
     #[inline]
     pub(crate) fn far(&self, (sine, cosine): (f64, f64), way: f64) -> bool {
         let Some([least, most]) = self.cosines else {
             return true;
         };
-        // The cosine changes by no more than the angle.
-        let _ = sine;
-        cosine < least - way && cosine > most + way
+        // An angle is no smaller than its sine, and no smaller than what the cosine changes by.
+        let from_least = if least > AT_POLE {
+            sine > way || cosine < 0.0
+        } else {
+            cosine < least - way
+        };
+        let from_most = if most < -AT_POLE {
+            sine > way || cosine > 0.0
+        } else {
+            cosine > most + way
+        };
+        from_least && from_most
     }
 
     /// Adds the stands at `pose` to `stands`; `last` is kept by joints that are free there, and `going` says

@@ -166,8 +166,12 @@ fn name(probe: &Probe<'_>, rotary: &[usize], angles: &[Between]) -> String {
                 .iter()
                 .map(|place| format!("{} {}", side(place), axis(place).name));
             text.push_str(&format!(
-                ", {} rotary axes at once: {}",
+                ", {} rotary axes {}: {}",
                 free.len(),
+                match machine.edge {
+                    Some(_) => "follow tool axis and leading edge",
+                    None => "at once",
+                },
                 each.collect::<Vec<_>>().join(", ")
             ));
         }
@@ -197,7 +201,12 @@ fn name(probe: &Probe<'_>, rotary: &[usize], angles: &[Between]) -> String {
             .iter()
             .filter(|angle| {
                 let known = |name: &String| name == "tool" || free_names.contains(&name);
-                known(&angle.from) && known(&angle.to) && (angle.value - 90.0).abs() > SQUARE
+                // A blade axis lies along the tool.
+                let blade = machine.edge.is_some() && angle.value.abs() < SQUARE;
+                known(&angle.from)
+                    && known(&angle.to)
+                    && !blade
+                    && (angle.value - 90.0).abs() > SQUARE
             })
             .map(|angle| {
                 format!(

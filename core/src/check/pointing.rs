@@ -131,6 +131,12 @@ impl Poles {
                 return told("none: one rotary axis turns the tool, so each direction fixes it");
             }
             (_, 2) => {}
+            (_, 3) if probe.machine().edge.is_some() => {}
+            _ if !probe.closed_form() => {
+                return told(
+                    "not known: without a closed form they are met as they come, and the point before decides",
+                );
+            }
             _ => {
                 return told(
                     "more rotary axes than a direction needs: each direction can be made in many ways, and the rule of the machine file decides",

@@ -4,6 +4,7 @@ use super::lattice::{HELD, Kind, Lattice, State, pose};
 use super::pole::{Gate, taut};
 use super::{Chosen, Route};
 use crate::kinematics::Joints;
+use crate::kinematics::inverse::POLE;
 use crate::program::{Motion, Pace};
 
 /// A pole joint is eased where the tolerance leaves it more than this, radians (5°): elsewhere little would be
@@ -85,7 +86,7 @@ impl Route<'_> {
                 (before.branch, &before.joints),
                 (state.branch, &state.joints),
             ),
-            eased: state.branch == HELD,
+            eased: false,
         });
         lattice.layers.swap_remove(0);
         lattice.layers[0].first = 0;
@@ -246,7 +247,7 @@ impl Route<'_> {
                     changed: last.is_some_and(|(branch, last)| {
                         lattice.has_changed((branch, &last), (state.branch, &joints))
                     }),
-                    eased: turned.is_some() || state.branch == HELD,
+                    eased: turned.is_some() || (state.branch == HELD && at.latitude.0 > POLE),
                 });
             }
             last = Some((state.branch, joints));

@@ -157,14 +157,17 @@ impl Dialect for Heidenhain {
                 if self.axes.moved(words) {
                     self.block.word("L");
                     self.axes.write(&mut self.block, words);
-                    self.finish_move(None, out)?;
+                    self.finish_move(None, true, out)?;
                 }
             }
             Event::Linear { words, feed } => {
                 if self.axes.moved(words) {
+                    let length = [Group::Plane, Group::Depth]
+                        .iter()
+                        .any(|group| self.axes.moved_group(words, *group));
                     self.block.word("L");
                     self.axes.write(&mut self.block, words);
-                    self.finish_move(Some(feed), out)?;
+                    self.finish_move(Some(feed), length, out)?;
                 }
             }
             Event::Dwell { seconds } => {
@@ -311,7 +314,7 @@ impl Heidenhain {
             if self.axes.moved_group(words, group) {
                 self.block.word("L");
                 self.axes.write_group(&mut self.block, words, group);
-                self.finish_move(None, out)?;
+                self.finish_move(None, true, out)?;
             }
         }
         if self.tcp && self.tcp_active.set(true) {
@@ -320,14 +323,20 @@ impl Heidenhain {
         if self.axes.moved(words) {
             self.block.word("L");
             self.axes.write(&mut self.block, words);
-            self.finish_move(feed, out)?;
+            self.finish_move(feed, true, out)?;
         }
         self.retracted.forget();
         Ok(())
     }
 
-    /// Radius compensation and feed, the words behind the axes.
-    fn finish_move(&mut self, feed: Option<Feed>, out: &mut String) -> Result<(), String> {
+    /// Radius compensation and feed, the words behind the axes. In an inch program F counts tenths of an inch,
+    /// but degrees where rotary axes move alone.
+    fn finish_move(
+        &mut self,
+        feed: Option<Feed>,
+        length: bool,
+        out: &mut String,
+    ) -> Result<(), String> {
         if self.radius.set(self.compensation) {
             self.block.word(self.compensation);
         }
@@ -337,11 +346,11 @@ impl Heidenhain {
                 self.block.word("FMAX");
             }
             Some(Feed::PerMinute(feed)) => {
-                if self.feed.set(feed) {
-                    let (value, decimals) = match self.inch {
-                        true => (feed * 10.0, self.feed_decimals - 1),
-                        false => (feed, self.feed_decimals),
-                    };
+                let (value, decimals) = match self.inch && length {
+                    true => (feed * 10.0, self.feed_decimals - 1),
+                    false => (feed, self.feed_decimals),
+                };
+                if self.feed.set(value) {
                     self.block
                         .number("F", value, decimals, NumberStyle::default());
                 }

@@ -460,12 +460,16 @@ fn a_machine_extends_another_key_by_key() {
     )
     .unwrap_err();
     assert_eq!(underlined(&found[0]), "4 mount");
-    let found = try_load("extends = \"good\"\naxis.A.cyclic = true\n", &[]).unwrap_err();
-    let place = found[0].place.as_ref().unwrap();
-    assert_eq!(
-        (place.file.as_str(), underlined(&found[0]).as_str()),
-        ("good.toml", "27 [-120, 30]")
-    );
+    let found = try_load("extends = \"good\"\naxis.A.max_feed = \"Zc - 60\"\n", &[]).unwrap_err();
+    assert_eq!(underlined(&found[0]), "2 \"Zc - 60\"");
+
+    // Of two keys that stand in one another's place the later takes the earlier away.
+    let endless = try_load("extends = \"good\"\naxis.A.cyclic = true\n", &[]).unwrap();
+    assert_eq!(endless.axes[1].travel, None);
+    let limited = try_load("extends = \"good\"\naxis.C.travel = [0, 90]\n", &[]);
+    assert!(limited.unwrap().axes[0].travel.is_some());
+    let kept = try_load("extends = \"good\"\naxis.A.cyclic = false\n", &[]).unwrap();
+    assert!(kept.axes[1].travel.is_some());
 }
 
 #[test]

@@ -207,8 +207,27 @@ fn check_parameters(layer: &DeTable<'_>, merged: &DeTable<'_>) -> Result<(), Box
     Ok(())
 }
 
+/// Keys that stand in one another's place: a layer that says one of them takes the other away.
+const INSTEAD: &[(&str, &str)] = &[
+    ("travel", "cyclic"),
+    ("distance", "plane"),
+    ("positions", "step"),
+    ("share", "reserve"),
+    ("linear", "rotary"),
+];
+
 /// Lays a table over another, key by key.
 pub(crate) fn overlay<'i>(base: &mut DeTable<'i>, layer: DeTable<'i>) {
+    for (one, other) in INSTEAD {
+        for (said, unsaid) in [(one, other), (other, one)] {
+            let meant = layer
+                .get(*said)
+                .is_some_and(|value| value.get_ref().as_bool() != Some(false));
+            if meant && !layer.contains_key(*unsaid) {
+                base.remove(*unsaid);
+            }
+        }
+    }
     for (key, value) in layer {
         let name = key.get_ref().to_string();
         let span = value.span();

@@ -159,7 +159,7 @@ impl Writer<'_> {
         }
         self.batch.push(0, Event::Stop);
         if let Some(clamp) = &axis.clamp {
-            self.batch.push(0, Event::Literal { text: &clamp.off });
+            self.batch.push(0, Event::Word { text: &clamp.off });
         }
         let mut there = self.start;
         there[trial.place] += trial.by;
@@ -184,7 +184,7 @@ impl Writer<'_> {
             },
         );
         if let Some(clamp) = &axis.clamp {
-            self.batch.push(0, Event::Literal { text: &clamp.on });
+            self.batch.push(0, Event::Word { text: &clamp.on });
         }
         if following.is_none() {
             let shown = self.told(&self.start, true);

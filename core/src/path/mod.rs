@@ -435,7 +435,7 @@ impl<'a> Path<'a> {
         self.equip(line);
         self.push(line, Event::Home);
         match &head.word {
-            Some(word) => self.push(line, Event::Literal { text: word }),
+            Some(word) => self.push(line, Event::Word { text: word }),
             None => {
                 let text = format!("CHANGE TO HEAD {name}");
                 self.push(line, Event::Comment { text: &text });

@@ -67,7 +67,9 @@ impl Path<'_> {
             self.check_compensation(leg.line, &node);
         }
         let cuts = leg.motion.pace != Pace::Rapid;
-        if !self.turning && cuts && !self.told_spindle {
+        // A knife does not turn.
+        let turns = self.machine.edge.is_none();
+        if turns && !self.turning && cuts && !self.told_spindle {
             self.told_spindle = true;
             self.find(
                 leg.line,
@@ -399,7 +401,7 @@ impl Path<'_> {
         if unknown || (self.clamped & bit != 0) != on {
             self.clamped = self.clamped & !bit | if on { bit } else { 0 };
             let text = if on { &clamp.on } else { &clamp.off };
-            self.push(line, Event::Literal { text });
+            self.push(line, Event::Word { text });
         }
     }
 

@@ -104,6 +104,7 @@ typedef struct {
  *   POST_EVENT_START            -
  *   POST_EVENT_COMMENT          text; any characters: make it safe
  *   POST_EVENT_LITERAL          text; write it letter for letter
+ *   POST_EVENT_WORD             text; write it letter for letter; nothing in force changes (a clamp)
  *   POST_EVENT_TOOL_CHANGE      number, register (of the length), text (its name, may be empty)
  *   POST_EVENT_PRESELECT        number
  *   POST_EVENT_SPINDLE          code POST_SPINDLE_, value: revolutions a minute
@@ -259,6 +260,7 @@ typedef struct {
 #define POST_EVENT_OPTIONAL_STOP 15u
 #define POST_EVENT_HOME 16u
 #define POST_EVENT_END 17u
+#define POST_EVENT_WORD 18u
 #define POST_FEED_NONE 0u
 #define POST_FEED_PER_MINUTE 1u
 #define POST_FEED_INVERSE_TIME 2u

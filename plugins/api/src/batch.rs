@@ -22,6 +22,7 @@ enum Step {
     Start,
     Comment(Range),
     Literal(Range),
+    Word(Range),
     ToolChange(u32, u32, Range),
     Preselect(u32),
     Spindle(Spindle),
@@ -52,6 +53,7 @@ impl Batch {
             Event::Start => Step::Start,
             Event::Comment { text } => Step::Comment(self.keep_text(text)),
             Event::Literal { text } => Step::Literal(self.keep_text(text)),
+            Event::Word { text } => Step::Word(self.keep_text(text)),
             Event::ToolChange {
                 number,
                 register,
@@ -105,6 +107,9 @@ impl Batch {
                 text: self.text(range),
             },
             Step::Literal(range) => Event::Literal {
+                text: self.text(range),
+            },
+            Step::Word(range) => Event::Word {
                 text: self.text(range),
             },
             Step::ToolChange(number, register, range) => Event::ToolChange {

@@ -20,6 +20,12 @@ pub enum Event<'a> {
         /// The line.
         text: &'a str,
     },
+    /// A line of the machine builder's own (a clamp, another head), to be written letter for letter. It moves
+    /// nothing, and what is in force stays in force.
+    Word {
+        /// The line.
+        text: &'a str,
+    },
     /// Change to a tool. The last tool's compensation was released before.
     ToolChange {
         /// Tool number.
@@ -91,6 +97,7 @@ impl Event<'_> {
             Event::Start => "Start",
             Event::Comment { .. } => "Comment",
             Event::Literal { .. } => "Literal",
+            Event::Word { .. } => "Word",
             Event::ToolChange { .. } => "ToolChange",
             Event::Preselect { .. } => "Preselect",
             Event::Spindle(_) => "Spindle",

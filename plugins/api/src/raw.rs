@@ -209,6 +209,8 @@ pub const EVENT_OPTIONAL_STOP: u32 = 15;
 pub const EVENT_HOME: u32 = 16;
 /// See [`Event::End`].
 pub const EVENT_END: u32 = 17;
+/// See [`Event::Word`]: `text`.
+pub const EVENT_WORD: u32 = 18;
 
 /// No feed: rapid.
 pub const FEED_NONE: u32 = 0;
@@ -663,6 +665,10 @@ impl PostEvent {
                 raw.text = PostText::new(text);
                 EVENT_LITERAL
             }
+            Event::Word { text } => {
+                raw.text = PostText::new(text);
+                EVENT_WORD
+            }
             Event::ToolChange {
                 number,
                 register,
@@ -769,6 +775,7 @@ impl PostEvent {
             EVENT_START => Event::Start,
             EVENT_COMMENT => Event::Comment { text },
             EVENT_LITERAL => Event::Literal { text },
+            EVENT_WORD => Event::Word { text },
             EVENT_TOOL_CHANGE => Event::ToolChange {
                 number: self.number,
                 register: self.register,
@@ -869,6 +876,7 @@ mod tests {
             Event::Start,
             Event::Comment { text: "a µ" },
             Event::Literal { text: "" },
+            Event::Word { text: "M10" },
             Event::ToolChange {
                 number: 3,
                 register: 4,

@@ -103,6 +103,7 @@ impl Dialect for Fanuc {
                 push_line(out, text);
                 self.forget();
             }
+            Event::Word { text } => push_line(out, text),
             Event::ToolChange {
                 number,
                 register,

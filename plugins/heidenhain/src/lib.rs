@@ -129,6 +129,7 @@ impl Dialect for Heidenhain {
                 self.block.line(text, out);
                 self.forget();
             }
+            Event::Word { text } => self.block.line(text, out),
             Event::ToolChange { number, name, .. } => {
                 self.clear(out);
                 if self.spindle_on.is(true) {

@@ -106,6 +106,7 @@ impl Dialect for LinuxCnc {
                 push_line(out, text);
                 self.forget();
             }
+            Event::Word { text } => push_line(out, text),
             Event::ToolChange {
                 number,
                 register,

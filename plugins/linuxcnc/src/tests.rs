@@ -124,6 +124,7 @@ fn job() -> Vec<Event<'static>> {
         Event::Compensate(Compensation::Off),
         rapid(P1),
         Event::Literal { text: "M77" },
+        Event::Word { text: "M78" },
         rapid(P1),
         Event::Release,
         Event::Spindle(Spindle::Off),

@@ -783,3 +783,74 @@ fn arcs_of_nx_stay_among_the_points_of_the_file() {
         }
     }
 }
+
+/// Files whose tool axis moves.
+const FIVE_AXES: [&str; 4] = [
+    "creo5x_4r19415_finition.ncl",
+    "nx_HumMan_ust_a.cls",
+    "own_ncl_form.as",
+    "swcam_aamorim_Teste-Metrologia.apt",
+];
+
+/// Rotary travel and changes of solution against the greedy choice (the nearest solution at each point, every
+/// point met exactly): never more travel, whatever machine of the library reaches the file. Prints the table.
+#[test]
+fn the_choice_travels_no_farther_than_the_greedy_one() {
+    let Some(folder) = data() else {
+        return;
+    };
+    const GREEDY: &str = " --set solution.look_ahead=1 --set solution.pole=exact";
+    let machines: Vec<String> = fs::read_dir(root().join("machines"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
+        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
+        .collect::<BTreeSet<_>>()
+        .into_iter()
+        .collect();
+    let mut compared = 0;
+    println!("file, machine: rotary travel in degrees (changes, rewinds), greedy: the same");
+    for file in FIVE_AXES {
+        let with = match file {
+            "creo5x_4r19415_finition.ncl" => "--units mm --mount -140,21,-40",
+            "nx_HumMan_ust_a.cls" => "--msys apply",
+            "own_ncl_form.as" => "--units inch",
+            _ => "",
+        };
+        for machine in &machines {
+            let with = format!("--tool-length 150 --tcp post {with}");
+            let travel = |more: &str| {
+                let (run, summary) = post(&folder.join(file), machine, &format!("{with}{more}"));
+                let told = |key: &str, summary: &Value| summary[key].as_u64().unwrap();
+                summary.filter(|_| run.code == 0).map(|summary| {
+                    let axes = summary["axes"].as_array().unwrap().iter();
+                    let rotary = axes.filter(|axis| "ABC".contains(axis["name"].as_str().unwrap()));
+                    (
+                        rotary
+                            .map(|axis| axis["way"].as_f64().unwrap())
+                            .sum::<f64>(),
+                        told("branch_changes", &summary),
+                        told("rewinds", &summary),
+                    )
+                })
+            };
+            let (chosen, greedy) = (travel(""), travel(GREEDY));
+            if let Some((way, changes, rewinds)) = chosen {
+                let greedy_told = match greedy {
+                    Some((way, changes, rewinds)) => format!("{way:.1} ({changes}, {rewinds})"),
+                    None => "refused".to_owned(),
+                };
+                println!("{file}, {machine}: {way:.1} ({changes}, {rewinds}), {greedy_told}");
+                compared += 1;
+            }
+            match (chosen, greedy) {
+                (Some((way, ..)), Some((greedy, ..))) => {
+                    assert!(way <= greedy + 0.1, "{file} on {machine}: {way} {greedy}");
+                }
+                (None, Some(_)) => panic!("{file} on {machine}: the greedy choice finds a way"),
+                _ => {}
+            }
+        }
+    }
+    assert!(compared > 25, "{compared}");
+}

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use common::{Random, Rng, angle, turned};
 use nalgebra::{UnitQuaternion, Vector3};
-use post_core::kinematics::inverse::POLE;
+use post_core::kinematics::POLE;
 use post_core::kinematics::orientation::RotarySet;
 use post_core::kinematics::{Joints, Pose, Solver, Unreachable};
 

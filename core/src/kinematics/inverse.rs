@@ -4,13 +4,10 @@
 use nalgebra::Vector3;
 
 use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns};
+use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
 use super::numeric;
 use super::orientation::{Branches, Orientation, RotarySet, angle};
-
-/// Where the wanted axis lies closer to k1 than this, k1 turns the tool axis by nothing that a CL file
-/// with seven decimals could mean, and its angle is free: radians.
-pub const POLE: f64 = 1e-6;
 
 /// How far a returned solution may miss the pose when it is put through the forward product: mm per metre
 /// of reach, and radians.
@@ -24,45 +21,6 @@ const MOST_SEEDS: usize = 243;
 
 /// Numeric solutions of which every axis is closer than this to another's are the same: mm or radians.
 const SAME: f64 = 1e-4;
-
-/// Why a pose cannot be reached.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Unreachable {
-    /// No rotary angles give the tool axis; the nearest orientation misses by this angle.
-    Axis {
-        /// Radians.
-        miss: f64,
-    },
-    /// The linear axes span no volume at these angles.
-    Linear,
-    /// A numeric search found nothing; the nearest pose misses the tip by this.
-    Numeric {
-        /// mm, an error of the tool axis counted on an arm of 300 mm.
-        miss: f64,
-    },
-}
-
-/// What a chain lacks for being solved.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum NoClosedForm {
-    /// Not three linear axes that place the tip.
-    LinearAxes {
-        /// How many there are.
-        count: usize,
-    },
-    /// The three linear directions lie in one plane.
-    FlatLinearAxes,
-    /// More free rotary axes than the tool needs.
-    RotaryAxes {
-        /// Their places in the chain.
-        joints: Vec<usize>,
-    },
-    /// Two free rotary axes are parallel.
-    Parallel {
-        /// Their places in the chain.
-        joints: [usize; 2],
-    },
-}
 
 /// Which joints are solved for, and what becomes of the others.
 #[derive(Clone, Debug, Default)]

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::chain::{Chain, Joints, MAX_AXES, Turns, turn};
-use super::inverse::{NoClosedForm, Unreachable};
+use super::fault::{NoClosedForm, Unreachable};
 
 /// A linear axis beside the three that place the tip: a quill.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,11 +3,13 @@
 
 pub mod chain;
 pub mod choose;
+mod fault;
 pub mod inverse;
 mod linear;
 mod numeric;
 pub mod orientation;
 
 pub use chain::{Chain, Joint, Joints, MAX_AXES, Pose, Trace};
-pub use inverse::{Freedom, NoClosedForm, Solver, Unreachable};
+pub use fault::{NoClosedForm, POLE, Unreachable};
+pub use inverse::{Freedom, Solver};
 pub use linear::Second;

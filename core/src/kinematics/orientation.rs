@@ -10,7 +10,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::chain::{Chain, Joints, Pose, Turns, turn};
-use super::inverse::{NoClosedForm, POLE, Unreachable};
+use super::fault::{NoClosedForm, POLE, Unreachable};
 
 /// The one or two ways to point the tool along one axis. Their angles are worked out when asked for: where
 /// solutions are far apart, the nearer one is all that is wanted.

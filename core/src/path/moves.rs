@@ -12,7 +12,7 @@ use crate::machine::Tcp;
 use crate::program::{Motion, Pace};
 use crate::refusal;
 use crate::report::Deviation;
-use crate::route::{Chosen, planned, pose, retracted};
+use crate::route::{Chosen, planned, pose};
 
 /// Deviations that differ by less are the same: mm or radians.
 const EQUAL: f64 = 1e-9;
@@ -274,7 +274,7 @@ impl Path<'_> {
             return;
         };
         self.tally.rewinds += 1;
-        let away = retracted(&rewind, leg.motion).unwrap_or(*leg.motion);
+        let away = leg.motion.drawn_back(&rewind).unwrap_or(*leg.motion);
         let pace = |feed: Option<f64>| feed.map_or(Pace::Rapid, Pace::PerMinute);
         let back = rewind.plunge_feed.map_or(leg.motion.pace, Pace::PerMinute);
         let stops = [

@@ -11,7 +11,6 @@ use nalgebra::Vector3;
 use super::motion::{Motion, Pace, Step};
 use crate::kinematics::orientation::angle;
 use crate::machine::{EdgeSource, Machine, Rewind};
-use crate::route::retracted;
 
 /// Ways shorter than this have no direction, mm.
 const SHORT: f64 = 1e-6;
@@ -119,7 +118,7 @@ impl Edges {
     ) {
         let away = self
             .rewind
-            .and_then(|rewind| Some((rewind, retracted(&rewind, &motion)?)));
+            .and_then(|rewind| Some((rewind, motion.drawn_back(&rewind)?)));
         let pace = |feed: Option<f64>| feed.map_or(Pace::Rapid, Pace::PerMinute);
         if let Some((rewind, away)) = away {
             let out = Motion {

@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 use post_plugin::{Compensation, Coolant, Spindle};
 
+use crate::machine::{Retract, Rewind};
+
 /// One step of the program, with every modal word settled.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
@@ -72,6 +74,27 @@ pub struct Motion {
     pub pace: Pace,
     /// How far this line strays from the curve that the CL file asks for (arcs, splines), mm, proven.
     pub chord: f64,
+}
+
+impl Motion {
+    /// The motion to where the tool is drawn back to from here; none if its axis does not lead there.
+    pub(crate) fn drawn_back(&self, rewind: &Rewind) -> Option<Self> {
+        let distance = match rewind.retract {
+            Retract::Distance(distance) => distance,
+            Retract::Plane(height) => {
+                // Nearly level, the tool would travel for ever.
+                let rise = self.axis.z;
+                if rise < 0.1 {
+                    return None;
+                }
+                ((height - self.tip.z) / rise).max(0.0)
+            }
+        };
+        Some(Self {
+            tip: self.tip + self.axis * distance,
+            ..*self
+        })
+    }
 }
 
 /// How fast a move is.

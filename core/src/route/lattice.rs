@@ -141,7 +141,7 @@ impl Lattice {
             layers: Vec::new(),
             states: Vec::new(),
             stands: Vec::new(),
-            cone: libm::sin(freedom.max(0.0)).max(crate::kinematics::inverse::POLE),
+            cone: libm::sin(freedom.max(0.0)).max(crate::kinematics::POLE),
             freedom: freedom.max(0.0),
         }
     }
@@ -443,22 +443,29 @@ impl Lattice {
                 {
                     continue;
                 }
-                let new = State {
-                    cost: state.cost
-                        + self.measure.between(&state.joints, &joints)
-                        + self.measure.standing(&joints),
-                    joints,
-                    from: index,
-                    root: state.root,
-                    branch: stand.branch,
-                    rewind: None,
-                };
+                let new = self.after(index, joints, stand.branch);
                 if sure {
                     self.states.push(new);
                 } else {
                     self.keep(first, new);
                 }
             }
+        }
+    }
+
+    /// The state that stands at `joints` and comes from another.
+    #[inline]
+    fn after(&self, from: usize, joints: Joints, branch: u8) -> State {
+        let state = &self.states[from];
+        State {
+            cost: state.cost
+                + self.measure.between(&state.joints, &joints)
+                + self.measure.standing(&joints),
+            joints,
+            from,
+            root: state.root,
+            branch,
+            rewind: None,
         }
     }
 
@@ -472,20 +479,8 @@ impl Lattice {
             if !self.axes.stand_still(&state.joints, &mut joints) {
                 continue;
             }
-            let cost = state.cost
-                + self.measure.between(&state.joints, &joints)
-                + self.measure.standing(&joints);
-            self.keep(
-                first,
-                State {
-                    cost,
-                    joints,
-                    from,
-                    root: state.root,
-                    branch: stand.branch,
-                    rewind: None,
-                },
-            );
+            let new = self.after(from, joints, stand.branch);
+            self.keep(first, new);
         }
     }
 
@@ -500,20 +495,8 @@ impl Lattice {
             let Some(joints) = self.axes.followed(placer.solver(), target, &state.joints) else {
                 continue;
             };
-            let cost = state.cost
-                + self.measure.between(&state.joints, &joints)
-                + self.measure.standing(&joints);
-            self.keep(
-                first,
-                State {
-                    cost,
-                    joints,
-                    from: index,
-                    root: state.root,
-                    branch: state.branch,
-                    rewind: None,
-                },
-            );
+            let new = self.after(index, joints, state.branch);
+            self.keep(first, new);
         }
     }
 

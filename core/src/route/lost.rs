@@ -6,7 +6,7 @@ use super::stand::{Found, both};
 use crate::accuracy::Refused;
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::{Joints, Unreachable};
-use crate::machine::{Positions, Retract, Rewind};
+use crate::machine::Positions;
 use crate::program::Motion;
 use crate::refusal;
 
@@ -182,7 +182,7 @@ impl Route<'_> {
         };
         let placer = self.settings[layer.setting].1.clone();
         let target = pose(&layer.motion);
-        let Some(back) = retracted(&rewind, &layer.motion) else {
+        let Some(back) = layer.motion.drawn_back(&rewind) else {
             return false;
         };
         let reaches = |joints: &Joints| placer.settled(pose(&back), 1.0, joints).is_ok();
@@ -272,23 +272,4 @@ impl Route<'_> {
             .collect();
         refusal::no_way(self.machine, &from.joints, &tried).boxed()
     }
-}
-
-/// The motion to where a tool is drawn back to; none if its axis does not lead there.
-pub(crate) fn retracted(rewind: &Rewind, at: &Motion) -> Option<Motion> {
-    let distance = match rewind.retract {
-        Retract::Distance(distance) => distance,
-        Retract::Plane(height) => {
-            // Nearly level, the tool would travel for ever.
-            let rise = at.axis.z;
-            if rise < 0.1 {
-                return None;
-            }
-            ((height - at.tip.z) / rise).max(0.0)
-        }
-    };
-    Some(Motion {
-        tip: at.tip + at.axis * distance,
-        ..*at
-    })
 }

@@ -24,7 +24,6 @@ use crate::program::{Motion, Pace};
 
 pub(crate) use lattice::pose;
 use lattice::{Judge, Lattice};
-pub(crate) use lost::retracted;
 
 /// A point of the path with the axis values that were chosen for it.
 #[derive(Clone, Debug)]

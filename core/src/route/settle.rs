@@ -4,7 +4,7 @@ use super::lattice::{HELD, Kind, Lattice, State, pose};
 use super::pole::{Gate, taut};
 use super::{Chosen, Route};
 use crate::kinematics::Joints;
-use crate::kinematics::inverse::POLE;
+use crate::kinematics::POLE;
 use crate::program::{Motion, Pace};
 
 /// A pole joint is eased where the tolerance leaves it more than this, radians (5°): elsewhere little would be

@@ -13,9 +13,9 @@ use post_core::check::{Check, Comparison, Differing, compare};
 use post_core::diagnostic::Diagnostic;
 use post_core::machine::Machine;
 
-use crate::arguments::{self, Point};
 use crate::input::{one, standard};
 use crate::output::Target;
+use crate::values::{self, Point};
 use crate::{machines, posting, render};
 
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
@@ -63,11 +63,11 @@ pub struct CheckArguments {
     head: Option<String>,
 
     /// Length of the tool from the gauge point to the tip, mm.
-    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true, value_parser = arguments::not_negative)]
+    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true, value_parser = values::not_negative)]
     tool_length: f64,
 
     /// Where the part origin sits, all axes at zero, machine frame, mm; in both machines of --nominal.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = arguments::point)]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::point)]
     mount: Option<Point>,
 
     /// Sets a parameter of the machine (`Lm=312`) or any key; in MACHINE alone, not in the other of --nominal.
@@ -94,7 +94,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
     let mount = arguments.mount.map(|mount| mount.setting());
     let mut settings = arguments.set.clone();
     settings.extend(mount.clone());
-    let machine = machines::load_named(&arguments.machine, &arguments.machines, &settings)?;
+    let machine = machines::load(&arguments.machine, &arguments.machines, &settings)?;
     let machine = match &arguments.head {
         Some(name) => with_head(machine, name)?,
         None => machine,
@@ -104,7 +104,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
     }
     if let Some(nominal) = &arguments.nominal {
         let mount: Vec<String> = mount.into_iter().collect();
-        let nominal = machines::load_named(nominal, &arguments.machines, &mount)?;
+        let nominal = machines::load(nominal, &arguments.machines, &mount)?;
         let compared = compare(&machine, &nominal, arguments.tool_length)
             .map_err(|fault| differing(&fault))?;
         return print_comparison(arguments, &compared);

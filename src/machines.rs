@@ -7,20 +7,14 @@ use std::path::{Path, PathBuf};
 use post_core::diagnostic::Diagnostic;
 use post_core::machine::{self, Machine, Source};
 
-use crate::arguments::{self, PostArguments};
+use crate::values;
 
 /// Names and texts of the machines built in.
 const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.rs"));
 
-/// Loads the machine that the arguments name.
-pub fn load(arguments: &PostArguments) -> Result<Machine, Vec<Diagnostic>> {
-    let name = arguments.machine.as_deref().unwrap_or_default();
-    load_named(name, &arguments.machines, &arguments.settings())
-}
-
 /// Loads the machine `name` from the folders that the user `named`, the usual ones, or those built in, with
 /// `settings` over it.
-pub fn load_named(
+pub fn load(
     name: &str,
     named: &[PathBuf],
     settings: &[String],
@@ -41,7 +35,7 @@ pub fn load_named(
 
 /// The folders of machines: those of the command line, of the environment, and `machines` here.
 fn folders(named: &[PathBuf]) -> Vec<PathBuf> {
-    let mut folders = arguments::folders(named, "POST_MACHINES");
+    let mut folders = values::folders(named, "POST_MACHINES");
     folders.push(PathBuf::from("machines"));
     folders
 }

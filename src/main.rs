@@ -11,6 +11,7 @@ mod posting;
 mod progress;
 mod render;
 mod summary;
+mod values;
 mod words;
 
 use std::process::ExitCode;

@@ -11,8 +11,8 @@ use post_core::Output as _;
 use post_core::diagnostic::Diagnostic;
 use post_core::machine;
 
-use crate::arguments::{TcpArgument, finite};
 use crate::input::one;
+use crate::values::{TcpArgument, finite};
 use crate::{check, posting, render};
 use template::Class;
 
@@ -46,7 +46,7 @@ pub struct NewArguments {
 
     /// Units of the NC program. [default: mm]
     #[arg(long, value_enum, value_name = "UNITS")]
-    units: Option<crate::arguments::UnitsArgument>,
+    units: Option<crate::values::UnitsArgument>,
 
     /// What the machine is called in the file. [default: NAME]
     #[arg(long, value_name = "TEXT")]
@@ -197,7 +197,7 @@ fn wishes(arguments: &NewArguments, path: &Path) -> Result<Wishes, Vec<Diagnosti
             Some(TcpArgument::Control) => "control",
             Some(TcpArgument::Post) | None => "post",
         },
-        inch: matches!(arguments.units, Some(crate::arguments::UnitsArgument::Inch)),
+        inch: matches!(arguments.units, Some(crate::values::UnitsArgument::Inch)),
         travel: arguments.travel.clone(),
         cyclic: arguments.cyclic.clone(),
         reversed: arguments.reversed.clone(),

@@ -12,11 +12,11 @@ use post_host::{
 };
 use post_plugin::Units;
 
-use crate::arguments;
+use crate::values;
 
 /// The finder for a run, with the folders that the user `named`.
 pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
-    let folders = arguments::folders(named, "POST_PLUGINS");
+    let folders = values::folders(named, "POST_PLUGINS");
     missing(named)?;
     let linked = [
         post_fanuc::plugin(),

@@ -9,16 +9,21 @@ use post_core::{Job, Output, Post};
 use post_grammar::{ReadError, Reader, Units};
 use post_plugin::DialectSession;
 
-use crate::arguments::{Msys, PostArguments, UnitsArgument, UnknownArgument};
+use crate::arguments::{Msys, PostArguments, UnknownArgument};
 use crate::input::{Input, one, standard};
 use crate::output::{Target, Whole};
 use crate::progress::Progress;
+use crate::values::UnitsArgument;
 use crate::{machines, plugins, render, summary};
 
 /// Posts as the arguments say.
 pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
     let input_path = arguments.input.as_deref().unwrap_or(standard());
-    let machine = machines::load(arguments)?;
+    let machine = machines::load(
+        arguments.machine.as_deref().unwrap_or_default(),
+        &arguments.machines,
+        &arguments.settings(),
+    )?;
     let finder = plugins::finder(&arguments.plugins)?;
     let program = program_name(input_path, arguments.output.as_deref());
     let (mut dialect, dialect_use) = plugins::dialect(&finder, &machine, &program)?;

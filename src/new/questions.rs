@@ -7,8 +7,8 @@ use post_core::diagnostic::Diagnostic;
 
 use super::template::Class;
 use super::{Given, NewArguments, Wishes, dialect, range};
-use crate::arguments::finite;
 use crate::input::one;
+use crate::values::finite;
 
 /// How often a wrong answer is asked again.
 const PATIENCE: usize = 3;

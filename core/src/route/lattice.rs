@@ -215,7 +215,8 @@ impl Lattice {
                 Kind::Rapid => self.turn(&stands, range),
                 Kind::Cut => {
                     if placer.solver().closed_form() {
-                        self.go_on(placer, motion, &stands, &ways, &found, range, judge);
+                        let meet = ways.meet(&self.axes, found.latitude);
+                        self.go_on(placer, motion, &stands, meet, range, judge);
                     } else {
                         self.search_on(placer, &target, range);
                     }
@@ -400,8 +401,7 @@ impl Lattice {
         placer: &Placer,
         motion: &Motion,
         stands: &[Stand],
-        ways: &Ways,
-        found: &Found,
+        meet: bool,
         before: std::ops::Range<usize>,
         judge: &mut dyn Judge,
     ) {
@@ -411,7 +411,6 @@ impl Lattice {
         };
         let from_pose = pose(&last.motion);
         let target = pose(motion);
-        let meet = ways.meet(&self.axes, found.latitude);
         for index in before {
             let state = self.states[index];
             if state.cost == f64::INFINITY {

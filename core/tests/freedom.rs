@@ -389,3 +389,380 @@ fn a_quill_in_reserve_moves_where_the_other_ends() {
     println!("quill in reserve: {inside} inside, {beyond} beyond, tip {tip:.1e} mm");
     assert!(inside > 1_000 && beyond > 1_000 && tip < 1e-9, "{tip}");
 }
+
+/// Chains that have no closed form: linear joints, rotary joints, with a leading edge.
+const NUMERIC: [(usize, usize, bool); 9] = [
+    (2, 3, false),
+    (2, 4, false),
+    (1, 4, false),
+    (1, 5, false),
+    (0, 5, false),
+    (0, 6, false),
+    (2, 6, false),
+    (2, 4, true),
+    (0, 6, true),
+];
+
+/// From a start near by, a search finds a solution that stands up to the isometries; the inverse, which knows
+/// nothing, finds one nearly always, and never a wrong one.
+#[test]
+fn chains_without_a_closed_form_are_solved_and_verified() {
+    let mut rng = Rng(16);
+    for (linear, rotary, edged) in NUMERIC {
+        let mut kinds = vec![Kind::Linear; linear];
+        kinds.extend(vec![Kind::Free; rotary]);
+        let (mut near, mut far, mut found, mut own, mut poses) = (0, 0, 0, 0, 0);
+        let mut tip = 0.0f64;
+        let mut least = Vec::new();
+        for _ in 0..60 {
+            let machine = Random::of(&mut rng, &kinds);
+            let reference = &machine.reference;
+            let leading = edged.then(|| across(&mut rng, reference.axis));
+            let solver = Solver::new(
+                reference.chain().with_edge(leading),
+                &machine.free,
+                machine.held,
+            )
+            .expect("a numeric form");
+            assert!(!solver.closed_form());
+            assert!(solver.orient(&Pose::default(), 1.0).is_err());
+            for _ in 0..2 {
+                poses += 1;
+                let q = machine.values(&mut rng);
+                let (wanted_tip, axis) = reference.forward(&q);
+                let edge = leading.map_or_else(Vector3::zeros, |edge| reference.taken(&q, edge));
+                let pose = Pose {
+                    tip: wanted_tip,
+                    axis,
+                    edge,
+                };
+                let mut holds = |solution: &Joints| {
+                    let reached = reference.forward(solution);
+                    tip = tip.max((reached.0 - wanted_tip).norm() / reach(solution));
+                    assert!(angle(reached.1, axis) < 2e-9, "{solution:?}");
+                    if let Some(edge_at_zero) = leading {
+                        assert!(angle(reference.taken(solution, edge_at_zero), edge) < 2e-9);
+                    }
+                };
+                let start: Joints = std::array::from_fn(|index| {
+                    let joint = reference.joints.get(index);
+                    q[index]
+                        + match joint {
+                            Some(joint) if joint.rotary => rng.range(-0.01, 0.01),
+                            Some(_) => rng.range(-1.0, 1.0),
+                            None => 0.0,
+                        }
+                });
+                if let Ok(solution) = solver.search(&pose, &start, 1e-9) {
+                    holds(&solution);
+                    near += 1;
+                    far += usize::from(apart(&machine, &solution, &start) > 200.0);
+                }
+                let back = solver.inverse(&pose, &machine.held, 1e-9);
+                if let Err(Unreachable::Numeric { miss }) = back {
+                    least.push(miss);
+                }
+                if let Ok(solutions) = back {
+                    solutions.iter().for_each(&mut holds);
+                    found += 1;
+                    own += usize::from(
+                        solutions
+                            .iter()
+                            .any(|solution| apart(&machine, &q, solution) < 0.1),
+                    );
+                }
+            }
+        }
+        let edged = if edged { " and an edge" } else { "" };
+        println!(
+            "{linear} linear, {rotary} rotary{edged}: of {poses} poses {near} searched from near by ({far} came out far off), {found} found from nothing, {own} with the values they were made with; tip {tip:.1e} mm; refused by {least:?} mm"
+        );
+        assert!(tip < 2e-9, "{tip}");
+        assert!(near * 100 >= poses * 97, "{near} of {poses}");
+        assert!(far * 100 <= near * 3, "{far} of {near}");
+        assert!(found * 100 >= poses * 90, "{found} of {poses}");
+    }
+}
+
+/// What no values reach is refused, and by about as much as it is missed.
+#[test]
+fn a_numeric_chain_refuses_what_it_cannot_reach() {
+    let mut rng = Rng(17);
+    for (linear, rotary) in [(0, 5), (0, 6)] {
+        let mut kinds = vec![Kind::Linear; linear];
+        kinds.extend(vec![Kind::Free; rotary]);
+        for _ in 0..20 {
+            let machine = Random::of(&mut rng, &kinds);
+            let solver = Solver::new(machine.reference.chain(), &machine.free, machine.held)
+                .expect("a numeric form");
+            // No arm of these machines is longer than seven diagonals of the cube that their lines lie in.
+            let pose = Pose {
+                tip: rng.direction() * 100_000.0,
+                axis: rng.direction(),
+                ..Pose::default()
+            };
+            match solver.inverse(&pose, &machine.held, 1e-9) {
+                Err(Unreachable::Numeric { miss }) => {
+                    assert!((85_000.0..101_000.0).contains(&miss), "{miss}");
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+    // A knife on a portal without Z: two linear axes along X and Y, three rotary ones whose lines meet the tip's
+    // plane. Poses a hair above what the arms reach are refused, a hair below they are not.
+    let joint = |rotary: bool, direction: Vector3<f64>, point: [f64; 3]| post_core::kinematics::Joint {
+        rotary,
+        direction,
+        point: Vector3::from(point),
+    };
+    let machine = Random {
+        reference: common::Reference {
+            joints: vec![
+                joint(false, Vector3::x(), [0.0; 3]),
+                joint(false, Vector3::y(), [0.0; 3]),
+                joint(true, Vector3::z(), [0.0; 3]),
+                joint(true, Vector3::y(), [0.0, 0.0, 100.0]),
+                joint(true, Vector3::y(), [0.0, 0.0, 0.0]),
+            ],
+            mount: Vector3::zeros(),
+            tip: Vector3::new(0.0, 0.0, -50.0),
+            axis: Vector3::z(),
+        },
+        free: vec![2, 3, 4],
+        held: Joints::default(),
+    };
+    let solver = Solver::new(machine.reference.chain(), &machine.free, machine.held).expect("a form");
+    for tilt in [0.1f64, 0.5, 1.0] {
+        let axis = Vector3::new(libm::sin(tilt), 0.0, libm::cos(tilt));
+        // The upper arm, 100 mm, hangs from Z 100 at any angle; the tool, 50 mm, has the angle that is wanted.
+        let lowest = -50.0 * libm::cos(tilt);
+        for (above, reached) in [(0.5, true), (20.0, true), (-0.01, false), (-5.0, false)] {
+            let pose = Pose {
+                tip: Vector3::new(30.0, 40.0, lowest + above),
+                axis,
+                ..Pose::default()
+            };
+            match solver.inverse(&pose, &machine.held, 1e-9) {
+                Ok(found) => {
+                    assert!(reached, "{tilt} {above}: {found:?}");
+                    for solution in &found {
+                        let (tip, to) = machine.reference.forward(solution);
+                        assert!((tip - pose.tip).norm() < 1e-8 && angle(to, axis) < 2e-9);
+                    }
+                }
+                Err(Unreachable::Numeric { miss }) => {
+                    assert!(!reached && miss > 0.0, "{tilt} {above}: misses by {miss}");
+                    // It may tilt the tool a little to come nearer, never farther.
+                    assert!(miss <= -above + 1e-6, "{tilt} {above}: {miss}");
+                }
+                Err(other) => panic!("{other:?}"),
+            }
+        }
+    }
+}
+
+/// A turn of a direction by so many radians, any way round.
+fn inclined(rng: &mut Rng, direction: Vector3<f64>, by: f64) -> Vector3<f64> {
+    let about = Unit::new_normalize(across(rng, direction));
+    Rotation3::from_axis_angle(&about, by) * direction
+}
+
+/// A machine of a class that shops have, its first rotary axis inclined by `incline`, the second by `second`
+/// radians, both lines off by some hundredths.
+fn measured(rng: &mut Rng, class: usize, incline: f64, second: f64) -> Random {
+    use post_core::kinematics::Joint;
+    let slide = |direction: Vector3<f64>| Joint {
+        rotary: false,
+        direction,
+        point: Vector3::zeros(),
+    };
+    let xyz = [Vector3::x(), Vector3::y(), Vector3::z()].map(slide);
+    let tilted = [Vector3::x(), Vector3::x(), Vector3::y(), Vector3::new(0.0, 1.0, 1.0).normalize()][class];
+    let mut turn = |direction: Vector3<f64>, by: f64, height: f64| Joint {
+        rotary: true,
+        direction: inclined(rng, direction, by),
+        point: Vector3::new(0.0, 0.0, height) + rng.point(0.02),
+    };
+    let (c, a) = (turn(Vector3::z(), incline, 0.0), turn(tilted, second, 250.0));
+    // Table-table AC, head-head CA, head-table B over C, a nutating head over a C table.
+    let (joints, free) = match class {
+        0 => (vec![c, a, xyz[0], xyz[1], xyz[2]], [0, 1]),
+        1 => (vec![xyz[0], xyz[1], xyz[2], c, a], [3, 4]),
+        _ => (vec![c, xyz[0], xyz[1], xyz[2], a], [0, 4]),
+    };
+    Random {
+        reference: common::Reference {
+            joints,
+            mount: Vector3::new(10.0, -20.0, 30.0),
+            tip: Vector3::new(0.0, 0.0, 100.0),
+            // The spindle, out of square as well.
+            axis: inclined(rng, Vector3::z(), incline / 2.0),
+        },
+        free: free.to_vec(),
+        held: Joints::default(),
+    }
+}
+
+/// What a tolerance lets through: by how much the solutions miss, against the nearest that there is.
+fn let_through(machine: &Random, wanted: Vector3<f64>, tolerance: f64, what: &str) -> (f64, f64) {
+    let reference = &machine.reference;
+    let [first, second] = [machine.free[0], machine.free[1]];
+    let least = nearest(reference, &machine.held, [first, second], reference.axis, wanted);
+    let solver = Solver::new(reference.chain(), &machine.free, machine.held).expect("a form");
+    let pose = Pose {
+        tip: Vector3::new(5.0, 6.0, 7.0),
+        axis: wanted,
+        ..Pose::default()
+    };
+    let mut over = 0.0f64;
+    match solver.inverse(&pose, &machine.held, tolerance) {
+        Ok(found) => {
+            assert!(least <= tolerance.max(POLE) + 1e-9, "{what}: {least} let through");
+            for solution in &found {
+                let (tip, axis) = reference.forward(solution);
+                assert!((tip - pose.tip).norm() < 1e-9, "{what}: the tip is off");
+                over = over.max(angle(axis, wanted) - least);
+            }
+        }
+        Err(fault) => {
+            assert!(least > tolerance - 1e-9, "{what}: {least} refused: {fault:?}");
+            let Unreachable::Axis { miss } = fault else {
+                panic!("{what}: {fault:?}");
+            };
+            assert!((miss - least).abs() < 1e-7, "{what}: {miss} for {least}");
+        }
+    }
+    (least, over)
+}
+
+/// The upright tool of a machine entered as measured lies on the nominal pole and out of reach by some
+/// microradians: it is let through within the tolerance, missed by no more than it must be, and refused beyond.
+#[test]
+fn as_measured_the_upright_tool_is_let_through() {
+    let mut rng = Rng(18);
+    let (mut worst, mut out, mut most) = (0.0f64, 0, 0.0f64);
+    for round in 0..1_200 {
+        let class = round % 4;
+        let incline = rng.range(1e-5, 1e-4);
+        let second = if round % 8 < 4 { 0.0 } else { rng.range(1e-5, 1e-4) };
+        let machine = measured(&mut rng, class, incline, second);
+        // Exactly upright, and a hair beside it.
+        let wanted = if round % 3 == 0 {
+            let by = rng.range(0.0, 2e-4);
+            inclined(&mut rng, Vector3::z(), by)
+        } else {
+            Vector3::z()
+        };
+        let what = format!("round {round}, class {class}, {incline:.1e}, {second:.1e}");
+        let (least, over) = let_through(&machine, wanted, 0.05f64.to_radians(), &what);
+        worst = worst.max(over);
+        most = most.max(least);
+        if least > 2.0 * POLE {
+            out += 1;
+            let (_, over) = let_through(&machine, wanted, least * 1.01, &what);
+            worst = worst.max(over);
+            let_through(&machine, wanted, least * 0.99, &what);
+        }
+    }
+    println!("as measured: {out} upright tools out of reach, by {most:.1e} rad at most; missed by {worst:.1e} rad more than they must be");
+    assert!(out > 200, "{out}");
+    assert!(worst <= 2.0 * POLE, "{worst}");
+}
+
+/// The edge of reach of a nutating head, from inside to outside: as far as the tolerance goes, no farther.
+#[test]
+fn the_edge_of_reach_is_let_through_by_the_tolerance() {
+    let mut rng = Rng(19);
+    let (mut worst, mut passed, mut refused) = (0.0f64, 0, 0);
+    for round in 0..1_200 {
+        let (incline, second) = (rng.range(0.0, 1e-4), rng.range(0.0, 1e-4));
+        let machine = measured(&mut rng, 3, incline, second);
+        // The tool lies flat at B 180: beyond that no angles point it.
+        let by = rng.range(-1.0, 1.0) * rng.order(-7.0, -2.0);
+        let (sine, cosine) = libm::sincos(PI / 2.0 + by);
+        let (y, x) = libm::sincos(rng.range(-PI, PI));
+        let wanted = Vector3::new(sine * x, sine * y, cosine);
+        let tolerance = rng.order(-6.0, -2.5);
+        let what = format!("round {round}: {by:.1e} beyond, tolerance {tolerance:.1e}");
+        let (least, over) = let_through(&machine, wanted, tolerance, &what);
+        if least > tolerance {
+            refused += 1;
+        } else if least > 2.0 * POLE {
+            passed += 1;
+        }
+        worst = worst.max(over);
+    }
+    println!("edge of reach: {passed} let through, {refused} refused; missed by {worst:.1e} rad more than they must be");
+    assert!(passed > 50 && refused > 50, "{passed} {refused}");
+    assert!(worst <= 2.0 * POLE, "{worst}");
+}
+
+/// Three rotary axes as measured: a frame a little out of reach is let through within the tolerance, axis and edge
+/// within it too.
+#[test]
+fn a_tool_frame_at_the_edge_of_reach_is_let_through() {
+    let mut rng = Rng(20);
+    let (mut passed, mut refused) = (0, 0);
+    for round in 0..2_000 {
+        // An AC table under a knife that turns about its own axis; the knife stands upright over a C inclined by
+        // some microradians, so that its own axis cannot be brought upright.
+        let incline = rng.range(1e-5, 1e-4);
+        let mut machine = measured(&mut rng, round % 2, incline, 0.0);
+        let behind = machine.reference.joints.len();
+        machine.reference.joints.push(post_core::kinematics::Joint {
+            rotary: true,
+            direction: inclined(&mut rng, Vector3::z(), incline),
+            point: Vector3::zeros(),
+        });
+        machine.free.push(behind);
+        let reference = &machine.reference;
+        let leading = Vector3::y().cross(&reference.axis).normalize();
+        let chain = reference.chain().with_edge(Some(leading));
+        let solver = Solver::new(chain, &machine.free, machine.held).expect("a form");
+        let turn = rng.range(-PI, PI);
+        let pose = Pose {
+            tip: Vector3::new(1.0, 2.0, 3.0),
+            axis: Vector3::z(),
+            edge: Vector3::new(libm::cos(turn), libm::sin(turn), 0.0),
+        };
+        let free = [machine.free[0], machine.free[1]];
+        // Where the knife's own axis must come to lie: seen from the tool it stands still.
+        let wanted = Matrix3::from_columns(&[pose.axis, pose.edge, pose.axis.cross(&pose.edge)]);
+        let zero = Matrix3::from_columns(&[
+            reference.axis,
+            leading,
+            reference.axis.cross(&leading),
+        ]);
+        let knife = reference.joints[behind].direction;
+        let least = nearest(
+            reference,
+            &machine.held,
+            free,
+            knife,
+            wanted * zero.transpose() * knife,
+        );
+        if least < 3.0 * POLE {
+            continue;
+        }
+        // Both directions of a frame that is off by an angle are off by that angle at most.
+        match solver.inverse(&pose, &machine.held, 2.0 * least) {
+            Ok(found) => {
+                passed += 1;
+                for solution in &found {
+                    let reached = reference.forward(solution);
+                    assert!((reached.0 - pose.tip).norm() < 1e-9);
+                    assert!(angle(reached.1, pose.axis) < 1.01 * least + POLE, "round {round}");
+                    let edge = reference.taken(solution, leading);
+                    assert!(angle(edge, pose.edge) < 1.01 * least + POLE, "round {round}");
+                }
+            }
+            Err(fault) => panic!("round {round}: {least} refused: {fault:?}"),
+        }
+        if solver.inverse(&pose, &machine.held, 0.9 * least).is_err() {
+            refused += 1;
+        }
+    }
+    println!("tool frames at the edge of reach: {passed} let through, {refused} refused by a smaller tolerance");
+    assert!(passed > 100 && refused == passed, "{passed} {refused}");
+}

@@ -477,7 +477,7 @@ fn chains_without_a_closed_form_are_solved_and_verified() {
         println!(
             "{linear} linear, {rotary} rotary{edged}: of {poses} poses {near} searched from near by ({far} came out far off), {found} found from nothing, {own} with the values they were made with; tip {tip:.1e} mm; refused by {least:?} mm"
         );
-        assert!(tip < 2e-9, "{tip}");
+        assert!(tip < 5e-9, "{tip}");
         assert!(near * 100 >= poses * 97, "{near} of {poses}");
         assert!(far * 100 <= near * 3, "{far} of {near}");
         assert!(found * 100 >= poses * 90, "{found} of {poses}");

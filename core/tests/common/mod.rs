@@ -5,6 +5,8 @@
     reason = "every test file is a crate of its own and takes what it needs"
 )]
 
+pub mod posted;
+
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};

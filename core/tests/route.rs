@@ -3,26 +3,29 @@
 
 mod common;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use common::posted::{Bench, Point, Run, cl, line, point};
+use common::posted::Asked;
 use common::{Rng, angle, distance, slerp, turned};
 use nalgebra::{Rotation3, Unit, Vector3};
-use post_core::kinematics::{Joints, MAX_AXES, Pose, Solver};
+use post_core::kinematics::{Joints, Pose, Solver};
 use post_core::machine::{Rule, Side};
+use post_plugin::Feed;
 
 /// A machine of a class: chain, rotary axes with their lines, gauge and tool length.
-struct Class {
-    name: &'static str,
-    chain: &'static str,
-    second: &'static str,
-    direction: &'static str,
-    point: &'static str,
+#[derive(Clone, Copy)]
+struct Class<'a> {
+    name: &'a str,
+    chain: &'a str,
+    second: &'a str,
+    direction: &'a str,
+    point: &'a str,
     gauge: f64,
     length: f64,
 }
 
-const CLASSES: [Class; 4] = [
+const CLASSES: [Class<'static>; 4] = [
     Class {
         name: "table-table AC",
         chain: "[w C' A' b Y X Z t]",
@@ -62,20 +65,20 @@ const CLASSES: [Class; 4] = [
 ];
 
 /// What a machine of a class is given for one test.
-struct Given {
-    tcp: &'static str,
+struct Given<'a> {
+    tcp: &'a str,
     /// Of C; empty for a cyclic one.
     c: String,
     second: [f64; 2],
     feeds: [f64; 5],
     linear: f64,
-    accuracy: &'static str,
+    accuracy: &'a str,
     /// Further tables: `[solution]`, `[rewind]`.
     more: String,
     decimals: u8,
 }
 
-impl Default for Given {
+impl Default for Given<'_> {
     fn default() -> Self {
         Self {
             tcp: "post",
@@ -90,7 +93,7 @@ impl Default for Given {
     }
 }
 
-fn bench(class: &Class, given: &Given) -> Bench {
+fn bench(class: &Class<'_>, given: &Given<'_>) -> Bench {
     let Class {
         name,
         chain,
@@ -304,7 +307,7 @@ impl Search<'_> {
 }
 
 /// A short path of cuts and rapids that stays clear of the pole and of the edge of reach.
-fn short(rng: &mut Rng, class: &Class) -> Vec<Point> {
+fn short(rng: &mut Rng, class: &Class<'_>) -> Vec<Point> {
     let clear = |axis: Vector3<f64>| {
         let tilt = angle(axis, Vector3::z()).to_degrees();
         let most = if class.name == "nutating head" { 80.0 } else { 150.0 };
@@ -468,4 +471,608 @@ fn the_choice_costs_no_more_than_the_cheapest_of_all_ways() {
     }
     assert!(faults.is_empty(), "{} faults", faults.len());
     assert!(chosen > 400 && refused > 100);
+}
+
+/// The rotary values, degrees, at which a CL line is arrived at: C and the other axis.
+fn angles(bench: &Bench, run: &Run, line: u64) -> [f64; 2] {
+    let joints = bench.joints(run.arrival(line).expect("a position"));
+    let c = bench.place("C");
+    let other = bench.rotary().into_iter().find(|place| *place != c);
+    [joints[c], joints[other.expect("another axis")]].map(f64::to_degrees)
+}
+
+/// The farthest that any printed value lies outside the travel of its axis, mm or degrees, and which.
+fn left_travel(bench: &Bench, run: &Run) -> (f64, String) {
+    let mut worst = (0.0, String::new());
+    for asked in run.motions() {
+        let joints = bench.joints(&asked.words);
+        for (place, axis) in bench.machine.axes.iter().enumerate() {
+            if let Some([least, most]) = axis.travel {
+                let over = (least - joints[place]).max(joints[place] - most) / axis.unit();
+                if over > worst.0 + 1e-6 {
+                    worst = (over, format!("{} at CL line {}", axis.name, asked.line));
+                }
+            }
+        }
+    }
+    worst
+}
+
+/// The sum of all rotary ways over the blocks of a run, degrees.
+fn rotary_way(bench: &Bench, run: &Run) -> f64 {
+    let values: Vec<Joints> = run
+        .motions()
+        .iter()
+        .map(|asked| bench.joints(&asked.words))
+        .collect();
+    let ways = values.windows(2).map(|pair| {
+        let rotary = bench.rotary();
+        rotary
+            .iter()
+            .map(|place| (pair[1][*place] - pair[0][*place]).abs())
+            .sum::<f64>()
+    });
+    ways.sum::<f64>().to_degrees()
+}
+
+fn close(a: [f64; 2], b: [f64; 2]) -> bool {
+    a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 2e-3)
+}
+
+/// PostWorks' published example: the rotary axes may move by (50, 90) or by (110, 0) degrees; root of squares,
+/// largest axis, sum and one named axis choose the sets 1, 1, 2, 2.
+#[test]
+fn the_four_measures_choose_as_published() {
+    // A head inclined so that B 45 and B -45 lay the tool 160° apart about C.
+    let (tan_10, tan_22) = (libm::tan(10f64.to_radians()), libm::tan(22.5f64.to_radians()));
+    let tilt = libm::acos(tan_10 / tan_22);
+    let direction = format!("[0, {}, {}]", libm::sin(tilt), libm::cos(tilt));
+    let class = Class {
+        direction: &direction,
+        ..CLASSES[3]
+    };
+    for (rule, set) in [
+        ("travel", 1),
+        ("largest-axis", 1),
+        ("time", 2),
+        ("axis:B", 2),
+    ] {
+        let given = Given {
+            feeds: [10_000.0; 5],
+            more: format!("[solution]\nrule = \"{rule}\"\nstart = {{ C = 20, B = -45 }}"),
+            ..Given::default()
+        };
+        let bench = bench(&class, &given);
+        // Where the machine points with C 70 and B 45, which C -90 and B -45 do as well.
+        let mut joints = Joints::default();
+        joints[bench.place("C")] = 70f64.to_radians();
+        joints[bench.place("B")] = 45f64.to_radians();
+        let axis = bench.reference.forward(&joints).1;
+        let run = bench.run(&cl(&[point(Vector3::zeros(), axis, true)], 1000.0));
+        let run = run.good(rule);
+        let stands = angles(&bench, &run, line(0));
+        let moves = [stands[0] - 20.0, stands[1] + 45.0];
+        let expected = if set == 1 { [50.0, 90.0] } else { [-110.0, 0.0] };
+        assert!(close(moves, expected), "{rule}: moves by {moves:?}");
+    }
+}
+
+/// Heidenhain's table for PLANE SPATIAL with SPB+45 on a machine with A and C, from A0 C0.
+#[test]
+fn sides_are_chosen_as_heidenhain_s_table_has_it() {
+    let tool = Rotation3::from_axis_angle(&Vector3::y_axis(), 45f64.to_radians()) * Vector3::z();
+    let table = [
+        ("", [-120.0, 120.0], Some([90.0, 45.0])),
+        ("prefer = { A = \"positive\" }", [-120.0, 120.0], Some([90.0, 45.0])),
+        ("prefer = { A = \"negative\" }", [-120.0, 120.0], Some([-90.0, -45.0])),
+        ("require = { A = \"negative\" }", [-120.0, 120.0], Some([-90.0, -45.0])),
+        ("require = { A = \"positive\" }", [-120.0, 120.0], Some([90.0, 45.0])),
+        ("", [-90.0, 10.0], Some([-90.0, -45.0])),
+        ("prefer = { A = \"positive\" }", [-90.0, 10.0], Some([-90.0, -45.0])),
+        ("require = { A = \"positive\" }", [-90.0, 10.0], None),
+    ];
+    for (side, travel, expected) in table {
+        for rule in ["time", "travel", "largest-axis", "axis:C"] {
+            let given = Given {
+                second: travel,
+                more: format!("[solution]\nrule = \"{rule}\"\n{side}"),
+                ..Given::default()
+            };
+            let bench = bench(&CLASSES[0], &given);
+            let run = bench.run(&cl(&[point(Vector3::zeros(), tool, true)], 1000.0));
+            match expected {
+                Some(expected) => {
+                    let run = run.good(side);
+                    let stands = angles(&bench, &run, line(0));
+                    assert!(close(stands, expected), "{side} {travel:?} {rule}: {stands:?}");
+                }
+                None => {
+                    assert!(run.report.is_none());
+                    assert_eq!(run.findings[0].code, "over-travel", "{}", run.told());
+                }
+            }
+        }
+    }
+}
+
+/// A tool axis tilted by so many degrees, leaning to `lean` degrees about Z (0 leans to -Y, as A does).
+fn leaning(tilt: f64, lean: f64) -> Vector3<f64> {
+    let (sine, cosine) = libm::sincos(tilt.to_radians());
+    Rotation3::from_axis_angle(&Vector3::z_axis(), lean.to_radians())
+        * Vector3::new(0.0, -sine, cosine)
+}
+
+/// A preferred side is taken off the part where travel lets it be, at any cost, and never in a cut.
+#[test]
+fn a_preferred_side_is_soft() {
+    let points = [
+        point(Vector3::zeros(), leaning(45.0, 0.0), true),
+        point(Vector3::new(10.0, 0.0, 0.0), leaning(20.0, 0.0), false),
+        point(Vector3::new(20.0, 0.0, 0.0), leaning(20.0, 0.0), false),
+        point(Vector3::new(20.0, 0.0, 50.0), leaning(20.0, 0.0), true),
+        point(Vector3::new(30.0, 0.0, 0.0), leaning(25.0, 0.0), false),
+    ];
+    // At 45° the negative side is outside travel; at 20° it is not, but only the rapid may change to it.
+    let given = Given {
+        second: [-30.0, 120.0],
+        more: "[solution]\nprefer = { A = \"negative\" }".to_owned(),
+        ..Given::default()
+    };
+    let bench = bench(&CLASSES[0], &given);
+    let run = bench.run(&cl(&points, 1000.0)).good("prefer");
+    let tilts: Vec<f64> = (0..5).map(|index| angles(&bench, &run, line(index))[1]).collect();
+    for (tilt, expected) in tilts.iter().zip([45.0, 20.0, 20.0, -20.0, -25.0]) {
+        assert!((tilt - expected).abs() < 2e-3, "{tilts:?}");
+    }
+    assert_eq!(run.report.expect("a report").branch_changes, 1);
+    // Required, there is no way.
+    let given = Given {
+        second: [-30.0, 120.0],
+        more: "[solution]\nrequire = { A = \"negative\" }".to_owned(),
+        ..Given::default()
+    };
+    let refused = self::bench(&CLASSES[0], &given).run(&cl(&points, 1000.0));
+    assert!(refused.report.is_none());
+    assert_eq!(refused.findings[0].code, "over-travel", "{}", refused.told());
+}
+
+/// The axes go to the solution nearest to where they start, on the turn where they start.
+#[test]
+fn a_start_is_gone_on_from() {
+    let axis = leaning(30.0, 0.0);
+    for (start, expected) in [
+        ("C = 0, A = 0", [0.0, 30.0]),
+        ("C = 0, A = 30", [0.0, 30.0]),
+        ("C = 120, A = -60", [180.0, -30.0]),
+        ("C = 170, A = 0", [180.0, -30.0]),
+        ("C = 300, A = 10", [360.0, 30.0]),
+        ("C = 720, A = 10", [720.0, 30.0]),
+        ("C = -200, A = -10", [-180.0, -30.0]),
+    ] {
+        let given = Given {
+            feeds: [10_000.0; 5],
+            more: format!("[solution]\nstart = {{ {start} }}"),
+            ..Given::default()
+        };
+        let bench = bench(&CLASSES[0], &given);
+        let run = bench.run(&cl(&[point(Vector3::zeros(), axis, true)], 1000.0));
+        let stands = angles(&bench, &run.good(start), line(0));
+        assert!(close(stands, expected), "{start}: {stands:?}");
+    }
+}
+
+/// With `look_ahead = 1` the nearest solution is taken each time: it may turn more in the end, and may come to where
+/// it cannot go on, where looking ahead finds the way.
+#[test]
+fn looking_ahead_is_better_than_taking_the_nearest() {
+    // The second tilt is possible on one side of A alone.
+    let mut points = vec![point(Vector3::zeros(), leaning(45.0, 85.0), true)];
+    for step in 1..=6 {
+        let x = 5.0 * f64::from(step);
+        points.push(point(
+            Vector3::new(x, 0.0, 0.0),
+            leaning(45.0, 85.0 + f64::from(step)),
+            false,
+        ));
+    }
+    points.push(point(Vector3::new(30.0, 0.0, 80.0), leaning(70.0, 91.0), true));
+    points.push(point(Vector3::new(40.0, 0.0, 0.0), leaning(72.0, 91.0), false));
+    let way = |look_ahead: u32, second: [f64; 2], points: &[Point]| {
+        let given = Given {
+            second,
+            more: format!("[solution]\nlook_ahead = {look_ahead}"),
+            ..Given::default()
+        };
+        let bench = bench(&CLASSES[0], &given);
+        let run = bench.run(&cl(points, 1000.0));
+        let way = run.report.as_ref().map(|_| rotary_way(&bench, &run));
+        (way, run)
+    };
+    let (greedy, run) = way(1, [-120.0, 50.0], &points);
+    assert_eq!(run.good("greedy").report.expect("a report").branch_changes, 1);
+    let (ahead, run) = way(2000, [-120.0, 50.0], &points);
+    assert_eq!(run.good("ahead").report.expect("a report").branch_changes, 0);
+    let (greedy, ahead) = (greedy.expect("a way"), ahead.expect("a way"));
+    println!("rotary way: {greedy:.1}° taking the nearest, {ahead:.1}° looking ahead");
+    assert!(ahead < 40.0 && greedy > 250.0, "{greedy} {ahead}");
+
+    // The same in one cut: the nearest side of A ends at 50°.
+    let cut: Vec<Point> = points
+        .iter()
+        .enumerate()
+        .map(|(index, old)| point(old.tip, old.axis, index == 0))
+        .collect();
+    let (greedy, run) = way(1, [-120.0, 50.0], &cut);
+    assert!(greedy.is_none());
+    assert_eq!(run.findings[0].code, "jump", "{}", run.told());
+    assert!(way(2000, [-120.0, 50.0], &cut).0.is_some());
+}
+
+/// The sample of an ultrasonic knife on the trunnion table: refused taking the nearest, posted looking ahead.
+#[test]
+fn the_knife_is_posted_looking_ahead() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let read = |path: &str| std::fs::read_to_string(root.join(path)).expect("a file of the repository");
+    let (machine, text) = (read("machines/ac-trunnion.toml"), read("tests/samples/knife.ncl"));
+    for (look_ahead, possible) in [(1, false), (50, true), (2000, true)] {
+        let machine = format!("{machine}\n[solution]\nlook_ahead = {look_ahead}\n");
+        let bench = Bench::new(&machine, 3, 0.0);
+        let run = bench.run(&text);
+        assert_eq!(run.report.is_some(), possible, "{look_ahead}: {}", run.told());
+        if let Some(report) = &run.report {
+            println!(
+                "knife, look_ahead {look_ahead}: {} blocks, rotary way {:.0}°, {} branch changes",
+                report.blocks,
+                rotary_way(&bench, &run),
+                report.branch_changes
+            );
+        } else {
+            assert_eq!(run.findings[0].code, "jump", "{}", run.told());
+        }
+    }
+}
+
+/// A tool that leans by `tilt` degrees and goes round once every 360 steps of a degree, from `from` to `to` degrees.
+fn round(tilt: f64, from: i32, to: i32, rapid: impl Fn(i32) -> bool) -> Vec<Point> {
+    (from..=to)
+        .map(|step| {
+            let lean = f64::from(step);
+            let (sine, cosine) = libm::sincos(lean.to_radians());
+            let tip = Vector3::new(60.0 * cosine, 60.0 * sine, 0.05 * lean);
+            point(tip, leaning(tilt, lean), rapid(step))
+        })
+        .collect()
+}
+
+/// How far each block of a cut strays from the straight line between its CL points, and the tool axis from the great
+/// circle: 20 samples a block, mm and degrees.
+fn strays(bench: &Bench, points: &[Point], run: &Run) -> (f64, f64) {
+    let (mut worst_tip, mut worst_axis) = (0.0f64, 0.0f64);
+    let motions = run.motions();
+    let mut index = 0;
+    for pair in motions.windows(2) {
+        let (from, to): (&Asked, &Asked) = (pair[0], pair[1]);
+        while line(index) < to.line {
+            index += 1;
+        }
+        if index == 0 || points[index].rapid {
+            continue;
+        }
+        let (start, target) = (&points[index - 1], &points[index]);
+        let along = target.tip - start.tip;
+        let length = along.norm();
+        let place = |tip: Vector3<f64>| {
+            ((tip - start.tip).dot(&along) / (length * length)).clamp(0.0, 1.0)
+        };
+        let (a, b) = (start.axis.normalize(), target.axis.normalize());
+        let ends = [0.0, 1.0].map(|t| place(bench.at(&from.words, &to.words, t).0));
+        // The place of a block's end on its line is known to the rounding of the words only.
+        let blur = (angle(a, b) * 0.001 / length).to_degrees();
+        for step in 0..=20 {
+            let t = f64::from(step) / 20.0;
+            let (tip, axis) = bench.at(&from.words, &to.words, t);
+            worst_tip = worst_tip.max(distance(tip, start.tip, target.tip));
+            let wanted = slerp(a, b, ends[0] * (1.0 - t) + ends[1] * t);
+            worst_axis = worst_axis.max(angle(axis, wanted).to_degrees() - blur);
+        }
+    }
+    (worst_tip, worst_axis)
+}
+
+/// C would pass its travel: off the part it is turned back.
+#[test]
+fn a_rapid_turns_the_axis_back() {
+    for class in &CLASSES {
+        for tcp in ["post", "control"] {
+            let given = Given {
+                tcp,
+                c: "[-200, 400]".to_owned(),
+                // One side of the tilting axis alone.
+                second: [-1.0, 120.0],
+                ..Given::default()
+            };
+            let bench = bench(class, &given);
+            // Off the part between 300° and 305°, and on round to 700°.
+            let points = round(30.0, 0, 700, |step| step == 0 || (300..=305).contains(&step));
+            let what = format!("{}, {tcp}", class.name);
+            let run = bench.run(&cl(&points, 1000.0)).good(&what);
+            let report = run.report.as_ref().expect("a report");
+            assert_eq!((report.branch_changes, report.rewinds), (1, 0), "{what}");
+            let (tip, axis) = strays(&bench, &points, &run);
+            assert!(tip < 0.005 + 1e-9 && axis < 0.05 + 1e-9, "{what}: {tip} {axis}");
+            let c: Vec<f64> = run
+                .motions()
+                .iter()
+                .map(|asked| bench.joints(&asked.words)[bench.place("C")].to_degrees())
+                .collect();
+            assert!(c.iter().all(|c| (-200.0..=400.0).contains(c)), "{what}");
+            // The large turn is made in rapids alone.
+            for (pair, c) in run.motions().windows(2).zip(c.windows(2)) {
+                assert!(pair[1].kind == "Rapid" || (c[1] - c[0]).abs() < 10.0, "{what}");
+            }
+        }
+    }
+}
+
+/// A turn off the part leaves the travel of no axis on its way.
+#[test]
+#[ignore = "where the post keeps the tip, the tilting axis swings through -30° in a rapid turn of C, outside its travel of -1° to 120°"]
+fn a_rapid_turn_stays_inside_travel() {
+    for class in &CLASSES {
+        for tcp in ["post", "control"] {
+            let given = Given {
+                tcp,
+                c: "[-200, 400]".to_owned(),
+                second: [-1.0, 120.0],
+                ..Given::default()
+            };
+            let bench = bench(class, &given);
+            let points = round(30.0, 0, 700, |step| step == 0 || (300..=305).contains(&step));
+            let run = bench.run(&cl(&points, 1000.0)).good(class.name);
+            let (over, axis) = left_travel(&bench, &run);
+            assert!(over < 1e-6, "{}, {tcp}: {axis} by {over}", class.name);
+        }
+    }
+}
+
+/// A long cut without a rapid is refused without `[rewind]`, and the refusal says what was tried.
+#[test]
+fn without_a_rewind_the_cut_is_refused_and_says_why() {
+    for class in &CLASSES {
+        let given = Given {
+            c: "[-200, 400]".to_owned(),
+            second: [-1.0, 120.0],
+            ..Given::default()
+        };
+        let bench = bench(class, &given);
+        let points = round(30.0, 0, 700, |step| step == 0);
+        let run = bench.run(&cl(&points, 1000.0));
+        assert!(run.report.is_none());
+        let finding = &run.findings[0];
+        let told = format!("{}: {}", class.name, finding.message);
+        assert_eq!(finding.code, "jump", "{told}");
+        // Where C passes 400°, by whatever it is ahead of the lean.
+        let ahead = {
+            let solver = bench.machine.solver(class.length).expect("a form");
+            let free = Given {
+                second: [-1.0, 120.0],
+                ..Given::default()
+            };
+            let free = self::bench(class, &free);
+            stands(&free, &solver, &points[0])[0][bench.place("C")].to_degrees()
+        };
+        let turns = libm::floor((400.0 - ahead) / 360.0);
+        let _ = turns;
+        let place = finding.place.as_ref().expect("a place");
+        let index = ((place.line - line(0)) / 2) as usize;
+        assert_eq!(place.line, line(index));
+        let passes = libm::remainder(ahead + index as f64 - 401.0, 360.0);
+        assert!(passes.abs() < 1.0, "{told}: at point {index}, C ahead by {ahead}");
+        for word in ["C to 40", "travel -200.000° to 400.000°", "cannot go on from"] {
+            assert!(told.contains(word), "{told}");
+        }
+        assert!(told.contains(class.second), "{told}");
+        assert!(finding.help.as_ref().is_some_and(|help| help.contains("[rewind]")));
+    }
+}
+
+/// One cause, one error: behind it the path goes on as if it began there.
+#[test]
+#[ignore = "a second error (\"C must jump from … within this cut\") follows the first: the node before it is still gone on from"]
+fn a_refused_cut_is_told_once() {
+    let given = Given {
+        c: "[-200, 400]".to_owned(),
+        second: [-1.0, 120.0],
+        ..Given::default()
+    };
+    let bench = bench(&CLASSES[0], &given);
+    let run = bench.run(&cl(&round(30.0, 0, 700, |step| step == 0), 1000.0));
+    assert_eq!(run.findings.len(), 1, "{}", run.told());
+}
+
+/// A block's time as its control understands it, minutes; none at rapid.
+fn minutes(bench: &Bench, from: &Asked, to: &Asked) -> Option<f64> {
+    let way = |linear: bool| {
+        let steps = bench.order.iter().enumerate();
+        steps
+            .filter(|(_, place)| bench.reference.joints[**place].rotary != linear)
+            .map(|(word, _)| (to.words[word] - from.words[word]).abs())
+            .fold(0.0, |sum: f64, step| libm::hypot(sum, step))
+    };
+    match to.feed? {
+        Feed::InverseTime(feed) => Some(1.0 / feed),
+        Feed::PerMinute(feed) if way(true) > 1e-9 => Some(way(true) / feed),
+        Feed::PerMinute(feed) => Some(way(false) / feed),
+        Feed::PerRevolution(_) => None,
+    }
+}
+
+/// With `[rewind]` the tool is drawn back along its axis, turned with its tip held, and brought back to where it was.
+#[test]
+fn a_rewind_draws_back_turns_and_returns() {
+    for class in &CLASSES {
+        for tcp in ["post", "control"] {
+            for (retract, plane) in [("distance = 25", None), ("plane = 90", Some(90.0))] {
+                for feeds in ["", "retract_feed = 4000\nturn_feed = 1800\nplunge_feed = 300"] {
+                    let given = Given {
+                        tcp,
+                        c: "[-200, 400]".to_owned(),
+                        second: [-1.0, 120.0],
+                        more: format!("[rewind]\n{retract}\n{feeds}"),
+                        ..Given::default()
+                    };
+                    let bench = bench(class, &given);
+                    let points = round(30.0, 0, 700, |step| step == 0);
+                    let what = format!("{}, {tcp}, {retract}, {feeds}", class.name);
+                    let run = bench.run(&cl(&points, 1000.0)).good(&what);
+                    let report = run.report.as_ref().expect("a report");
+                    assert_eq!(report.rewinds, 1, "{what}");
+                    let turning =
+                        rewound(&what, &bench, &points, &run, plane, !feeds.is_empty());
+                    let (over, axis) = left_travel(&bench, &run);
+                    println!("    turned at {turning:.0} degrees a minute; outside travel by {over:.3} {axis}");
+                }
+            }
+        }
+    }
+}
+
+/// The run of one machine that rewinds.
+fn rewinding(class: &Class<'_>, tcp: &str, rewind: &str) -> (Bench, Vec<Point>, Run) {
+    let given = Given {
+        tcp,
+        c: "[-200, 400]".to_owned(),
+        second: [-1.0, 120.0],
+        more: format!("[rewind]\n{rewind}"),
+        ..Given::default()
+    };
+    let bench = bench(class, &given);
+    let points = round(30.0, 0, 700, |step| step == 0);
+    let run = bench.run(&cl(&points, 1000.0)).good(class.name);
+    (bench, points, run)
+}
+
+/// While it is turned, no axis leaves its travel.
+#[test]
+#[ignore = "the tilting axis swings through -30° in a turn of C, outside its travel of -1° to 120°"]
+fn a_rewind_stays_inside_travel() {
+    for class in &CLASSES {
+        for tcp in ["post", "control"] {
+            let (bench, _, run) = rewinding(class, tcp, "distance = 25");
+            let (over, axis) = left_travel(&bench, &run);
+            assert!(over < 1e-6, "{}, {tcp}: {axis} by {over}", class.name);
+        }
+    }
+}
+
+/// It is turned as fast as the machine file says.
+#[test]
+#[ignore = "turn_feed is taken for the feed of the tip, which hardly moves: the axes turn at their largest feed"]
+fn a_rewind_turns_at_its_feed() {
+    for class in &CLASSES {
+        for tcp in ["post", "control"] {
+            let rewind = "distance = 25\nretract_feed = 4000\nturn_feed = 1800\nplunge_feed = 300";
+            let (bench, points, run) = rewinding(class, tcp, rewind);
+            let feed = rewound(class.name, &bench, &points, &run, None, true);
+            assert!((1700.0..1810.0).contains(&feed), "{}, {tcp}: {feed}", class.name);
+        }
+    }
+}
+
+/// Checks the blocks of the only rewind of a run; gives the feed of the turn, degrees a minute.
+fn rewound(
+    what: &str,
+    bench: &Bench,
+    points: &[Point],
+    run: &Run,
+    plane: Option<f64>,
+    feeds: bool,
+) -> f64 {
+    let motions = run.motions();
+    let rotary = |words: &[f64]| -> Vec<f64> {
+        let joints = bench.joints(words);
+        bench.rotary().iter().map(|place| joints[*place].to_degrees()).collect()
+    };
+    let turn = |from: &[f64], to: &[f64]| -> f64 {
+        let (from, to) = (rotary(from), rotary(to));
+        from.iter().zip(&to).map(|(a, b)| (a - b).abs()).sum()
+    };
+    // Its blocks belong to the point where it begins and ends: the tip comes there, leaves it, and comes back.
+    let index = (0..points.len())
+        .find(|index| {
+            let blocks = motions.iter().filter(|asked| asked.line == line(*index));
+            blocks
+                .clone()
+                .any(|asked| (bench.at(&asked.words, &asked.words, 0.0).0 - points[*index].tip).norm() > 10.0)
+        })
+        .unwrap_or_else(|| panic!("{what}: no rewind"));
+    let (tip, axis) = (points[index].tip, points[index].axis.normalize());
+    let blocks: Vec<usize> = (0..motions.len())
+        .filter(|place| motions[*place].line == line(index))
+        .collect();
+    let at = |place: usize| bench.at(&motions[place].words, &motions[place].words, 0.0);
+    let first = blocks
+        .iter()
+        .copied()
+        .find(|place| (at(*place).0 - tip).norm() > 10.0)
+        .expect("the way out");
+    let begin = first - 1;
+    assert!((at(begin).0 - tip).norm() < 0.002, "{what}: it does not begin at the point");
+    let last = *blocks.last().expect("blocks");
+    assert!((at(last).0 - tip).norm() < 0.002, "{what}: it does not end at the point");
+    assert!(angle(at(last).1, axis).to_degrees() < 0.05, "{what}");
+    // As far as it is drawn back.
+    let away = match plane {
+        None => tip + axis * 25.0,
+        Some(height) => tip + axis * ((height - tip.z) / axis.z),
+    };
+    // Out, turn and back, told apart by where their blocks end.
+    let turned: Vec<usize> = (first..=last)
+        .filter(|place| turn(&motions[*place - 1].words, &motions[*place].words) > 1e-3)
+        .collect();
+    let (turn_first, turn_last) = (turned[0], turned[turned.len() - 1]);
+    assert!(turn_first > first, "{what}: it turns on its way out");
+    assert!(turn_last < last, "{what}: it turns on its way back");
+    assert!((at(turn_first - 1).0 - away).norm() < 0.002, "{what}: {:?} {away:?}", at(turn_first - 1));
+    let whole = turn(&motions[begin].words, &motions[last].words);
+    assert!((whole - 360.0).abs() < 0.01, "{what}: turned by {whole}");
+    let mut time = [0.0f64; 3];
+    let mut way = [0.0f64; 3];
+    let mut lowest = f64::INFINITY;
+    let mut strayed = [0.0f64; 3];
+    for place in first..=last {
+        let (from, to) = (motions[place - 1], motions[place]);
+        let stage = if place < turn_first { 0 } else { usize::from(place > turn_last) + 1 };
+        assert_eq!(to.kind, if feeds || stage == 2 { "Linear" } else { "Rapid" }, "{what} stage {stage}");
+        time[stage] += minutes(bench, from, to).unwrap_or(0.0);
+        way[stage] += (at(place).0 - at(place - 1).0).norm();
+        for step in 0..=20 {
+            let (reached, _) = bench.at(&from.words, &to.words, f64::from(step) / 20.0);
+            lowest = lowest.min((reached - tip).dot(&axis));
+            let off = match stage {
+                1 => (reached - away).norm(),
+                _ => distance(reached, tip, away),
+            };
+            strayed[stage] = strayed[stage].max(off);
+        }
+    }
+    assert!(lowest > -0.002, "{what}: the tip goes below its start by {lowest}");
+    // Off the part the tolerance of a rapid will do; back it comes as a cut does.
+    assert!(strayed[0] < 0.5 + 1e-6 && strayed[1] < 0.5 + 1e-6, "{what}: {strayed:?}");
+    assert!(strayed[2] < 0.005 + 1e-6, "{what}: {strayed:?}");
+    way[1] = whole;
+    let feed = [0, 1, 2].map(|stage| way[stage] / time[stage]);
+    println!("{what}: {} blocks, strays {strayed:.3?} mm, feeds {feed:.0?}", last - begin);
+    let asked = if feeds { [4000.0, f64::INFINITY, 300.0] } else { [f64::INFINITY, f64::INFINITY, 1000.0] };
+    for stage in [0, 2] {
+        if asked[stage] < f64::INFINITY {
+            assert!(
+                feed[stage] < 1.01 * asked[stage] && feed[stage] > 0.98 * asked[stage],
+                "{what}: feed {} of stage {stage}, asked {}",
+                feed[stage],
+                asked[stage]
+            );
+        }
+    }
+    feed[1]
 }

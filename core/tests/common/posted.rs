@@ -141,6 +141,8 @@ impl Run {
 
 /// A machine, and the same once more for the isometries.
 pub struct Bench {
+    /// The machine file.
+    pub text: String,
     pub machine: Machine,
     pub reference: Reference,
     /// Places in the chain, in the order of the words.
@@ -169,6 +171,7 @@ impl Bench {
         let mut order: Vec<usize> = (0..machine.axes.len()).collect();
         order.sort_by_key(|place| "XYZABC".find(&machine.axes[*place].name));
         let mut bench = Self {
+            text: text.to_owned(),
             machine,
             reference,
             order,

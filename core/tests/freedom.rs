@@ -27,7 +27,9 @@ fn apart(machine: &Random, a: &Joints, b: &Joints) -> f64 {
 
 /// How large the values are: rounding errors grow with them, per metre.
 fn reach(values: &Joints) -> f64 {
-    values.iter().fold(1.0, |reach: f64, value| reach.max(value.abs() / 1000.0))
+    values
+        .iter()
+        .fold(1.0, |reach: f64, value| reach.max(value.abs() / 1000.0))
 }
 
 /// A machine with three rotary axes that a tool frame fixes, no two neighbours of which are nearly parallel.
@@ -55,8 +57,8 @@ fn three_rotary_axes_follow_a_tool_frame() {
     let mut rng = Rng(11);
     let (mut tip, mut axis, mut edge, mut own): (f64, f64, f64, f64) = (0.0, 0.0, 0.0, 0.0);
     let (mut poses, mut regular, mut counts) = (0, 0, [0; 3]);
-    for round in 0..4_000 {
-        let machine = three(&mut rng, usize::from(round % 3 == 0));
+    for round in 0..4_000_u32 {
+        let machine = three(&mut rng, usize::from(round.is_multiple_of(3)));
         let reference = &machine.reference;
         let leading = across(&mut rng, reference.axis);
         let chain = reference.chain().with_edge(Some(leading));
@@ -112,7 +114,10 @@ fn three_rotary_axes_follow_a_tool_frame() {
     assert!(poses > 10_000 && regular > 8_000);
     assert!(counts[0] == 0 && counts[2] > poses / 2);
     assert!(tip < 1e-9, "tip off by {tip}");
-    assert!(axis < 1e-9 && edge < 1e-9, "axis off by {axis}, edge by {edge}");
+    assert!(
+        axis < 1e-9 && edge < 1e-9,
+        "axis off by {axis}, edge by {edge}"
+    );
 }
 
 /// A frame is reached exactly when the first two axes can bring the third one to where the frame wants it, and
@@ -127,10 +132,8 @@ fn frames_out_of_reach_are_refused_by_what_the_third_axis_misses() {
         let leading = across(&mut rng, reference.axis);
         let chain = reference.chain().with_edge(Some(leading));
         let solver = Solver::new(chain, &machine.free, machine.held).expect("a closed form");
-        let wanted = Rotation3::from_axis_angle(
-            &Unit::new_normalize(rng.direction()),
-            rng.range(-PI, PI),
-        );
+        let wanted =
+            Rotation3::from_axis_angle(&Unit::new_normalize(rng.direction()), rng.range(-PI, PI));
         let pose = Pose {
             axis: wanted * reference.axis,
             edge: wanted * leading,
@@ -146,14 +149,26 @@ fn frames_out_of_reach_are_refused_by_what_the_third_axis_misses() {
             }
             reference.rotation(&q).inverse() * reference.direction(&q, third)
         };
-        let least = nearest(reference, &machine.held, [first, second], at_zero, wanted * at_zero);
+        let least = nearest(
+            reference,
+            &machine.held,
+            [first, second],
+            at_zero,
+            wanted * at_zero,
+        );
         match solver.orient(&pose, 1e-9) {
             Ok(_) => {
-                assert!(least < 1e-6, "round {round}: accepted, but a scan misses by {least}");
+                assert!(
+                    least < 1e-6,
+                    "round {round}: accepted, but a scan misses by {least}"
+                );
                 reached += 1;
             }
             Err(Unreachable::Axis { miss }) => {
-                assert!(least > 1e-6, "round {round}: refused by {miss}, but a scan reaches it");
+                assert!(
+                    least > 1e-6,
+                    "round {round}: refused by {miss}, but a scan reaches it"
+                );
                 worst = worst.max((miss - least).abs());
                 refused += 1;
             }
@@ -198,7 +213,7 @@ fn volume(
 fn four(rng: &mut Rng, round: usize) -> (Random, usize, usize) {
     let mut kinds = vec![Kind::Linear; 4];
     kinds.extend(vec![Kind::Free; round % 3]);
-    kinds.extend(vec![Kind::Held; usize::from(round % 7 == 0)]);
+    kinds.extend(vec![Kind::Held; usize::from(round.is_multiple_of(7))]);
     loop {
         let machine = Random::of(rng, &kinds);
         if let [a, b] = *machine.free.as_slice()
@@ -324,7 +339,10 @@ fn a_quill_takes_its_share() {
         }
     }
     println!("{poses} poses with a shared quill: tip {tip:.1e} mm, share off by {shares:.1e} mm");
-    assert!(poses > 4_000 && tip < 1e-9 && shares < 1e-9, "{poses} {tip} {shares}");
+    assert!(
+        poses > 4_000 && tip < 1e-9 && shares < 1e-9,
+        "{poses} {tip} {shares}"
+    );
 }
 
 #[test]
@@ -334,7 +352,10 @@ fn a_quill_in_reserve_moves_where_the_other_ends() {
     for round in 0..4_000 {
         let (machine, quill, beside) = four(&mut rng, round);
         let middle = rng.range(-200.0, 200.0);
-        let travel = [middle - rng.range(0.0, 300.0), middle + rng.range(0.0, 300.0)];
+        let travel = [
+            middle - rng.range(0.0, 300.0),
+            middle + rng.range(0.0, 300.0),
+        ];
         let freedom = Freedom {
             rotary: machine.free.clone(),
             held: machine.held,
@@ -380,7 +401,11 @@ fn a_quill_in_reserve_moves_where_the_other_ends() {
                 assert!(own[quill].abs() < 1e-9 || (own[beside] - q[beside]).abs() < 1e-6);
             } else {
                 beyond += 1;
-                let end = if q[beside] > travel[1] { travel[1] } else { travel[0] };
+                let end = if q[beside] > travel[1] {
+                    travel[1]
+                } else {
+                    travel[0]
+                };
                 assert_eq!(own[beside], end, "round {round}");
                 assert!(own[quill] != 0.0);
             }
@@ -511,11 +536,12 @@ fn a_numeric_chain_refuses_what_it_cannot_reach() {
     }
     // A knife on a portal without Z: two linear axes along X and Y, three rotary ones whose lines meet the tip's
     // plane. Poses a hair above what the arms reach are refused, a hair below they are not.
-    let joint = |rotary: bool, direction: Vector3<f64>, point: [f64; 3]| post_core::kinematics::Joint {
-        rotary,
-        direction,
-        point: Vector3::from(point),
-    };
+    let joint =
+        |rotary: bool, direction: Vector3<f64>, point: [f64; 3]| post_core::kinematics::Joint {
+            rotary,
+            direction,
+            point: Vector3::from(point),
+        };
     let machine = Random {
         reference: common::Reference {
             joints: vec![
@@ -532,7 +558,8 @@ fn a_numeric_chain_refuses_what_it_cannot_reach() {
         free: vec![2, 3, 4],
         held: Joints::default(),
     };
-    let solver = Solver::new(machine.reference.chain(), &machine.free, machine.held).expect("a form");
+    let solver =
+        Solver::new(machine.reference.chain(), &machine.free, machine.held).expect("a form");
     for tilt in [0.1f64, 0.5, 1.0] {
         let axis = Vector3::new(libm::sin(tilt), 0.0, libm::cos(tilt));
         // The upper arm, 100 mm, hangs from Z 100 at any angle; the tool, 50 mm, has the angle that is wanted.
@@ -578,13 +605,21 @@ fn measured(rng: &mut Rng, class: usize, incline: f64, second: f64) -> Random {
         point: Vector3::zeros(),
     };
     let xyz = [Vector3::x(), Vector3::y(), Vector3::z()].map(slide);
-    let tilted = [Vector3::x(), Vector3::x(), Vector3::y(), Vector3::new(0.0, 1.0, 1.0).normalize()][class];
+    let tilted = [
+        Vector3::x(),
+        Vector3::x(),
+        Vector3::y(),
+        Vector3::new(0.0, 1.0, 1.0).normalize(),
+    ][class];
     let mut turn = |direction: Vector3<f64>, by: f64, height: f64| Joint {
         rotary: true,
         direction: inclined(rng, direction, by),
         point: Vector3::new(0.0, 0.0, height) + rng.point(0.02),
     };
-    let (c, a) = (turn(Vector3::z(), incline, 0.0), turn(tilted, second, 250.0));
+    let (c, a) = (
+        turn(Vector3::z(), incline, 0.0),
+        turn(tilted, second, 250.0),
+    );
     // Table-table AC, head-head CA, head-table B over C, a nutating head over a C table.
     let (joints, free) = match class {
         0 => (vec![c, a, xyz[0], xyz[1], xyz[2]], [0, 1]),
@@ -608,7 +643,13 @@ fn measured(rng: &mut Rng, class: usize, incline: f64, second: f64) -> Random {
 fn let_through(machine: &Random, wanted: Vector3<f64>, tolerance: f64, what: &str) -> (f64, f64) {
     let reference = &machine.reference;
     let [first, second] = [machine.free[0], machine.free[1]];
-    let least = nearest(reference, &machine.held, [first, second], reference.axis, wanted);
+    let least = nearest(
+        reference,
+        &machine.held,
+        [first, second],
+        reference.axis,
+        wanted,
+    );
     let solver = Solver::new(reference.chain(), &machine.free, machine.held).expect("a form");
     let pose = Pose {
         tip: Vector3::new(5.0, 6.0, 7.0),
@@ -618,7 +659,10 @@ fn let_through(machine: &Random, wanted: Vector3<f64>, tolerance: f64, what: &st
     let mut over = 0.0f64;
     match solver.inverse(&pose, &machine.held, tolerance) {
         Ok(found) => {
-            assert!(least <= tolerance.max(POLE) + 1e-9, "{what}: {least} let through");
+            assert!(
+                least <= tolerance.max(POLE) + 1e-9,
+                "{what}: {least} let through"
+            );
             for solution in &found {
                 let (tip, axis) = reference.forward(solution);
                 assert!((tip - pose.tip).norm() < 1e-9, "{what}: the tip is off");
@@ -626,7 +670,10 @@ fn let_through(machine: &Random, wanted: Vector3<f64>, tolerance: f64, what: &st
             }
         }
         Err(fault) => {
-            assert!(least > tolerance - 1e-9, "{what}: {least} refused: {fault:?}");
+            assert!(
+                least > tolerance - 1e-9,
+                "{what}: {least} refused: {fault:?}"
+            );
             let Unreachable::Axis { miss } = fault else {
                 panic!("{what}: {fault:?}");
             };
@@ -645,7 +692,11 @@ fn as_measured_the_upright_tool_is_let_through() {
     for round in 0..1_200 {
         let class = round % 4;
         let incline = rng.range(1e-5, 1e-4);
-        let second = if round % 8 < 4 { 0.0 } else { rng.range(1e-5, 1e-4) };
+        let second = if round % 8 < 4 {
+            0.0
+        } else {
+            rng.range(1e-5, 1e-4)
+        };
         let machine = measured(&mut rng, class, incline, second);
         // Exactly upright, and a hair beside it.
         let wanted = if round % 3 == 0 {
@@ -665,7 +716,9 @@ fn as_measured_the_upright_tool_is_let_through() {
             let_through(&machine, wanted, least * 0.99, &what);
         }
     }
-    println!("as measured: {out} upright tools out of reach, by {most:.1e} rad at most; missed by {worst:.1e} rad more than they must be");
+    println!(
+        "as measured: {out} upright tools out of reach, by {most:.1e} rad at most; missed by {worst:.1e} rad more than they must be"
+    );
     assert!(out > 200, "{out}");
     assert!(worst <= 2.0 * POLE, "{worst}");
 }
@@ -693,7 +746,9 @@ fn the_edge_of_reach_is_let_through_by_the_tolerance() {
         }
         worst = worst.max(over);
     }
-    println!("edge of reach: {passed} let through, {refused} refused; missed by {worst:.1e} rad more than they must be");
+    println!(
+        "edge of reach: {passed} let through, {refused} refused; missed by {worst:.1e} rad more than they must be"
+    );
     assert!(passed > 50 && refused > 50, "{passed} {refused}");
     assert!(worst <= 2.0 * POLE, "{worst}");
 }
@@ -729,11 +784,8 @@ fn a_tool_frame_at_the_edge_of_reach_is_let_through() {
         let free = [machine.free[0], machine.free[1]];
         // Where the knife's own axis must come to lie: seen from the tool it stands still.
         let wanted = Matrix3::from_columns(&[pose.axis, pose.edge, pose.axis.cross(&pose.edge)]);
-        let zero = Matrix3::from_columns(&[
-            reference.axis,
-            leading,
-            reference.axis.cross(&leading),
-        ]);
+        let zero =
+            Matrix3::from_columns(&[reference.axis, leading, reference.axis.cross(&leading)]);
         let knife = reference.joints[behind].direction;
         let least = nearest(
             reference,
@@ -752,9 +804,15 @@ fn a_tool_frame_at_the_edge_of_reach_is_let_through() {
                 for solution in &found {
                     let reached = reference.forward(solution);
                     assert!((reached.0 - pose.tip).norm() < 1e-9);
-                    assert!(angle(reached.1, pose.axis) < 1.01 * least + POLE, "round {round}");
+                    assert!(
+                        angle(reached.1, pose.axis) < 1.01 * least + POLE,
+                        "round {round}"
+                    );
                     let edge = reference.taken(solution, leading);
-                    assert!(angle(edge, pose.edge) < 1.01 * least + POLE, "round {round}");
+                    assert!(
+                        angle(edge, pose.edge) < 1.01 * least + POLE,
+                        "round {round}"
+                    );
                 }
             }
             Err(fault) => panic!("round {round}: {least} refused: {fault:?}"),
@@ -763,6 +821,8 @@ fn a_tool_frame_at_the_edge_of_reach_is_let_through() {
             refused += 1;
         }
     }
-    println!("tool frames at the edge of reach: {passed} let through, {refused} refused by a smaller tolerance");
+    println!(
+        "tool frames at the edge of reach: {passed} let through, {refused} refused by a smaller tolerance"
+    );
     assert!(passed > 100 && refused == passed, "{passed} {refused}");
 }

@@ -5,8 +5,8 @@ mod common;
 
 use std::f64::consts::TAU;
 
-use common::posted::{Bench, Point, Run, cl, line, point};
 use common::posted::Asked;
+use common::posted::{Bench, Point, Run, cl, line, point};
 use common::{Rng, across, angle, distance, slerp, turned};
 use nalgebra::{Rotation3, Unit, Vector3};
 use post_core::kinematics::{Joints, Pose, Solver};
@@ -170,7 +170,11 @@ fn cost(bench: &Bench, from: &Joints, to: &Joints, linear: bool) -> f64 {
             largest = largest.max(way.to_degrees());
         }
         if machine.solution.rule == Rule::Axis(place) {
-            named = if axis.joint.rotary { way.to_degrees() } else { way };
+            named = if axis.joint.rotary {
+                way.to_degrees()
+            } else {
+                way
+            };
         }
         if axis.joint.rotary || linear {
             time += way / axis.max_feed;
@@ -189,9 +193,8 @@ fn cost(bench: &Bench, from: &Joints, to: &Joints, linear: bool) -> f64 {
 fn inside(bench: &Bench, joints: &Joints) -> bool {
     let axes = bench.machine.axes.iter().enumerate();
     let travel = axes.clone().all(|(place, axis)| {
-        axis.travel.is_none_or(|[least, most]| {
-            (least - 1e-9..=most + 1e-9).contains(&joints[place])
-        })
+        axis.travel
+            .is_none_or(|[least, most]| (least - 1e-9..=most + 1e-9).contains(&joints[place]))
     });
     let sides = &bench.machine.solution.require;
     travel
@@ -310,7 +313,11 @@ impl Search<'_> {
 fn short(rng: &mut Rng, class: &Class<'_>) -> Vec<Point> {
     let clear = |axis: Vector3<f64>| {
         let tilt = angle(axis, Vector3::z()).to_degrees();
-        let most = if class.name == "nutating head" { 80.0 } else { 150.0 };
+        let most = if class.name == "nutating head" {
+            80.0
+        } else {
+            150.0
+        };
         (12.0..most).contains(&tilt)
     };
     loop {
@@ -365,7 +372,14 @@ fn the_choice_costs_no_more_than_the_cheapest_of_all_ways() {
     let mut worst = 0.0f64;
     let mut faults: Vec<String> = Vec::new();
     for class in &CLASSES {
-        for rule in ["time", "travel", "largest-axis", "axis:C", "axis:second", "axis:X"] {
+        for rule in [
+            "time",
+            "travel",
+            "largest-axis",
+            "axis:C",
+            "axis:second",
+            "axis:X",
+        ] {
             for round in 0..60 {
                 let tilt = match rng.pick(3) {
                     0 => [-175.0, 175.0],
@@ -421,12 +435,19 @@ fn the_choice_costs_no_more_than_the_cheapest_of_all_ways() {
                 let crossing = search.careless < best * (1.0 - 1e-9);
                 careless += usize::from(crossing);
                 let mut fault = |text: String| {
-                    faults.push(format!("{what}{}: {text}", if crossing { " (between points)" } else { "" }));
+                    faults.push(format!(
+                        "{what}{}: {text}",
+                        if crossing { " (between points)" } else { "" }
+                    ));
                 };
                 if run.report.is_none() {
                     refused += 1;
                     if best.is_finite() {
-                        fault(format!("refused, and there is a way of cost {best}: {}\n{text}{given_text}", run.told(), given_text = given.more));
+                        fault(format!(
+                            "refused, and there is a way of cost {best}: {}\n{text}{given_text}",
+                            run.told(),
+                            given_text = given.more
+                        ));
                     }
                     continue;
                 }
@@ -490,7 +511,10 @@ fn left_travel(bench: &Bench, run: &Run) -> (f64, String) {
             if let Some([least, most]) = axis.travel {
                 let over = (least - joints[place]).max(joints[place] - most) / axis.unit();
                 if over > worst.0 + 1e-6 {
-                    worst = (over, format!("{} at CL line {}, {}", axis.name, asked.line, asked.kind));
+                    worst = (
+                        over,
+                        format!("{} at CL line {}, {}", axis.name, asked.line, asked.kind),
+                    );
                 }
             }
         }
@@ -524,7 +548,10 @@ fn close(a: [f64; 2], b: [f64; 2]) -> bool {
 #[test]
 fn the_four_measures_choose_as_published() {
     // A head inclined so that B 45 and B -45 lay the tool 160° apart about C.
-    let (tan_10, tan_22) = (libm::tan(10f64.to_radians()), libm::tan(22.5f64.to_radians()));
+    let (tan_10, tan_22) = (
+        libm::tan(10f64.to_radians()),
+        libm::tan(22.5f64.to_radians()),
+    );
     let tilt = libm::acos(tan_10 / tan_22);
     let direction = format!("[0, {}, {}]", libm::sin(tilt), libm::cos(tilt));
     let class = Class {
@@ -552,7 +579,11 @@ fn the_four_measures_choose_as_published() {
         let run = run.good(rule);
         let stands = angles(&bench, &run, line(0));
         let moves = [stands[0] - 20.0, stands[1] + 45.0];
-        let expected = if set == 1 { [50.0, 90.0] } else { [-110.0, 0.0] };
+        let expected = if set == 1 {
+            [50.0, 90.0]
+        } else {
+            [-110.0, 0.0]
+        };
         assert!(close(moves, expected), "{rule}: moves by {moves:?}");
     }
 }
@@ -563,12 +594,32 @@ fn sides_are_chosen_as_heidenhain_s_table_has_it() {
     let tool = Rotation3::from_axis_angle(&Vector3::y_axis(), 45f64.to_radians()) * Vector3::z();
     let table = [
         ("", [-120.0, 120.0], Some([90.0, 45.0])),
-        ("prefer = { A = \"positive\" }", [-120.0, 120.0], Some([90.0, 45.0])),
-        ("prefer = { A = \"negative\" }", [-120.0, 120.0], Some([-90.0, -45.0])),
-        ("require = { A = \"negative\" }", [-120.0, 120.0], Some([-90.0, -45.0])),
-        ("require = { A = \"positive\" }", [-120.0, 120.0], Some([90.0, 45.0])),
+        (
+            "prefer = { A = \"positive\" }",
+            [-120.0, 120.0],
+            Some([90.0, 45.0]),
+        ),
+        (
+            "prefer = { A = \"negative\" }",
+            [-120.0, 120.0],
+            Some([-90.0, -45.0]),
+        ),
+        (
+            "require = { A = \"negative\" }",
+            [-120.0, 120.0],
+            Some([-90.0, -45.0]),
+        ),
+        (
+            "require = { A = \"positive\" }",
+            [-120.0, 120.0],
+            Some([90.0, 45.0]),
+        ),
         ("", [-90.0, 10.0], Some([-90.0, -45.0])),
-        ("prefer = { A = \"positive\" }", [-90.0, 10.0], Some([-90.0, -45.0])),
+        (
+            "prefer = { A = \"positive\" }",
+            [-90.0, 10.0],
+            Some([-90.0, -45.0]),
+        ),
         ("require = { A = \"positive\" }", [-90.0, 10.0], None),
     ];
     for (side, travel, expected) in table {
@@ -584,7 +635,10 @@ fn sides_are_chosen_as_heidenhain_s_table_has_it() {
                 Some(expected) => {
                     let run = run.good(side);
                     let stands = angles(&bench, &run, line(0));
-                    assert!(close(stands, expected), "{side} {travel:?} {rule}: {stands:?}");
+                    assert!(
+                        close(stands, expected),
+                        "{side} {travel:?} {rule}: {stands:?}"
+                    );
                 }
                 None => {
                     assert!(run.report.is_none());
@@ -620,7 +674,9 @@ fn a_preferred_side_is_soft() {
     };
     let bench = bench(&CLASSES[0], &given);
     let run = bench.run(&cl(&points, 1000.0)).good("prefer");
-    let tilts: Vec<f64> = (0..5).map(|index| angles(&bench, &run, line(index))[1]).collect();
+    let tilts: Vec<f64> = (0..5)
+        .map(|index| angles(&bench, &run, line(index))[1])
+        .collect();
     for (tilt, expected) in tilts.iter().zip([45.0, 20.0, 20.0, -20.0, -25.0]) {
         assert!((tilt - expected).abs() < 2e-3, "{tilts:?}");
     }
@@ -633,7 +689,12 @@ fn a_preferred_side_is_soft() {
     };
     let refused = self::bench(&CLASSES[0], &given).run(&cl(&points, 1000.0));
     assert!(refused.report.is_none());
-    assert_eq!(refused.findings[0].code, "over-travel", "{}", refused.told());
+    assert_eq!(
+        refused.findings[0].code,
+        "over-travel",
+        "{}",
+        refused.told()
+    );
 }
 
 /// The axes go to the solution nearest to where they start, on the turn where they start.
@@ -675,8 +736,16 @@ fn looking_ahead_is_better_than_taking_the_nearest() {
             false,
         ));
     }
-    points.push(point(Vector3::new(30.0, 0.0, 80.0), leaning(70.0, 91.0), true));
-    points.push(point(Vector3::new(40.0, 0.0, 0.0), leaning(72.0, 91.0), false));
+    points.push(point(
+        Vector3::new(30.0, 0.0, 80.0),
+        leaning(70.0, 91.0),
+        true,
+    ));
+    points.push(point(
+        Vector3::new(40.0, 0.0, 0.0),
+        leaning(72.0, 91.0),
+        false,
+    ));
     let way = |look_ahead: u32, second: [f64; 2], points: &[Point]| {
         let given = Given {
             second,
@@ -689,9 +758,15 @@ fn looking_ahead_is_better_than_taking_the_nearest() {
         (way, run)
     };
     let (greedy, run) = way(1, [-120.0, 50.0], &points);
-    assert_eq!(run.good("greedy").report.expect("a report").branch_changes, 1);
+    assert_eq!(
+        run.good("greedy").report.expect("a report").branch_changes,
+        1
+    );
     let (ahead, run) = way(2000, [-120.0, 50.0], &points);
-    assert_eq!(run.good("ahead").report.expect("a report").branch_changes, 0);
+    assert_eq!(
+        run.good("ahead").report.expect("a report").branch_changes,
+        0
+    );
     let (greedy, ahead) = (greedy.expect("a way"), ahead.expect("a way"));
     println!("rotary way: {greedy:.1}° taking the nearest, {ahead:.1}° looking ahead");
     assert!(ahead < 40.0 && greedy > 250.0, "{greedy} {ahead}");
@@ -712,13 +787,22 @@ fn looking_ahead_is_better_than_taking_the_nearest() {
 #[test]
 fn the_knife_is_posted_looking_ahead() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let read = |path: &str| std::fs::read_to_string(root.join(path)).expect("a file of the repository");
-    let (machine, text) = (read("machines/ac-trunnion.toml"), read("tests/samples/knife.ncl"));
+    let read =
+        |path: &str| std::fs::read_to_string(root.join(path)).expect("a file of the repository");
+    let (machine, text) = (
+        read("machines/ac-trunnion.toml"),
+        read("tests/samples/knife.ncl"),
+    );
     for (look_ahead, possible) in [(1, false), (50, true), (2000, true)] {
         let machine = format!("{machine}\n[solution]\nlook_ahead = {look_ahead}\n");
         let bench = Bench::new(&machine, 3, 0.0);
         let run = bench.run(&text);
-        assert_eq!(run.report.is_some(), possible, "{look_ahead}: {}", run.told());
+        assert_eq!(
+            run.report.is_some(),
+            possible,
+            "{look_ahead}: {}",
+            run.told()
+        );
         if let Some(report) = &run.report {
             println!(
                 "knife, look_ahead {look_ahead}: {} blocks, rotary way {:.0}°, {} branch changes",
@@ -733,7 +817,7 @@ fn the_knife_is_posted_looking_ahead() {
 }
 
 /// A tool that leans by `tilt` degrees and goes round once every 360 steps of a degree, from `from` to `to` degrees.
-fn round(tilt: f64, from: i32, to: i32, rapid: impl Fn(i32) -> bool) -> Vec<Point> {
+fn orbit(tilt: f64, from: i32, to: i32, rapid: impl Fn(i32) -> bool) -> Vec<Point> {
     (from..=to)
         .map(|step| {
             let lean = f64::from(step);
@@ -761,9 +845,8 @@ fn strays(bench: &Bench, points: &[Point], run: &Run) -> (f64, f64) {
         let (start, target) = (&points[index - 1], &points[index]);
         let along = target.tip - start.tip;
         let length = along.norm();
-        let place = |tip: Vector3<f64>| {
-            ((tip - start.tip).dot(&along) / (length * length)).clamp(0.0, 1.0)
-        };
+        let place =
+            |tip: Vector3<f64>| ((tip - start.tip).dot(&along) / (length * length)).clamp(0.0, 1.0);
         let (a, b) = (start.axis.normalize(), target.axis.normalize());
         let ends = [0.0, 1.0].map(|t| place(bench.at(&from.words, &to.words, t).0));
         // The place of a block's end on its line is known to the rounding of the words only.
@@ -793,13 +876,18 @@ fn a_rapid_turns_the_axis_back() {
             };
             let bench = bench(class, &given);
             // Off the part between 300° and 305°, and on round to 700°.
-            let points = round(30.0, 0, 700, |step| step == 0 || (300..=305).contains(&step));
+            let points = orbit(30.0, 0, 700, |step| {
+                step == 0 || (300..=305).contains(&step)
+            });
             let what = format!("{}, {tcp}", class.name);
             let run = bench.run(&cl(&points, 1000.0)).good(&what);
             let report = run.report.as_ref().expect("a report");
             assert_eq!((report.branch_changes, report.rewinds), (1, 0), "{what}");
             let (tip, axis) = strays(&bench, &points, &run);
-            assert!(tip < 0.005 + 1e-9 && axis < 0.05 + 1e-9, "{what}: {tip} {axis}");
+            assert!(
+                tip < 0.005 + 1e-9 && axis < 0.05 + 1e-9,
+                "{what}: {tip} {axis}"
+            );
             let c: Vec<f64> = run
                 .motions()
                 .iter()
@@ -808,7 +896,10 @@ fn a_rapid_turns_the_axis_back() {
             assert!(c.iter().all(|c| (-200.0..=400.0).contains(c)), "{what}");
             // The large turn is made in rapids alone.
             for (pair, c) in run.motions().windows(2).zip(c.windows(2)) {
-                assert!(pair[1].kind == "Rapid" || (c[1] - c[0]).abs() < 10.0, "{what}");
+                assert!(
+                    pair[1].kind == "Rapid" || (c[1] - c[0]).abs() < 10.0,
+                    "{what}"
+                );
             }
         }
     }
@@ -827,7 +918,9 @@ fn a_rapid_turn_stays_inside_travel() {
                 ..Given::default()
             };
             let bench = bench(class, &given);
-            let points = round(30.0, 0, 700, |step| step == 0 || (300..=305).contains(&step));
+            let points = orbit(30.0, 0, 700, |step| {
+                step == 0 || (300..=305).contains(&step)
+            });
             let run = bench.run(&cl(&points, 1000.0)).good(class.name);
             let (over, axis) = left_travel(&bench, &run);
             assert!(over < 1e-6, "{}, {tcp}: {axis} by {over}", class.name);
@@ -845,34 +938,38 @@ fn without_a_rewind_the_cut_is_refused_and_says_why() {
             ..Given::default()
         };
         let bench = bench(class, &given);
-        let points = round(30.0, 0, 700, |step| step == 0);
+        let points = orbit(30.0, 0, 700, |step| step == 0);
         let run = bench.run(&cl(&points, 1000.0));
         assert!(run.report.is_none());
         let finding = &run.findings[0];
         let told = format!("{}: {}", class.name, finding.message);
         assert_eq!(finding.code, "jump", "{told}");
-        // Where C passes 400°, by whatever it is ahead of the lean.
-        let ahead = {
-            let solver = bench.machine.solver(class.length).expect("a form");
-            let free = Given {
-                second: [-1.0, 120.0],
-                ..Given::default()
-            };
-            let free = self::bench(class, &free);
-            stands(&free, &solver, &points[0])[0][bench.place("C")].to_degrees()
-        };
-        let turns = libm::floor((400.0 - ahead) / 360.0);
-        let _ = turns;
+        // How far C is ahead of the lean.
+        let solver = bench.machine.solver(class.length).expect("a form");
+        let begin = stands(&bench, &solver, &points[0]);
+        let ahead = begin[0][bench.place("C")].to_degrees();
         let place = finding.place.as_ref().expect("a place");
         let index = ((place.line - line(0)) / 2) as usize;
         assert_eq!(place.line, line(index));
         let passes = libm::remainder(ahead + index as f64 - 401.0, 360.0);
-        assert!(passes.abs() < 1.0, "{told}: at point {index}, C ahead by {ahead}");
-        for word in ["C to 40", "travel -200.000° to 400.000°", "cannot go on from"] {
+        assert!(
+            passes.abs() < 1.0,
+            "{told}: at point {index}, C ahead by {ahead}"
+        );
+        for word in [
+            "C to 40",
+            "travel -200.000° to 400.000°",
+            "cannot go on from",
+        ] {
             assert!(told.contains(word), "{told}");
         }
         assert!(told.contains(class.second), "{told}");
-        assert!(finding.help.as_ref().is_some_and(|help| help.contains("[rewind]")));
+        assert!(
+            finding
+                .help
+                .as_ref()
+                .is_some_and(|help| help.contains("[rewind]"))
+        );
     }
 }
 
@@ -886,7 +983,7 @@ fn a_refused_cut_is_told_once() {
         ..Given::default()
     };
     let bench = bench(&CLASSES[0], &given);
-    let run = bench.run(&cl(&round(30.0, 0, 700, |step| step == 0), 1000.0));
+    let run = bench.run(&cl(&orbit(30.0, 0, 700, |step| step == 0), 1000.0));
     assert_eq!(run.findings.len(), 1, "{}", run.told());
 }
 
@@ -913,7 +1010,10 @@ fn a_rewind_draws_back_turns_and_returns() {
     for class in &CLASSES {
         for tcp in ["post", "control"] {
             for (retract, plane) in [("distance = 25", None), ("plane = 90", Some(90.0))] {
-                for feeds in ["", "retract_feed = 4000\nturn_feed = 1800\nplunge_feed = 300"] {
+                for feeds in [
+                    "",
+                    "retract_feed = 4000\nturn_feed = 1800\nplunge_feed = 300",
+                ] {
                     let given = Given {
                         tcp,
                         c: "[-200, 400]".to_owned(),
@@ -922,15 +1022,16 @@ fn a_rewind_draws_back_turns_and_returns() {
                         ..Given::default()
                     };
                     let bench = bench(class, &given);
-                    let points = round(30.0, 0, 700, |step| step == 0);
+                    let points = orbit(30.0, 0, 700, |step| step == 0);
                     let what = format!("{}, {tcp}, {retract}, {feeds}", class.name);
                     let run = bench.run(&cl(&points, 1000.0)).good(&what);
                     let report = run.report.as_ref().expect("a report");
                     assert_eq!(report.rewinds, 1, "{what}");
-                    let turning =
-                        rewound(&what, &bench, &points, &run, plane, !feeds.is_empty());
+                    let turning = rewound(&what, &bench, &points, &run, plane, !feeds.is_empty());
                     let (over, axis) = left_travel(&bench, &run);
-                    println!("    turned at {turning:.0} degrees a minute; outside travel by {over:.3} {axis}");
+                    println!(
+                        "    turned at {turning:.0} degrees a minute; outside travel by {over:.3} {axis}"
+                    );
                 }
             }
         }
@@ -947,7 +1048,7 @@ fn rewinding(class: &Class<'_>, tcp: &str, rewind: &str) -> (Bench, Vec<Point>, 
         ..Given::default()
     };
     let bench = bench(class, &given);
-    let points = round(30.0, 0, 700, |step| step == 0);
+    let points = orbit(30.0, 0, 700, |step| step == 0);
     let run = bench.run(&cl(&points, 1000.0)).good(class.name);
     (bench, points, run)
 }
@@ -974,7 +1075,11 @@ fn a_rewind_turns_at_its_feed() {
             let rewind = "distance = 25\nretract_feed = 4000\nturn_feed = 1800\nplunge_feed = 300";
             let (bench, points, run) = rewinding(class, tcp, rewind);
             let feed = rewound(class.name, &bench, &points, &run, None, true);
-            assert!((1700.0..1810.0).contains(&feed), "{}, {tcp}: {feed}", class.name);
+            assert!(
+                (1700.0..1810.0).contains(&feed),
+                "{}, {tcp}: {feed}",
+                class.name
+            );
         }
     }
 }
@@ -991,7 +1096,11 @@ fn rewound(
     let motions = run.motions();
     let rotary = |words: &[f64]| -> Vec<f64> {
         let joints = bench.joints(words);
-        bench.rotary().iter().map(|place| joints[*place].to_degrees()).collect()
+        bench
+            .rotary()
+            .iter()
+            .map(|place| joints[*place].to_degrees())
+            .collect()
     };
     let turn = |from: &[f64], to: &[f64]| -> f64 {
         let (from, to) = (rotary(from), rotary(to));
@@ -1001,9 +1110,9 @@ fn rewound(
     let index = (0..points.len())
         .find(|index| {
             let blocks = motions.iter().filter(|asked| asked.line == line(*index));
-            blocks
-                .clone()
-                .any(|asked| (bench.at(&asked.words, &asked.words, 0.0).0 - points[*index].tip).norm() > 10.0)
+            blocks.clone().any(|asked| {
+                (bench.at(&asked.words, &asked.words, 0.0).0 - points[*index].tip).norm() > 10.0
+            })
         })
         .unwrap_or_else(|| panic!("{what}: no rewind"));
     let (tip, axis) = (points[index].tip, points[index].axis.normalize());
@@ -1017,9 +1126,15 @@ fn rewound(
         .find(|place| (at(*place).0 - tip).norm() > 10.0)
         .expect("the way out");
     let begin = first - 1;
-    assert!((at(begin).0 - tip).norm() < 0.002, "{what}: it does not begin at the point");
+    assert!(
+        (at(begin).0 - tip).norm() < 0.002,
+        "{what}: it does not begin at the point"
+    );
     let last = *blocks.last().expect("blocks");
-    assert!((at(last).0 - tip).norm() < 0.002, "{what}: it does not end at the point");
+    assert!(
+        (at(last).0 - tip).norm() < 0.002,
+        "{what}: it does not end at the point"
+    );
     assert!(angle(at(last).1, axis).to_degrees() < 0.05, "{what}");
     // As far as it is drawn back.
     let away = match plane {
@@ -1033,7 +1148,11 @@ fn rewound(
     let (turn_first, turn_last) = (turned[0], turned[turned.len() - 1]);
     assert!(turn_first > first, "{what}: it turns on its way out");
     assert!(turn_last < last, "{what}: it turns on its way back");
-    assert!((at(turn_first - 1).0 - away).norm() < 0.002, "{what}: {:?} {away:?}", at(turn_first - 1));
+    assert!(
+        (at(turn_first - 1).0 - away).norm() < 0.002,
+        "{what}: {:?} {away:?}",
+        at(turn_first - 1)
+    );
     let whole = turn(&motions[begin].words, &motions[last].words);
     assert!((whole - 360.0).abs() < 0.01, "{what}: turned by {whole}");
     let mut time = [0.0f64; 3];
@@ -1042,8 +1161,20 @@ fn rewound(
     let mut strayed = [0.0f64; 3];
     for place in first..=last {
         let (from, to) = (motions[place - 1], motions[place]);
-        let stage = if place < turn_first { 0 } else { usize::from(place > turn_last) + 1 };
-        assert_eq!(to.kind, if feeds || stage == 2 { "Linear" } else { "Rapid" }, "{what} stage {stage}");
+        let stage = if place < turn_first {
+            0
+        } else {
+            usize::from(place > turn_last) + 1
+        };
+        assert_eq!(
+            to.kind,
+            if feeds || stage == 2 {
+                "Linear"
+            } else {
+                "Rapid"
+            },
+            "{what} stage {stage}"
+        );
         time[stage] += minutes(bench, from, to).unwrap_or(0.0);
         way[stage] += (at(place).0 - at(place - 1).0).norm();
         for step in 0..=20 {
@@ -1056,14 +1187,27 @@ fn rewound(
             strayed[stage] = strayed[stage].max(off);
         }
     }
-    assert!(lowest > -0.002, "{what}: the tip goes below its start by {lowest}");
+    assert!(
+        lowest > -0.002,
+        "{what}: the tip goes below its start by {lowest}"
+    );
     // Off the part the tolerance of a rapid will do; back it comes as a cut does.
-    assert!(strayed[0] < 0.5 + 1e-6 && strayed[1] < 0.5 + 1e-6, "{what}: {strayed:?}");
+    assert!(
+        strayed[0] < 0.5 + 1e-6 && strayed[1] < 0.5 + 1e-6,
+        "{what}: {strayed:?}"
+    );
     assert!(strayed[2] < 0.005 + 1e-6, "{what}: {strayed:?}");
     way[1] = whole;
     let feed = [0, 1, 2].map(|stage| way[stage] / time[stage]);
-    println!("{what}: {} blocks, strays {strayed:.3?} mm, feeds {feed:.0?}", last - begin);
-    let asked = if feeds { [4000.0, f64::INFINITY, 300.0] } else { [f64::INFINITY, f64::INFINITY, 1000.0] };
+    eprintln!(
+        "{what}: {} blocks, strays {strayed:.3?} mm, feeds {feed:.0?}",
+        last - begin
+    );
+    let asked = if feeds {
+        [4000.0, f64::INFINITY, 300.0]
+    } else {
+        [f64::INFINITY, f64::INFINITY, 1000.0]
+    };
     for stage in [0, 2] {
         if asked[stage] < f64::INFINITY {
             assert!(
@@ -1118,7 +1262,13 @@ struct Outcome {
     over: (f64, String),
 }
 
-fn outcome(class: &Class<'_>, tcp: &str, second: [f64; 2], solution: &str, points: &[Point]) -> Result<Outcome, String> {
+fn outcome(
+    class: &Class<'_>,
+    tcp: &str,
+    second: [f64; 2],
+    solution: &str,
+    points: &[Point],
+) -> Result<Outcome, String> {
     let given = Given {
         tcp,
         second,
@@ -1153,25 +1303,34 @@ fn close_to_the_pole_axes_are_spared_within_tolerance() {
     let mut paths: Vec<(String, f64, Vec<Point>)> = Vec::new();
     for beside in [0.0, 0.01, 0.1, 1.0] {
         for (grain, count) in [("coarse", 5), ("fine", 200)] {
-            let name = if beside == 0.0 { "through".to_owned() } else { format!("at {beside}°") };
+            let name = if beside == 0.0 {
+                "through".to_owned()
+            } else {
+                format!("at {beside}°")
+            };
             paths.push((format!("{name}, {grain}"), beside, pass(beside, count)));
         }
     }
     for beside in [0.01, 0.1] {
         for (grain, count) in [("coarse", 12), ("fine", 180)] {
-            paths.push((format!("round at {beside}°, {grain}"), beside, circle(beside, count)));
+            paths.push((
+                format!("round at {beside}°, {grain}"),
+                beside,
+                circle(beside, count),
+            ));
         }
     }
     let mut faults = Vec::new();
-    println!("| machine | tcp | path | rotary travel: blend, exact, greedy (°) | time (s) | axis off (°) | blocks | eased |");
+    println!(
+        "| machine | tcp | path | rotary travel: blend, exact, greedy (°) | time (s) | axis off (°) | blocks | eased |"
+    );
     println!("|---|---|---|---|---|---|---|---|");
     for class in [&CLASSES[0], &CLASSES[2], &CLASSES[3]] {
         for tcp in ["post", "control"] {
             for (name, beside, points) in &paths {
                 let what = format!("{}, {tcp}, {name}", class.name);
-                let results = [BLEND, EXACT, GREEDY].map(|solution| {
-                    outcome(class, tcp, [-175.0, 175.0], solution, points)
-                });
+                let results = [BLEND, EXACT, GREEDY]
+                    .map(|solution| outcome(class, tcp, [-175.0, 175.0], solution, points));
                 let column = |number: &dyn Fn(&Outcome) -> String| {
                     results
                         .iter()
@@ -1190,27 +1349,39 @@ fn close_to_the_pole_axes_are_spared_within_tolerance() {
                 );
                 for (result, mode) in results.iter().zip(["blend", "exact", "greedy"]) {
                     match result {
-                        Err(told) if mode != "greedy" => faults.push(format!("{what}, {mode}: refused: {told}")),
+                        Err(told) if mode != "greedy" => {
+                            faults.push(format!("{what}, {mode}: refused: {told}"))
+                        }
                         Err(_) => {}
                         Ok(outcome) => {
                             if outcome.axis > 0.05 + 1e-6 {
-                                faults.push(format!("{what}, {mode}: axis off by {}", outcome.axis));
+                                faults
+                                    .push(format!("{what}, {mode}: axis off by {}", outcome.axis));
                             }
                             if outcome.tip > 0.005 + 1e-6 {
                                 faults.push(format!("{what}, {mode}: tip off by {}", outcome.tip));
                             }
                             if outcome.over.0 > 1e-6 {
-                                faults.push(format!("{what}, {mode}: outside travel: {:?}", outcome.over));
+                                faults.push(format!(
+                                    "{what}, {mode}: outside travel: {:?}",
+                                    outcome.over
+                                ));
                             }
                         }
                     }
                 }
                 if let [Ok(blend), Ok(exact), _] = &results {
                     if blend.way > exact.way + 0.05 {
-                        faults.push(format!("{what}: blend turns {}, exact {}", blend.way, exact.way));
+                        faults.push(format!(
+                            "{what}: blend turns {}, exact {}",
+                            blend.way, exact.way
+                        ));
                     }
                     if blend.time > exact.time * 1.001 + 0.001 {
-                        faults.push(format!("{what}: blend takes {} s, exact {}", blend.time, exact.time));
+                        faults.push(format!(
+                            "{what}: blend takes {} s, exact {}",
+                            blend.time, exact.time
+                        ));
                     }
                     // A lean of 10° there and back is what the path asks for; half a turn of C is not.
                     let least = if name.starts_with("round") {
@@ -1246,7 +1417,7 @@ struct Faults {
 
 fn told(faults: &[String], runs: usize) {
     for fault in faults.iter().take(30) {
-        println!("{fault}");
+        eprintln!("{fault}");
     }
     assert!(faults.is_empty(), "{} faults in {runs} runs", faults.len());
 }
@@ -1272,7 +1443,9 @@ fn one_side() -> Faults {
                                 class.name
                             );
                             match outcome(class, tcp, second, solution, &points) {
-                                Err(told) => faults.tolerance.push(format!("{what}: refused: {told}")),
+                                Err(told) => {
+                                    faults.tolerance.push(format!("{what}: refused: {told}"))
+                                }
                                 Ok(outcome) => {
                                     // Upright all the way is within tolerance.
                                     if shape.starts_with("round")
@@ -1280,7 +1453,9 @@ fn one_side() -> Faults {
                                         && beside < 0.03
                                         && outcome.way > 1.0
                                     {
-                                        faults.needless.push(format!("{what}: turns {:.1}°", outcome.way));
+                                        faults
+                                            .needless
+                                            .push(format!("{what}: turns {:.1}°", outcome.way));
                                     }
                                     if outcome.axis > 0.05 + 1e-6 || outcome.tip > 0.005 + 1e-6 {
                                         faults.tolerance.push(format!(
@@ -1289,7 +1464,10 @@ fn one_side() -> Faults {
                                         ));
                                     }
                                     if outcome.over.0 > 1e-6 {
-                                        faults.travel.push(format!("{what}: outside travel {:?}", outcome.over));
+                                        faults.travel.push(format!(
+                                            "{what}: outside travel {:?}",
+                                            outcome.over
+                                        ));
                                     }
                                 }
                             }
@@ -1372,30 +1550,46 @@ fn walks() -> Faults {
             .collect();
         let text = cl(&points, 1000.0);
         let run = bench.run(&text);
-        let what = format!("round {round}, {}, {}, C {}, tilt {second:?}, size {size:.1e}, {}", class.name, given.tcp, given.c, given.more.replace('\n', " "));
+        let what = format!(
+            "round {round}, {}, {}, C {}, tilt {second:?}, size {size:.1e}, {}",
+            class.name,
+            given.tcp,
+            given.c,
+            given.more.replace('\n', " ")
+        );
         if run.report.is_none() {
             refused += 1;
-            if run.findings.iter().any(|finding| !["jump", "over-travel", "out-of-reach", "spindle"].contains(&finding.code)) {
+            if run.findings.iter().any(|finding| {
+                !["jump", "over-travel", "out-of-reach", "spindle"].contains(&finding.code)
+            }) {
                 faults.tolerance.push(format!("{what}: {}", run.told()));
             }
             continue;
         }
         faults.runs += 1;
         let accuracy = &bench.machine.accuracy;
-        let (off, axis) = if run.report.as_ref().is_some_and(|report| report.rewinds == 0) {
+        let (off, axis) = if run
+            .report
+            .as_ref()
+            .is_some_and(|report| report.rewinds == 0)
+        {
             strays(&bench, &points, &run)
         } else {
             (0.0, 0.0)
         };
         if off > accuracy.tolerance + 1e-6 || axis > accuracy.axis_tolerance.to_degrees() + 1e-6 {
-            faults.tolerance.push(format!("{what}: tip {off}, axis {axis}"));
+            faults
+                .tolerance
+                .push(format!("{what}: tip {off}, axis {axis}"));
         }
         let over = left_travel(&bench, &run);
         if over.0 > 1e-6 {
-            faults.travel.push(format!("{what}: outside travel {over:?}"));
+            faults
+                .travel
+                .push(format!("{what}: outside travel {over:?}"));
         }
     }
-    println!("{} walks posted, {refused} refused", faults.runs);
+    eprintln!("{} walks posted, {refused} refused", faults.runs);
     faults
 }
 
@@ -1424,7 +1618,8 @@ fn an_endless_axis_turns_on_and_on() {
                     let lean = 3.0 * f64::from(index);
                     let (sine, cosine) = libm::sincos(lean.to_radians());
                     let radius = 20.0 + 0.002 * f64::from(index);
-                    let tip = Vector3::new(radius * cosine, radius * sine, 0.001 * f64::from(index));
+                    let tip =
+                        Vector3::new(radius * cosine, radius * sine, 0.001 * f64::from(index));
                     let tilt = 20.0 + sway * libm::sin(f64::from(index) * 0.0007);
                     point(tip, leaning(tilt, lean), index == 0)
                 })
@@ -1453,9 +1648,16 @@ fn an_endless_axis_turns_on_and_on() {
             assert_eq!((report.branch_changes, report.rewinds), (0, 0));
             if sway < 18.0 {
                 assert_eq!(report.points_eased, 0);
-                assert!(short.asked == long.asked, "{}: 200 and 2000 differ", class.name);
+                assert!(
+                    short.asked == long.asked,
+                    "{}: 200 and 2000 differ",
+                    class.name
+                );
             } else {
-                assert!((short_way / long_way - 1.0).abs() < 1e-3, "{short_way} {long_way}");
+                assert!(
+                    (short_way / long_way - 1.0).abs() < 1e-3,
+                    "{short_way} {long_way}"
+                );
             }
         }
     }
@@ -1476,10 +1678,13 @@ fn long_cuts_arrive_where_the_axes_come_to() {
             ..Given::default()
         };
         let bench = bench(class, &given);
-        let most = if class.name == "nutating head" { 85.0 } else { 160.0 };
-        let clear = |axis: Vector3<f64>| {
-            (4.0..most).contains(&angle(axis, Vector3::z()).to_degrees())
+        let most = if class.name == "nutating head" {
+            85.0
+        } else {
+            160.0
         };
+        let clear =
+            |axis: Vector3<f64>| (4.0..most).contains(&angle(axis, Vector3::z()).to_degrees());
         let (from, to) = loop {
             let from = rng.direction();
             let about = Unit::new_normalize(across(&mut rng, from));
@@ -1520,20 +1725,40 @@ fn long_cuts_arrive_where_the_axes_come_to() {
             .collect();
         let mut at = begin;
         for pair in steps.windows(2) {
-            at = followed(&bench, &solver, (&pair[0], &at), &pair[1]).expect("a way").0;
+            at = followed(&bench, &solver, (&pair[0], &at), &pair[1])
+                .expect("a way")
+                .0;
         }
-        let off = bench.rotary().iter().map(|place| (at[*place] - end[*place]).abs()).fold(0.0, f64::max);
-        let turn = bench.rotary().iter().map(|place| (at[*place] - begin[*place]).abs()).fold(0.0, f64::max);
+        let off = bench
+            .rotary()
+            .iter()
+            .map(|place| (at[*place] - end[*place]).abs())
+            .fold(0.0, f64::max);
+        let turn = bench
+            .rotary()
+            .iter()
+            .map(|place| (at[*place] - begin[*place]).abs())
+            .fold(0.0, f64::max);
         far += usize::from(turn > std::f64::consts::PI);
         if off > 1e-3 {
-            faults.travel.push(format!("{what}: ends {:.1}° off, after a turn by {:.1}°", off.to_degrees(), turn.to_degrees()));
+            faults.travel.push(format!(
+                "{what}: ends {:.1}° off, after a turn by {:.1}°",
+                off.to_degrees(),
+                turn.to_degrees()
+            ));
         }
         let (tip, axis) = strays(&bench, &points, &run);
         if tip > 0.005 + 1e-6 || axis > 0.05 + 1e-6 {
-            faults.tolerance.push(format!("{what}: tip {tip}, axis {axis}"));
+            faults
+                .tolerance
+                .push(format!("{what}: tip {tip}, axis {axis}"));
         }
     }
-    println!("{} long cuts, {far} of them turn an axis by more than half a turn; {} end elsewhere", faults.runs, faults.travel.len());
+    println!(
+        "{} long cuts, {far} of them turn an axis by more than half a turn; {} end elsewhere",
+        faults.runs,
+        faults.travel.len()
+    );
     for fault in faults.travel.iter().take(5) {
         println!("{fault}");
     }
@@ -1557,7 +1782,9 @@ fn a_side_whose_travel_ends_between_two_points_is_not_taken() {
                 ..Given::default()
             };
             let bench = bench(&CLASSES[0], &given);
-            let run = bench.run(&cl(&points, 1000.0)).good(&format!("{start}, {tcp}"));
+            let run = bench
+                .run(&cl(&points, 1000.0))
+                .good(&format!("{start}, {tcp}"));
             let (over, axis) = left_travel(&bench, &run);
             assert!(over < 1e-6, "{start}, {tcp}: {axis} by {over}");
         }
@@ -1581,13 +1808,19 @@ fn an_axis_shown_over_one_turn_goes_the_way_that_is_meant() {
             ..Given::default()
         };
         let plain = bench(class, &given);
-        let shown = plain.text.replace("cyclic = true", &format!("cyclic = true\nrange = {range:?}"));
+        let shown = plain.text.replace(
+            "cyclic = true",
+            &format!("cyclic = true\nrange = {range:?}"),
+        );
         let bench = Bench::new(&shown, 3, class.length);
         let points = short(&mut rng, class);
         let text = cl(&points, 1000.0);
         let (endless, run) = (plain.run(&text), bench.run(&text));
         if endless.report.is_some() != run.report.is_some() {
-            let at = run.findings.iter().find_map(|finding| finding.place.as_ref());
+            let at = run
+                .findings
+                .iter()
+                .find_map(|finding| finding.place.as_ref());
             let line = at.map_or(0, |place| place.line);
             refused.push(format!(
                 "round {round}, {}, {}, {range:?}, refused at line {line}: {}\n{:?} to {:?} on an endless axis\n{text}",
@@ -1602,25 +1835,183 @@ fn an_axis_shown_over_one_turn_goes_the_way_that_is_meant() {
         if run.report.is_none() {
             continue;
         }
-        let place = bench.order.iter().position(|place| *place == bench.place("C")).expect("C");
+        let place = bench
+            .order
+            .iter()
+            .position(|place| *place == bench.place("C"))
+            .expect("C");
         let motions = run.motions();
         let mut c = endless.motions()[0].words[place];
         for (index, asked) in motions.iter().enumerate() {
             let word = asked.words[place];
             assert!(word >= range[0] && word < range[1], "{word} {range:?}");
             if index > 0 {
-                let way = turned(motions[index - 1].words[place].to_radians(), word.to_radians());
+                let way = turned(
+                    motions[index - 1].words[place].to_radians(),
+                    word.to_radians(),
+                );
                 assert!(way.abs().to_degrees() < 179.0, "{way}");
                 c += way.to_degrees();
             }
             // Counted by the shorter ways, C is at every CL point where the endless one is.
-            if motions.get(index + 1).is_none_or(|next| next.line != asked.line) {
+            if motions
+                .get(index + 1)
+                .is_none_or(|next| next.line != asked.line)
+            {
                 let meant = endless.arrival(asked.line).expect("a position")[place];
-                assert!((c - meant).abs() < 0.01, "round {round}, {}: {c} for {meant}", class.name);
+                assert!(
+                    (c - meant).abs() < 0.01,
+                    "round {round}, {}: {c} for {meant}",
+                    class.name
+                );
             }
         }
         stages += motions.len() - endless.motions().len().min(motions.len());
     }
     println!("{stages} blocks more than on an endless axis");
     told(&refused, 200);
+}
+
+/// The cheapest way through a path, by the cheapest way to every way of standing at every point.
+fn cheapest(bench: &Bench, solver: &Solver, points: &[Point]) -> f64 {
+    let mut states: Vec<(f64, Joints)> = Vec::new();
+    for (index, target) in points.iter().enumerate() {
+        let mut next: Vec<(f64, Joints)> = Vec::new();
+        if index == 0 {
+            let start = bench.machine.solution.start;
+            for joints in stands(bench, solver, target) {
+                next.push((cost(bench, &start, &joints, false), joints));
+            }
+        } else if target.rapid {
+            for joints in stands(bench, solver, target) {
+                let ways = states
+                    .iter()
+                    .map(|(so_far, at)| so_far + cost(bench, at, &joints, true));
+                next.push((ways.fold(f64::INFINITY, f64::min), joints));
+            }
+        } else {
+            for (so_far, at) in &states {
+                let end = followed(bench, solver, (&points[index - 1], at), target);
+                if let Some((joints, false)) = end {
+                    next.push((so_far + cost(bench, at, &joints, true), joints));
+                }
+            }
+        }
+        states = next;
+    }
+    states
+        .iter()
+        .map(|(cost, _)| *cost)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Longer paths and short windows: what is chosen hangs together at every point, looking ahead over the whole path
+/// costs what the cheapest way costs, and looking less far costs more at most.
+#[test]
+fn a_window_of_any_length_gives_a_path_that_hangs_together() {
+    let mut rng = Rng(71);
+    let (mut posted, mut refused, mut lost) = (0, 0, 0);
+    let mut dearer: std::collections::BTreeMap<u32, f64> = std::collections::BTreeMap::new();
+    for round in 0..80 {
+        let class = &CLASSES[round % 4];
+        let c = turns(&mut rng);
+        let tilt = [[-175.0, 175.0], [-100.0, 40.0], [-30.0, 120.0]][rng.pick(3)];
+        // Pieces of short paths, one after the other.
+        let mut points: Vec<Point> = Vec::new();
+        while points.len() < 45 {
+            points.extend(short(&mut rng, class));
+        }
+        let text = cl(&points, 1000.0);
+        let mut best = None;
+        for look_ahead in [2000, 46, 45, 30, 13, 7, 4, 3, 2, 1] {
+            let given = Given {
+                c: format!("{c:?}"),
+                second: tilt,
+                accuracy: "tolerance = 0.05\naxis_tolerance = 0.05\nrapid_tolerance = 1000000",
+                more: format!("[solution]\nlook_ahead = {look_ahead}"),
+                decimals: 7,
+                ..Given::default()
+            };
+            let bench = bench(class, &given);
+            let solver = bench.machine.solver(class.length).expect("a closed form");
+            let best = *best.get_or_insert_with(|| cheapest(&bench, &solver, &points));
+            let run = bench.run(&text);
+            let what = format!("round {round}, {}, look_ahead {look_ahead}", class.name);
+            if run.report.is_none() {
+                if look_ahead == 2000 {
+                    refused += 1;
+                    assert!(best.is_infinite(), "{what}: {}", run.told());
+                } else {
+                    lost += usize::from(best.is_finite());
+                }
+                continue;
+            }
+            assert!(best.is_finite(), "{what}: posted, and there is no way");
+            posted += 1;
+            let mut at = bench.machine.solution.start;
+            let mut sum = 0.0;
+            for (index, target) in points.iter().enumerate() {
+                let next = bench.joints(run.arrival(line(index)).expect("a position"));
+                assert!(
+                    inside(
+                        &bench,
+                        &std::array::from_fn(|place| {
+                            // To the decimals.
+                            (next[place] * 1e6).round() / 1e6
+                        })
+                    ),
+                    "{what}: {next:?}"
+                );
+                if index > 0 && !target.rapid {
+                    let from = (&points[index - 1], &at);
+                    let (end, _) = followed(&bench, &solver, from, target).expect("a way");
+                    for place in bench.rotary() {
+                        assert!(
+                            (end[place] - next[place]).abs() < 1e-5,
+                            "{what}: point {index} jumps"
+                        );
+                    }
+                }
+                sum += cost(&bench, &at, &next, index > 0);
+                at = next;
+            }
+            let over = sum / best - 1.0;
+            assert!(over > -1e-6, "{what}: costs {sum}, less than {best}");
+            if look_ahead == 2000 {
+                assert!(over < 1e-6, "{what}: costs {sum}, the cheapest way {best}");
+            }
+            let most = dearer.entry(look_ahead).or_insert(0.0);
+            *most = most.max(over);
+        }
+    }
+    println!("{posted} posted, {refused} refused, {lost} more where the window was too short");
+    println!("dearer than the cheapest way at most, by look_ahead: {dearer:.3?}");
+    assert!(posted > 200);
+}
+
+/// No more rewinds than the travel asks for, however many turns the cut has.
+#[test]
+fn a_cut_of_many_turns_rewinds_no_more_than_it_must() {
+    // From 0 to 400, and then 360° at a time; or 1440° at a time.
+    for (c, rewinds) in [("[-200, 400]", 4), ("[-720, 720]", 1), ("[-350, 350]", 5)] {
+        for tcp in ["post", "control"] {
+            let given = Given {
+                tcp,
+                c: c.to_owned(),
+                second: [-1.0, 120.0],
+                more: "[rewind]\ndistance = 25".to_owned(),
+                ..Given::default()
+            };
+            let bench = bench(&CLASSES[0], &given);
+            let points = orbit(30.0, 0, 1800, |step| step == 0);
+            let run = bench.run(&cl(&points, 1000.0)).good(c);
+            let report = run.report.as_ref().expect("a report");
+            println!(
+                "C {c}, {tcp}: {} rewinds, rotary way {:.0}°",
+                report.rewinds,
+                rotary_way(&bench, &run)
+            );
+            assert_eq!(report.rewinds, rewinds, "C {c}, {tcp}");
+        }
+    }
 }

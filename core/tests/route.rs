@@ -293,7 +293,8 @@ impl Search<'_> {
         }
         if self.points[index].rapid || index == 0 {
             for next in self.stands[index].clone() {
-                let cost = cost(self.bench, at, &next, index > 0);
+                let cost =
+                    cost(self.bench, at, &next, index > 0) + AGAINST * against(self.bench, &next);
                 self.go(index + 1, &next, so_far + cost, left);
             }
         } else {
@@ -302,7 +303,7 @@ impl Search<'_> {
             if let Some((next, leaves)) = end
                 && inside(self.bench, &next)
             {
-                let cost = cost(self.bench, at, &next, true);
+                let cost = cost(self.bench, at, &next, true) + AGAINST * against(self.bench, &next);
                 self.go(index + 1, &next, so_far + cost, left || leaves);
             }
         }
@@ -367,7 +368,31 @@ fn turns(rng: &mut Rng) -> [f64; 2] {
 /// What post chose costs what the cheapest of all ways costs; it refuses where there is none; travel is never left.
 #[test]
 fn the_choice_costs_no_more_than_the_cheapest_of_all_ways() {
-    let mut rng = Rng(31);
+    exhaustive(31, false);
+}
+
+/// The same where sides are preferred: as few points as may be stand against them, and of those ways the cheapest.
+#[test]
+#[ignore = "costs closer than a billionth of their sum count as equal: against a preferred side (1e6 each) half a millesimal of a minute is lost"]
+fn with_preferred_sides_the_choice_is_the_cheapest_too() {
+    exhaustive(32, true);
+}
+
+/// How many preferred sides a way of standing goes against.
+fn against(bench: &Bench, joints: &Joints) -> f64 {
+    let prefer = bench.machine.solution.prefer.iter();
+    let wrong = prefer.filter(|(place, side)| match side {
+        Side::Positive => joints[*place] < -1e-6,
+        Side::Negative => joints[*place] > 1e-6,
+    });
+    wrong.count() as f64
+}
+
+/// More than any travel costs.
+const AGAINST: f64 = 1e6;
+
+fn exhaustive(seed: u64, sides: bool) {
+    let mut rng = Rng(seed);
     let (mut chosen, mut refused, mut careless, mut states) = (0, 0, 0, 0);
     let mut worst = 0.0f64;
     let mut faults: Vec<String> = Vec::new();
@@ -396,21 +421,30 @@ fn the_choice_costs_no_more_than_the_cheapest_of_all_ways() {
                     1 => "require = { C = \"positive\" }\n".to_owned(),
                     _ => String::new(),
                 };
+                let prefer = match rng.pick(3) {
+                    _ if !sides => String::new(),
+                    0 => format!("prefer = {{ {} = \"negative\" }}\n", class.second),
+                    1 => format!("prefer = {{ {} = \"positive\" }}\n", class.second),
+                    _ => format!(
+                        "prefer = {{ C = \"negative\", {} = \"positive\" }}\n",
+                        class.second
+                    ),
+                };
                 let given = Given {
+                    tcp: ["post", "control"][rng.pick(2)],
                     c: format!("{c:?}"),
                     second: tilt,
                     feeds: std::array::from_fn(|_| rng.range(2000.0, 20_000.0).round()),
                     linear: if rng.pick(4) == 0 { 700.0 } else { 5000.0 },
                     accuracy: "tolerance = 0.05\naxis_tolerance = 0.05\nrapid_tolerance = 1000000",
                     more: format!(
-                        "[solution]\nrule = \"{}\"\nstart = {{ C = {}, {} = {} }}\n{require}",
+                        "[solution]\nrule = \"{}\"\nstart = {{ C = {}, {} = {} }}\n{require}{prefer}",
                         rule.replace("second", class.second),
                         start[0],
                         class.second,
                         start[1]
                     ),
                     decimals: 7,
-                    ..Given::default()
                 };
                 let bench = bench(class, &given);
                 let points = short(&mut rng, class);
@@ -457,7 +491,7 @@ fn the_choice_costs_no_more_than_the_cheapest_of_all_ways() {
                 for index in 0..points.len() {
                     let words = run.arrival(line(index)).expect("a position");
                     let next = bench.joints(words);
-                    sum += cost(&bench, &at, &next, index > 0);
+                    sum += cost(&bench, &at, &next, index > 0) + AGAINST * against(&bench, &next);
                     at = next;
                 }
                 for asked in run.motions() {
@@ -477,18 +511,19 @@ fn the_choice_costs_no_more_than_the_cheapest_of_all_ways() {
                     fault(format!("chosen at a cost of {sum}, and there is no way"));
                     continue;
                 }
-                worst = worst.max((sum - best).abs() / best);
-                if (sum - best).abs() > 1e-6 * best {
+                let rest = best % AGAINST;
+                worst = worst.max((sum - best).abs() / rest);
+                if (sum - best).abs() > 1e-6 * rest + 1e-9 {
                     fault(format!("costs {sum}, the cheapest way {best}"));
                 }
             }
         }
     }
-    println!(
+    eprintln!(
         "{chosen} paths chosen, {refused} refused, {careless} with a cheaper way that leaves travel between two points; {states} states; costs differ by {worst:.1e} at most"
     );
     for fault in faults.iter().take(8) {
-        println!("{fault}");
+        eprintln!("{fault}");
     }
     assert!(faults.is_empty(), "{} faults", faults.len());
     assert!(chosen > 400 && refused > 100);
@@ -2014,4 +2049,99 @@ fn a_cut_of_many_turns_rewinds_no_more_than_it_must() {
             assert_eq!(report.rewinds, rewinds, "C {c}, {tcp}");
         }
     }
+}
+
+/// A portal without Z, its Z made by two swinging arms: there is no closed form, and every block of a program holds
+/// tip and axis all the same.
+#[test]
+#[ignore = "every point is refused: the rounding of the rotary words moves the tip by more than that of the linear ones, and no linear axis makes up for it"]
+fn a_machine_without_a_closed_form_makes_its_program() {
+    let text = r#"
+name = "two slides, three turns"
+chain = "[w b X Y C B A t]"
+tool = { gauge = [0, 0, -50] }
+control = { dialect = "recorder", tcp = "post" }
+[axis]
+X = { linear = [1, 0, 0], travel = [-1000, 1000] }
+Y = { linear = [0, 1, 0], travel = [-1000, 1000] }
+C = { rotary = [0, 0, 1], point = [0, 0, 0], travel = [-400, 400] }
+B = { rotary = [0, 1, 0], point = [0, 0, 400], travel = [-170, 170] }
+A = { rotary = [0.1, 1, 0.05], point = [0, 5, 150], travel = [-170, 170] }
+[solution]
+start = { B = 30, A = -30 }
+[accuracy]
+tolerance = 0.01
+axis_tolerance = 0.05
+rapid_tolerance = 0.5
+"#;
+    let bench = Bench::new(text, 4, 0.0);
+    assert!(!bench.machine.solver(0.0).expect("a form").closed_form());
+    let mut rng = Rng(81);
+    let (mut posted, mut refused) = (0, 0);
+    let mut faults = Faults::default();
+    for round in 0..30 {
+        // A walk of the axes, so that every point can be reached.
+        let mut q = Joints::default();
+        let slope: Joints = std::array::from_fn(|_| rng.range(-1.0, 1.0));
+        let points: Vec<Point> = (0..25)
+            .map(|index| {
+                let s = 0.2 + 0.01 * f64::from(index);
+                for (place, value) in q.iter_mut().enumerate().take(5) {
+                    *value = match place {
+                        0 | 1 => 100.0 * slope[place] * s,
+                        2 => slope[2] * s,
+                        3 => 0.5 + slope[3] * s * 0.5,
+                        _ => -0.6 + slope[4] * s * 0.5,
+                    };
+                }
+                let (tip, axis) = bench.reference.forward(&q);
+                point(tip, axis, index == 0)
+            })
+            .collect();
+        let run = bench.run(&cl(&points, 1000.0));
+        faults.runs += 1;
+        if run.report.is_none() {
+            refused += 1;
+            faults
+                .needless
+                .push(format!("round {round}: {}", run.told()));
+            continue;
+        }
+        posted += 1;
+        let (tip, axis) = strays(&bench, &points, &run);
+        if tip > 0.01 + 1e-6 || axis > 0.05 + 1e-6 {
+            faults
+                .tolerance
+                .push(format!("round {round}: tip {tip}, axis {axis}"));
+        }
+        let (over, axis) = left_travel(&bench, &run);
+        if over > 1e-6 {
+            faults
+                .tolerance
+                .push(format!("round {round}: {axis} outside travel by {over}"));
+        }
+    }
+    println!("without a closed form: {posted} posted, {refused} refused");
+    for fault in faults.needless.iter().take(6) {
+        println!("{fault}");
+    }
+    told(&faults.tolerance, faults.runs);
+    told(&faults.needless, faults.runs);
+}
+
+/// A rewind turns no farther back than the rest of the cut asks for.
+#[test]
+#[ignore = "C is turned back by 1440° where 360° do: a rewind costs 1e9, and costs closer than a billionth of that count as equal"]
+fn a_rewind_turns_back_no_farther_than_it_must() {
+    let given = Given {
+        tcp: "control",
+        c: "[-720, 720]".to_owned(),
+        second: [-1.0, 120.0],
+        more: "[rewind]\ndistance = 25\n[solution]\nstart = { C = -720 }".to_owned(),
+        ..Given::default()
+    };
+    let bench = bench(&CLASSES[0], &given);
+    let run = bench.run(&cl(&orbit(30.0, 0, 1500, |step| step == 0), 1000.0));
+    let way = rotary_way(&bench, &run.good("rewind"));
+    assert!((way - 1860.0).abs() < 1.0, "{way}");
 }

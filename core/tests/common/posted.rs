@@ -154,7 +154,7 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// From the text of a machine file with three linear axes.
+    /// From the text of a machine file with three linear axes or, where the post keeps the tip, fewer.
     pub fn new(text: &str, decimals: u8, length: f64) -> Self {
         let source = Source {
             name: "machine.toml".to_owned(),
@@ -179,7 +179,10 @@ impl Bench {
             decimals,
             length,
         };
-        bench.zero = bench.put(Vector3::zeros(), Joints::default());
+        // Without three linear axes there is no position that could be counted from the part origin.
+        if bench.reference.linear().len() == 3 {
+            bench.zero = bench.put(Vector3::zeros(), Joints::default());
+        }
         bench
     }
 

@@ -5,6 +5,8 @@
     reason = "every test file is a crate of its own and takes what it needs"
 )]
 
+pub mod posted;
+
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
@@ -113,6 +115,11 @@ impl Reference {
             .collect()
     }
 
+    /// A direction of the tool with all axes at zero, seen from the part at `q`.
+    pub fn taken(&self, q: &[f64], direction: Vector3<f64>) -> Vector3<f64> {
+        self.rotation(q) * direction
+    }
+
     /// The volume that the linear directions span at `q`, part frame.
     pub fn volume(&self, q: &[f64]) -> f64 {
         let columns: Vec<Vector3<f64>> = self
@@ -203,6 +210,103 @@ impl Random {
         }
         q
     }
+}
+
+/// What a joint of a random chain is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Linear,
+    Free,
+    Held,
+}
+
+impl Random {
+    /// A machine with these joints in any order, in any directions, on any lines; nothing is asked of it.
+    pub fn of(rng: &mut Rng, kinds: &[Kind]) -> Self {
+        let mut kinds = kinds.to_vec();
+        for index in (1..kinds.len()).rev() {
+            kinds.swap(index, rng.pick(index + 1));
+        }
+        let joints = kinds
+            .iter()
+            .map(|kind| Joint {
+                rotary: *kind != Kind::Linear,
+                direction: rng.direction(),
+                point: rng.point(SIZE),
+            })
+            .collect();
+        Self {
+            reference: Reference {
+                joints,
+                mount: rng.point(SIZE),
+                tip: rng.point(SIZE),
+                axis: rng.direction(),
+            },
+            free: (0..kinds.len())
+                .filter(|index| kinds[*index] == Kind::Free)
+                .collect(),
+            held: std::array::from_fn(|index| match kinds.get(index) {
+                Some(Kind::Held) => rng.range(-PI, PI),
+                _ => 0.0,
+            }),
+        }
+    }
+}
+
+/// A unit vector across `axis`, any of them.
+pub fn across(rng: &mut Rng, axis: Vector3<f64>) -> Vector3<f64> {
+    loop {
+        let direction = axis.cross(&rng.direction());
+        if direction.norm() > 0.1 {
+            return direction.normalize();
+        }
+    }
+}
+
+/// The least angle between `wanted` and where two rotary axes (`free`, the others at `held`) can bring the
+/// direction `along` of the tool: by trying every angle of the first, the second put where it is best.
+pub fn nearest(
+    reference: &Reference,
+    held: &Joints,
+    free: [usize; 2],
+    along: Vector3<f64>,
+    wanted: Vector3<f64>,
+) -> f64 {
+    let at = |first: f64| {
+        let mut q = *held;
+        q[free[0]] = first;
+        // Where the second axis stands, and what it turns, seen from the part.
+        let k = reference.direction(&q, free[1]);
+        q[free[1]] = 0.0;
+        let from = reference.taken(&q, along);
+        let flat = |v: Vector3<f64>| v - k * k.dot(&v);
+        let (a, b) = (flat(from), flat(wanted));
+        let turn = libm::atan2(k.dot(&a.cross(&b)), a.dot(&b));
+        q[free[1]] = turn;
+        angle(reference.taken(&q, along), wanted)
+    };
+    const STEPS: usize = 720;
+    let width = TAU / STEPS as f64;
+    let tried: Vec<f64> = (0..STEPS).map(|step| at(step as f64 * width)).collect();
+    let mut least = f64::INFINITY;
+    for step in 0..STEPS {
+        let (before, after) = ((step + STEPS - 1) % STEPS, (step + 1) % STEPS);
+        if tried[step] > tried[before] || tried[step] > tried[after] {
+            continue;
+        }
+        // A valley: closed in on by thirds.
+        let (mut low, mut high) = ((step as f64 - 1.0) * width, (step as f64 + 1.0) * width);
+        for _ in 0..90 {
+            let third = (high - low) / 3.0;
+            if at(low + third) < at(high - third) {
+                high -= third;
+            } else {
+                low += third;
+            }
+        }
+        least = least.min(at((low + high) / 2.0));
+    }
+    least
 }
 
 /// The angle between two unit vectors by its half chord (Kahan), exact for small and large angles alike.

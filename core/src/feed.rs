@@ -10,6 +10,9 @@ use crate::machine::{FeedLength, FeedMode, Machine, Tcp};
 use crate::program::Pace;
 use crate::words::unit_length;
 
+/// A tip that moves by no more than this stands still but for the rounding of the words, mm.
+const STILL: f64 = 2e-3;
+
 /// Writes feeds for one machine and dialect.
 #[derive(Clone, Debug)]
 pub struct Feeds {
@@ -85,7 +88,7 @@ impl Feeds {
     pub fn cut(&self, pace: Pace, length: f64, share: f64, from: &Joints, to: &Joints) -> Paced {
         let least = self.least_time(from, to);
         let asked = match pace {
-            Pace::PerMinute(feed) if length > 1e-9 => length / feed,
+            Pace::PerMinute(feed) if length > STILL => length / feed,
             // The tip stands still: the feed is taken along the axes, degrees as millimetres, as controls do.
             Pace::PerMinute(feed) => self.travels(from, to).combined / feed,
             Pace::InverseTime(feed) => share / feed,
@@ -100,7 +103,7 @@ impl Feeds {
             let per_minute = match pace {
                 // No detour over lengths where the feed of the CL file can stand as it is.
                 Pace::PerMinute(feed)
-                    if !limited && length > 1e-9 && (!turning || self.tcp == Tcp::Control) =>
+                    if !limited && length > STILL && (!turning || self.tcp == Tcp::Control) =>
                 {
                     feed / self.unit
                 }

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use common::{Kind, Random, Rng, SIZE, across, angle, nearest, turned};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
-use post_core::kinematics::inverse::POLE;
+use post_core::kinematics::POLE;
 use post_core::kinematics::{Freedom, Joints, Pose, Second, Solver, Unreachable};
 
 /// The largest difference between two sets of values: mm, and radians as an arm of a metre.

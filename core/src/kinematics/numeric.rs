@@ -35,7 +35,8 @@ pub(super) fn solve(chain: &Chain, free: &[usize], pose: &Pose, start: &Joints) 
         let scale = normal.diagonal().max();
         for index in 0..MAX_AXES {
             normal[(index, index)] += if index < free.len() {
-                damping * scale
+                // Each joint by its own measure: a radian moves the tip by far more than a millimetre does.
+                damping * normal[(index, index)].max(1e-9 * scale)
             } else {
                 1.0
             };

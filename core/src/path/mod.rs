@@ -241,7 +241,16 @@ impl<'a> Path<'a> {
         self.tally.moves += 1;
         match self.route.add(line, motion) {
             Ok(()) => self.taken += 1,
-            Err(diagnostic) => self.find(line, *diagnostic),
+            Err(diagnostic) => {
+                let restarts = diagnostic.code == "jump";
+                self.find(line, *diagnostic);
+                if restarts {
+                    // The path goes on behind the fault as if it began there.
+                    self.drain();
+                    self.last = None;
+                    self.on_part = false;
+                }
+            }
         }
         if self.route.has_chosen() {
             self.drain();

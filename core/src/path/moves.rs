@@ -277,9 +277,18 @@ impl Path<'_> {
         let away = leg.motion.drawn_back(&rewind).unwrap_or(*leg.motion);
         let pace = |feed: Option<f64>| feed.map_or(Pace::Rapid, Pace::PerMinute);
         let back = rewind.plunge_feed.map_or(leg.motion.pace, Pace::PerMinute);
+        // The tip stands still while the axes turn: what counts is the farthest of them.
+        let turn = rewind.turn_feed.map_or(Pace::Rapid, |feed| {
+            let axes = self.machine.axes.iter().enumerate();
+            let farthest = axes
+                .filter(|(_, axis)| axis.joint.rotary)
+                .map(|(joint, _)| libm::fabs(joints[joint] - last.trace.joints[joint]))
+                .fold(0.0, f64::max);
+            Pace::InverseTime(feed / farthest.to_degrees().max(1e-3))
+        });
         let stops = [
             (away, pace(rewind.retract_feed), last.trace.joints, true),
-            (away, pace(rewind.turn_feed), *joints, true),
+            (away, turn, *joints, true),
             (*leg.motion, back, *joints, false),
         ];
         let mut at = last;

@@ -3,10 +3,11 @@
 //! them is known at every point.
 
 use crate::accuracy::Placer;
-use crate::kinematics::orientation::Branches;
+use crate::kinematics::orientation::{Branches, angle};
 use crate::kinematics::{Joints, Pose, Unreachable};
 use crate::machine::{Machine, Pole};
 use crate::program::{Motion, Pace};
+use crate::route::cost::Cost;
 use crate::route::rule::Measure;
 use crate::route::stand::{Axes, Found, Stand};
 
@@ -39,7 +40,7 @@ pub(crate) enum Kind {
 /// One way to stand at a point, and the cheapest way to have come there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct State {
-    pub cost: f64,
+    pub cost: Cost,
     pub joints: Joints,
     /// Which state of the point before.
     pub from: usize,
@@ -60,17 +61,23 @@ const MOST_STATES: usize = 64;
 /// Of the tool axis' tolerance so much may be used close to a pole; the rest is for what happens between points.
 const SHARE: f64 = 0.75;
 
-/// A tie is decided by order: costs differ if they differ by more than this share.
-const EQUAL: f64 = 1e-9;
-
 /// What the states at a point can go on to.
 struct Ways {
     /// Branches that have a state.
     alive: [bool; 2],
     /// Of the point before.
     latitude: (f64, f64),
-    /// So far the tool axis can get on the way, radians.
+    /// So far the tool axis goes, and can get on the way, radians.
+    arc: f64,
     reach: f64,
+}
+
+/// What is known of a cut before its states go on.
+struct Passage {
+    /// It leads past where the branches meet.
+    meet: bool,
+    /// So far the tool axis goes, radians.
+    arc: f64,
 }
 
 impl Ways {
@@ -137,7 +144,9 @@ impl Lattice {
         };
         Self {
             measure: Measure::new(machine),
-            axes: Axes::new(machine, placer.solver(), |joint| placer.grace(joint)),
+            axes: Axes::new(machine, placer.solver(), freedom.max(0.0), |joint| {
+                placer.grace(joint)
+            }),
             layers: Vec::new(),
             states: Vec::new(),
             stands: Vec::new(),
@@ -215,8 +224,11 @@ impl Lattice {
                 Kind::Rapid => self.turn(&stands, range),
                 Kind::Cut => {
                     if placer.solver().closed_form() {
-                        let meet = ways.meet(&self.axes, found.latitude);
-                        self.go_on(placer, motion, &stands, meet, range, judge);
+                        let passage = Passage {
+                            meet: ways.meet(&self.axes, found.latitude),
+                            arc: ways.arc,
+                        };
+                        self.go_on(placer, motion, &stands, &passage, range, judge);
                     } else {
                         self.search_on(placer, &target, range);
                     }
@@ -243,6 +255,7 @@ impl Lattice {
         let mut ways = Ways {
             alive: [true; 2],
             latitude: (0.0, 0.0),
+            arc: 0.0,
             reach: f64::INFINITY,
         };
         let Some(last) = self.layers.last().filter(|_| kind == Kind::Cut) else {
@@ -257,8 +270,14 @@ impl Lattice {
             }
         }
         ways.latitude = last.latitude;
-        // The chord is a little less than the arc; small sweeps are all that counts here.
-        ways.reach = 1.1 * (last.motion.axis - target.axis).norm() + 2.0 * self.freedom;
+        let chord = (last.motion.axis - target.axis).norm();
+        ways.arc = if chord < 0.5 {
+            // Never less than the arc, and cheaper.
+            1.02 * chord
+        } else {
+            1.01 * angle(last.motion.axis, target.axis)
+        };
+        ways.reach = ways.arc + 2.0 * self.freedom;
         ways
     }
 
@@ -272,7 +291,7 @@ impl Lattice {
                 .all(|(a, b)| (a - b).abs() < 1e-9)
         };
         match self.states[first..].iter_mut().find(|known| same(known)) {
-            Some(known) if cheaper(state.cost, known.cost) => *known = state,
+            Some(known) if state.cost.less(&known.cost) => *known = state,
             Some(_) => {}
             None => self.states.push(state),
         }
@@ -294,7 +313,7 @@ impl Lattice {
                 self.hold_from(placer, target, None, near, quarter, first);
             }
             for index in before.clone() {
-                if self.states[index].cost < f64::INFINITY {
+                if self.states[index].cost.is_way() {
                     self.hold_from(placer, target, Some(index), near, quarter, first);
                 }
             }
@@ -321,14 +340,17 @@ impl Lattice {
         let Some(stand) = self.axes.held(placer.solver(), target, &last) else {
             return;
         };
-        let way = match &before {
-            Some(state) => state.cost + self.measure.between(&state.joints, &stand.joints),
-            None => self.measure.approach(near, &stand.joints),
+        let (cost, way) = match &before {
+            Some(state) => (
+                state.cost,
+                self.measure.between(&state.joints, &stand.joints),
+            ),
+            None => (Cost::NONE, self.measure.approach(near, &stand.joints)),
         };
         self.keep(
             first,
             State {
-                cost: way + self.measure.standing(&stand.joints),
+                cost: cost.and(way, self.measure.against(&stand.joints)),
                 joints: stand.joints,
                 from: from.unwrap_or(0),
                 root: before.map_or(0, |state| state.root),
@@ -349,12 +371,12 @@ impl Lattice {
         let before = from.map(|index| states[index]);
         let last = before.map_or(*near, |state| state.joints);
         axes.turned(stand, &last, &mut |joints| {
-            let way = match &before {
-                Some(state) => state.cost + measure.between(&state.joints, joints),
-                None => measure.approach(near, joints),
+            let (cost, way) = match &before {
+                Some(state) => (state.cost, measure.between(&state.joints, joints)),
+                None => (Cost::NONE, measure.approach(near, joints)),
             };
             states.push(State {
-                cost: way + measure.standing(joints),
+                cost: cost.and(way, measure.against(joints)),
                 joints: *joints,
                 from: from.unwrap_or(0),
                 root: before.map_or(0, |state| state.root),
@@ -369,7 +391,7 @@ impl Lattice {
         let first = self.states.len();
         let mut begun = false;
         for index in before {
-            if self.states[index].cost == f64::INFINITY {
+            if !self.states[index].cost.is_way() {
                 continue;
             }
             let near = self.states[index].joints;
@@ -386,7 +408,7 @@ impl Lattice {
             for place in 0..count {
                 let new = self.states[from + place];
                 let known = &mut self.states[first + place];
-                if cheaper(new.cost, known.cost) {
+                if new.cost.less(&known.cost) {
                     *known = new;
                 }
             }
@@ -401,7 +423,7 @@ impl Lattice {
         placer: &Placer,
         motion: &Motion,
         stands: &[Stand],
-        meet: bool,
+        passage: &Passage,
         before: std::ops::Range<usize>,
         judge: &mut dyn Judge,
     ) {
@@ -413,7 +435,7 @@ impl Lattice {
         let target = pose(motion);
         for index in before {
             let state = self.states[index];
-            if state.cost == f64::INFINITY {
+            if !state.cost.is_way() {
                 continue;
             }
             for stand in stands {
@@ -422,30 +444,36 @@ impl Lattice {
                     continue;
                 }
                 let same = stand.branch == state.branch;
-                if !same && !meet {
+                if !same && !passage.meet {
                     continue;
                 }
-                let Ok(mut joints) = self.axes.carried(stand, &state.joints) else {
-                    continue;
-                };
-                if !self.axes.stand_still(&state.joints, &mut joints) {
-                    continue;
-                }
-                let sure = same && !meet;
-                if !sure
-                    && !judge.passes(
-                        placer,
-                        motion,
-                        (&from_pose, &state.joints),
-                        (&target, &joints),
-                    )
-                {
+                let carried = self.axes.carried(stand, &state.joints);
+                let sure = same
+                    && !passage.meet
+                    && carried.as_ref().is_ok_and(|joints| {
+                        // Between two points an axis can go farther than at both of them.
+                        !self.axes.near_end(&state.joints, joints, 2.0 * passage.arc)
+                    });
+                if sure && let Ok(mut joints) = carried {
+                    if self.axes.stand_still(&state.joints, &mut joints) {
+                        self.states.push(self.after(index, joints, stand.branch));
+                    }
                     continue;
                 }
-                let new = self.after(index, joints, stand.branch);
-                if sure {
-                    self.states.push(new);
-                } else {
+                // Of the turns that the axes can come to, the nearest that they do come to.
+                let mut tried: Vec<Joints> = carried.into_iter().collect();
+                if passage.meet {
+                    self.axes
+                        .other_turns(stand, &state.joints, &mut |joints| tried.push(*joints));
+                }
+                let from = (&from_pose, &state.joints);
+                let found = tried.into_iter().find_map(|mut joints| {
+                    (self.axes.stand_still(&state.joints, &mut joints)
+                        && judge.passes(placer, motion, from, (&target, &joints)))
+                    .then_some(joints)
+                });
+                if let Some(joints) = found {
+                    let new = self.after(index, joints, stand.branch);
                     self.keep(first, new);
                 }
             }
@@ -457,9 +485,10 @@ impl Lattice {
     fn after(&self, from: usize, joints: Joints, branch: u8) -> State {
         let state = &self.states[from];
         State {
-            cost: state.cost
-                + self.measure.between(&state.joints, &joints)
-                + self.measure.standing(&joints),
+            cost: state.cost.and(
+                self.measure.between(&state.joints, &joints),
+                self.measure.against(&joints),
+            ),
             joints,
             from,
             root: state.root,
@@ -488,7 +517,7 @@ impl Lattice {
         let first = self.states.len();
         for index in before {
             let state = self.states[index];
-            if state.cost == f64::INFINITY {
+            if !state.cost.is_way() {
                 continue;
             }
             let Some(joints) = self.axes.followed(placer.solver(), target, &state.joints) else {
@@ -502,7 +531,7 @@ impl Lattice {
     /// Keeps the cheapest states of the newest layer, if there are too many.
     fn thin(&mut self, first: usize) {
         if self.states.len() - first > MOST_STATES {
-            self.states[first..].sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            self.states[first..].sort_by(|a, b| a.cost.order(&b.cost));
             self.states.truncate(first + MOST_STATES);
         }
     }
@@ -513,8 +542,7 @@ impl Lattice {
         let mut best: Option<usize> = None;
         for index in layer.first..layer.first + layer.count {
             let cost = self.states[index].cost;
-            if cost < f64::INFINITY && best.is_none_or(|best| cheaper(cost, self.states[best].cost))
-            {
+            if cost.is_way() && best.is_none_or(|best: usize| cost.less(&self.states[best].cost)) {
                 best = Some(index);
             }
         }
@@ -527,10 +555,4 @@ impl Lattice {
         self.states.truncate(layer.first);
         Some(layer)
     }
-}
-
-/// `a` is cheaper than `b`, and not by rounding alone.
-#[inline]
-pub(crate) fn cheaper(a: f64, b: f64) -> bool {
-    a + EQUAL * (1.0 + a.abs()) < b
 }

@@ -10,9 +10,6 @@ use crate::machine::Positions;
 use crate::program::Motion;
 use crate::refusal;
 
-/// A rewind costs more than any travel and any side that is not preferred.
-const REWIND: f64 = 1e9;
-
 /// Positions of an index axis that are tried.
 const MOST_POSITIONS: usize = 720;
 
@@ -50,12 +47,9 @@ impl Route<'_> {
             return Ok(());
         }
         let fault = self.no_way(motion, &found);
-        // Behind the fault the path goes on as if it began there, so that what follows is checked too.
+        // Behind the fault the path begins anew, so that what follows is checked too.
         self.settle_all();
-        let near = *self.stands_at();
         self.leave();
-        self.near = near;
-        let _ = self.push(line, motion);
         Err(fault)
     }
 
@@ -193,7 +187,7 @@ impl Route<'_> {
             .to_vec();
         let mut added = Vec::new();
         for (place, state) in states.iter().enumerate() {
-            if state.cost == f64::INFINITY || !reaches(&state.joints) {
+            if !state.cost.is_way() || !reaches(&state.joints) {
                 continue;
             }
             stands.clear();
@@ -218,7 +212,9 @@ impl Route<'_> {
             self.rewound.push(state.joints);
             let index = self.lattice.states.len();
             self.lattice.states.push(State {
-                cost: state.cost + REWIND + self.lattice.measure.between(&state.joints, &joints),
+                cost: state
+                    .cost
+                    .and_rewind(self.lattice.measure.between(&state.joints, &joints)),
                 joints,
                 from: state.from,
                 root: if self.mark + 1 == self.lattice.layers.len() {

@@ -7,6 +7,7 @@
 //! In a cut the axes go on from where they are; another branch or another full turn is taken off the part, in a
 //! rapid, or by the machine's `[rewind]` move. Where a cut cannot go on, the fault says what was tried.
 
+mod cost;
 mod lattice;
 mod lost;
 mod pole;

@@ -6,9 +6,6 @@ use crate::machine::{Machine, Rule, Side};
 /// An axis without `max_feed` counts as one with so many mm/min or degrees/min.
 const USUAL_FEED: f64 = 10_000.0;
 
-/// A point at which an axis stands on the side that is not preferred costs this, more than any travel.
-const AGAINST: f64 = 1e6;
-
 /// Axis values this close to zero lie on both sides, mm or radians.
 const NEAR_ZERO: f64 = 1e-6;
 
@@ -100,19 +97,12 @@ impl Measure {
         }
     }
 
-    /// What standing here costs.
+    /// How many axes stand on a side that is not preferred.
     #[inline]
-    pub(crate) fn standing(&self, joints: &Joints) -> f64 {
-        if self.prefer.is_empty() {
-            return 0.0;
-        }
-        let mut cost = 0.0;
-        for (place, side) in &self.prefer {
-            if wrong_side(joints[*place] + self.zero[*place], *side) {
-                cost += AGAINST;
-            }
-        }
-        cost
+    pub(crate) fn against(&self, joints: &Joints) -> u32 {
+        let stands =
+            |(place, side): &&(usize, Side)| wrong_side(joints[*place] + self.zero[*place], *side);
+        self.prefer.iter().filter(stands).count() as u32
     }
 }
 

@@ -1,5 +1,6 @@
 //! Settling: the cheapest way through the lattice is walked back, eased close to poles, and handed out.
 
+use super::cost::Cost;
 use super::lattice::{HELD, Kind, Lattice, State, pose};
 use super::pole::{Gate, taut};
 use super::{Chosen, Route};
@@ -92,7 +93,7 @@ impl Route<'_> {
         lattice.layers[0].first = 0;
         lattice.states.clear();
         lattice.states.push(State {
-            cost: 0.0,
+            cost: Cost::NONE,
             from: 0,
             root: 0,
             ..state
@@ -263,9 +264,9 @@ impl Route<'_> {
             let newest = &lattice.layers[last];
             for state in &mut lattice.states[newest.first..newest.first + newest.count] {
                 if state.root == root {
-                    state.cost -= base;
+                    state.cost = state.cost.beyond(&base);
                 } else {
-                    state.cost = f64::INFINITY;
+                    state.cost = Cost::NO_WAY;
                 }
             }
         }
@@ -283,7 +284,7 @@ impl Route<'_> {
         lattice.layers[0].first = 0;
         lattice.layers[0].count = 1;
         lattice.states[0] = State {
-            cost: 0.0,
+            cost: Cost::NONE,
             joints,
             from: 0,
             root: 0,

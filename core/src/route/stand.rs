@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::rule::wrong_side;
 use crate::kinematics::choose::{Limit, OverTravel};
-use crate::kinematics::orientation::Branches;
+use crate::kinematics::orientation::{Branches, angle};
 use crate::kinematics::{Joints, Pose, Solver, Unreachable};
 use crate::machine::{Machine, Positions, Side};
 
@@ -27,6 +27,8 @@ pub(crate) struct Axes {
     /// Joints that move off the part alone.
     indexed: Vec<usize>,
     axis_tolerance: f64,
+    /// What a pole joint may be off by, as an angle of the tool axis, radians.
+    freedom: f64,
     /// See [`Solver::band`]; and the cosines of the two.
     band: Option<[f64; 2]>,
     cosines: Option<[f64; 2]>,
@@ -41,6 +43,8 @@ struct Turning {
     /// What the control shows must lie on this side, and what it shows at zero.
     require: Option<Side>,
     zero: f64,
+    /// It is the pole joint.
+    first: bool,
 }
 
 impl Turning {
@@ -75,7 +79,12 @@ const SLACK: f64 = 2e-3;
 
 impl Axes {
     /// `grace` is how far a rotary value may pass its limit and still be printed as the limit, radians.
-    pub(crate) fn new(machine: &Machine, solver: &Solver, grace: impl Fn(usize) -> f64) -> Self {
+    pub(crate) fn new(
+        machine: &Machine,
+        solver: &Solver,
+        freedom: f64,
+        grace: impl Fn(usize) -> f64,
+    ) -> Self {
         let pointing = machine.pointing();
         let side = |joint: usize| {
             let require = &machine.solution.require;
@@ -100,6 +109,7 @@ impl Axes {
                     positions: positions.filter(|positions| *positions != Positions::Any),
                     require: side(joint),
                     zero: axis.zero,
+                    first: solver.pole_joint() == Some(joint),
                 }
             })
             .collect();
@@ -123,6 +133,7 @@ impl Axes {
             linear,
             indexed,
             axis_tolerance: machine.accuracy.axis_tolerance,
+            freedom,
             band: solver.band(),
             cosines: solver.band().map(|band| band.map(libm::cos)),
         }
@@ -365,6 +376,46 @@ impl Axes {
         Ok(joints)
     }
 
+    /// Is an axis that tilts closer to an end of its travel than `way`, at one of two points?
+    #[inline]
+    pub(crate) fn near_end(&self, from: &Joints, to: &Joints, way: f64) -> bool {
+        self.turning.iter().any(|axis| {
+            let (a, b) = (from[axis.joint], to[axis.joint]);
+            !axis.first
+                && axis
+                    .travel
+                    .is_some_and(|[least, most]| a.min(b) - least < way || most - a.max(b) < way)
+        })
+    }
+
+    /// Calls `take` with the stand whose first axis is a full turn farther to either side than nearest to `last`,
+    /// where that is inside travel.
+    pub(crate) fn other_turns(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
+        let mut nearest = stand.joints;
+        for axis in &self.turning {
+            nearest[axis.joint] = unwound(nearest[axis.joint], last[axis.joint]);
+        }
+        let inside = |axis: &Turning, value: f64| {
+            axis.travel
+                .is_none_or(|[least, most]| (least..=most).contains(&value))
+                && !axis.forbids(value)
+        };
+        let Some(first) = self.turning.iter().find(|axis| axis.first) else {
+            return;
+        };
+        for turn in [-TAU, TAU] {
+            let mut joints = nearest;
+            joints[first.joint] += turn;
+            if self
+                .turning
+                .iter()
+                .all(|axis| inside(axis, joints[axis.joint]))
+            {
+                take(&joints);
+            }
+        }
+    }
+
     /// Calls `take` with every set of turns that `stand` can have inside travel; axes without travel are put on
     /// the turn nearest to `last`, free ones where they were.
     pub(crate) fn turned(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
@@ -425,6 +476,24 @@ impl Axes {
                 joints[axis.joint] = unwound(joints[axis.joint], last[axis.joint]);
             }
             if axis.positions.is_some() {
+                return None;
+            }
+        }
+        // One that would tilt to the other side of the pole and cannot stays at its end, if that is near enough.
+        let mut at_end = false;
+        for axis in &self.turning {
+            let value = joints[axis.joint];
+            if let Some([least, most]) = axis.travel.filter(|_| !axis.first) {
+                let inside = value.max(least).min(most);
+                if inside != value && (inside - value).abs() < self.axis_tolerance {
+                    joints[axis.joint] = inside;
+                    at_end = true;
+                }
+            }
+        }
+        if at_end {
+            let reached = solver.chain().forward(&joints);
+            if angle(reached.axis, pose.axis) > self.freedom {
                 return None;
             }
         }

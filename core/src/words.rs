@@ -182,12 +182,18 @@ impl Words {
         }
     }
 
-    /// A value that passes a limit by less than this is printed as the limit, mm or radians.
-    pub fn grace(&self, joint: usize) -> f64 {
-        self.words
-            .iter()
-            .find(|word| word.joint == joint)
-            .map_or(0.0, |word| 0.499 * word.unit * word.per_scale)
+    /// Values of a joint that are printed inside its travel: those between the outermost printed numbers in
+    /// it, and so far beyond them as is still printed as they are. mm or radians.
+    pub fn printed_travel(&self, joint: usize, [least, most]: [f64; 2]) -> [f64; 2] {
+        let Some(word) = self.words.iter().find(|word| word.joint == joint) else {
+            return [least, most];
+        };
+        let steps = |value: f64| (value + word.reading) * word.per_unit * word.scale;
+        let value = |steps: f64| steps * word.per_scale * word.unit - word.reading;
+        // A limit that is a printed number but for its last bits is that number.
+        let first = libm::ceil(steps(least) - 1e-6) - 0.499;
+        let last = libm::floor(steps(most) + 1e-6) + 0.499;
+        [value(first), value(last)]
     }
 
     /// The largest error of the tip that rounding the linear words can make, mm.

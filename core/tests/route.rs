@@ -1008,7 +1008,6 @@ fn without_a_rewind_the_cut_is_refused_and_says_why() {
 
 /// One cause, one error: behind it the path goes on as if it began there.
 #[test]
-#[ignore = "a second error (\"C must jump from … within this cut\") follows the first: the node before it is still gone on from"]
 fn a_refused_cut_is_told_once() {
     let given = Given {
         c: "[-200, 400]".to_owned(),

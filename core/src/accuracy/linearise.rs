@@ -70,7 +70,7 @@ pub enum Stuck {
 const SHORTEST: f64 = 1.0 / (1u64 << 22) as f64;
 
 /// Points put in may use so much of the tool axis' tolerance.
-const ROOM: f64 = 0.75;
+const ROOM: f64 = 0.9;
 
 /// Between samples the certificate may be blind by this share of the tolerance.
 const BLIND: f64 = 0.02;

@@ -103,10 +103,13 @@ impl Placer {
                 .filter(|(_, axis)| axis.joint.rotary == rotary)
                 .filter_map(|(joint, axis)| {
                     // Angles are checked before they are rounded, linear positions after it.
-                    let grace = if rotary { words.grace(joint) } else { SLACK };
-                    axis.travel.map(|[least, most]| Limit {
+                    axis.travel.map(|travel| Limit {
                         joint,
-                        travel: [least - grace, most + grace],
+                        travel: if rotary {
+                            words.printed_travel(joint, travel)
+                        } else {
+                            [travel[0] - SLACK, travel[1] + SLACK]
+                        },
                     })
                 })
                 .collect()
@@ -206,8 +209,8 @@ impl Placer {
         self.settled(target, t, &joints).ok()
     }
 
-    /// The node of a `target` between two sets of axis values: the nearest to either of them. (The mean of
-    /// the two may lie far from any solution where a rotary axis turns fast.)
+    /// The node of a `target` between two sets of axis values: the solution that makes the way from one to the
+    /// other shortest.
     ///
     /// # Errors
     /// Why there is none.
@@ -218,19 +221,19 @@ impl Placer {
         first: &Joints,
         last: &Joints,
     ) -> Result<Node, Refused> {
-        let turned = |node: &Node, from: &Joints| -> f64 {
-            let joints = self.solver.chain().joints();
-            (0..joints.len())
-                .filter(|joint| joints[*joint].rotary)
-                .map(|joint| libm::fabs(node.trace.joints[joint] - from[joint]))
-                .sum()
-        };
-        let near_first = self.place(target, t, first)?;
-        let near_last = self.place(target, t, last)?;
-        if turned(&near_last, last) < turned(&near_first, first) {
-            Ok(near_last)
-        } else {
-            Ok(near_first)
+        let solver = &self.solver;
+        if !solver.closed_form() {
+            return self.place(target, t, first);
+        }
+        let branches = solver
+            .orient(&target, self.axis_tolerance)
+            .map_err(Refused::Unreachable)?;
+        match self.turning.between(solver, &branches, first, last) {
+            Ok(joints) => self.settled(target, t, &joints),
+            Err(over) => Err(Refused::OverTravel {
+                over,
+                tried: branches.count(),
+            }),
         }
     }
 
@@ -297,9 +300,9 @@ impl Placer {
         }
     }
 
-    /// How far a rotary value may pass its limit and still be printed as the limit, radians.
-    pub fn grace(&self, joint: usize) -> f64 {
-        self.words.grace(joint)
+    /// Values of a rotary joint that are printed inside its travel, radians.
+    pub fn printed_travel(&self, joint: usize, travel: [f64; 2]) -> [f64; 2] {
+        self.words.printed_travel(joint, travel)
     }
 
     /// The largest error of the tool axis that rounding can make, radians.

@@ -79,6 +79,50 @@ impl Turning {
         if better { second } else { first }
     }
 
+    /// The solution that makes the way from `first` over it to `last` shortest, by the sum of the turns.
+    ///
+    /// # Errors
+    /// Of the first branch, if all are outside travel.
+    pub fn between(
+        &self,
+        solver: &Solver,
+        branches: &Branches,
+        first: &Joints,
+        last: &Joints,
+    ) -> Result<Joints, OverTravel> {
+        let halfway: Joints = std::array::from_fn(|joint| (first[joint] + last[joint]) / 2.0);
+        let way = |joints: &Joints| -> f64 {
+            let limited = self.limits.iter().map(|limit| limit.joint);
+            limited
+                .chain(self.cyclic.iter().copied())
+                .map(|joint| {
+                    (joints[joint] - first[joint]).abs() + (last[joint] - joints[joint]).abs()
+                })
+                .sum()
+        };
+        let mut best: Option<(Joints, f64)> = None;
+        let mut fault = None;
+        for index in 0..branches.count() {
+            match self.choice(solver, branches, &halfway, index).0.joints {
+                Ok(joints) => {
+                    let cost = way(&joints);
+                    if best.as_ref().is_none_or(|(_, least)| cost < *least - 1e-9) {
+                        best = Some((joints, cost));
+                    }
+                }
+                Err(over) => {
+                    fault.get_or_insert(over);
+                }
+            }
+        }
+        match (best, fault) {
+            (Some((joints, _)), _) => Ok(joints),
+            (None, Some(over)) => Err(over),
+            // There is one branch at least.
+            (None, None) => Ok(halfway),
+        }
+    }
+
     /// A branch, and the sum of its turns from `last`; infinite outside travel.
     #[inline]
     fn choice(

@@ -144,9 +144,12 @@ impl Lattice {
         };
         Self {
             measure: Measure::new(machine),
-            axes: Axes::new(machine, placer.solver(), freedom.max(0.0), |joint| {
-                placer.grace(joint)
-            }),
+            axes: Axes::new(
+                machine,
+                placer.solver(),
+                freedom.max(0.0),
+                |joint, travel| placer.printed_travel(joint, travel),
+            ),
             layers: Vec::new(),
             states: Vec::new(),
             stands: Vec::new(),
@@ -462,10 +465,8 @@ impl Lattice {
                 }
                 // Of the turns that the axes can come to, the nearest that they do come to.
                 let mut tried: Vec<Joints> = carried.into_iter().collect();
-                if passage.meet {
-                    self.axes
-                        .other_turns(stand, &state.joints, &mut |joints| tried.push(*joints));
-                }
+                self.axes
+                    .other_turns(stand, &state.joints, &mut |joints| tried.push(*joints));
                 let from = (&from_pose, &state.joints);
                 let found = tried.into_iter().find_map(|mut joints| {
                     (self.axes.stand_still(&state.joints, &mut joints)

@@ -8,9 +8,9 @@ use crate::kinematics::Joints;
 use crate::kinematics::POLE;
 use crate::program::{Motion, Pace};
 
-/// A pole joint is eased where the tolerance leaves it more than this, radians (5°): elsewhere little would be
+/// A pole joint is eased where the tolerance leaves it more than this, radians (2°): elsewhere little would be
 /// gained, and the points stay exact.
-const WORTH: f64 = 0.087_266_462_599_716_48;
+const WORTH: f64 = 0.034_906_585_039_886_59;
 
 /// Values that differ by less are the same, radians.
 const SAME: f64 = 1e-9;

@@ -78,12 +78,12 @@ pub(crate) fn both(_: &Branches) -> [bool; 2] {
 const SLACK: f64 = 2e-3;
 
 impl Axes {
-    /// `grace` is how far a rotary value may pass its limit and still be printed as the limit, radians.
+    /// `printed` gives the values of a rotary joint that are printed inside its travel, radians.
     pub(crate) fn new(
         machine: &Machine,
         solver: &Solver,
         freedom: f64,
-        grace: impl Fn(usize) -> f64,
+        printed: impl Fn(usize, [f64; 2]) -> [f64; 2],
     ) -> Self {
         let pointing = machine.pointing();
         let side = |joint: usize| {
@@ -103,9 +103,7 @@ impl Axes {
                     .map(|indexed| indexed.positions.clone());
                 Turning {
                     joint,
-                    travel: axis
-                        .travel
-                        .map(|[least, most]| [least - grace(joint), most + grace(joint)]),
+                    travel: axis.travel.map(|travel| printed(joint, travel)),
                     positions: positions.filter(|positions| *positions != Positions::Any),
                     require: side(joint),
                     zero: axis.zero,

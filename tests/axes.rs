@@ -718,6 +718,21 @@ fn a_list_of_positions_is_kept_to() {
     assert_eq!(stood, [0.0, 90.0, 270.0, 180.0]);
 }
 
+/// Positions, travel and where it starts are all as the control shows them.
+#[test]
+fn positions_are_given_in_what_the_control_shows() {
+    let cl = sides(&[0.0, 90.0, 270.0, 180.0]).replace("120.0", "300.0");
+    let made = on("boring-mill")
+        .long(150.0)
+        .with("axis.B.zero", "45")
+        .with("axis.B.indexed", "45")
+        .with("axis.B.positions", "[45, 135, 225, 315]")
+        .with("axis.B.travel", "[45, 315]")
+        .made(&cl);
+    let stood = watch(&made.text, 'B', "M12", "M13", "G91 G28");
+    assert_eq!(stood, [45.0, 135.0, 315.0, 225.0]);
+}
+
 #[test]
 fn an_orientation_between_positions_names_the_nearest() {
     for (machine, side, nearest) in [
@@ -1136,6 +1151,116 @@ fn with_a_rewind_the_edge_is_turned_at_its_feed() {
     assert!(!made.blocks[come + 2].rapid, "{}", made.text);
     let line = made.line(&made.blocks[come + 2]);
     assert!(line.contains("F8.") || line.contains("F720."), "{line}");
+}
+
+/// Three times round: C ends at 360° on both sides, so the knife is drawn out on the way.
+fn three_rounds() -> String {
+    let foot = |step: u32| lean(90.0, 5.0 * f64::from(step)) * 100.0 + V::z() * 20.0;
+    let axis = |step: u32| lean(20.0, 5.0 * f64::from(step));
+    let mut cl = cl().rapid(foot(0) + axis(0) * 40.0, axis(0));
+    for step in 0..=216 {
+        cl = cl.cut(foot(step), axis(step));
+    }
+    cl.rapid(foot(216) + axis(216) * 40.0, axis(216)).end()
+}
+
+#[test]
+fn a_knife_that_goes_round_and_round_is_drawn_out_where_an_axis_ends() {
+    let text = three_rounds();
+    let said = knife().refused(&text);
+    for word in [
+        "error[jump]",
+        "takes C to 365.000° (travel -360.000° to 360.000°)",
+    ] {
+        assert!(said.contains(word), "{said}");
+    }
+    let made = knife().with("rewind.distance", "20").made(&text);
+    let poses = made.poses();
+    for block in &made.blocks {
+        let over = made.model.over_travel(&block.words, made.length);
+        assert!(over.is_none(), "line {}: {over:?}", block.line);
+    }
+    let mut at = 0;
+    let points = common::read_back::points(&text);
+    for point in &points[2..points.len() - 2] {
+        let tangent = V::z()
+            .cross(&V::new(point.tip.x, point.tip.y, 0.0))
+            .normalize();
+        let met = (at..poses.len()).find(|at| {
+            (poses[*at].tip - point.tip).norm() < ROUNDING
+                && angle(poses[*at].axis, point.axis) < 0.2
+                && angle(poses[*at].edge, tangent) < 0.2
+        });
+        at = met.unwrap_or_else(|| panic!("CL line {}", point.line));
+    }
+    // In the part the edge never leaves the tangent; so it was turned outside.
+    let mut outside = 0;
+    for (block, pose) in made.blocks.iter().zip(&poses).skip(4) {
+        let radius = V::new(pose.tip.x, pose.tip.y, 0.0);
+        if pose.tip.z < 20.1 && !block.rapid {
+            let tangent = V::z().cross(&radius).normalize();
+            assert!(angle(pose.edge, tangent) < 3.0, "line {}", block.line);
+        } else {
+            outside += 1;
+        }
+    }
+    assert!(outside > 4);
+}
+
+/// C turns back by more than 360°, which takes half a minute and more at 720°/min.
+#[test]
+#[ignore = "the tip strays by the rounding of the words, which counts as its way: the turn has no feed"]
+fn a_rewind_turns_at_its_feed() {
+    let made = knife()
+        .with("rewind.distance", "20")
+        .with("rewind.turn_feed", "720")
+        .made(&three_rounds());
+    let c = made.words("C");
+    let (mut turned, mut minutes, mut feed) = (0.0, 0.0, 0.0);
+    for (at, pose) in made.poses().iter().enumerate().skip(1) {
+        let line = made.line(&made.blocks[at]);
+        let word = line
+            .split(' ')
+            .find_map(|word| word.strip_prefix('F')?.parse::<f64>().ok());
+        feed = word.unwrap_or(feed);
+        // Drawn out, in G93.
+        if !made.blocks[at].rapid && pose.tip.z > 30.0 && c[at] != c[at - 1] {
+            turned += (c[at] - c[at - 1]).abs();
+            minutes += 1.0 / feed;
+        }
+    }
+    assert!(turned > 360.0, "{turned}");
+    assert!(
+        minutes > 0.98 * turned / 720.0,
+        "{turned}° in {minutes} min"
+    );
+}
+
+/// The tip stands still in the part and the tool leans over by 20°, at 500: the feed is along the axes, so no
+/// block is faster than 500°/min.
+#[test]
+#[ignore = "the tip strays by the rounding of the words, which counts as its way: the turn has no feed"]
+fn a_tool_that_turns_on_the_spot_does_not_race() {
+    let tip = V::new(10.0, 7.0, 20.0);
+    let text = cl()
+        .rapid(tip + V::z() * 40.0, V::z())
+        .cut(tip, V::z())
+        .cut(tip, lean(20.0, -90.0))
+        .end();
+    let made = on("ac-trunnion").with("control.tcp", "post").made(&text);
+    let a = made.words("A");
+    let mut feed = 0.0;
+    for at in 1..made.blocks.len() {
+        let line = made.line(&made.blocks[at]);
+        let word = line
+            .split(' ')
+            .find_map(|word| word.strip_prefix('F')?.parse::<f64>().ok());
+        feed = word.unwrap_or(feed);
+        if !made.blocks[at].rapid && a[at] != a[at - 1] {
+            let speed = (a[at] - a[at - 1]).abs() * feed;
+            assert!(speed < 510.0, "{speed}°/min: {line}");
+        }
+    }
 }
 
 /// Before it goes into the part the knife is turned to where it will cut.

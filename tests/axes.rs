@@ -1022,6 +1022,36 @@ fn the_edge_follows_the_tangent_of_a_circle() {
 }
 
 #[test]
+fn the_edge_follows_an_arc() {
+    let axis = lean(20.0, 90.0);
+    let text = cl()
+        .rapid(V::new(-50.0, -60.0, 20.0) + axis * 40.0, axis)
+        .cut(V::new(-50.0, -60.0, 20.0), axis)
+        .cut(V::new(0.0, -60.0, 20.0), axis)
+        .line("CIRCLE / 0, 0, 20, 0, 0, 1, 60")
+        .line("GOTO / 60, 0, 20")
+        .line("GOTO / 60, 50, 20")
+        .end();
+    let made = knife().made(&text);
+    let mut met = 0;
+    for pose in made.poses() {
+        let radius = V::new(pose.tip.x, pose.tip.y, 0.0);
+        // Behind the first chord and before the last.
+        if pose.tip.x > 5.0 && pose.tip.y < -5.0 {
+            assert!(near(radius.norm(), 60.0, 0.05 + ROUNDING));
+            let tangent = across(V::z().cross(&radius), axis);
+            assert!(
+                angle(pose.edge, tangent) < 0.2,
+                "{}",
+                angle(pose.edge, tangent)
+            );
+            met += 1;
+        }
+    }
+    assert!(met > 10, "{}", made.text);
+}
+
+#[test]
 fn at_a_corner_the_edge_is_turned_on_the_spot() {
     let cl = drawn(&[[-50.0, -50.0], [50.0, -50.0], [50.0, 50.0]]);
     let made = knife().made(&cl);
@@ -1699,6 +1729,18 @@ fn a_side_is_preferred_or_required() {
         .refused(&text);
     assert!(said.contains("error["), "{said}");
     assert!(said.contains("A would be"), "{said}");
+}
+
+/// The value lies inside the travel: it is the side that forbids it.
+#[test]
+#[ignore = "the message names the travel alone"]
+fn a_required_side_that_forbids_a_cut_is_named() {
+    let tip = V::new(10.0, 7.0, 20.0);
+    let text = cl().rapid(tip, V::z()).cut(tip, lean(60.0, -90.0)).end();
+    let said = on("ac-trunnion")
+        .with("solution.require.A", "positive")
+        .refused(&text);
+    assert!(said.contains("require"), "{said}");
 }
 
 #[test]

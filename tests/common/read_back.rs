@@ -60,7 +60,7 @@ pub struct Model {
 }
 
 /// The tables of `layer` laid over those of `base`.
-fn overlay(base: &mut Table, layer: Table) {
+pub fn overlay(base: &mut Table, layer: Table) {
     for (key, value) in layer {
         match (base.get_mut(&key), value) {
             (Some(Value::Table(old)), Value::Table(new)) => overlay(old, new),

@@ -65,7 +65,6 @@ pub fn dialect(
         )]
     };
     let plugin = finder.find(&control.dialect).map_err(fault)?;
-    let depth = words::depth(machine);
     let setup = ProgramSetup {
         program: program.to_owned(),
         machine: machine.name.clone(),
@@ -79,7 +78,8 @@ pub fn dialect(
             .map(|place| ProgramWord {
                 name: machine.axes[place].name.clone(),
                 rotary: machine.axes[place].joint.rotary,
-                depth: Some(place) == depth,
+                wrapped: machine.axes[place].range.is_some(),
+                depth: words::is_depth(machine, place),
             })
             .collect(),
         options: given(&control.options),

@@ -470,7 +470,6 @@ fn the_range_holds_what_a_shifted_zero_shows() {
 
 /// Words that wrap are meant the shorter way, which on these controls is M126.
 #[test]
-#[ignore = "the dialect is not told of the range, and switches the shorter way off"]
 fn a_range_switches_the_shorter_way_on() {
     let made = on("ac-trunnion")
         .with("control.dialect", "heidenhain")
@@ -573,7 +572,6 @@ fn cl_of_c() -> String {
 
 /// The first position comes from anywhere: both axes may have to move.
 #[test]
-#[ignore = "the first position is one block of all rotary words"]
 fn exclusive_axes_are_not_brought_to_the_first_position_together() {
     let tip = V::new(30.0, 0.0, 60.0);
     let cl = cl().rapid(tip, lean(15.0, 30.0)).end();
@@ -703,7 +701,6 @@ fn an_index_table_turns_at_the_reference_let_go_and_is_clamped_in_cuts() {
 
 /// Two quills: the spindle is drawn back, and the column stays where it is.
 #[test]
-#[ignore = "home moves the quill alone, not the axis that it runs along"]
 fn a_boring_mill_indexes_with_column_and_spindle_at_the_reference() {
     let cl = sides(&[0.0, 90.0, 180.0]).replace("120.0", "300.0");
     let made = on("boring-mill").made(&cl);
@@ -795,7 +792,6 @@ fn two_indexed_axes_make_facets_and_refuse_simultaneous_cuts() {
 
 /// A cut that would turn an index table says which axis would have to turn.
 #[test]
-#[ignore = "the message leaves out the axes that are indexed, and so says nothing"]
 fn a_cut_that_turns_an_index_table_is_refused_by_name() {
     let simultaneous = three_plus_two().refused(&turning_cuts());
     assert!(!simultaneous.contains("from :"), "{simultaneous}");
@@ -813,7 +809,6 @@ fn a_cut_that_turns_an_index_table_is_refused_by_name() {
 
 /// A first position without RAPID before it is a move with a feed.
 #[test]
-#[ignore = "the first position is made before the clamp word"]
 fn a_first_position_at_feed_is_made_with_the_table_clamped() {
     let text = cl()
         .cut(V::new(0.0, 120.0, 150.0), V::z())
@@ -1175,7 +1170,6 @@ fn with_a_rewind_the_edge_is_turned_outside_the_part() {
 
 /// 90° at 720°/min take an eighth of a minute.
 #[test]
-#[ignore = "[rewind] turn_feed is not kept where an edge is turned at a corner: the turn is rapid"]
 fn with_a_rewind_the_edge_is_turned_at_its_feed() {
     let (made, come) = rewound();
     assert!(!made.blocks[come + 2].rapid, "{}", made.text);
@@ -1239,7 +1233,6 @@ fn a_knife_that_goes_round_and_round_is_drawn_out_where_an_axis_ends() {
 
 /// C turns back by more than 360°, which takes half a minute and more at 720°/min.
 #[test]
-#[ignore = "the tip strays by the rounding of the words, which counts as its way: the turn has no feed"]
 fn a_rewind_turns_at_its_feed() {
     let made = knife()
         .with("rewind.distance", "20")
@@ -1269,7 +1262,6 @@ fn a_rewind_turns_at_its_feed() {
 /// The tip stands still in the part and the tool leans over by 20°, at 500: the feed is along the axes, so no
 /// block is faster than 500°/min.
 #[test]
-#[ignore = "the tip strays by the rounding of the words, which counts as its way: the turn has no feed"]
 fn a_tool_that_turns_on_the_spot_does_not_race() {
     let tip = V::new(10.0, 7.0, 20.0);
     let text = cl()
@@ -1295,7 +1287,6 @@ fn a_tool_that_turns_on_the_spot_does_not_race() {
 
 /// Before it goes into the part the knife is turned to where it will cut.
 #[test]
-#[ignore = "the edge is turned while the tool plunges"]
 fn the_edge_is_turned_before_the_plunge() {
     let made = knife().made(&drawn(&[[-50.0, -50.0], [-50.0, 50.0]]));
     let plunged = made.blocks.iter().position(|block| !block.rapid).unwrap();
@@ -1455,7 +1446,6 @@ fn a_head_without_a_word_stops_the_program() {
 }
 
 #[test]
-#[ignore = "the spindle turns while the head is swapped"]
 fn the_spindle_stands_while_a_head_is_swapped() {
     let made = on("head-change").made(&heads("ANGLE"));
     let swap = made.text.find("M62").unwrap();
@@ -1476,7 +1466,6 @@ fn a_head_that_is_not_there_is_refused() {
 }
 
 #[test]
-#[ignore = "the help ends behind a colon"]
 fn where_there_are_no_heads_the_help_says_so() {
     let said = on("gantry").refused(&heads("ANGLE"));
     assert!(!said.contains("its heads are: \n"), "{said}");
@@ -1549,7 +1538,6 @@ fn a_quill_takes_its_share_of_the_whole_way() {
 
 /// From above, X and Y come first; Z and W follow, both along the tool.
 #[test]
-#[ignore = "Z comes down with X and Y: only the quill is taken to lie along the tool"]
 fn a_mill_with_a_quill_comes_down_last() {
     let text = depths(&[100.0, 50.0]);
     let made = on("quill-mill").made(&text);
@@ -1649,7 +1637,6 @@ fn a_quill_that_is_held_stays() {
 
 /// The same with the key written out.
 #[test]
-#[ignore = "reserve = false counts as a quill"]
 fn a_quill_without_reserve_can_be_held() {
     let made = on("boring-mill")
         .with("axis.W.reserve", "false")
@@ -1733,7 +1720,6 @@ fn a_side_is_preferred_or_required() {
 
 /// The value lies inside the travel: it is the side that forbids it.
 #[test]
-#[ignore = "the message names the travel alone"]
 fn a_required_side_that_forbids_a_cut_is_named() {
     let tip = V::new(10.0, 7.0, 20.0);
     let text = cl().rapid(tip, V::z()).cut(tip, lean(60.0, -90.0)).end();

@@ -4,7 +4,7 @@ use crate::accuracy::{Refused, Stuck};
 use crate::diagnostic::{Diagnostic, Extreme};
 use crate::kinematics::choose::OverTravel;
 use crate::kinematics::{Joints, Unreachable};
-use crate::machine::{Machine, Positions};
+use crate::machine::{Axis, Machine, Positions};
 use crate::program::Motion;
 
 /// Why a point has no axis values.
@@ -102,6 +102,23 @@ fn no_position(machine: &Machine, over: OverTravel) -> bool {
             .is_some_and(|indexed| indexed.positions != Positions::Any)
 }
 
+/// Inside its travel, on the side of zero that the machine file forbids.
+fn forbidden(machine: &Machine, over: &OverTravel) -> bool {
+    let travel = machine.axes[over.joint].travel;
+    let inside = travel.is_none_or(|[least, most]| (least..=most).contains(&over.value));
+    let require = &machine.solution.require;
+    inside && require.iter().any(|(joint, _)| *joint == over.joint)
+}
+
+/// An indexed axis that stands differently.
+fn indexes<'m>(machine: &'m Machine, from: &Joints, to: &Joints) -> Option<&'m Axis> {
+    let moves = |(joint, axis): &(usize, &Axis)| {
+        axis.indexed.is_some() && libm::fabs(from[*joint] - to[*joint]) > 1e-6
+    };
+    let mut axes = machine.axes.iter().enumerate();
+    axes.find(moves).map(|(_, axis)| axis)
+}
+
 /// Why a cut cannot go on: what each solution asks of the axes, whether it is on the branch that the cut is
 /// on, and where the axes stand before.
 pub(crate) fn no_way(
@@ -111,7 +128,7 @@ pub(crate) fn no_way(
 ) -> Diagnostic {
     let rotary = |joints: &Joints| {
         let axes = machine.axes.iter().zip(joints);
-        axes.filter(|(axis, _)| axis.joint.rotary && axis.indexed.is_none())
+        axes.filter(|(axis, _)| axis.joint.rotary)
             .map(|(axis, value)| format!("{} {:.3}°", axis.name, axis.reading(*value)))
             .collect::<Vec<_>>()
             .join(" ")
@@ -119,6 +136,15 @@ pub(crate) fn no_way(
     let reasons: Vec<String> = tried
         .iter()
         .map(|(carried, same, joints)| match carried {
+            Err(over) if forbidden(machine, over) => {
+                let axis = &machine.axes[over.joint];
+                format!(
+                    "going on to {} takes {} to {:.3}°, on the side of zero that [solution] require forbids",
+                    rotary(joints),
+                    axis.name,
+                    axis.reading(over.value)
+                )
+            }
             Err(over) => {
                 let axis = &machine.axes[over.joint];
                 let travel = axis.travel.map_or(String::new(), |[least, most]| {
@@ -135,6 +161,11 @@ pub(crate) fn no_way(
                     axis.reading(over.value)
                 )
             }
+            Ok(joints) if let Some(axis) = indexes(machine, from, joints) => format!(
+                "{} would turn in the cut, and it moves off the part alone (indexed): {}",
+                axis.name,
+                rotary(joints)
+            ),
             Ok(joints) if *same => format!(
                 "{} lies on the same branch, but no path of the axes keeps the tolerance",
                 rotary(joints)

@@ -55,7 +55,18 @@ pub fn order(machine: &Machine) -> Vec<usize> {
     places
 }
 
-/// The linear axis along the tool with all axes at zero: it moves last when the tool comes near.
+/// The axis moves along the tool with all axes at zero: it moves last when the tool comes near. That is one of
+/// the linear axes, and any quill beside it.
+pub fn is_depth(machine: &Machine, place: usize) -> bool {
+    let Some(depth) = depth(machine) else {
+        return false;
+    };
+    let joint = |place: usize| &machine.axes[place].joint;
+    let along = joint(place).direction.dot(&joint(depth).direction);
+    place == depth || (!joint(place).rotary && libm::fabs(along) > 1.0 - 1e-6)
+}
+
+/// The linear axis along the tool with all axes at zero; a quill only if there is no other.
 pub fn depth(machine: &Machine) -> Option<usize> {
     let along = |place: &usize| {
         let joint = &machine.axes[*place].joint;
@@ -63,7 +74,18 @@ pub fn depth(machine: &Machine) -> Option<usize> {
     };
     (0..machine.axes.len())
         .filter(|place| !machine.axes[*place].joint.rotary)
-        .max_by(|a, b| along(a).total_cmp(&along(b)))
+        .max_by(|a, b| {
+            let main = |place: &usize| {
+                let axis = &machine.axes[*place];
+                axis.second.is_none() && axis.indexed.is_none()
+            };
+            let nearer = along(a) - along(b);
+            if libm::fabs(nearer) < 1e-6 {
+                main(a).cmp(&main(b))
+            } else {
+                nearer.total_cmp(&0.0)
+            }
+        })
 }
 
 /// mm in one unit of the program.

@@ -108,6 +108,7 @@ fn job(path: &Path, name: &str, tcp: &str) -> Result<(), Box<dyn Error>> {
             .map(|place| ProgramWord {
                 name: machine.axes[place].name.clone(),
                 rotary: machine.axes[place].joint.rotary,
+                wrapped: false,
                 depth: Some(place) == depth,
             })
             .collect(),

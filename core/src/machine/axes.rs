@@ -402,14 +402,15 @@ impl Builder<'_> {
             .filter(|(_, axis)| {
                 let spanned = &file.axis[&axis.name];
                 let axis = spanned.get_ref();
-                axis.share.is_none() && axis.reserve.is_none()
+                axis.share.is_none() && !reserves(axis)
             })
             .map(|(place, axis)| (place, axis.joint.direction))
             .collect();
         for axis in axes {
             let spanned = &file.axis[&axis.name];
             let said = spanned.get_ref();
-            let (span, share) = match (&said.share, &said.reserve) {
+            let reserve = said.reserve.as_ref().filter(|_| reserves(said));
+            let (span, share) = match (&said.share, reserve) {
                 (None, None) => continue,
                 (Some(share), None) => (share.span(), Some(self.number(share))),
                 (None, Some(reserve)) => (reserve.span(), None),
@@ -453,4 +454,11 @@ impl Builder<'_> {
             });
         }
     }
+}
+
+/// It is a quill that moves where another axis ends.
+fn reserves(axis: &AxisFile) -> bool {
+    axis.reserve
+        .as_ref()
+        .is_some_and(|reserve| *reserve.get_ref())
 }

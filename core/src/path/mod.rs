@@ -13,7 +13,7 @@ use crate::accuracy::{Linearise, Node};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::feed::Feeds;
 use crate::kinematics::Pose;
-use crate::machine::{Machine, Tcp, ToolLength};
+use crate::machine::{Machine, Positions, Tcp, ToolLength};
 use crate::program::{Edges, Motion, Step, Tool};
 use crate::route::{Chosen, Route};
 
@@ -417,7 +417,13 @@ impl<'a> Path<'a> {
                         axis.reading(value)
                     ),
                 )
-                .help("it is outside the axis' travel, or none of its positions"),
+                .help(match positions {
+                    Some(positions) if *positions != Positions::Any => format!(
+                        "the nearest of its positions is {:.3}°",
+                        axis.reading(positions.nearest(value, axis.travel.is_none()))
+                    ),
+                    _ => "it is outside the travel of the axis".to_owned(),
+                }),
             ),
             Ok(_) => {}
             Err(diagnostic) => self.find(line, *diagnostic),
@@ -430,10 +436,12 @@ impl<'a> Path<'a> {
         let Some(head) = heads.iter().find(|head| head.name == name) else {
             let known: Vec<&str> = heads.iter().map(|head| head.name.as_str()).collect();
             let fault = Diagnostic::error("head", format!("{} has no head {name}", self.base.name));
-            self.find(
-                line,
-                fault.help(format!("its heads are: {}", known.join(", "))),
-            );
+            let help = if known.is_empty() {
+                "its file describes no [head.NAME]".to_owned()
+            } else {
+                format!("its heads are: {}", known.join(", "))
+            };
+            self.find(line, fault.help(help));
             return;
         };
         self.release(line);
@@ -442,6 +450,10 @@ impl<'a> Path<'a> {
             self.feeds = feeds;
         }
         self.equip(line);
+        if std::mem::take(&mut self.turning) {
+            // It is switched on again with the first position, as after a tool change.
+            self.push(line, Event::Spindle(Spindle::Off));
+        }
         self.push(line, Event::Home);
         match &head.word {
             Some(word) => self.push(line, Event::Word { text: word }),

@@ -1,5 +1,6 @@
 //! Moves whose axis values are chosen: points put in, feeds, and the events that say them.
 
+use nalgebra::Vector3;
 use post_plugin::Event;
 
 use super::Path;
@@ -84,6 +85,7 @@ impl Path<'_> {
             None => self.first(leg, &node),
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
                 // An index axis turns with the tool at the reference, not somewhere over the part.
+                let last = self.leave_part(leg, last);
                 self.push(leg.line, Event::Release);
                 self.push(leg.line, Event::Home);
                 self.tally.go(&last.trace.joints, &node.trace.joints);
@@ -137,6 +139,10 @@ impl Path<'_> {
             },
         );
         self.positioned = true;
+        // What was turned on the way is clamped before the tool goes on.
+        for joint in 0..self.machine.axes.len() {
+            self.set_clamp(line, joint, true, false);
+        }
     }
 
     /// A move from where the tool stands to `node`; gives the node that it left.
@@ -158,6 +164,70 @@ impl Path<'_> {
             self.cut(leg, &last, node);
         }
         last
+    }
+
+    /// Before the way to the reference, which goes along the depth axis: a tool that leans in the part is drawn
+    /// back along its own axis.
+    fn leave_part(&mut self, leg: &Leg<'_>, last: Box<Node>) -> Box<Node> {
+        let leaning = angle(self.in_machine(&last), self.machine.tool_axis) > 1e-3;
+        if !self.on_part || !leaning {
+            return last;
+        }
+        let stands = Motion {
+            tip: last.target.tip,
+            axis: last.target.axis,
+            edge: last.target.edge,
+            pace: Pace::Rapid,
+            chord: 0.0,
+        };
+        let away = self
+            .machine
+            .rewind
+            .and_then(|rewind| Some((stands.drawn_back(&rewind)?, rewind)));
+        let Some((away, rewind)) = away else {
+            self.find(
+                leg.line,
+                Diagnostic::error(
+                    "index",
+                    "an index axis must turn here, and the tool leans in the part: straight up to the reference it would gouge",
+                )
+                .help("retract along the tool before this line, or give the machine a [rewind]"),
+            );
+            return last;
+        };
+        let motion = Motion {
+            pace: rewind.retract_feed.map_or(Pace::Rapid, Pace::PerMinute),
+            ..away
+        };
+        let out = Leg {
+            motion: &motion,
+            loose: true,
+            ..*leg
+        };
+        let placer = self.route.placer(leg.setting);
+        // The rotary axes as they stand, the index axis among them.
+        match placer.settled(pose(&motion), 1.0, &last.trace.joints) {
+            Ok(node) => {
+                self.on_part = false;
+                self.cut(&out, &last, &node);
+                Box::new(node)
+            }
+            Err(refused) => {
+                self.find(leg.line, refusal::refused(self.machine, &refused));
+                last
+            }
+        }
+    }
+
+    /// The tool axis in the machine frame, as the head holds it.
+    fn in_machine(&self, node: &Node) -> Vector3<f64> {
+        let mut joints = node.trace.joints;
+        for (value, axis) in joints.iter_mut().zip(&self.machine.axes) {
+            if axis.carries_part {
+                *value = 0.0;
+            }
+        }
+        self.route.present().solver().chain().forward(&joints).axis
     }
 
     /// An indexed axis stands differently.
@@ -453,18 +523,9 @@ impl Path<'_> {
     /// the tip): a tool that does not stand upright in it would be moved sideways into the part.
     fn check_compensation(&mut self, line: u64, node: &Node) {
         let machine = self.machine;
-        let chain = self.route.present().solver().chain();
         let axis = match machine.control.tcp {
             Tcp::Control => node.trace.pose.axis,
-            Tcp::Post => {
-                let mut joints = node.trace.joints;
-                for (value, axis) in joints.iter_mut().zip(&machine.axes) {
-                    if axis.carries_part {
-                        *value = 0.0;
-                    }
-                }
-                chain.forward(&joints).axis
-            }
+            Tcp::Post => self.in_machine(node),
         };
         let tilt = angle(axis, machine.tool_axis);
         let turned = self

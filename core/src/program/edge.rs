@@ -15,18 +15,23 @@ use crate::machine::{EdgeSource, Machine, Rewind};
 /// Ways shorter than this have no direction, mm.
 const SHORT: f64 = 1e-6;
 
-/// Gives every move its edge; holds one move back until the next is known.
+/// Steps without a direction are not held longer than this.
+const MOST_HELD: usize = 1024;
+
+/// Gives every move its edge; holds moves back until the next direction of travel is known.
 #[derive(Debug)]
 pub(crate) struct Edges {
     source: EdgeSource,
     /// Radians.
     corner: f64,
     rewind: Option<Rewind>,
-    /// The edge in use, and the last point.
+    /// The edge in use.
     edge: Vector3<f64>,
-    from: Option<Vector3<f64>>,
-    /// The move that waits, and the commands behind it.
-    held: Option<(u64, Motion)>,
+    /// The last point that was taken.
+    tip: Option<Vector3<f64>>,
+    /// The last cut with a direction, and that direction.
+    cut: Option<(u64, Motion, Vector3<f64>)>,
+    /// What came behind it: moves without a direction (rapids, straight in and out), and commands.
     behind: VecDeque<(u64, Step)>,
 }
 
@@ -38,8 +43,8 @@ impl Edges {
             corner: machine.solution.corner,
             rewind: machine.rewind,
             edge: machine.edge?,
-            from: None,
-            held: None,
+            tip: None,
+            cut: None,
             behind: VecDeque::new(),
         })
     }
@@ -56,55 +61,89 @@ impl Edges {
                 self.pass(line, motion, Some(along), emit);
             }
             Step::Move(motion) => {
-                self.settle(Some(&motion), emit);
-                self.held = Some((line, motion));
+                let from = self.tip.replace(motion.tip);
+                let way = from
+                    .filter(|_| motion.pace != Pace::Rapid)
+                    .map(|from| motion.tip - from)
+                    .filter(|way| way.norm() > SHORT)
+                    .and_then(|way| across(way, motion.axis));
+                match way {
+                    Some(way) => {
+                        self.settle(Some(way), emit);
+                        self.cut = Some((line, motion, way));
+                    }
+                    None => self.hold(line, Step::Move(motion), emit),
+                }
             }
             Step::From { tip, .. } => {
                 self.settle(None, emit);
-                self.from = Some(tip);
+                self.tip = Some(tip);
                 emit(line, step);
             }
             step if step.leaves() => {
                 self.settle(None, emit);
-                self.from = None;
+                self.tip = None;
                 emit(line, step);
             }
-            step if self.held.is_some() => self.behind.push_back((line, step)),
-            step => emit(line, step),
+            step => self.hold(line, step, emit),
         }
     }
 
-    /// The move that waits has nothing behind it.
+    /// What waits has nothing behind it.
     pub(crate) fn finish(&mut self, emit: &mut dyn FnMut(u64, Step)) {
         self.settle(None, emit);
     }
 
-    fn settle(&mut self, next: Option<&Motion>, emit: &mut dyn FnMut(u64, Step)) {
-        if let Some((line, motion)) = self.held.take() {
-            let cuts = |motion: &Motion| motion.pace != Pace::Rapid;
-            let way = |from: Vector3<f64>, to: Vector3<f64>| {
-                Some(to - from).filter(|way| way.norm() > SHORT)
-            };
-            let come = self
-                .from
-                .filter(|_| cuts(&motion))
-                .and_then(|from| way(from, motion.tip))
-                .and_then(|way| across(way, motion.axis));
-            let go = next
-                .filter(|next| cuts(next))
-                .and_then(|next| way(motion.tip, next.tip))
-                .and_then(|way| across(way, motion.axis));
-            match (come, go) {
-                (Some(come), Some(go)) if angle(come, go) > self.corner => {
+    fn hold(&mut self, line: u64, step: Step, emit: &mut dyn FnMut(u64, Step)) {
+        self.behind.push_back((line, step));
+        if self.behind.len() >= MOST_HELD {
+            self.settle(None, emit);
+        }
+    }
+
+    /// Settles what waits; the next cut goes along `go`.
+    fn settle(&mut self, go: Option<Vector3<f64>>, emit: &mut dyn FnMut(u64, Step)) {
+        let moves = self
+            .behind
+            .iter()
+            .any(|(_, step)| matches!(step, Step::Move(_)));
+        // Where no cut came before, the edge stands as the first cut wants it from the beginning.
+        let mut turned = self.cut.is_none();
+        let mut last = None;
+        if let Some((line, motion, come)) = self.cut.take() {
+            match go.filter(|_| !moves) {
+                Some(go) if angle(come, go) > self.corner => {
                     self.pass(line, motion, Some(come), emit);
                     self.corner_turn(line, motion, go, emit);
                 }
-                (Some(come), Some(go)) => self.pass(line, motion, Some(come + go), emit),
-                (come, go) => self.pass(line, motion, go.or(come), emit),
+                Some(go) => self.pass(line, motion, Some(come + go), emit),
+                None => self.pass(line, motion, Some(come), emit),
             }
         }
-        for (line, step) in self.behind.drain(..) {
-            emit(line, step);
+        for (line, step) in std::mem::take(&mut self.behind) {
+            let Step::Move(motion) = step else {
+                emit(line, step);
+                continue;
+            };
+            if turned {
+                self.pass(line, motion, go, emit);
+                continue;
+            }
+            self.pass(line, motion, None, emit);
+            last = Some((line, motion));
+            if let Some(go) = go
+                && motion.pace == Pace::Rapid
+            {
+                // Off the part: turned here, before the way in.
+                self.pass(line, motion, Some(go), emit);
+                turned = true;
+            }
+        }
+        // Straight from one cut into another: a corner, if it is one.
+        if let (false, Some(go), Some((line, motion))) = (turned, go, last)
+            && angle(self.edge, go) > self.corner
+        {
+            self.corner_turn(line, motion, go, emit);
         }
     }
 
@@ -127,7 +166,10 @@ impl Edges {
             };
             self.pass(line, out, None, emit);
             let turn = Motion {
-                pace: Pace::Rapid,
+                pace: rewind.turn_feed.map_or(Pace::Rapid, |feed| {
+                    let way = angle(self.edge, edge).to_degrees();
+                    Pace::InverseTime(feed / way.max(1e-3))
+                }),
                 ..away
             };
             self.pass(line, turn, Some(edge), emit);
@@ -155,7 +197,6 @@ impl Edges {
             .or_else(|| across(Vector3::x(), motion.axis))
             .unwrap_or_else(Vector3::y);
         self.edge = edge;
-        self.from = Some(motion.tip);
         motion.edge = edge;
         emit(line, Step::Move(motion));
     }

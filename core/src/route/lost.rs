@@ -238,6 +238,14 @@ impl Route<'_> {
                 over,
                 tried: found.solutions,
             },
+            None if !self.machine.solution.require.is_empty() => {
+                return Diagnostic::error(
+                    "over-travel",
+                    "no solution stands on the side of zero that [solution] require asks for",
+                )
+                .help("another side, or another set-up of the part")
+                .boxed();
+            }
             None => Refused::Unreachable(Unreachable::Linear),
         };
         refusal::refused(self.machine, &refused).boxed()

@@ -204,6 +204,14 @@ impl Axes {
             .map_or("Z", |axis| axis.word.trim_start())
     }
 
+    /// Names of all words along the spindle (a quill beside the main axis).
+    pub fn depths(&self) -> impl Iterator<Item = &str> {
+        self.axes
+            .iter()
+            .filter(|axis| axis.group == Group::Depth)
+            .map(|axis| axis.word.trim_start())
+    }
+
     /// Where the axes stand is not known any more: the next move writes all its words.
     pub fn forget(&mut self) {
         for axis in &mut self.axes {

@@ -118,7 +118,8 @@ pub struct PostOption {
 pub struct PostAxisWord {
     /// Its address.
     pub name: PostText,
-    /// 1 for a rotary axis (degrees), 0 for a linear one.
+    /// 1 for a rotary axis (degrees), 2 for one whose words lie within one turn, so that the control must take
+    /// the shorter way, 0 for a linear one.
     pub rotary: u32,
     /// 1 for the linear axis along the spindle at all axes zero.
     pub depth: u32,
@@ -585,7 +586,7 @@ pub fn with_setup<R>(setup: &Setup<'_>, take: impl FnOnce(&PostSetup) -> R) -> R
         .iter()
         .map(|word| PostAxisWord {
             name: PostText::new(word.name),
-            rotary: word.rotary.into(),
+            rotary: u32::from(word.rotary) + u32::from(word.rotary && word.wrapped),
             depth: word.depth.into(),
         })
         .collect();
@@ -622,6 +623,7 @@ impl PostSetup {
             words.push(AxisWord {
                 name: unsafe { word.name.get() }?,
                 rotary: word.rotary != 0,
+                wrapped: word.rotary == 2,
                 depth: word.depth != 0,
             });
         }

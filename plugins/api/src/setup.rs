@@ -69,6 +69,8 @@ pub struct AxisWord<'a> {
     pub name: &'a str,
     /// A rotary axis (degrees), else linear.
     pub rotary: bool,
+    /// A rotary axis whose words lie within one turn: the control must take the shorter way.
+    pub wrapped: bool,
     /// The linear axis along the spindle at all axes zero: moved last when the tool comes near, first when it goes.
     pub depth: bool,
 }

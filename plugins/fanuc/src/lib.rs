@@ -60,7 +60,10 @@ impl Dialect for Fanuc {
             ));
         }
         let retract = match setup.text("retract") {
-            "" => format!("G91 G28 {}0.", axes.depth()),
+            "" => {
+                let words: Vec<String> = axes.depths().map(|name| format!("{name}0.")).collect();
+                format!("G91 G28 {}", words.join(" "))
+            }
             given => given.to_owned(),
         };
         let feeds = FeedDecimals {

@@ -73,7 +73,12 @@ impl Dialect for Heidenhain {
             // An inch program counts F in tenths of an inch a minute: one digit less behind the point.
             feed_decimals: setup.integer("feed_decimals") as u8 + u8::from(inch),
             preset: setup.integer("preset"),
-            rotary_way: own("rotary_way"),
+            rotary_way: if setup.words.iter().any(|word| word.wrapped) {
+                // Words below a turn mean the shorter way.
+                "M126".to_owned()
+            } else {
+                own("rotary_way")
+            },
             retract: own("retract"),
             home: own("home"),
             tcp_on: own("tcp_on"),

@@ -14,6 +14,7 @@ const fn word(name: &str, rotary: bool, depth: bool) -> AxisWord<'_> {
     AxisWord {
         name,
         rotary,
+        wrapped: false,
         depth,
     }
 }

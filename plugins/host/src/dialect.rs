@@ -37,6 +37,8 @@ pub struct ProgramWord {
     pub name: String,
     /// A rotary axis.
     pub rotary: bool,
+    /// Its words lie within one turn.
+    pub wrapped: bool,
     /// The linear axis along the spindle.
     pub depth: bool,
 }
@@ -83,6 +85,7 @@ impl Plugin {
             .map(|word| AxisWord {
                 name: &word.name,
                 rotary: word.rotary,
+                wrapped: word.wrapped,
                 depth: word.depth,
             })
             .collect();

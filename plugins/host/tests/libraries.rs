@@ -63,6 +63,7 @@ fn setup(words: &[&str]) -> ProgramSetup {
             .map(|name| ProgramWord {
                 name: (*name).to_owned(),
                 rotary: matches!(*name, "A" | "B" | "C"),
+                wrapped: false,
                 depth: *name == "Z",
             })
             .collect(),

@@ -40,6 +40,12 @@ impl Dialect for LinuxCnc {
     }
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        if let Some(word) = setup.words.iter().find(|word| word.wrapped) {
+            return Err(format!(
+                "{} has a range, but LinuxCNC takes the sign of a wrapped rotary word for its direction: leave the range out, its words are endless",
+                word.name
+            ));
+        }
         let inch = setup.units == Units::Inch;
         let style = NumberStyle {
             point: true,
@@ -63,7 +69,10 @@ impl Dialect for LinuxCnc {
             ));
         }
         let retract = match setup.text("retract") {
-            "" => format!("G53 G0 {}0.", axes.depth()),
+            "" => {
+                let words: Vec<String> = axes.depths().map(|name| format!("{name}0.")).collect();
+                format!("G53 G0 {}", words.join(" "))
+            }
             given => given.to_owned(),
         };
         let feeds = FeedDecimals {

@@ -432,7 +432,10 @@ impl Two {
         let (sine, cosine) = (self.ahead.dot(&z), self.across.dot(&z));
         let turn = libm::atan2(sine, cosine);
         set.joints[second] = turn;
-        if branches.pole {
+        if branches.pole && self.third.is_some() {
+            // The third turns against the first here: one of the two has to be said.
+            set.joints[first] = 0.0;
+        } else if branches.pole {
             set.free |= 1 << first;
         } else {
             let (first_sine, first_cosine) = (x * u.z - y * u.y, x * u.y + y * u.z);

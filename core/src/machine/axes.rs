@@ -11,6 +11,9 @@ use super::file::{AxisFile, MachineFile, Quantity};
 use super::{Axis, Clamp, Indexed, Positions};
 use crate::kinematics::{Joint, MAX_AXES, Second};
 
+/// The largest value of a rotary axis, degrees.
+const MOST_TRAVEL: f64 = 36_000.0;
+
 impl Builder<'_> {
     /// The axes in the order of the chain, each checked against its side of the bed.
     pub(super) fn axes(&mut self, file: &MachineFile) -> Option<Vec<Axis>> {
@@ -170,6 +173,14 @@ impl Builder<'_> {
                         travel.span(),
                         format!("the travel of {name} goes from {least} to {most}: the first must be the smaller"),
                         "travel = [least, most]",
+                    );
+                }
+                if rotary && least.abs().max(most.abs()) > MOST_TRAVEL {
+                    self.fault(
+                        "machine-travel",
+                        travel.span(),
+                        format!("{name} turns by more than a hundred turns"),
+                        "an axis that turns without end says cyclic = true",
                     );
                 }
                 Some([(least - zero) * unit, (most - zero) * unit])

@@ -98,6 +98,13 @@ fn take_heads<'i>(
                 None => return Err(fault(word.span())),
             },
         };
+        if let Some((key, _)) = overrides.iter().find(|(key, _)| key.get_ref() == "control") {
+            return Err(vec![
+                Diagnostic::error("machine-head", "a head does not change the control")
+                    .at(sources.place(key.span()))
+                    .help("[control] holds for the whole program: units, dialect and who keeps the tip"),
+            ]);
+        }
         taken.push(HeadLayer {
             place: sources.place(name.span()),
             name: name.into_inner().into_owned(),
@@ -294,6 +301,15 @@ impl Builder<'_> {
             rewind,
             heads: Vec::new(),
         };
+        if let (Some(edge), false) = (&file.tool.edge, machine.pointing().len() == 3) {
+            self.fault(
+                "machine-edge",
+                edge[0].span().start..edge[2].span().end,
+                "the tool has a leading edge, and there are not three rotary axes to follow it"
+                    .to_owned(),
+                "leave the edge out, or give the machine the axis that turns it",
+            );
+        }
         self.check_chain(&machine, file.chain.span());
         Some(machine)
     }
@@ -368,8 +384,8 @@ impl Builder<'_> {
         };
         let (message, help) = match lack {
             NoClosedForm::LinearAxes { count } => (
-                format!("the chain has {count} linear axes; three are needed"),
-                "a further linear axis (a quill) is not possible yet",
+                format!("{count} linear axes place the tip; three are needed"),
+                "a quill says share, reserve or indexed; with fewer than three, rotary axes must make up for them",
             ),
             NoClosedForm::FlatLinearAxes => (
                 "the three linear axes lie in one plane: they span no volume".to_owned(),
@@ -385,7 +401,7 @@ impl Builder<'_> {
                         .collect::<Vec<_>>()
                         .join(", ")
                 ),
-                "indexed = 0 holds an axis at an angle during cuts",
+                "indexed = 0 holds an axis at an angle during cuts; three axes follow a tool that has an [tool] edge",
             ),
             NoClosedForm::Parallel {
                 joints: [first, second],

@@ -76,10 +76,22 @@ impl Builder<'_> {
             Some(rule) => self.rule(rule, axes),
         };
         let sides = |this: &mut Self, sides: &std::collections::BTreeMap<Spanned<String>, Side>| {
-            let places = sides
-                .iter()
-                .filter_map(|(name, side)| Some((this.place_of(name, axes)?, *side)));
-            places.collect::<Vec<_>>()
+            let mut places = Vec::new();
+            for (name, side) in sides {
+                let Some(place) = this.place_of(name, axes) else {
+                    continue;
+                };
+                if !axes[place].joint.rotary {
+                    this.fault(
+                        "machine-solution",
+                        name.span(),
+                        format!("{} slides: sides are for rotary axes", axes[place].name),
+                        "where a linear axis may go is its travel",
+                    );
+                }
+                places.push((place, *side));
+            }
+            places
         };
         let prefer = sides(self, &said.prefer);
         let require = sides(self, &said.require);
@@ -112,7 +124,35 @@ impl Builder<'_> {
                     "",
                 );
             }
+            let stands = axis
+                .indexed
+                .as_ref()
+                .is_none_or(|indexed| indexed.positions.holds(value, axis.travel.is_none()));
+            if !stands {
+                self.fault(
+                    "machine-travel",
+                    name.span(),
+                    format!(
+                        "{} cannot start there: it is none of its positions",
+                        axis.name
+                    ),
+                    "",
+                );
+            }
             start[place] = value;
+        }
+        for group in &said.exclusive {
+            let names: std::collections::BTreeSet<&str> =
+                group.iter().map(|name| name.get_ref().as_str()).collect();
+            if names.len() < 2 || names.len() != group.len() {
+                let span = group.first().map_or(file.chain.span(), Spanned::span);
+                self.fault(
+                    "machine-solution",
+                    span,
+                    "axes exclude one another: a group has two or more".to_owned(),
+                    "exclusive = [[\"A\", \"C\"]]",
+                );
+            }
         }
         let exclusive = said
             .exclusive
@@ -139,7 +179,8 @@ impl Builder<'_> {
         let corner = said
             .corner
             .as_ref()
-            .map_or(10.0, |corner| self.positive("corner", corner));
+            .map_or(10.0, |corner| self.positive("corner", corner))
+            .min(180.0);
         Solution {
             rule,
             prefer,

@@ -19,8 +19,10 @@ impl Builder<'_> {
         quantities: &[Quantity; 3],
     ) -> Option<Vector3<f64>> {
         let vector = self.vector(quantities);
-        if vector.norm() > 1e-9 {
-            return Some(vector.normalize());
+        // Of any length: made one in two steps, so that squares stay finite.
+        let largest = vector.amax();
+        if largest > 1e-9 {
+            return Some((vector / largest).normalize());
         }
         let span = quantities[0].span().start..quantities[2].span().end;
         self.fault(

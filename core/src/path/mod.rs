@@ -7,7 +7,9 @@ mod tally;
 
 use std::collections::VecDeque;
 
-use post_plugin::{Batch, Compensation, DialectSession, Event, Format, ModelSession, Spindle};
+use post_plugin::{
+    Batch, Compensation, Coolant, DialectSession, Event, Format, ModelSession, Spindle,
+};
 
 use crate::accuracy::{Linearise, Node};
 use crate::diagnostic::{Diagnostic, Place};
@@ -75,6 +77,11 @@ pub struct Path<'a> {
     turning: bool,
     /// What the CL file last said of it.
     commanded: Option<Spindle>,
+    /// What the CL file last said of coolant, and that it was switched off in between.
+    coolant: Option<Coolant>,
+    coolant_due: bool,
+    /// The tool in use.
+    tool: Option<Tool>,
     /// That it was not is told once a program.
     told_spindle: bool,
     /// That compensation cannot be, likewise.
@@ -143,6 +150,9 @@ impl<'a> Path<'a> {
             compensating: false,
             turning: false,
             commanded: None,
+            coolant: None,
+            coolant_due: false,
+            tool: None,
             told_spindle: false,
             told_compensation: false,
             batch: Batch::default(),
@@ -233,6 +243,13 @@ impl<'a> Path<'a> {
             return;
         };
         work(&mut edges, &mut |line, step| self.enter(line, step));
+        for (line, fault) in edges.take_faults() {
+            self.find(
+                line,
+                Diagnostic::error("edge", fault)
+                    .help("[rewind] and [solution] edge say how a leading edge is turned"),
+            );
+        }
         self.edges = Some(edges);
     }
 
@@ -325,7 +342,11 @@ impl<'a> Path<'a> {
                 self.commanded = self.turning.then_some(spindle);
                 self.push(line, Event::Spindle(spindle));
             }
-            Step::Coolant(coolant) => self.push(line, Event::Coolant(coolant)),
+            Step::Coolant(coolant) => {
+                self.coolant = (coolant != Coolant::Off).then_some(coolant);
+                self.coolant_due = false;
+                self.push(line, Event::Coolant(coolant));
+            }
             Step::Compensate(compensation) => {
                 self.compensating = compensation != Compensation::Off;
                 self.push(line, Event::Compensate(compensation));
@@ -359,20 +380,8 @@ impl<'a> Path<'a> {
     fn change(&mut self, line: u64, tool: &Tool) {
         self.release(line);
         self.turning = false;
-        let told = self.told_length;
-        let table = || {
-            let tools = &self.machine.tools;
-            tools
-                .iter()
-                .find(|(number, _)| *number == tool.number)
-                .map(|(_, length)| *length)
-        };
-        let length = told.or_else(table).or(tool.length);
-        self.length_unknown |= length.is_none();
-        if length.is_some() && self.tally.moves == 0 {
-            self.length_unknown = false;
-        }
-        self.length = length.unwrap_or(0.0);
+        self.measure(tool);
+        self.tool = Some(tool.clone());
         self.equip(line);
         self.push(
             line,
@@ -382,6 +391,23 @@ impl<'a> Path<'a> {
                 name: &tool.name,
             },
         );
+    }
+
+    /// Finds the length of a tool.
+    fn measure(&mut self, tool: &Tool) {
+        let table = || {
+            let tools = &self.machine.tools;
+            tools
+                .iter()
+                .find(|(number, _)| *number == tool.number)
+                .map(|(_, length)| *length)
+        };
+        let length = self.told_length.or_else(table).or(tool.length);
+        self.length_unknown |= length.is_none();
+        if length.is_some() && self.tally.moves == 0 {
+            self.length_unknown = false;
+        }
+        self.length = length.unwrap_or(0.0);
     }
 
     /// Takes machine and tool length into the route.
@@ -449,7 +475,15 @@ impl<'a> Path<'a> {
         if let Some(feeds) = Feeds::new(self.machine, &self.format) {
             self.feeds = feeds;
         }
+        // A head may have lengths of its own.
+        if let Some(tool) = self.tool.clone() {
+            self.measure(&tool);
+        }
         self.equip(line);
+        if self.coolant.is_some() {
+            self.coolant_due = true;
+            self.push(line, Event::Coolant(Coolant::Off));
+        }
         if std::mem::take(&mut self.turning) {
             // It is switched on again with the first position, as after a tool change.
             self.push(line, Event::Spindle(Spindle::Off));

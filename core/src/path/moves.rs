@@ -45,7 +45,8 @@ impl Path<'_> {
             setting: chosen.setting,
         };
         if chosen.arrives {
-            self.tally.branch_changes += u64::from(chosen.changed);
+            let off_part = chosen.motion.pace == Pace::Rapid;
+            self.tally.branch_changes += u64::from(chosen.changed && off_part);
             self.tally.eased += u64::from(chosen.eased);
             self.travel(&leg, &chosen.joints);
         }
@@ -126,6 +127,9 @@ impl Path<'_> {
                 )
                 .help("check that the speed fits the new tool"),
             );
+        }
+        if let (true, Some(coolant)) = (std::mem::take(&mut self.coolant_due), self.coolant) {
+            self.push(line, Event::Coolant(coolant));
         }
         // Nobody knows whether they are clamped.
         for joint in 0..self.machine.axes.len() {
@@ -266,6 +270,15 @@ impl Path<'_> {
         let (first, last) = (from.trace.joints, to.trace.joints);
         let way = |joint: usize| (last[joint] - first[joint]).abs();
         let mut at = *from;
+        let excluded = self.machine.solution.exclusive.iter().any(|group| {
+            let moving = group.iter().filter(|joint| way(**joint) > EQUAL);
+            moving.count() > 1
+        });
+        if excluded && leg.loose && self.on_part {
+            // Away from the part first, as the tool stands.
+            self.stage(leg, &mut at, to.target, 1.0, &first);
+        }
+        let turned_at = at.target;
         for group in &self.machine.solution.exclusive {
             let moving: Vec<usize> = group
                 .iter()
@@ -297,7 +310,7 @@ impl Path<'_> {
             for joint in &moving[..moving.len() - 1] {
                 let mut joints = at.trace.joints;
                 joints[*joint] = last[*joint];
-                self.stage(leg, &mut at, from.target, 1.0, &joints);
+                self.stage(leg, &mut at, turned_at, 1.0, &joints);
             }
         }
         let begin = at.trace.joints;
@@ -315,7 +328,7 @@ impl Path<'_> {
             let joints: Joints =
                 std::array::from_fn(|joint| begin[joint] * (1.0 - t) + last[joint] * t);
             let target = Pose {
-                tip: from.target.tip * (1.0 - t) + to.target.tip * t,
+                tip: turned_at.tip * (1.0 - t) + to.target.tip * t,
                 axis: (from.target.axis * (1.0 - t) + to.target.axis * t)
                     .try_normalize(1e-6)
                     .unwrap_or(to.target.axis),

@@ -15,6 +15,9 @@ use crate::machine::{EdgeSource, Machine, Rewind};
 /// Ways shorter than this have no direction, mm.
 const SHORT: f64 = 1e-6;
 
+/// A turn on the spot by more than this goes by the side, radians.
+const HALF: f64 = 2.0;
+
 /// Steps without a direction are not held longer than this.
 const MOST_HELD: usize = 1024;
 
@@ -31,6 +34,8 @@ pub(crate) struct Edges {
     tip: Option<Vector3<f64>>,
     /// The last cut with a direction, and that direction.
     cut: Option<(u64, Motion, Vector3<f64>)>,
+    /// What is wrong, each with its line.
+    faults: Vec<(u64, &'static str)>,
     /// What came behind it: moves without a direction (rapids, straight in and out), and commands.
     behind: VecDeque<(u64, Step)>,
 }
@@ -45,6 +50,7 @@ impl Edges {
             edge: machine.edge?,
             tip: None,
             cut: None,
+            faults: Vec::new(),
             behind: VecDeque::new(),
         })
     }
@@ -56,6 +62,10 @@ impl Edges {
                 let along = if motion.edge == Vector3::zeros() {
                     self.edge
                 } else {
+                    if across(motion.edge, motion.axis).is_none() {
+                        self.faults
+                            .push((line, "the leading edge lies along the tool axis"));
+                    }
                     motion.edge
                 };
                 self.pass(line, motion, Some(along), emit);
@@ -87,6 +97,11 @@ impl Edges {
             }
             step => self.hold(line, step, emit),
         }
+    }
+
+    /// Faults since the last call.
+    pub(crate) fn take_faults(&mut self) -> Vec<(u64, &'static str)> {
+        std::mem::take(&mut self.faults)
     }
 
     /// What waits has nothing behind it.
@@ -179,6 +194,17 @@ impl Edges {
             };
             self.pass(line, back, Some(edge), emit);
         } else {
+            if self.rewind.is_some() {
+                self.faults.push((
+                    line,
+                    "at this corner the tool must be drawn back and turned, and it cannot be: the plane of [rewind] lies below the tip, or the tool is nearly level",
+                ));
+            }
+            if angle(self.edge, edge) > HALF {
+                // Right about: by the side, for the way round must be said.
+                let side = motion.axis.cross(&self.edge);
+                self.pass(line, motion, Some(side), emit);
+            }
             self.pass(line, motion, Some(edge), emit);
         }
     }

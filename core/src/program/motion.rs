@@ -87,9 +87,13 @@ impl Motion {
                 if rise < 0.1 {
                     return None;
                 }
-                ((height - self.tip.z) / rise).max(0.0)
+                (height - self.tip.z) / rise
             }
         };
+        // A plane below the tip leads into the part.
+        if distance <= 0.0 {
+            return None;
+        }
         Some(Self {
             tip: self.tip + self.axis * distance,
             ..*self

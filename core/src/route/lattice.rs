@@ -313,11 +313,11 @@ impl Lattice {
         let first = self.states.len();
         for quarter in [0.0, 1.0, -1.0, 2.0] {
             if kind == Kind::First {
-                self.hold_from(placer, target, None, near, quarter, first);
+                self.hold_from(placer, target, (None, kind), near, quarter, first);
             }
             for index in before.clone() {
                 if self.states[index].cost.is_way() {
-                    self.hold_from(placer, target, Some(index), near, quarter, first);
+                    self.hold_from(placer, target, (Some(index), kind), near, quarter, first);
                 }
             }
             if self.states.len() > first {
@@ -330,7 +330,7 @@ impl Lattice {
         &mut self,
         placer: &Placer,
         target: &Pose,
-        from: Option<usize>,
+        (from, kind): (Option<usize>, Kind),
         near: &Joints,
         quarter: f64,
         first: usize,
@@ -340,9 +340,14 @@ impl Lattice {
         if let Some(pole) = placer.solver().pole_joint() {
             last[pole] += quarter * std::f64::consts::FRAC_PI_2;
         }
-        let Some(stand) = self.axes.held(placer.solver(), target, &last) else {
+        let turned = quarter * std::f64::consts::FRAC_PI_2;
+        let held = self.axes.held(placer.solver(), target, &last, turned);
+        let Some(mut stand) = held else {
             return;
         };
+        if kind == Kind::Cut && !self.axes.stand_still(&last, &mut stand.joints) {
+            return;
+        }
         let (cost, way) = match &before {
             Some(state) => (
                 state.cost,
@@ -498,12 +503,13 @@ impl Lattice {
         }
     }
 
-    /// From a held pole joint every stand can be gone to: it is turned while it turns nothing.
+    /// From a held pole joint every stand can be gone to: that joint is turned while it turns nothing, the others
+    /// go on from where they are.
     fn leave_pole(&mut self, stand: &Stand, from: usize, first: usize) {
         let state = self.states[from];
         let mut reached = Vec::new();
         self.axes
-            .turned(stand, &state.joints, &mut |joints| reached.push(*joints));
+            .unheld(stand, &state.joints, &mut |joints| reached.push(*joints));
         for mut joints in reached {
             if !self.axes.stand_still(&state.joints, &mut joints) {
                 continue;
@@ -521,9 +527,13 @@ impl Lattice {
             if !state.cost.is_way() {
                 continue;
             }
-            let Some(joints) = self.axes.followed(placer.solver(), target, &state.joints) else {
+            let followed = self.axes.followed(placer.solver(), target, &state.joints);
+            let Some(mut joints) = followed else {
                 continue;
             };
+            if !self.axes.stand_still(&state.joints, &mut joints) {
+                continue;
+            }
             let new = self.after(index, joints, state.branch);
             self.keep(first, new);
         }

@@ -20,7 +20,7 @@ use post_plugin::Format;
 use crate::accuracy::{Linearise, Move, Placer, Tolerances};
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::{Joints, Pose};
-use crate::machine::{Machine, Tcp};
+use crate::machine::{Machine, Positions, Tcp};
 use crate::program::{Motion, Pace};
 
 pub(crate) use lattice::pose;
@@ -66,8 +66,23 @@ pub(crate) struct Route<'a> {
     /// Axis values before a rewind: see [`lattice::State::rewind`].
     rewound: Vec<Joints>,
     judge: Trial<'a>,
+    /// Redundant axes can be put elsewhere as long as the last rapid is not settled.
+    tries_positions: bool,
     chosen: Vec<Chosen>,
     way: settle::Way,
+}
+
+/// Settings beyond this are forgotten at the next index move.
+const MOST_SETTINGS: usize = 32;
+
+/// The machine has a redundant axis with positions to choose from.
+fn tries_positions(machine: &Machine) -> bool {
+    machine.redundant().iter().any(|joint| {
+        let indexed = &machine.axes[*joint].indexed;
+        indexed
+            .as_ref()
+            .is_some_and(|indexed| indexed.positions != Positions::Any)
+    })
 }
 
 /// Tries whether a cut comes through, by cutting it into pieces.
@@ -150,6 +165,7 @@ impl<'a> Route<'a> {
                 machine,
                 linearise: Linearise::new(false),
             },
+            tries_positions: tries_positions(machine),
             chosen: Vec::new(),
             way: settle::Way::default(),
         })
@@ -215,6 +231,7 @@ impl<'a> Route<'a> {
         let placer = Placer::for_machine(machine, &self.format, tool_length, &held)?;
         self.machine = machine;
         self.judge.machine = machine;
+        self.tries_positions = tries_positions(machine);
         self.tool_length = tool_length;
         self.lattice = Lattice::new(machine, &placer);
         self.settings = vec![(held, placer)];
@@ -240,6 +257,15 @@ impl<'a> Route<'a> {
         }
         let mut held = self.settings[self.setting].0;
         held[joint] = value;
+        if self.settings.len() > MOST_SETTINGS {
+            // All points are settled: the setting in use is all that is still needed.
+            let present = self.settings.swap_remove(self.setting);
+            self.settings = vec![present];
+            self.setting = 0;
+            for layer in &mut self.lattice.layers {
+                layer.setting = 0;
+            }
+        }
         self.setting = self.setting_for(&held)?;
         Ok(true)
     }

@@ -50,7 +50,7 @@ impl Route<'_> {
         };
         let waiting = layers.len() - usize::from(self.anchored);
         let look_ahead = self.machine.solution.look_ahead;
-        if layer.count == 1 && !self.eased(layer.latitude.0) {
+        if layer.count == 1 && !self.eased(layer.latitude.0) && !self.tries_positions {
             if self.anchored && layers.len() == 2 {
                 self.settle_only();
             } else {
@@ -220,9 +220,12 @@ impl Route<'_> {
             0 => joints,
             layer => way.joints(lattice, layer - 1),
         };
+        let turned = value - last[pole];
         last[pole] = value;
         // The others come as near as they can, on the turns where they are.
-        let stand = lattice.axes.held(solver, &pose(&at.motion), &last)?;
+        let stand = lattice
+            .axes
+            .held(solver, &pose(&at.motion), &last, turned)?;
         Some(stand.joints)
     }
 

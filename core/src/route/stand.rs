@@ -389,9 +389,34 @@ impl Axes {
     /// Calls `take` with the stand whose first axis is a full turn farther to either side than nearest to `last`,
     /// where that is inside travel.
     pub(crate) fn other_turns(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
+        self.first_turned(stand, last, &[-1.0, 1.0], take);
+    }
+
+    /// Calls `take` with the stand on the turns nearest to `last`, and with its first axis on every other turn
+    /// inside travel; where a third axis turns against the first, on the nearest alone.
+    pub(crate) fn unheld(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
+        let turns: &[f64] = if self.turning.len() > 2 {
+            &[0.0]
+        } else {
+            &[0.0, -1.0, 1.0, -2.0, 2.0]
+        };
+        self.first_turned(stand, last, turns, take);
+    }
+
+    fn first_turned(
+        &self,
+        stand: &Stand,
+        last: &Joints,
+        turns: &[f64],
+        take: &mut dyn FnMut(&Joints),
+    ) {
         let mut nearest = stand.joints;
         for axis in &self.turning {
-            nearest[axis.joint] = unwound(nearest[axis.joint], last[axis.joint]);
+            nearest[axis.joint] = if stand.free & (1 << axis.joint) != 0 {
+                last[axis.joint]
+            } else {
+                unwound(nearest[axis.joint], last[axis.joint])
+            };
         }
         let inside = |axis: &Turning, value: f64| {
             axis.travel
@@ -401,9 +426,9 @@ impl Axes {
         let Some(first) = self.turning.iter().find(|axis| axis.first) else {
             return;
         };
-        for turn in [-TAU, TAU] {
+        for turn in turns {
             let mut joints = nearest;
-            joints[first.joint] += turn;
+            joints[first.joint] += TAU * turn;
             if self
                 .turning
                 .iter()
@@ -462,16 +487,40 @@ impl Axes {
     }
 
     /// With the pole joint where `last` has it: the stand that misses the wanted axis least.
-    pub(crate) fn held(&self, solver: &Solver, pose: &Pose, last: &Joints) -> Option<Stand> {
+    /// `turned` is how far that joint was turned from where the others of `last` belong to it, radians.
+    pub(crate) fn held(
+        &self,
+        solver: &Solver,
+        pose: &Pose,
+        last: &Joints,
+        turned: f64,
+    ) -> Option<Stand> {
         let pole = solver.pole_joint()?;
         let mut joints = *solver.held();
         for axis in &self.turning {
             joints[axis.joint] = last[axis.joint];
         }
         solver.follow(pose, &mut joints);
+        // Of three axes the third turns against the first, or with it if it points the other way.
+        let third = self.turning.get(2).map(|axis| axis.joint);
+        let sense = match third {
+            Some(_) if turned != 0.0 => {
+                let branches = solver.orient(pose, self.axis_tolerance).ok()?;
+                branches.latitude().1.signum()
+            }
+            _ => 0.0,
+        };
+        let against = |joint: usize| {
+            if third == Some(joint) {
+                sense * turned
+            } else {
+                0.0
+            }
+        };
         for axis in &self.turning {
             if axis.joint != pole {
-                joints[axis.joint] = unwound(joints[axis.joint], last[axis.joint]);
+                let near = last[axis.joint] - against(axis.joint);
+                joints[axis.joint] = unwound(joints[axis.joint], near);
             }
             if axis.positions.is_some() {
                 return None;
@@ -528,8 +577,10 @@ impl Axes {
     pub(crate) fn followed(&self, solver: &Solver, pose: &Pose, last: &Joints) -> Option<Joints> {
         let joints = solver.search(pose, last, self.axis_tolerance).ok()?;
         let inside = self.turning.iter().all(|axis| {
+            let value = joints[axis.joint];
             axis.travel
-                .is_none_or(|[least, most]| (least..=most).contains(&joints[axis.joint]))
+                .is_none_or(|[least, most]| (least..=most).contains(&value))
+                && !axis.forbids(value)
         });
         (inside && self.beyond(&joints).is_none()).then_some(joints)
     }

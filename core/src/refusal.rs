@@ -177,7 +177,7 @@ pub(crate) fn no_way(
         })
         .collect();
     let help = if machine.rewind.is_some() {
-        "[rewind] finds no way either: drawn back, the tool would leave the travel; set the part differently"
+        "[rewind] finds no way either: drawn back, the tool would leave the travel, or its plane lies below the tip"
     } else {
         "retract before this line, give the machine a [rewind], or let it start elsewhere: [solution] start, prefer"
     };

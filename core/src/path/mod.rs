@@ -480,15 +480,16 @@ impl<'a> Path<'a> {
             self.measure(&tool);
         }
         self.equip(line);
+        // Away first: a spindle that stops in the part tears. Both are switched on again with the first position,
+        // as after a tool change.
+        self.push(line, Event::Home);
+        if std::mem::take(&mut self.turning) {
+            self.push(line, Event::Spindle(Spindle::Off));
+        }
         if self.coolant.is_some() {
             self.coolant_due = true;
             self.push(line, Event::Coolant(Coolant::Off));
         }
-        if std::mem::take(&mut self.turning) {
-            // It is switched on again with the first position, as after a tool change.
-            self.push(line, Event::Spindle(Spindle::Off));
-        }
-        self.push(line, Event::Home);
         match &head.word {
             Some(word) => self.push(line, Event::Word { text: word }),
             None => {

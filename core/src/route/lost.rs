@@ -161,7 +161,15 @@ impl Route<'_> {
         }
         self.setting = before;
         for (line, motion) in &points[..points.len() - 1] {
-            self.push(*line, motion);
+            if !self.push(*line, motion) {
+                // Only a rewind had led to it.
+                return Err(Diagnostic::error(
+                    "index",
+                    "no position of the redundant axes carries the pass to this line",
+                )
+                .help("retract before this line, so that the axis can be set anew")
+                .boxed());
+            }
         }
         Ok(false)
     }

@@ -14,6 +14,7 @@ mod pole;
 mod rule;
 mod settle;
 mod stand;
+mod turns;
 
 use post_plugin::Format;
 

@@ -1,8 +1,9 @@
 //! The ways to stand at a point: every branch of the inverse on every full turn inside travel.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use super::rule::wrong_side;
+use super::turns::unwound;
 use crate::kinematics::choose::{Limit, OverTravel};
 use crate::kinematics::orientation::{Branches, angle};
 use crate::kinematics::{Joints, Pose, Solver, Unreachable};
@@ -22,11 +23,11 @@ pub(crate) struct Stand {
 /// What the choice needs to know of the axes.
 #[derive(Clone, Debug)]
 pub(crate) struct Axes {
-    turning: Vec<Turning>,
+    pub(super) turning: Vec<Turning>,
     linear: Vec<Limit>,
     /// Joints that move off the part alone.
-    indexed: Vec<usize>,
-    axis_tolerance: f64,
+    pub(super) indexed: Vec<usize>,
+    pub(super) axis_tolerance: f64,
     /// What a pole joint may be off by, as an angle of the tool axis, radians.
     freedom: f64,
     /// See [`Solver::band`]; and the cosines of the two.
@@ -36,20 +37,20 @@ pub(crate) struct Axes {
 
 /// A rotary axis that is solved for.
 #[derive(Clone, Debug)]
-struct Turning {
-    joint: usize,
-    travel: Option<[f64; 2]>,
-    positions: Option<Positions>,
+pub(super) struct Turning {
+    pub(super) joint: usize,
+    pub(super) travel: Option<[f64; 2]>,
+    pub(super) positions: Option<Positions>,
     /// What the control shows must lie on this side, and what it shows at zero.
-    require: Option<Side>,
-    zero: f64,
+    pub(super) require: Option<Side>,
+    pub(super) zero: f64,
     /// It is the pole joint.
-    first: bool,
+    pub(super) first: bool,
 }
 
 impl Turning {
     #[inline]
-    fn forbids(&self, value: f64) -> bool {
+    pub(super) fn forbids(&self, value: f64) -> bool {
         self.require
             .is_some_and(|side| wrong_side(value + self.zero, side))
     }
@@ -336,156 +337,6 @@ impl Axes {
         None
     }
 
-    /// Puts the pointing joints of `stand` on the turns nearest to `last`.
-    ///
-    /// # Errors
-    /// The axis that this takes out of its travel.
-    #[inline]
-    pub(crate) fn carried(&self, stand: &Stand, last: &Joints) -> Result<Joints, OverTravel> {
-        let mut joints = stand.joints;
-        for axis in &self.turning {
-            let joint = axis.joint;
-            if stand.free & (1 << joint) != 0 {
-                joints[joint] = last[joint];
-                continue;
-            }
-            let away = last[joint] - joints[joint];
-            if away.abs() > PI {
-                joints[joint] += TAU * f64::round(away / TAU);
-            }
-            let value = joints[joint];
-            if let Some([least, most]) = axis.travel
-                && (value < least || value > most)
-            {
-                return Err(OverTravel {
-                    joint,
-                    value,
-                    limit: if value < least { least } else { most },
-                });
-            }
-            if axis.forbids(value) {
-                return Err(OverTravel {
-                    joint,
-                    value,
-                    limit: -axis.zero,
-                });
-            }
-        }
-        Ok(joints)
-    }
-
-    /// Is an axis that tilts closer to an end of its travel than `way`, at one of two points?
-    #[inline]
-    pub(crate) fn near_end(&self, from: &Joints, to: &Joints, way: f64) -> bool {
-        self.turning.iter().any(|axis| {
-            let (a, b) = (from[axis.joint], to[axis.joint]);
-            !axis.first
-                && axis
-                    .travel
-                    .is_some_and(|[least, most]| a.min(b) - least < way || most - a.max(b) < way)
-        })
-    }
-
-    /// Calls `take` with the stand whose first axis is a full turn farther to either side than nearest to `last`,
-    /// where that is inside travel.
-    pub(crate) fn other_turns(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
-        self.first_turned(stand, last, &[-1.0, 1.0], take);
-    }
-
-    /// Calls `take` with the stand on the turns nearest to `last`, and with its first axis on every other turn
-    /// inside travel; where a third axis turns against the first, on the nearest alone.
-    pub(crate) fn unheld(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
-        let turns: &[f64] = if self.turning.len() > 2 {
-            &[0.0]
-        } else {
-            &[0.0, -1.0, 1.0, -2.0, 2.0]
-        };
-        self.first_turned(stand, last, turns, take);
-    }
-
-    fn first_turned(
-        &self,
-        stand: &Stand,
-        last: &Joints,
-        turns: &[f64],
-        take: &mut dyn FnMut(&Joints),
-    ) {
-        let mut nearest = stand.joints;
-        for axis in &self.turning {
-            nearest[axis.joint] = if stand.free & (1 << axis.joint) != 0 {
-                last[axis.joint]
-            } else {
-                unwound(nearest[axis.joint], last[axis.joint])
-            };
-        }
-        let inside = |axis: &Turning, value: f64| {
-            axis.travel
-                .is_none_or(|[least, most]| (least..=most).contains(&value))
-                && !axis.forbids(value)
-        };
-        let Some(first) = self.turning.iter().find(|axis| axis.first) else {
-            return;
-        };
-        for turn in turns {
-            let mut joints = nearest;
-            joints[first.joint] += TAU * turn;
-            if self
-                .turning
-                .iter()
-                .all(|axis| inside(axis, joints[axis.joint]))
-            {
-                take(&joints);
-            }
-        }
-    }
-
-    /// Calls `take` with every set of turns that `stand` can have inside travel; axes without travel are put on
-    /// the turn nearest to `last`, free ones where they were.
-    pub(crate) fn turned(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
-        let mut joints = stand.joints;
-        self.turn_from(0, stand, last, &mut joints, take);
-    }
-
-    fn turn_from(
-        &self,
-        place: usize,
-        stand: &Stand,
-        last: &Joints,
-        joints: &mut Joints,
-        take: &mut dyn FnMut(&Joints),
-    ) {
-        let Some(axis) = self.turning.get(place) else {
-            take(joints);
-            return;
-        };
-        let joint = axis.joint;
-        let base = stand.joints[joint];
-        let mut go = |value: f64| {
-            if axis.forbids(value) {
-                return;
-            }
-            joints[joint] = value;
-            self.turn_from(place + 1, stand, last, joints, take);
-        };
-        if stand.free & (1 << joint) != 0 {
-            go(last[joint]);
-            return;
-        }
-        match axis.travel {
-            None => {
-                let turn = f64::round((last[joint] - base) / TAU);
-                go(base + TAU * turn);
-            }
-            Some([least, most]) => {
-                let mut turn = f64::ceil((least - base) / TAU);
-                while base + TAU * turn <= most {
-                    go(base + TAU * turn);
-                    turn += 1.0;
-                }
-            }
-        }
-    }
-
     /// With the pole joint where `last` has it: the stand that misses the wanted axis least.
     /// `turned` is how far that joint was turned from where the others of `last` belong to it, radians.
     pub(crate) fn held(
@@ -560,19 +411,6 @@ impl Axes {
         (self.turning.iter().all(inside) && self.beyond(&joints).is_none()).then_some(stand)
     }
 
-    /// In a cut indexed axes stay where they are; false if they would have to move by more than the decimals of
-    /// a CL file make them.
-    #[inline]
-    pub(crate) fn stand_still(&self, from: &Joints, to: &mut Joints) -> bool {
-        for &joint in &self.indexed {
-            if (to[joint] - from[joint]).abs() > 0.5 * self.axis_tolerance {
-                return false;
-            }
-            to[joint] = from[joint];
-        }
-        true
-    }
-
     /// Where there is no closed form: the solution next to `last`, if it is inside travel.
     pub(crate) fn followed(&self, solver: &Solver, pose: &Pose, last: &Joints) -> Option<Joints> {
         let joints = solver.search(pose, last, self.axis_tolerance).ok()?;
@@ -585,14 +423,6 @@ impl Axes {
         (inside && self.beyond(&joints).is_none()).then_some(joints)
     }
 
-    /// The largest turn of a pointing axis, radians.
-    #[inline]
-    pub(crate) fn largest_turn(&self, from: &Joints, to: &Joints) -> f64 {
-        self.turning.iter().fold(0.0, |largest: f64, axis| {
-            largest.max((to[axis.joint] - from[axis.joint]).abs())
-        })
-    }
-
     /// Travel of a rotary axis that is solved for.
     pub(crate) fn travel(&self, joint: usize) -> [f64; 2] {
         self.turning
@@ -601,9 +431,4 @@ impl Axes {
             .and_then(|axis| axis.travel)
             .unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
     }
-}
-
-/// `angle` on the turn nearest to `last`.
-fn unwound(angle: f64, last: f64) -> f64 {
-    angle + TAU * f64::round((last - angle) / TAU)
 }

@@ -207,28 +207,11 @@ impl Linearise {
             },
             ..*whole
         };
-        let mut from = *whole.from;
-        from.t = 0.0;
-        self.stack.clear();
-        self.stack.push(*whole.to);
-        while let Some(to) = self.stack.pop() {
-            let piece = Move {
-                from: &from,
-                to: &to,
-                ..whole
-            };
+        let judge = |_: &mut Self, piece: &Move<'_>| {
             let bound = piece.measured();
-            if whole.tolerances.hold(bound) {
-                from = to;
-                continue;
-            }
-            let (None, Ok(middle)) = (stuck(&piece), middle(&piece, bound)) else {
-                return false;
-            };
-            self.stack.push(to);
-            self.stack.push(middle);
-        }
-        true
+            Ok((piece.tolerances.hold(bound), bound))
+        };
+        self.bisect(&whole, judge).is_ok()
     }
 
     /// Cuts a move into pieces within tolerance, in order: see [`Linearise::pieces`].
@@ -236,6 +219,17 @@ impl Linearise {
     /// # Errors
     /// Why it cannot be done.
     pub fn split(&mut self, whole: &Move<'_>, model: &mut dyn ModelSession) -> Result<(), Stuck> {
+        self.bisect(whole, |this, piece| {
+            this.judge(piece, model).map_err(Stuck::Model)
+        })
+    }
+
+    /// Puts points into the middle of every piece that `judge` does not find good.
+    fn bisect(
+        &mut self,
+        whole: &Move<'_>,
+        mut judge: impl FnMut(&mut Self, &Move<'_>) -> Result<(bool, Bound), Stuck>,
+    ) -> Result<(), Stuck> {
         let mut from = *whole.from;
         from.t = 0.0;
         self.pieces.clear();
@@ -247,7 +241,7 @@ impl Linearise {
                 to: &to,
                 ..*whole
             };
-            let (good, bound) = self.judge(&piece, model).map_err(Stuck::Model)?;
+            let (good, bound) = judge(self, &piece)?;
             if good {
                 self.pieces.push(Piece { to, bound });
                 from = to;

@@ -45,8 +45,7 @@ impl Path<'_> {
             setting: chosen.setting,
         };
         if chosen.arrives {
-            let off_part = chosen.motion.pace == Pace::Rapid;
-            self.tally.branch_changes += u64::from(chosen.changed && off_part);
+            self.tally.branch_changes += u64::from(chosen.changed && leg.loose);
             self.tally.eased += u64::from(chosen.eased);
             self.travel(&leg, &chosen.joints);
         }
@@ -200,7 +199,7 @@ impl Path<'_> {
             return last;
         };
         let motion = Motion {
-            pace: rewind.retract_feed.map_or(Pace::Rapid, Pace::PerMinute),
+            pace: Pace::feed_or_rapid(rewind.retract_feed),
             ..away
         };
         let out = Leg {
@@ -254,40 +253,32 @@ impl Path<'_> {
     #[inline]
     fn special(&self, from: &Node, to: &Node) -> bool {
         let way = |joint: usize| (to.trace.joints[joint] - from.trace.joints[joint]).abs();
-        let machine = self.machine;
-        let wrapped = machine.axes.iter().enumerate();
-        wrapped
-            .into_iter()
-            .any(|(joint, axis)| axis.range.is_some() && way(joint) > LONGEST)
-            || machine
-                .solution
-                .exclusive
-                .iter()
-                .any(|group| group.iter().filter(|joint| way(**joint) > EQUAL).count() > 1)
+        let mut axes = self.machine.axes.iter().enumerate();
+        axes.any(|(joint, axis)| axis.range.is_some() && way(joint) > LONGEST)
+            || !self.excluded(from, to).is_empty()
+    }
+
+    /// Axes that exclude one another and would move together, group by group.
+    fn excluded(&self, from: &Node, to: &Node) -> Vec<Vec<usize>> {
+        let moves =
+            |joint: &usize| (to.trace.joints[*joint] - from.trace.joints[*joint]).abs() > EQUAL;
+        let groups = self.machine.solution.exclusive.iter();
+        groups
+            .map(|group| group.iter().copied().filter(moves).collect::<Vec<_>>())
+            .filter(|moving| moving.len() > 1)
+            .collect()
     }
 
     fn by_stages(&mut self, leg: &Leg<'_>, from: &Node, to: &Node) {
         let (first, last) = (from.trace.joints, to.trace.joints);
-        let way = |joint: usize| (last[joint] - first[joint]).abs();
         let mut at = *from;
-        let excluded = self.machine.solution.exclusive.iter().any(|group| {
-            let moving = group.iter().filter(|joint| way(**joint) > EQUAL);
-            moving.count() > 1
-        });
-        if excluded && leg.loose && self.on_part {
+        let excluded = self.excluded(from, to);
+        if !excluded.is_empty() && leg.loose && self.on_part {
             // Away from the part first, as the tool stands.
             self.stage(leg, &mut at, to.target, 1.0, &first);
         }
         let turned_at = at.target;
-        for group in &self.machine.solution.exclusive {
-            let moving: Vec<usize> = group
-                .iter()
-                .copied()
-                .filter(|joint| way(*joint) > EQUAL)
-                .collect();
-            if moving.len() < 2 {
-                continue;
-            }
+        for moving in excluded {
             if !leg.loose {
                 let names: Vec<&str> = moving
                     .iter()
@@ -358,7 +349,6 @@ impl Path<'_> {
         };
         self.tally.rewinds += 1;
         let away = leg.motion.drawn_back(&rewind).unwrap_or(*leg.motion);
-        let pace = |feed: Option<f64>| feed.map_or(Pace::Rapid, Pace::PerMinute);
         let back = rewind.plunge_feed.map_or(leg.motion.pace, Pace::PerMinute);
         // The tip stands still while the axes turn: what counts is the farthest of them.
         let turn = rewind.turn_feed.map_or(Pace::Rapid, |feed| {
@@ -370,7 +360,12 @@ impl Path<'_> {
             Pace::InverseTime(feed / farthest.to_degrees().max(1e-3))
         });
         let stops = [
-            (away, pace(rewind.retract_feed), last.trace.joints, true),
+            (
+                away,
+                Pace::feed_or_rapid(rewind.retract_feed),
+                last.trace.joints,
+                true,
+            ),
             (away, turn, *joints, true),
             (*leg.motion, back, *joints, false),
         ];

@@ -173,10 +173,9 @@ impl Edges {
         let away = self
             .rewind
             .and_then(|rewind| Some((rewind, motion.drawn_back(&rewind)?)));
-        let pace = |feed: Option<f64>| feed.map_or(Pace::Rapid, Pace::PerMinute);
         if let Some((rewind, away)) = away {
             let out = Motion {
-                pace: pace(rewind.retract_feed),
+                pace: Pace::feed_or_rapid(rewind.retract_feed),
                 ..away
             };
             self.pass(line, out, None, emit);

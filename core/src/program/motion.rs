@@ -112,6 +112,13 @@ pub enum Pace {
     InverseTime(f64),
 }
 
+impl Pace {
+    /// A feed in mm/min; none is rapid.
+    pub(crate) fn feed_or_rapid(feed: Option<f64>) -> Self {
+        feed.map_or(Self::Rapid, Self::PerMinute)
+    }
+}
+
 /// A tool change.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tool {

@@ -141,20 +141,18 @@ impl Lattice {
         let freedom = match machine.solution.pole {
             Pole::Blend => SHARE * machine.accuracy.axis_tolerance - placer.axis_rounding(),
             Pole::Exact => 0.0,
-        };
+        }
+        .max(0.0);
         Self {
             measure: Measure::new(machine),
-            axes: Axes::new(
-                machine,
-                placer.solver(),
-                freedom.max(0.0),
-                |joint, travel| placer.printed_travel(joint, travel),
-            ),
+            axes: Axes::new(machine, placer.solver(), freedom, |joint, travel| {
+                placer.printed_travel(joint, travel)
+            }),
             layers: Vec::new(),
             states: Vec::new(),
             stands: Vec::new(),
-            cone: libm::sin(freedom.max(0.0)).max(crate::kinematics::POLE),
-            freedom: freedom.max(0.0),
+            cone: libm::sin(freedom).max(crate::kinematics::POLE),
+            freedom,
         }
     }
 

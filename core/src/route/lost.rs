@@ -53,33 +53,14 @@ impl Route<'_> {
         Err(fault)
     }
 
-    /// Pushes a point; is there a way to stand at it?
-    fn push(&mut self, line: u64, motion: &Motion) -> bool {
-        let placer = &self.settings[self.setting].1;
-        let pushed = self.lattice.push(
-            line,
-            motion,
-            self.setting,
-            placer,
-            &self.near,
-            &mut self.judge,
-        );
-        match pushed {
-            Ok(_)
-                if self
-                    .lattice
-                    .layers
-                    .last()
-                    .is_some_and(|layer| layer.count > 0) =>
-            {
-                true
-            }
-            Ok(_) => {
-                self.lattice.pop();
-                false
-            }
-            Err(_) => false,
+    /// Pushes a point if there is a way to stand at it.
+    fn goes_on(&mut self, line: u64, motion: &Motion) -> bool {
+        let pushed = self.push(line, motion).is_ok();
+        if pushed && !self.alive() {
+            self.lattice.pop();
+            return false;
         }
+        pushed
     }
 
     /// Goes back to where the tool was last off the part, and puts a redundant axis on another of its
@@ -147,7 +128,7 @@ impl Route<'_> {
             self.setting = self.setting_for(&other)?;
             let mut pushed = 0;
             for (line, motion) in &points {
-                if !self.push(*line, motion) {
+                if !self.goes_on(*line, motion) {
                     break;
                 }
                 pushed += 1;
@@ -161,7 +142,7 @@ impl Route<'_> {
         }
         self.setting = before;
         for (line, motion) in &points[..points.len() - 1] {
-            if !self.push(*line, motion) {
+            if !self.goes_on(*line, motion) {
                 // Only a rewind had led to it.
                 return Err(Diagnostic::error(
                     "index",
@@ -237,7 +218,7 @@ impl Route<'_> {
                 layer.count += 1;
             }
         }
-        self.push(line, motion)
+        self.goes_on(line, motion)
     }
 
     fn over_travel(&self, found: &Found) -> Box<Diagnostic> {

@@ -20,12 +20,13 @@ use post_plugin::Format;
 
 use crate::accuracy::{Linearise, Move, Placer, Tolerances};
 use crate::diagnostic::Diagnostic;
-use crate::kinematics::{Joints, Pose};
+use crate::kinematics::{Joints, Pose, Unreachable};
 use crate::machine::{Machine, Positions, Tcp};
 use crate::program::{Motion, Pace};
 
 pub(crate) use lattice::pose;
 use lattice::{Judge, Lattice};
+use stand::Found;
 
 /// A point of the path with the axis values that were chosen for it.
 #[derive(Clone, Debug)]
@@ -285,29 +286,36 @@ impl<'a> Route<'a> {
     /// Takes the next point. What is decided by it waits in [`Route::take_chosen`].
     ///
     /// # Errors
-    /// Why the point cannot be reached, or the path not go on to it. In the second case it goes on behind the
-    /// fault as if it began there.
+    /// Why the point cannot be reached, or the path not go on to it; it is left out. In the second case the next
+    /// point begins a path anew.
     #[inline]
     pub(crate) fn add(&mut self, line: u64, motion: &Motion) -> Result<(), Box<Diagnostic>> {
-        let pushed = self.lattice.push(
+        let pushed = self.push(line, motion);
+        if pushed.is_err() || !self.alive() {
+            self.find_way(line, motion, pushed)?;
+        }
+        self.advance();
+        Ok(())
+    }
+
+    /// Pushes a point in the present setting.
+    #[inline]
+    fn push(&mut self, line: u64, motion: &Motion) -> Result<Found, Unreachable> {
+        self.lattice.push(
             line,
             motion,
             self.setting,
             &self.settings[self.setting].1,
             &self.near,
             &mut self.judge,
-        );
-        let alive = pushed.is_ok()
-            && self
-                .lattice
-                .layers
-                .last()
-                .is_some_and(|layer| layer.count > 0);
-        if !alive {
-            self.find_way(line, motion, pushed)?;
-        }
-        self.advance();
-        Ok(())
+        )
+    }
+
+    /// There is a way to stand at the newest point.
+    #[inline]
+    fn alive(&self) -> bool {
+        let newest = self.lattice.layers.last();
+        newest.is_some_and(|layer| layer.count > 0)
     }
 
     /// Points that were decided since the last call, in the place of those in `chosen`.

@@ -54,6 +54,14 @@ impl Turning {
         self.require
             .is_some_and(|side| wrong_side(value + self.zero, side))
     }
+
+    /// Inside travel, and on no side that is forbidden.
+    #[inline]
+    pub(super) fn allows(&self, value: f64) -> bool {
+        self.travel
+            .is_none_or(|[least, most]| (least..=most).contains(&value))
+            && !self.forbids(value)
+    }
 }
 
 /// What was found at a point beside the stands themselves.
@@ -317,6 +325,12 @@ impl Axes {
         Ok(())
     }
 
+    /// Every axis may stand there.
+    fn reaches(&self, joints: &Joints) -> bool {
+        let mut turning = self.turning.iter();
+        turning.all(|axis| axis.allows(joints[axis.joint])) && self.beyond(joints).is_none()
+    }
+
     #[inline]
     fn beyond(&self, joints: &Joints) -> Option<OverTravel> {
         for limit in &self.linear {
@@ -402,25 +416,13 @@ impl Axes {
             branch: 0,
             free: 0,
         };
-        let inside = |axis: &Turning| {
-            let value = joints[axis.joint];
-            axis.travel
-                .is_none_or(|[least, most]| (least..=most).contains(&value))
-                && !axis.forbids(value)
-        };
-        (self.turning.iter().all(inside) && self.beyond(&joints).is_none()).then_some(stand)
+        self.reaches(&joints).then_some(stand)
     }
 
     /// Where there is no closed form: the solution next to `last`, if it is inside travel.
     pub(crate) fn followed(&self, solver: &Solver, pose: &Pose, last: &Joints) -> Option<Joints> {
         let joints = solver.search(pose, last, self.axis_tolerance).ok()?;
-        let inside = self.turning.iter().all(|axis| {
-            let value = joints[axis.joint];
-            axis.travel
-                .is_none_or(|[least, most]| (least..=most).contains(&value))
-                && !axis.forbids(value)
-        });
-        (inside && self.beyond(&joints).is_none()).then_some(joints)
+        self.reaches(&joints).then_some(joints)
     }
 
     /// Travel of a rotary axis that is solved for.

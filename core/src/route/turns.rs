@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::stand::{Axes, Stand, Turning};
+use super::stand::{Axes, Stand};
 use crate::kinematics::Joints;
 use crate::kinematics::choose::OverTravel;
 
@@ -89,11 +89,6 @@ impl Axes {
                 unwound(nearest[axis.joint], last[axis.joint])
             };
         }
-        let inside = |axis: &Turning, value: f64| {
-            axis.travel
-                .is_none_or(|[least, most]| (least..=most).contains(&value))
-                && !axis.forbids(value)
-        };
         let Some(first) = self.turning.iter().find(|axis| axis.first) else {
             return;
         };
@@ -103,7 +98,7 @@ impl Axes {
             if self
                 .turning
                 .iter()
-                .all(|axis| inside(axis, joints[axis.joint]))
+                .all(|axis| axis.allows(joints[axis.joint]))
             {
                 take(&joints);
             }

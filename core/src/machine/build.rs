@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue, Deserializer};
 use super::file::{MachineFile, Quantity, Tcp};
 use super::layers::{Source, Sources, overlay};
 use super::options::take_options;
-use super::{Accuracy, Axis, Control, GivenOption, Head, Machine};
+use super::{Axis, Control, GivenOption, Head, Machine};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::kinematics::NoClosedForm;
 
@@ -222,40 +222,8 @@ impl Builder<'_> {
         if control.tcp == Some(Tcp::Control) {
             self.check_tip_words(&axes, file.chain.span());
         }
-        let accuracy = &file.accuracy;
-        let model = accuracy
-            .model
-            .as_ref()
-            .map_or_else(|| "sampled".to_owned(), |model| model.get_ref().clone());
-        if let Some(reduce) = &accuracy.reduce
-            && *reduce.get_ref()
-        {
-            self.fault(
-                "machine-reduce",
-                reduce.span(),
-                "reduce = true is not possible with placement = \"bisect\": every CL point is kept"
-                    .to_owned(),
-                "leave reduce out",
-            );
-        }
-        let positive = |this: &mut Self, name: &str, quantity: &Option<Quantity>, default: f64| {
-            let Some(quantity) = quantity else {
-                return default;
-            };
-            let value = this.number(quantity);
-            if value <= 0.0 {
-                this.fault(
-                    "machine-tolerance",
-                    quantity.span(),
-                    format!("{name} is {value}; it must be above zero"),
-                    "",
-                );
-            }
-            value
-        };
-        let tolerance = positive(self, "tolerance", &accuracy.tolerance, 0.005);
-        let axis_tolerance = positive(self, "axis_tolerance", &accuracy.axis_tolerance, 0.05);
-        let rapid_tolerance = positive(self, "rapid_tolerance", &accuracy.rapid_tolerance, 0.5);
+        let accuracy = self.accuracy(&file.accuracy, &mut model_options);
+        let control_point = self.control_point(&file.tool.control_point);
         let stages = axes.iter().any(|axis| axis.range.is_some()) || !solution.exclusive.is_empty();
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
@@ -269,6 +237,7 @@ impl Builder<'_> {
             gauge,
             tool_axis,
             edge,
+            control_point,
             tools,
             control: Control {
                 dialect,
@@ -285,18 +254,7 @@ impl Builder<'_> {
                 tool_length: control.tool_length,
                 insert: control.insert,
             },
-            accuracy: Accuracy {
-                options: model_options.remove(&model).unwrap_or_default(),
-                model,
-                model_place: accuracy
-                    .model
-                    .as_ref()
-                    .and_then(|model| self.sources.place(model.span())),
-                placement: accuracy.placement,
-                tolerance,
-                axis_tolerance: axis_tolerance.to_radians(),
-                rapid_tolerance,
-            },
+            accuracy,
             solution,
             rewind,
             heads: Vec::new(),

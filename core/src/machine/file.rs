@@ -89,6 +89,9 @@ pub(crate) struct ToolFile {
     /// direction of any length; leave it out for a tool that turns.
     #[schemars(with = "Option<[Number; 3]>")]
     pub edge: Option<[Quantity; 3]>,
+    /// The point of the tool that must stay within tolerance; that of the CL file if not said.
+    #[serde(default)]
+    pub control_point: ControlPointFile,
 }
 
 /// One axis: its kind and line, how far it goes and how fast.
@@ -351,6 +354,33 @@ pub enum Placement {
     /// In the middle of every piece that is over.
     #[default]
     Bisect,
+    /// As many equal pieces as the model's peak asks for.
+    Even,
+    /// As far apart as the certificate allows, shifted off the path so that the deviation is balanced about it.
+    Fewest,
+}
+
+/// What is done about a move that strays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Points on the exact inverse solution, where the placement puts them.
+    #[default]
+    Linearise,
+    /// Points on the straight line of the axes, moved by minus the model's curve.
+    Compensate,
+}
+
+/// The point of the tool that must stay within tolerance.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ControlPointFile {
+    /// So far from the point that the CL file gives, along the tool towards the holder, mm; 0 if not said.
+    #[schemars(with = "Option<Number>")]
+    pub along: Option<Quantity>,
+    /// The cutting edge runs at this radius about the tool axis, mm; 0, the point itself, if not said.
+    #[schemars(with = "Option<Number>", extend("minimum" = 0))]
+    pub radius: Option<Quantity>,
 }
 
 /// What the program must keep; `[accuracy.<model>]` holds the error model's own options.
@@ -372,9 +402,18 @@ pub(crate) struct AccuracyFile {
     /// Largest deviation of the tip in rapids, mm; 0.5 if not said.
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub rapid_tolerance: Option<Quantity>,
-    /// Drop CL points that the tolerance makes needless; not possible yet.
-    #[schemars(with = "Option<bool>")]
-    pub reduce: Option<Spanned<bool>>,
+    /// What is done about a move that strays; linearise if not said.
+    #[serde(default)]
+    pub method: Method,
+    /// Points between two CL points where a move is compensated; 9 if not said.
+    #[schemars(with = "Option<u32>", extend("minimum" = 1, "maximum" = 999))]
+    pub points: Option<Spanned<i64>>,
+    /// Drop CL points that the tolerance makes needless; false if not said.
+    #[serde(default)]
+    pub reduce: bool,
+    /// Where the path turns by more than this, degrees, a CL point is a corner: it is never dropped; 10 if not said.
+    #[schemars(with = "Option<Number>", extend("minimum" = 0, "maximum" = 180))]
+    pub corner: Option<Quantity>,
 }
 
 impl<'de> Deserialize<'de> for Number {

@@ -1,5 +1,6 @@
 //! One machine: what its TOML file says, checked and in the core's own units (mm, radians, minutes).
 
+mod accuracy;
 mod axes;
 mod build;
 mod choice;
@@ -13,10 +14,12 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
+pub use accuracy::{Accuracy, ControlPoint};
 pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use file::{
-    EdgeSource, FeedLength, FeedMode, Insert, OutputUnits, Placement, Pole, Side, Tcp, ToolLength,
+    EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement, Pole, Side, Tcp,
+    ToolLength,
 };
 pub use layers::Source;
 pub use schema::schema;
@@ -40,6 +43,8 @@ pub struct Machine {
     /// Leading edge of the tool (knife, disc) with all axes at zero, unit vector across the tool axis,
     /// machine frame; none for a tool that turns.
     pub edge: Option<Vector3<f64>>,
+    /// The point of the tool that must stay within tolerance.
+    pub control_point: ControlPoint,
     /// Tool lengths by tool number, mm, from the gauge point to the tip.
     pub tools: Vec<(u32, f64)>,
     /// Its control.
@@ -223,25 +228,6 @@ pub enum OptionValue {
     Number(f64),
     /// Text.
     Text(String),
-}
-
-/// Tolerances and how they are kept.
-#[derive(Clone, Debug)]
-pub struct Accuracy {
-    /// Name of the error model.
-    pub model: String,
-    /// Where the file names it.
-    pub model_place: Option<Place>,
-    /// Options for the model.
-    pub options: Vec<GivenOption>,
-    /// Where points are put in.
-    pub placement: Placement,
-    /// Largest deviation of the tip in a cut, mm.
-    pub tolerance: f64,
-    /// Largest deviation of the tool axis in a cut, radians.
-    pub axis_tolerance: f64,
-    /// Largest deviation of the tip in a rapid, mm.
-    pub rapid_tolerance: f64,
 }
 
 impl Machine {

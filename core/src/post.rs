@@ -256,6 +256,7 @@ impl<'a> Post<'a> {
             blocks: tally.blocks,
             nc_lines: tally.lines,
             points_added: tally.points_added,
+            points_dropped: tally.points_dropped,
             model_overruled: self.path.overruled(),
             tip_deviation_mm: tip,
             axis_deviation_deg: Deviation {

@@ -23,6 +23,8 @@ pub struct Report {
     pub nc_lines: u64,
     /// Points put in to keep the tolerance.
     pub points_added: u64,
+    /// CL points that no block ends on, because the tolerance makes them needless.
+    pub points_dropped: u64,
     /// Points put in because the certificate found more than the model promised.
     pub model_overruled: u64,
     /// Certified largest deviation of the tip in a cut, mm.

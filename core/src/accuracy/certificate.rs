@@ -6,8 +6,10 @@
 //! M/8 over a unit interval; with the ends off by e0 and e1 (the rounding of the printed words among it),
 //! `|e(t)| <= max(|e0|, |e1|) + M/8`.
 //!
-//! Two bounds are at hand, both rigorous: [`quick`] adds norms joint by joint, [`tight`] takes the second
-//! derivative as a vector at both ends and bounds what it can do between them by the fourth derivative.
+//! Three bounds are at hand, all rigorous: [`quick`] adds norms joint by joint, [`tight`] takes the second
+//! derivative as a vector at both ends and bounds what it can do between them by the fourth derivative, and
+//! [`Course::tip`] follows the curve that these vectors make, so that ends put off the path on purpose count
+//! against the bow between them.
 
 use nalgebra::Vector3;
 
@@ -21,6 +23,8 @@ pub struct Bend {
     pub tip: f64,
     /// Of the tool axis' deviation, as a difference of unit vectors.
     pub axis: f64,
+    /// Of any unit vector that is fixed to the tool: what the cutting edge at radius R bends by.
+    pub turn: f64,
 }
 
 /// A bound from norms: cheap, and at most a small multiple too large.
@@ -50,6 +54,7 @@ pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> Bend {
     Bend {
         tip,
         axis: turns * turns + sweep * sweep,
+        turn: turns * turns,
     }
 }
 
@@ -64,17 +69,149 @@ pub fn tight(
     to_axis: Vector3<f64>,
     sweep: f64,
 ) -> Bend {
-    let (first_tip, first_axis) = second_derivatives(chain, from, from, to);
-    let (last_tip, last_axis) = second_derivatives(chain, to, from, to);
-    let fourth = fourth_derivatives(chain, from, to);
-    let square = sweep * sweep;
-    // The great circle's own second derivative is -sweep² times itself.
-    let first_axis = first_axis + from_axis * square;
-    let last_axis = last_axis + to_axis * square;
-    Bend {
-        tip: first_tip.norm().max(last_tip.norm()) + fourth.tip / 8.0,
-        axis: first_axis.norm().max(last_axis.norm()) + (fourth.axis + square * square) / 8.0,
+    Course::new(chain, from, to).bend(from_axis, to_axis, sweep)
+}
+
+/// How tip and tool axis go along a block: second derivatives at its ends, and what bounds them between.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Course {
+    /// Second derivative of the tip at both ends, mm.
+    pub tip: [Vector3<f64>; 2],
+    /// Of the tool axis.
+    pub axis: [Vector3<f64>; 2],
+    /// Bounds on the fourth derivatives.
+    pub fourth: Bend,
+}
+
+/// The curve of a course is looked at in this many pieces.
+const PIECES: u32 = 16;
+
+impl Course {
+    /// Of a block.
+    pub fn new(chain: &Chain, from: &Trace, to: &Trace) -> Self {
+        let first = second_derivatives(chain, from, from, to);
+        let last = second_derivatives(chain, to, from, to);
+        Self {
+            tip: [first.0, last.0],
+            axis: [first.1, last.1],
+            fourth: fourth_derivatives(chain, from, to),
+        }
     }
+
+    /// Bounds on the second derivatives; see [`tight`]. Nothing is said of other directions of the tool than its
+    /// axis.
+    pub fn bend(&self, from_axis: Vector3<f64>, to_axis: Vector3<f64>, sweep: f64) -> Bend {
+        let square = sweep * sweep;
+        // The great circle's own second derivative is -sweep² times itself.
+        let first_axis = self.axis[0] + from_axis * square;
+        let last_axis = self.axis[1] + to_axis * square;
+        Bend {
+            tip: self.tip_bend() + self.fourth.tip / 8.0,
+            axis: first_axis.norm().max(last_axis.norm())
+                + (self.fourth.axis + square * square) / 8.0,
+            turn: f64::INFINITY,
+        }
+    }
+
+    fn tip_bend(&self) -> f64 {
+        self.tip[0].norm().max(self.tip[1].norm())
+    }
+
+    /// A bound on the tip's deviation whose ends are off by the vectors `off`, mm.
+    ///
+    /// With `d0`, `d1` the second derivatives at the ends, the deviation is
+    /// `off0·(1-t) + off1·t - t·(1-t)/6·((2-t)·d0 + (1+t)·d1)` but for a remainder whose second derivative is at
+    /// most `F·t·(1-t)/2`, so the remainder is at most `5·F/384`, F the bound on the fourth derivative. Between
+    /// looks at that cubic it can stray from its chord by an eighth of its second derivative over their distance
+    /// squared.
+    pub fn tip(&self, off: [Vector3<f64>; 2]) -> f64 {
+        let bend = self.tip_bend();
+        let ends = off[0].norm().max(off[1].norm());
+        let simple = ends + bend / 8.0;
+        let remainder = self.fourth.tip * (5.0 / 384.0);
+        // Where nothing is to be gained, nothing is looked at.
+        if ends < 1e-3 * bend {
+            return simple + remainder;
+        }
+        let mut most = ends;
+        for step in 1..PIECES {
+            let t = f64::from(step) * (1.0 / f64::from(PIECES));
+            let bow = (self.tip[0] * (2.0 - t) + self.tip[1] * (1.0 + t)) * (t * (1.0 - t) / 6.0);
+            most = most.max((off[0] * (1.0 - t) + off[1] * t - bow).norm());
+        }
+        let blind = bend / f64::from(8 * PIECES * PIECES);
+        simple.min(most + blind) + remainder
+    }
+}
+
+/// A bound on the second derivative of any unit vector across the tool axis that is fixed to the tool, by the same
+/// means as [`tight`]: the largest singular value of the second derivatives of two such vectors.
+pub fn rim(chain: &Chain, from: &Trace, to: &Trace) -> f64 {
+    let axis = chain.axis();
+    let first = axis.cross(&across(axis)).normalize();
+    let second = axis.cross(&first);
+    let turns: f64 = joint_turns(chain, from, to).sum();
+    let at = |trace: &Trace| {
+        let [a, b] = [first, second].map(|vector| direction_bend(chain, vector, trace, from, to));
+        let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.dot(&b));
+        let half = (aa - bb) / 2.0;
+        libm::sqrt((aa + bb) / 2.0 + libm::sqrt(half * half + ab * ab))
+    };
+    at(from).max(at(to)) + turns * turns * turns * turns / 8.0
+}
+
+/// A direction that is not along `axis`.
+fn across(axis: Vector3<f64>) -> Vector3<f64> {
+    if axis.x.abs() < 0.8 {
+        Vector3::x()
+    } else {
+        Vector3::y()
+    }
+}
+
+fn joint_turns(chain: &Chain, from: &Trace, to: &Trace) -> impl Iterator<Item = f64> {
+    let joints = chain.joints().iter().enumerate();
+    joints
+        .filter(|(_, joint)| joint.rotary)
+        .map(|(index, _)| (to.joints[index] - from.joints[index]).abs())
+}
+
+/// Second derivative of a direction that is fixed to the tool, at `at`, an end of the block.
+fn direction_bend(
+    chain: &Chain,
+    mut vector: Vector3<f64>,
+    at: &Trace,
+    from: &Trace,
+    to: &Trace,
+) -> Vector3<f64> {
+    let (mut slope, mut bend) = (Vector3::zeros(), Vector3::zeros());
+    for (index, joint) in chain.joints().iter().enumerate().rev() {
+        if joint.rotary {
+            let step = to.joints[index] - from.joints[index];
+            let rate = joint.direction.cross(&vector);
+            let turns = at.turns.of(index);
+            advance(rate, joint.direction, step, turns, &mut slope, &mut bend);
+            vector = turn(vector, joint.direction, turns.0, turns.1);
+        }
+    }
+    bend
+}
+
+/// Takes first and second derivative of what lies behind a rotary joint over it: `rate` is how it goes with the
+/// joint before that has turned, `step` the joint's turn over the block.
+#[inline]
+fn advance(
+    rate: Vector3<f64>,
+    k: Vector3<f64>,
+    step: f64,
+    (sine, cosine): (f64, f64),
+    slope: &mut Vector3<f64>,
+    bend: &mut Vector3<f64>,
+) {
+    let across = rate * step;
+    let turned_bend = *bend + k.cross(slope) * (2.0 * step) + k.cross(&across) * step;
+    *bend = turn(turned_bend, k, sine, cosine);
+    *slope = turn(*slope + across, k, sine, cosine);
 }
 
 /// Second derivatives of tip and tool axis at `at`, an end of the block, in the part frame.
@@ -94,15 +231,11 @@ fn second_derivatives(
             tip_slope += k * step;
             continue;
         }
-        let (sine, cosine) = at.turns.of(index);
-        let advance = |rate: Vector3<f64>, slope: &mut Vector3<f64>, bend: &mut Vector3<f64>| {
-            let across = rate * step;
-            let turned_bend = *bend + k.cross(slope) * (2.0 * step) + k.cross(&across) * step;
-            *bend = turn(turned_bend, k, sine, cosine);
-            *slope = turn(*slope + across, k, sine, cosine);
-        };
-        advance(at.tip_rates[index], &mut tip_slope, &mut tip_bend);
-        advance(k.cross(&at.axes[index]), &mut axis_slope, &mut axis_bend);
+        let turns = at.turns.of(index);
+        let tip_rate = at.tip_rates[index];
+        let axis_rate = k.cross(&at.axes[index]);
+        advance(tip_rate, k, step, turns, &mut tip_slope, &mut tip_bend);
+        advance(axis_rate, k, step, turns, &mut axis_slope, &mut axis_bend);
     }
     (tip_bend, axis_bend)
 }
@@ -136,6 +269,7 @@ fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> Bend {
     Bend {
         tip: tip[3],
         axis: axis[3],
+        turn: f64::INFINITY,
     }
 }
 

@@ -1,8 +1,21 @@
 //! Error control: nodes on the path, the certificate of a block, and where points are put in.
+//!
+//! [`Linearise`] takes a [`Run`], CL points that follow one another without a corner, and cuts it into blocks
+//! within tolerance. How is the machine file's `[accuracy]`: `bisect` and `even` keep CL points and put points in
+//! between (and leave out CL points that are needless, if told to), `fewest` goes as far as the certificate
+//! allows, `compensate` moves points that lie on the axes' own straight line.
 
+mod bisect;
 pub mod certificate;
+mod compensate;
+mod deviation;
+mod even;
+mod fewest;
 mod linearise;
 mod node;
+mod run;
 
-pub use linearise::{Bound, Linearise, Move, Piece, Stuck, Tolerances};
+pub use deviation::{Bound, Move, Tolerances};
+pub use linearise::{Linearise, Piece, Stuck};
 pub use node::{Node, Placer, Refused};
+pub use run::Run;

@@ -11,7 +11,7 @@ use post_plugin::Format;
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::choose::{Limit, OverTravel, Turning};
 use crate::kinematics::{Joints, Pose, Solver, Trace, Unreachable};
-use crate::machine::Machine;
+use crate::machine::{ControlPoint, Machine};
 use crate::words::{WordValues, Words};
 
 /// A point of the path, solved and rounded.
@@ -31,6 +31,27 @@ pub struct Node {
     pub tip_error: f64,
     /// How far the tool axis is off, radians.
     pub axis_error: f64,
+}
+
+impl Node {
+    /// How far the tip is off its target, mm, part frame.
+    #[inline]
+    pub fn off(&self) -> Vector3<f64> {
+        self.tip - self.target.tip
+    }
+
+    /// Fills in how far tip and tool axis are off their target.
+    #[inline]
+    pub(super) fn measure(&mut self) {
+        let (reached, wanted) = (&self.trace.pose, &self.target);
+        self.axis_error = chord_angle((reached.axis - wanted.axis).norm());
+        // Zero for a tool that turns.
+        if reached.edge != Vector3::zeros() {
+            let edge_error = chord_angle((reached.edge - wanted.edge).norm());
+            self.axis_error = self.axis_error.max(edge_error);
+        }
+        self.tip_error = self.off().norm();
+    }
 }
 
 /// Why a point has no node.
@@ -64,6 +85,7 @@ pub struct Placer {
     /// The branch of the last point: most likely that of the next.
     branch: Cell<usize>,
     axis_tolerance: f64,
+    control_point: ControlPoint,
     tip_rounding: f64,
     axis_rounding: f64,
 }
@@ -83,13 +105,23 @@ impl Placer {
         held: &Joints,
     ) -> Result<Self, Box<Diagnostic>> {
         let fault = |message: String| Diagnostic::error("machine-chain", message).boxed();
-        let solver = machine
-            .solver_at(length, held)
-            .map_err(|lack| fault(format!("the chain cannot be solved: {lack:?}")))?;
+        let solver = |length: f64| {
+            machine
+                .solver_at(length, held)
+                .map_err(|lack| fault(format!("the chain cannot be solved: {lack:?}")))
+        };
+        let tip = solver(length)?;
         let mut words = Words::new(machine, format);
-        words.set_zero(&solver).ok_or_else(|| {
+        // The operator measures to the tip, whichever point is guided.
+        words.set_zero(&tip).ok_or_else(|| {
             fault("with every rotary axis at zero the linear axes do not span the space".to_owned())
         })?;
+        let along = machine.control_point.along;
+        let solver = if along == 0.0 {
+            tip
+        } else {
+            solver(length - along)?
+        };
         Ok(Self::new(machine, solver, words))
     }
 
@@ -134,7 +166,14 @@ impl Placer {
             words,
             branch: Cell::new(0),
             axis_tolerance: machine.accuracy.axis_tolerance,
+            control_point: machine.control_point,
         }
+    }
+
+    /// The point of the tool that poses and errors are those of.
+    #[inline]
+    pub fn control_point(&self) -> ControlPoint {
+        self.control_point
     }
 
     /// The solver in use.
@@ -249,6 +288,22 @@ impl Placer {
         t: f64,
         rotary: &Joints,
     ) -> Result<(), Refused> {
+        self.settle_at(node, target, target.tip, t, rotary)
+    }
+
+    /// [`Placer::settle`] with the tip put at `place`, off the target on purpose.
+    ///
+    /// # Errors
+    /// Why there is none.
+    #[inline]
+    pub fn settle_at(
+        &self,
+        node: &mut Node,
+        target: Pose,
+        place: Vector3<f64>,
+        t: f64,
+        rotary: &Joints,
+    ) -> Result<(), Refused> {
         let chain = self.solver.chain();
         node.t = t;
         node.target = target;
@@ -257,12 +312,20 @@ impl Placer {
         // The rotary words first: the linear axes then make up for their rounding.
         self.words.print_rotary(joints, &mut node.words);
         node.trace.turns = chain.turns(joints);
-        let kept = self.words.print_tip(target.tip, &mut node.words);
-        let wanted = kept.unwrap_or(target.tip);
+        let along = self.control_point.along;
+        let printed = self
+            .words
+            .print_tip(place - target.axis * along, &mut node.words);
+        let wanted = match printed {
+            None => place,
+            Some(tip) if along == 0.0 => tip,
+            // The control keeps the tip there; the point above it goes where the tool really leans.
+            Some(tip) => tip + chain.forward(joints).axis * along,
+        };
         self.solver
             .place(wanted, joints, &node.trace.turns)
             .map_err(Refused::Unreachable)?;
-        if kept.is_none() {
+        if printed.is_none() {
             self.words.print_linear(joints, &mut node.words);
         }
         for limit in &self.linear {
@@ -280,17 +343,21 @@ impl Placer {
             }
         }
         chain.trace(&mut node.trace);
-        let pose = &node.trace.pose;
-        node.axis_error = chord_angle((pose.axis - target.axis).norm());
-        if chain.edge().is_some() {
-            let edge_error = chord_angle((pose.edge - target.edge).norm());
-            node.axis_error = node.axis_error.max(edge_error);
-        }
-        node.tip = pose.tip;
-        node.tip_error = (pose.tip - target.tip).norm();
+        node.tip = node.trace.pose.tip;
+        node.measure();
         // The forward chain stands behind every node: what it misses by must be rounding.
-        let missed = node.tip_error;
-        if missed <= self.tip_rounding {
+        let missed = if place == target.tip {
+            node.tip_error
+        } else {
+            (node.tip - place).norm()
+        };
+        // What a rounded angle does to a point above the tip that the control keeps is not made up for.
+        let swung = if printed.is_some() {
+            along.abs() * node.axis_error
+        } else {
+            0.0
+        };
+        if missed <= self.tip_rounding + swung {
             Ok(())
         } else {
             Err(Refused::Unverified {
@@ -298,6 +365,11 @@ impl Placer {
                 axis: node.axis_error,
             })
         }
+    }
+
+    /// The largest error of the tip that rounding can make, mm.
+    pub fn tip_rounding(&self) -> f64 {
+        self.tip_rounding
     }
 
     /// Values of a rotary joint that are printed inside its travel, radians.

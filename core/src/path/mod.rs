@@ -3,6 +3,7 @@
 //! Moves wait until the route has decided them; commands between them (spindle, coolant, remarks) wait with them.
 
 mod moves;
+mod run;
 mod tally;
 
 use std::collections::VecDeque;
@@ -19,6 +20,7 @@ use crate::machine::{Machine, Positions, Tcp, ToolLength};
 use crate::program::{Edges, Motion, Step, Tool};
 use crate::route::{Chosen, Route};
 
+use run::Gathered;
 pub use tally::Tally;
 
 /// Where the text of the program goes.
@@ -56,6 +58,8 @@ pub struct Path<'a> {
     chosen: Vec<Chosen>,
     feeds: Feeds,
     linearise: Linearise,
+    /// CL points that wait for those behind them.
+    gathered: Gathered,
     /// What the user says of every tool.
     told_length: Option<f64>,
     /// Length of the tool in use.
@@ -138,7 +142,8 @@ impl<'a> Path<'a> {
             waiting: VecDeque::new(),
             chosen: Vec::new(),
             feeds,
-            linearise: Linearise::new(trust_model),
+            linearise: Linearise::new(&machine.accuracy, trust_model),
+            gathered: Gathered::default(),
             told_length: tool_length,
             length,
             length_unknown: tool_length.is_none(),
@@ -214,6 +219,7 @@ impl<'a> Path<'a> {
     pub fn end(&mut self, line: u64) {
         self.with_edge(|edges, emit| edges.finish(emit));
         self.settle();
+        self.end_run();
         self.release(line);
         self.push(line, Event::End);
         self.flush();
@@ -256,6 +262,12 @@ impl<'a> Path<'a> {
     #[inline]
     fn take(&mut self, line: u64, motion: &Motion) {
         self.tally.moves += 1;
+        // From here on a point of the path is the control point.
+        let along = self.machine.control_point.along;
+        let motion = &Motion {
+            tip: motion.tip + motion.axis * along,
+            ..*motion
+        };
         match self.route.add(line, motion) {
             Ok(()) => self.taken += 1,
             Err(diagnostic) => {
@@ -264,6 +276,7 @@ impl<'a> Path<'a> {
                 if restarts {
                     // The path goes on behind the fault as if it began there.
                     self.drain();
+                    self.end_run();
                     self.last = None;
                     self.on_part = false;
                 }
@@ -315,13 +328,14 @@ impl<'a> Path<'a> {
     }
 
     fn command(&mut self, line: u64, step: Step) {
+        self.end_run();
         match step {
             // Moves go through the route.
             Step::Move(motion) => self.take(line, &motion),
             Step::From { tip, axis } => {
                 // The tool stands there: solutions near to it are wanted, but nothing moves.
                 let pose = Pose {
-                    tip,
+                    tip: tip + axis * self.machine.control_point.along,
                     axis,
                     edge: self.route.edge_at_rest(),
                 };

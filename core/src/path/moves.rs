@@ -5,7 +5,7 @@ use post_plugin::Event;
 
 use super::Path;
 use super::tally::{AXIS, RAPID, TIP};
-use crate::accuracy::{Bound, Node, Placer};
+use crate::accuracy::{Bound, Node, Run};
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::orientation::angle;
 use crate::kinematics::{Joints, Pose};
@@ -26,12 +26,29 @@ const LONGEST: f64 = 2.9;
 
 /// A move on its way to the dialect.
 #[derive(Clone, Copy, Debug)]
-struct Leg<'m> {
-    line: u64,
-    motion: &'m Motion,
+pub(super) struct Leg<'m> {
+    pub line: u64,
+    pub motion: &'m Motion,
     /// Off the part: the tolerance of a rapid is enough.
-    loose: bool,
-    setting: usize,
+    pub loose: bool,
+    pub setting: usize,
+}
+
+/// Which of the largest deviations a block counts for.
+struct Slots(&'static [usize]);
+
+impl Slots {
+    #[inline]
+    fn of(leg: &Leg<'_>) -> Self {
+        Self(if leg.loose { &[RAPID] } else { &[TIP, AXIS] })
+    }
+
+    /// Deviations of a block in all places.
+    #[inline]
+    fn values(&self, leg: &Leg<'_>, bound: Bound) -> [f64; 3] {
+        let chord = leg.motion.chord;
+        [bound.tip + chord, bound.axis, bound.tip + chord]
+    }
 }
 
 impl Path<'_> {
@@ -50,6 +67,7 @@ impl Path<'_> {
             self.travel(&leg, &chosen.joints);
         }
         if let Some(joints) = &chosen.rewind {
+            self.end_run();
             self.rewind(&leg, joints);
         }
     }
@@ -81,6 +99,10 @@ impl Path<'_> {
                 .help("the CAM system should write SPINDL before this line"),
             );
         }
+        let gathers = self.gathers(leg, &node);
+        if !gathers {
+            self.end_run();
+        }
         match self.last.take() {
             None => self.first(leg, &node),
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
@@ -92,7 +114,7 @@ impl Path<'_> {
                 self.first(leg, &node);
                 self.spare = Some(last);
             }
-            Some(last) => self.spare = Some(self.go(leg, last, &mut node)),
+            Some(last) => self.spare = Some(self.go(leg, last, &mut node, gathers)),
         }
         self.on_part = cuts;
         self.last = Some(node);
@@ -150,7 +172,13 @@ impl Path<'_> {
 
     /// A move from where the tool stands to `node`; gives the node that it left.
     #[inline]
-    fn go(&mut self, leg: &Leg<'_>, mut last: Box<Node>, node: &mut Node) -> Box<Node> {
+    fn go(
+        &mut self,
+        leg: &Leg<'_>,
+        mut last: Box<Node>,
+        node: &mut Node,
+        gathers: bool,
+    ) -> Box<Node> {
         if leg.loose && self.on_part {
             // The tool leaves the part as it stands, and turns when it is away.
             let placer = self.route.placer(leg.setting);
@@ -163,6 +191,8 @@ impl Path<'_> {
         }
         if self.machine.stages && self.special(&last, node) {
             self.by_stages(leg, &last, node);
+        } else if gathers {
+            self.gather(leg, &last, node);
         } else {
             self.cut(leg, &last, node);
         }
@@ -183,10 +213,11 @@ impl Path<'_> {
             pace: Pace::Rapid,
             chord: 0.0,
         };
+        let along = self.machine.control_point.along;
         let away = self
             .machine
             .rewind
-            .and_then(|rewind| Some((stands.drawn_back(&rewind)?, rewind)));
+            .and_then(|rewind| Some((stands.drawn_back(&rewind, along)?, rewind)));
         let Some((away, rewind)) = away else {
             self.find(
                 leg.line,
@@ -234,7 +265,7 @@ impl Path<'_> {
     }
 
     /// An indexed axis stands differently.
-    fn indexes(&self, from: &Node, to: &Node) -> bool {
+    pub(super) fn indexes(&self, from: &Node, to: &Node) -> bool {
         let axes = self.machine.axes.iter().zip(&from.trace.joints);
         axes.zip(&to.trace.joints)
             .any(|((axis, from), to)| axis.indexed.is_some() && (from - to).abs() > TURN)
@@ -251,7 +282,7 @@ impl Path<'_> {
     /// The move cannot be made in one go: an axis shown over one turn would take the other way round, or axes
     /// that exclude one another would move together.
     #[inline]
-    fn special(&self, from: &Node, to: &Node) -> bool {
+    pub(super) fn special(&self, from: &Node, to: &Node) -> bool {
         let way = |joint: usize| (to.trace.joints[joint] - from.trace.joints[joint]).abs();
         let mut axes = self.machine.axes.iter().enumerate();
         axes.any(|(joint, axis)| axis.range.is_some() && way(joint) > LONGEST)
@@ -348,7 +379,8 @@ impl Path<'_> {
             return;
         };
         self.tally.rewinds += 1;
-        let away = leg.motion.drawn_back(&rewind).unwrap_or(*leg.motion);
+        let along = self.machine.control_point.along;
+        let away = leg.motion.drawn_back(&rewind, along).unwrap_or(*leg.motion);
         let back = rewind.plunge_feed.map_or(leg.motion.pace, Pace::PerMinute);
         // The tip stands still while the axes turn: what counts is the farthest of them.
         let turn = rewind.turn_feed.map_or(Pace::Rapid, |feed| {
@@ -385,7 +417,7 @@ impl Path<'_> {
             match placer.settled(pose(leg.motion), 1.0, &joints) {
                 Ok(mut node) => {
                     self.on_part = false;
-                    self.go(&leg, at, &mut node);
+                    self.go(&leg, at, &mut node, false);
                     at = Box::new(node);
                 }
                 Err(refused) => {
@@ -400,32 +432,67 @@ impl Path<'_> {
 
     /// A straight move, cut into pieces where it strays.
     #[inline]
-    fn cut(&mut self, leg: &Leg<'_>, last: &Node, node: &Node) {
+    pub(super) fn cut(&mut self, leg: &Leg<'_>, last: &Node, node: &Node) {
         let placer = self.route.placer(leg.setting);
-        let whole = planned(self.machine, placer, leg.motion, leg.loose, last, node).whole();
-        match whole {
-            Some(bound) => self.piece(leg, last, node, 1.0, bound),
-            None => self.split(leg, last, node),
+        let whole = planned(self.machine, placer, leg.motion, leg.loose, last, node);
+        match whole.whole() {
+            Some(bound) => {
+                let slots = Slots::of(leg);
+                // The cheap bound decides whether the block can be the worst one; the tight one is kept.
+                let bound = if self.worst(&slots, slots.values(leg, bound)) {
+                    whole.measured().least(bound)
+                } else {
+                    bound
+                };
+                self.piece(leg, last, node, 1.0, bound);
+            }
+            None => self.split(&[*leg], &[*last, *node]),
         }
     }
 
-    /// A move that needs points.
-    fn split(&mut self, leg: &Leg<'_>, last: &Node, node: &Node) {
+    /// Legs, one after the other, that need points or can do without some of their own.
+    pub(super) fn split(&mut self, legs: &[Leg<'_>], nodes: &[Node]) {
+        let Some(first) = legs.first() else {
+            return;
+        };
         let mut linearise = std::mem::take(&mut self.linearise);
-        let (machine, placer) = (self.machine, self.route.placer(leg.setting));
-        let planned = planned(machine, placer, leg.motion, leg.loose, last, node);
-        match linearise.split(&planned, self.model) {
+        let (machine, placer) = (self.machine, self.route.placer(first.setting));
+        let planned = planned(
+            machine,
+            placer,
+            first.motion,
+            first.loose,
+            &nodes[0],
+            &nodes[1],
+        );
+        let run = Run {
+            placer,
+            nodes,
+            tolerances: planned.tolerances,
+            control_keeps_tip: planned.control_keeps_tip,
+        };
+        match linearise.split(&run, self.model) {
             Ok(()) => {
-                let mut from = *last;
+                let mut from = nodes[0];
                 from.t = 0.0;
-                for (index, piece) in linearise.pieces().iter().enumerate() {
-                    self.tally.points_added += u64::from(index > 0);
-                    let share = piece.to.t - from.t;
-                    self.piece(leg, &from, &piece.to, share, piece.bound);
+                let mut kept = 0;
+                for piece in linearise.pieces() {
+                    let on_point = piece.to.t == 1.0;
+                    kept += usize::from(on_point);
+                    self.tally.points_added += u64::from(!on_point);
+                    // Moves with a time of their own are never put together.
+                    let share = if legs.len() == 1 {
+                        piece.to.t - from.t
+                    } else {
+                        1.0
+                    };
+                    self.piece(&legs[piece.leg], &from, &piece.to, share, piece.bound);
                     from = piece.to;
                 }
+                self.tally.points_dropped += (legs.len() - kept.min(legs.len())) as u64;
             }
-            Err(stuck) => {
+            Err((leg, stuck)) => {
+                let leg = &legs[leg];
                 let finding = refusal::stuck(self.machine, &stuck, leg.motion);
                 self.find(leg.line, finding);
             }
@@ -463,7 +530,7 @@ impl Path<'_> {
         if self.machine.clamps {
             self.clamp(leg, from, to);
         }
-        self.mark(leg, from, to, bound);
+        self.mark(leg, bound);
         self.push(leg.line, event);
     }
 
@@ -492,37 +559,33 @@ impl Path<'_> {
         }
     }
 
-    /// Keeps the largest deviations: the cheap bound decides whether a block can hold one, the tight one is kept.
+    /// Can a block with these deviations be the worst one?
     #[inline]
-    fn mark(&mut self, leg: &Leg<'_>, from: &Node, to: &Node, bound: Bound) {
-        let chord = leg.motion.chord;
-        let values = |bound: Bound| [bound.tip + chord, bound.axis, bound.tip + chord];
-        let slots: &[usize] = if leg.loose { &[RAPID] } else { &[TIP, AXIS] };
-        let cheap = values(bound);
-        if slots
+    fn worst(&self, slots: &Slots, values: [f64; 3]) -> bool {
+        let deviations = &self.tally.deviations;
+        slots
+            .0
             .iter()
-            .all(|slot| cheap[*slot] <= self.tally.deviations[*slot].value)
-        {
-            return;
-        }
-        let placer: &Placer = self.route.placer(leg.setting);
-        let tight = planned(self.machine, placer, leg.motion, leg.loose, from, to).measured();
-        let tight = values(Bound {
-            tip: bound.tip.min(tight.tip),
-            axis: bound.axis.min(tight.axis),
-        });
-        for &slot in slots {
+            .any(|slot| values[*slot] > deviations[*slot].value)
+    }
+
+    /// Keeps the largest deviations.
+    #[inline]
+    fn mark(&mut self, leg: &Leg<'_>, bound: Bound) {
+        let slots = Slots::of(leg);
+        let values = slots.values(leg, bound);
+        for &slot in slots.0 {
             let deviation = &mut self.tally.deviations[slot];
             // Of blocks that are equal but for rounding errors, the first is named.
-            if tight[slot] > deviation.value + EQUAL {
+            if values[slot] > deviation.value + EQUAL {
                 *deviation = Deviation {
-                    value: tight[slot],
+                    value: values[slot],
                     block: 0,
                     line: leg.line,
                 };
                 self.marks[slot] = Some(self.batch.len());
             } else {
-                deviation.value = deviation.value.max(tight[slot]);
+                deviation.value = deviation.value.max(values[slot]);
             }
         }
     }

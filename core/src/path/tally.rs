@@ -12,6 +12,8 @@ pub struct Tally {
     pub blocks: u64,
     /// Points put in.
     pub points_added: u64,
+    /// CL points that no block ends on.
+    pub points_dropped: u64,
     /// Cuts: tip (mm), tool axis (radians); rapids: tip (mm).
     pub deviations: [Deviation; 3],
     /// Least axis values.
@@ -46,6 +48,7 @@ impl Tally {
             moves: 0,
             blocks: 0,
             points_added: 0,
+            points_dropped: 0,
             deviations: [Deviation::default(); 3],
             least: [f64::INFINITY; MAX_AXES],
             most: [f64::NEG_INFINITY; MAX_AXES],

@@ -172,7 +172,7 @@ impl Edges {
     ) {
         let away = self
             .rewind
-            .and_then(|rewind| Some((rewind, motion.drawn_back(&rewind)?)));
+            .and_then(|rewind| Some((rewind, motion.drawn_back(&rewind, 0.0)?)));
         if let Some((rewind, away)) = away {
             let out = Motion {
                 pace: Pace::feed_or_rapid(rewind.retract_feed),

@@ -77,8 +77,9 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// The motion to where the tool is drawn back to from here; none if its axis does not lead there.
-    pub(crate) fn drawn_back(&self, rewind: &Rewind) -> Option<Self> {
+    /// The motion to where the tool is drawn back to from here; none if its axis does not lead there. The point of
+    /// the motion stands `along` mm above the tip.
+    pub(crate) fn drawn_back(&self, rewind: &Rewind, along: f64) -> Option<Self> {
         let distance = match rewind.retract {
             Retract::Distance(distance) => distance,
             Retract::Plane(height) => {
@@ -87,7 +88,7 @@ impl Motion {
                 if rise < 0.1 {
                     return None;
                 }
-                (height - self.tip.z) / rise
+                (height - self.tip.z) / rise + along
             }
         };
         // A plane below the tip leads into the part.

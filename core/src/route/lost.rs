@@ -165,7 +165,8 @@ impl Route<'_> {
         };
         let placer = self.settings[layer.setting].1.clone();
         let target = pose(&layer.motion);
-        let Some(back) = layer.motion.drawn_back(&rewind) else {
+        let along = self.machine.control_point.along;
+        let Some(back) = layer.motion.drawn_back(&rewind, along) else {
             return false;
         };
         let reaches = |joints: &Joints| placer.settled(pose(&back), 1.0, joints).is_ok();

@@ -165,7 +165,7 @@ impl<'a> Route<'a> {
             rewound: Vec::new(),
             judge: Trial {
                 machine,
-                linearise: Linearise::new(false),
+                linearise: Linearise::default(),
             },
             tries_positions: tries_positions(machine),
             chosen: Vec::new(),

@@ -1,0 +1,146 @@
+//! `bisect` (the parabolic paper, Sha et al. 2022): every piece that is over gets a point in its middle.
+//!
+//! Points lie on the exact inverse solution. Where the tool axis hardly moves while a rotary axis turns far (close
+//! to a singularity) exact solutions do not help, since the angle jumps however short the piece is: there the
+//! middle is taken in the axes' own space, rotary values halfway and the tip put on its chord, as long as the tool
+//! axis stays within tolerance.
+
+use post_plugin::ModelSession;
+
+use super::deviation::{Bound, Move, Tolerances, between};
+use super::linearise::{Linearise, Stuck};
+use super::node::{Node, Refused};
+
+/// The shortest piece, as a share of its move.
+const SHORTEST: f64 = 1.0 / (1u64 << 22) as f64;
+
+/// Points put in may use so much of the tool axis' tolerance.
+const ROOM: f64 = 0.9;
+
+impl Linearise {
+    /// Can the axes follow this move with the tool axis within tolerance, whatever points that takes? Nothing is
+    /// sampled, no model asked.
+    pub fn comes_through(&mut self, whole: &Move<'_>) -> bool {
+        self.take_back(0);
+        let mut from = *whole.from;
+        from.t = 0.0;
+        let whole = Move {
+            from: &from,
+            tolerances: Tolerances {
+                tip: f64::INFINITY,
+                ..whole.tolerances
+            },
+            ..*whole
+        };
+        let judge = |_: &mut Self, piece: &Move<'_>| {
+            let bound = piece.measured();
+            Ok((piece.tolerances.hold(bound), bound))
+        };
+        self.bisect(&whole, judge).is_ok()
+    }
+
+    /// Cuts a move, or what is left of it, into pieces that model and certificate are content with.
+    ///
+    /// # Errors
+    /// Why it cannot be done.
+    pub(super) fn halve(
+        &mut self,
+        whole: &Move<'_>,
+        model: &mut dyn ModelSession,
+    ) -> Result<(), Stuck> {
+        self.bisect(whole, |this, piece| {
+            let judged = this.judge(piece, model)?;
+            Ok((judged.good, judged.bound))
+        })
+    }
+
+    /// Puts points into the middle of every piece that `judge` does not find good.
+    fn bisect(
+        &mut self,
+        whole: &Move<'_>,
+        mut judge: impl FnMut(&mut Self, &Move<'_>) -> Result<(bool, Bound), Stuck>,
+    ) -> Result<(), Stuck> {
+        let mut from = *whole.from;
+        self.stack.clear();
+        self.stack.push(*whole.to);
+        while let Some(to) = self.stack.pop() {
+            let piece = Move {
+                from: &from,
+                to: &to,
+                ..*whole
+            };
+            let (good, bound) = judge(self, &piece)?;
+            if good {
+                self.keep(to, bound);
+                from = to;
+                continue;
+            }
+            if let Some(stuck) = stuck(&piece) {
+                return Err(stuck);
+            }
+            let middle = middle(&piece, bound).map_err(Stuck::Refused)?;
+            self.stack.push(to);
+            self.stack.push(middle);
+        }
+        Ok(())
+    }
+}
+
+/// A piece that no further point can mend.
+fn stuck(piece: &Move<'_>) -> Option<Stuck> {
+    let (from, to) = (piece.from, piece.to);
+    let tip = from.tip_error.max(to.tip_error);
+    let axis = from.axis_error.max(to.axis_error);
+    if tip >= piece.tolerances.tip || axis >= piece.tolerances.axis {
+        return Some(Stuck::Rounding { tip, axis });
+    }
+    if to.t - from.t > SHORTEST {
+        return None;
+    }
+    let joints = piece.placer.solver().chain().joints();
+    let turn = |joint: &usize| libm::fabs(to.trace.joints[*joint] - from.trace.joints[*joint]);
+    let joint = (0..joints.len())
+        .filter(|joint| joints[*joint].rotary)
+        .max_by(|a, b| turn(a).total_cmp(&turn(b)))?;
+    Some(Stuck::Jump {
+        joint,
+        from: from.trace.joints[joint],
+        to: to.trace.joints[joint],
+    })
+}
+
+/// The node in the middle of a piece whose deviation is bounded by `bound`.
+fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
+    let (from, to, placer) = (piece.from, piece.to, piece.placer);
+    let t = (from.t + to.t) / 2.0;
+    let (first, last) = (&from.trace.joints, &to.trace.joints);
+    let target = piece.target(0.5);
+    let exact = placer.place_between(target, t, first, last);
+    let halfway = between(first, last, 0.5);
+    let straight = exact.as_ref().is_ok_and(|node| {
+        let joints = placer.solver().chain().joints();
+        (0..joints.len())
+            .filter(|joint| joints[*joint].rotary)
+            .all(|joint| {
+                let turn = libm::fabs(last[joint] - first[joint]);
+                let off = libm::fabs(node.trace.joints[joint] - halfway[joint]);
+                off <= turn / 4.0 + placer.axis_rounding()
+            })
+    });
+    if straight || !placer.solver().closed_form() {
+        return exact;
+    }
+    // A point that is off by all of the tolerance leaves nothing to the pieces beside it.
+    let room = ROOM * piece.tolerances.axis;
+    if bound.axis <= piece.tolerances.axis
+        && let Ok(node) = placer.settled(target, t, &halfway)
+        && node.axis_error <= room
+    {
+        return Ok(node);
+    }
+    // A pole joint is turned evenly, the others keep the tool axis as well as they can.
+    match placer.place_halfway(target, t, first, last) {
+        Some(node) if node.axis_error <= room => Ok(node),
+        _ => exact,
+    }
+}

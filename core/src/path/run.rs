@@ -1,0 +1,107 @@
+//! CL points that wait for what comes behind them: along one stretch of path some of them may be needless.
+
+use super::Path;
+use super::moves::Leg;
+use crate::accuracy::Node;
+use crate::kinematics::orientation::angle;
+use crate::program::{Motion, Pace};
+
+/// More legs than this do not wait: the point at the end of them is kept.
+const MOST: usize = 256;
+
+/// Directions of shorter moves mean nothing, mm.
+const LEAST: f64 = 1e-6;
+
+/// Legs that follow one another at one feed and without a corner, and the points at their ends.
+#[derive(Debug, Default)]
+pub(super) struct Gathered {
+    legs: Vec<(u64, Motion)>,
+    nodes: Vec<Node>,
+    setting: usize,
+}
+
+impl Gathered {
+    /// Can a leg to `node` go on here, if the path turns by no more than `corner`, radians?
+    fn joins(&self, leg: &Leg<'_>, node: &Node, corner: f64) -> bool {
+        let (Some((_, motion)), [.., before, last]) = (self.legs.last(), self.nodes.as_slice())
+        else {
+            return false;
+        };
+        let (first, second) = (
+            last.target.tip - before.target.tip,
+            node.target.tip - last.target.tip,
+        );
+        self.legs.len() < MOST
+            && self.setting == leg.setting
+            && motion.pace == leg.motion.pace
+            && first.norm() > LEAST
+            && second.norm() > LEAST
+            && angle(first.normalize(), second.normalize()) <= corner
+    }
+}
+
+impl Path<'_> {
+    /// Does a move to `node` wait, as part of a run?
+    #[inline]
+    pub(super) fn gathers(&self, leg: &Leg<'_>, node: &Node) -> bool {
+        // Cutter radius compensation offsets the points that the control is given.
+        if !self.machine.accuracy.reduce || leg.loose || self.compensating {
+            return false;
+        }
+        // A time of its own cannot be shared.
+        let steady = matches!(leg.motion.pace, Pace::PerMinute(_));
+        steady
+            && self.last.as_ref().is_some_and(|last| {
+                let apart = (self.machine.indexes && self.indexes(last, node))
+                    || (self.machine.stages && self.special(last, node));
+                !apart
+            })
+    }
+
+    /// Takes a move into the run, or ends that and begins another with it.
+    pub(super) fn gather(&mut self, leg: &Leg<'_>, last: &Node, node: &Node) {
+        let corner = self.machine.accuracy.corner;
+        if !self.gathered.joins(leg, node, corner) {
+            self.end_run();
+            self.gathered.setting = leg.setting;
+            self.gathered.nodes.push(*last);
+        }
+        self.gathered.nodes.push(*node);
+        self.gathered.legs.push((leg.line, *leg.motion));
+    }
+
+    /// Carries out the run that waits.
+    #[inline]
+    pub(super) fn end_run(&mut self) {
+        if !self.gathered.legs.is_empty() {
+            self.carry_out_run();
+        }
+    }
+
+    fn carry_out_run(&mut self) {
+        let mut gathered = std::mem::take(&mut self.gathered);
+        let chords = gathered.legs.iter().map(|(_, motion)| motion.chord);
+        let chord = chords.fold(0.0, f64::max);
+        // A block of several legs strays by the farthest of them.
+        for (_, motion) in &mut gathered.legs {
+            motion.chord = chord;
+        }
+        let legs: Vec<Leg<'_>> = gathered
+            .legs
+            .iter()
+            .map(|(line, motion)| Leg {
+                line: *line,
+                motion,
+                loose: false,
+                setting: gathered.setting,
+            })
+            .collect();
+        match (legs.as_slice(), gathered.nodes.as_slice()) {
+            ([leg], [last, node]) => self.cut(leg, last, node),
+            (legs, nodes) => self.split(legs, nodes),
+        }
+        gathered.legs.clear();
+        gathered.nodes.clear();
+        self.gathered = gathered;
+    }
+}

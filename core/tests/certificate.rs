@@ -10,13 +10,13 @@ use std::path::PathBuf;
 
 use common::{Random, Reference, Rng, angle, between, distance, slerp};
 use nalgebra::Vector3;
-use post_core::accuracy::certificate::{Bend, chord_angle, deviation, quick, tight};
+use post_core::accuracy::certificate::{Bend, Course, chord_angle, deviation, quick, rim, tight};
 use post_core::kinematics::{Chain, Joint, Joints, Pose, Solver, Trace};
 use post_core::machine::{Source, load};
 
-/// Both bounds of a block between two wanted poses.
-fn bounds(chain: &Chain, from: &Joints, to: &Joints, wanted: [&Pose; 2]) -> [Bend; 2] {
-    let [first, last] = [from, to].map(|joints| {
+/// The chain at the ends of a block.
+fn traces(chain: &Chain, from: &Joints, to: &Joints) -> [Trace; 2] {
+    [from, to].map(|joints| {
         let mut trace = Trace {
             joints: *joints,
             turns: chain.turns(joints),
@@ -24,7 +24,12 @@ fn bounds(chain: &Chain, from: &Joints, to: &Joints, wanted: [&Pose; 2]) -> [Ben
         };
         chain.trace(&mut trace);
         trace
-    });
+    })
+}
+
+/// Both bounds of a block between two wanted poses.
+fn bounds(chain: &Chain, from: &Joints, to: &Joints, wanted: [&Pose; 2]) -> [Bend; 2] {
+    let [first, last] = traces(chain, from, to);
     let sweep = angle(wanted[0].axis, wanted[1].axis);
     [
         quick(chain, &first, &last, sweep),
@@ -174,6 +179,127 @@ fn tight_is_tight_on_small_moves() {
         worst[0], counted[0], worst[1], counted[1]
     );
     assert!(counted[0] > 3_000 && counted[1] > 1_000, "{counted:?}");
+}
+
+/// Ends put off the path on purpose count against the bow: no sample exceeds the bound, whatever they are, and where
+/// they balance a small move the bound is hardly more than the largest sample.
+#[test]
+fn ends_off_the_path_count_against_the_bow() {
+    let mut rng = Rng(17);
+    let mut worst = 0.0f64;
+    let mut counted = 0;
+    for round in 0..3_000 {
+        let count = if round < 100 { 10_000 } else { 500 };
+        let small = round % 2 == 0;
+        let (machine, from, to) = if small {
+            let (turn, slide) = (rng.range(0.05, 0.99), rng.order(-1.0, 1.0));
+            block(&mut rng, turn, slide)
+        } else {
+            let (turn, slide) = (rng.order(-2.0, 2.5), rng.order(-2.0, 2.8));
+            block(&mut rng, turn, slide)
+        };
+        let reference = &machine.reference;
+        let chain = reference.chain();
+        let [first, last] = traces(&chain, &from, &to);
+        let course = Course::new(&chain, &first, &last);
+        let (start, end) = (pose(reference, &from).tip, pose(reference, &to).tip);
+        let bow = (pose(reference, &between(&from, &to, 0.5)).tip - (start + end) / 2.0) / 2.0;
+        let off = match round % 4 {
+            // As `fewest` puts them, and some way from that.
+            0 | 1 => [-bow; 2],
+            2 => [-bow * rng.range(-1.0, 2.0), -bow * rng.range(-1.0, 2.0)],
+            _ => [rng.point(1.0) * bow.norm(), rng.point(1.0) * bow.norm()],
+        };
+        let wanted = [start - off[0], end - off[1]];
+        let mut sampled = 0.0f64;
+        for step in 0..=count {
+            let t = f64::from(step) / f64::from(count);
+            let reached = reference.forward(&between(&from, &to, t)).0;
+            sampled = sampled.max((reached - (wanted[0] * (1.0 - t) + wanted[1] * t)).norm());
+        }
+        let bound = course.tip(off);
+        assert!(
+            sampled <= bound + 1e-10,
+            "round {round}: {sampled} over {bound}"
+        );
+        let simple = off[0].norm().max(off[1].norm())
+            + course.bend(Vector3::z(), Vector3::z(), 0.0).tip / 8.0;
+        assert!(
+            bound <= simple * (1.0 + 1e-9),
+            "round {round}: {bound}, by ends and bend {simple}"
+        );
+        let across = quick(&chain, &first, &last, 0.0).tip / 8.0;
+        if small && round % 4 == 0 && sampled > 1e-9 && across < 20.0 * sampled {
+            worst = worst.max(bound / sampled);
+            counted += 1;
+        }
+    }
+    println!("balanced ends: at most {worst} of the sampled maximum ({counted})");
+    assert!(worst < 1.05 && counted > 500, "{worst} in {counted}");
+}
+
+/// A cutting edge at radius R strays from its own chord by no more than R times an eighth of `rim`; where one axis
+/// turns that is eq. 10 of Sha et al. 2022, `R·Δ²/8`, and the height of it is eq. 9.
+#[test]
+fn the_cutting_edge_bows_as_the_parabolic_paper_says() {
+    let mut rng = Rng(19);
+    let mut closest = f64::INFINITY;
+    for round in 0..1_000 {
+        let (turn, slide) = (rng.order(-2.0, 2.2), 1.0);
+        let (machine, from, to) = block(&mut rng, turn, slide);
+        let reference = &machine.reference;
+        let chain = reference.chain();
+        let [first, last] = traces(&chain, &from, &to);
+        let bound = rim(&chain, &first, &last) / 8.0;
+        let cheap = quick(&chain, &first, &last, 0.0).turn / 8.0;
+        let axis = chain.axis();
+        let side = common::across(&mut rng, axis);
+        let mut sampled = 0.0f64;
+        // Directions all round the tool axis.
+        for place in 0..12 {
+            let around = f64::from(place) * PI / 12.0;
+            let edge = side * libm::cos(around) + axis.cross(&side) * libm::sin(around);
+            let at = |t: f64| reference.rotation(&between(&from, &to, t)) * edge;
+            let ends = [at(0.0), at(1.0)];
+            for step in 0..=60 {
+                let t = f64::from(step) / 60.0;
+                sampled = sampled.max((at(t) - (ends[0] * (1.0 - t) + ends[1] * t)).norm());
+            }
+        }
+        for bound in [bound, cheap] {
+            assert!(
+                sampled <= bound + 1e-12,
+                "round {round}: {sampled} over {bound}"
+            );
+        }
+        if turn < 2.0 && sampled > 1e-9 {
+            closest = closest.min(sampled / bound);
+        }
+    }
+    println!("cutting edge: the largest sample is at least {closest} of the bound on small moves");
+    assert!(closest > 0.9, "{closest}");
+
+    // Eq. 10 with C at rest, on the disc cutter: any radius is in proportion.
+    let machine = machine_file("disc-cutter.toml", &[]);
+    let solver = machine.solver(0.0).unwrap();
+    let chain = solver.chain();
+    for (first, last) in [(-3.3528f64, -2.1501f64), (10.0, 12.5), (40.0, 40.2)] {
+        let joints = |degrees: f64| {
+            let mut joints = [0.0; 8];
+            joints[4] = FRAC_PI_2;
+            joints[5] = degrees.to_radians();
+            joints
+        };
+        let (from, to) = (joints(first), joints(last));
+        let [start, end] = traces(chain, &from, &to);
+        let turn = (last - first).to_radians();
+        let bow = rim(chain, &start, &end) / 8.0;
+        let paper = turn * turn / 8.0;
+        assert!(
+            (bow / paper - 1.0).abs() < 1e-3,
+            "{bow}, eq. 10 gives {paper}"
+        );
+    }
 }
 
 /// As a block shrinks, `tight` becomes the length of the second derivative, which differences of the independent

@@ -56,10 +56,14 @@ fn text(report: &Report, input: &str, target: &Path) -> String {
     row(
         "blocks",
         format!(
-            "{} in {} lines, {} points put in{}",
+            "{} in {} lines, {} points put in{}{}",
             report.blocks,
             report.nc_lines,
             report.points_added,
+            match report.points_dropped {
+                0 => String::new(),
+                count => format!(", {count} CL points left out"),
+            },
             match report.model_overruled {
                 0 => String::new(),
                 count => format!(" (the certificate overruled the model {count} times)"),

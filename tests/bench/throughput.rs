@@ -5,6 +5,9 @@
 //! is reading, kinematics, certificate, feed and dialect (through the plugin boundary) on one core.
 //! Runs alternate, and medians are compared, so that the machine's drift hits both alike.
 
+#[path = "common/job.rs"]
+mod job;
+
 #[path = "generate.rs"]
 #[expect(dead_code, reason = "its `main` is that of the example")]
 mod generate;
@@ -15,11 +18,7 @@ use std::io::{BufWriter, Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use post_core::machine::{self, Source};
-use post_core::{Job, Output, Post};
-use post_grammar::Reader;
-use post_host::{Plugin, ProgramSetup, ProgramWord};
-use post_plugin::Units;
+use post_core::Job;
 
 /// Points of the file; more by the first argument behind `--`.
 const POINTS: u64 = 1_000_000;
@@ -46,7 +45,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     for _ in 0..RUNS {
         floors.push(timed(|| floor(&path))?);
         for (machine, times) in machines.iter().zip(&mut jobs) {
-            times.push(timed(|| job(&path, machine, "post"))?);
+            let settings = [
+                "control.tcp=\"post\"".to_owned(),
+                "control.dialect=\"fanuc\"".to_owned(),
+            ];
+            times.push(timed(|| {
+                job::run(&path, machine, &settings, Job::default()).map(drop)
+            })?);
         }
     }
     let floor = median(&mut floors);
@@ -80,65 +85,6 @@ fn timed(mut run: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<Duration
 fn median(times: &mut [Duration]) -> Duration {
     times.sort();
     times[times.len() / 2]
-}
-
-/// The whole job, its text thrown away.
-fn job(path: &Path, name: &str, tcp: &str) -> Result<(), Box<dyn Error>> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("machines");
-    let text = fs::read_to_string(root.join(format!("{name}.toml")))?;
-    let source = Source {
-        name: name.to_owned(),
-        text,
-    };
-    let settings = [
-        format!("control.tcp=\"{tcp}\""),
-        "control.dialect=\"fanuc\"".to_owned(),
-    ];
-    let machine = machine::load(source, &settings, &mut |_| Err("none".to_owned()))
-        .map_err(|faults| format!("{faults:?}"))?;
-    let order = post_core::words::order(&machine);
-    let depth = post_core::words::depth(&machine);
-    let setup = ProgramSetup {
-        program: "BENCH".to_owned(),
-        machine: machine.name.clone(),
-        units: Units::Millimetre,
-        tcp: tcp == "control",
-        words: order
-            .into_iter()
-            .map(|place| ProgramWord {
-                name: machine.axes[place].name.clone(),
-                rotary: machine.axes[place].joint.rotary,
-                wrapped: false,
-                depth: Some(place) == depth,
-            })
-            .collect(),
-        options: Vec::new(),
-    };
-    let mut dialect = Plugin::linked(post_fanuc::plugin())?.dialect(&setup)?;
-    let mut model = Plugin::linked(post_sampled::plugin())?.error_model(&[])?;
-    let mut sink = Sink(File::create("/dev/null")?);
-    let job = Job {
-        tool_length: Some(100.0),
-        ..Job::default()
-    };
-    let mut post = Post::new(&machine, job, &mut dialect, &mut model, &mut sink)
-        .map_err(|finding| finding.message)?;
-    let mut reader = Reader::new(File::open(path)?);
-    while let Some(record) = reader.next_record()? {
-        post.record(&record);
-    }
-    let (report, findings) = post.finish();
-    report
-        .map(drop)
-        .ok_or_else(|| format!("{findings:?}").into())
-}
-
-struct Sink(File);
-
-impl Output for Sink {
-    fn write(&mut self, text: &[u8]) -> Result<(), String> {
-        self.0.write_all(text).map_err(|error| error.to_string())
-    }
 }
 
 /// Read, parse six numbers a line, format and write five.

@@ -1,0 +1,82 @@
+//! One whole job, its text thrown away.
+
+use std::error::Error;
+use std::fs::{self, File};
+use std::path::Path;
+
+use post_core::machine::{self, Machine, Source};
+use post_core::report::Report;
+use post_core::{Job, Output, Post, words};
+use post_grammar::Reader;
+use post_host::{Plugin, ProgramSetup, ProgramWord};
+use post_plugin::Units;
+
+/// A machine of the library.
+pub fn machine(name: &str, settings: &[String]) -> Result<Machine, Box<dyn Error>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("machines");
+    let mut find = |name: &str| {
+        let text = fs::read_to_string(root.join(format!("{name}.toml")));
+        text.map(|text| Source {
+            name: name.to_owned(),
+            text,
+        })
+        .map_err(|error| error.to_string())
+    };
+    let source = find(name)?;
+    machine::load(source, settings, &mut find).map_err(|faults| format!("{faults:?}").into())
+}
+
+/// Posts a CL file through the plugin boundary.
+pub fn run(
+    path: &Path,
+    name: &str,
+    settings: &[String],
+    job: Job,
+) -> Result<Report, Box<dyn Error>> {
+    let machine = machine(name, settings)?;
+    let depth = words::depth(&machine);
+    let setup = ProgramSetup {
+        program: "BENCH".to_owned(),
+        machine: machine.name.clone(),
+        units: Units::Millimetre,
+        tcp: machine.control.tcp == machine::Tcp::Control,
+        words: words::order(&machine)
+            .into_iter()
+            .map(|place| ProgramWord {
+                name: machine.axes[place].name.clone(),
+                rotary: machine.axes[place].joint.rotary,
+                wrapped: false,
+                depth: Some(place) == depth,
+            })
+            .collect(),
+        options: Vec::new(),
+    };
+    let dialect = match machine.control.dialect.as_str() {
+        "linuxcnc" => post_linuxcnc::plugin(),
+        "heidenhain" => post_heidenhain::plugin(),
+        _ => post_fanuc::plugin(),
+    };
+    let mut dialect = Plugin::linked(dialect)?.dialect(&setup)?;
+    let mut model = Plugin::linked(post_sampled::plugin())?.error_model(&[])?;
+    let job = Job {
+        tool_length: Some(100.0),
+        ..job
+    };
+    let mut nowhere = Nowhere;
+    let mut post = Post::new(&machine, job, &mut dialect, &mut model, &mut nowhere)
+        .map_err(|finding| finding.message)?;
+    let mut reader = Reader::new(File::open(path)?);
+    while let Some(record) = reader.next_record()? {
+        post.record(&record);
+    }
+    let (report, findings) = post.finish();
+    report.ok_or_else(|| format!("{findings:?}").into())
+}
+
+struct Nowhere;
+
+impl Output for Nowhere {
+    fn write(&mut self, _: &[u8]) -> Result<(), String> {
+        Ok(())
+    }
+}

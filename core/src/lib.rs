@@ -3,7 +3,7 @@
 //! A record of the CL file takes one way through, never back:
 //! [`program`] settles what is meant, [`kinematics`] finds the axis values, [`accuracy`] puts points in and
 //! proves the deviation, [`feed`] says how fast, and the events go to a dialect. [`Post`] joins them.
-//! [`check`] derives from a machine what its builder can compare.
+//! [`check`] derives from a machine what its builder can compare, [`study`] takes the deviation of a file apart.
 //! There is no input or output here, no unsafe code and no dialect's name.
 
 pub mod accuracy;
@@ -19,7 +19,8 @@ mod recent;
 mod refusal;
 pub mod report;
 mod route;
+pub mod study;
 pub mod words;
 
-pub use path::Output;
+pub use path::{Output, Watch};
 pub use post::{Job, MOST_FAULTS, Post};

@@ -5,7 +5,7 @@ use post_plugin::{DialectSession, ModelSession};
 
 use crate::diagnostic::{Diagnostic, Extreme, Place, Severity, unreadable};
 use crate::machine::{Machine, Tcp};
-use crate::path::{Output, Path};
+use crate::path::{Output, Path, Watch};
 use crate::program::{Interpreter, Reading, record_place};
 use crate::recent::Recent;
 use crate::report::{AxisRange, Deviation, Report};
@@ -88,6 +88,11 @@ impl<'a> Post<'a> {
             faults: 0,
             recent: Recent::default(),
         })
+    }
+
+    /// Shows every cut to `watch` from here on.
+    pub fn watch(&mut self, watch: &'a mut dyn Watch) {
+        self.path.watch(watch);
     }
 
     /// Takes a record.

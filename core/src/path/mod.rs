@@ -12,7 +12,7 @@ use post_plugin::{
     Batch, Compensation, Coolant, DialectSession, Event, Format, ModelSession, Spindle,
 };
 
-use crate::accuracy::{Linearise, Node};
+use crate::accuracy::{Linearise, Move, Node};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::feed::Feeds;
 use crate::kinematics::Pose;
@@ -30,6 +30,13 @@ pub trait Output {
     /// # Errors
     /// Why it cannot.
     fn write(&mut self, text: &[u8]) -> Result<(), String>;
+}
+
+/// Looks on while a path is made.
+pub trait Watch {
+    /// Takes a cut between two CL points, before any point is put in. Chords of arcs, splines and cycles come one by
+    /// one. Where `reduce` gathers CL points, cuts go by unseen.
+    fn cut(&mut self, line: u64, cut: &Move<'_>);
 }
 
 /// Events are handed over in runs of this length: from some dozens on, the plugin boundary costs nothing.
@@ -58,6 +65,8 @@ pub struct Path<'a> {
     chosen: Vec<Chosen>,
     feeds: Feeds,
     linearise: Linearise,
+    /// Who looks on.
+    watch: Option<&'a mut dyn Watch>,
     /// CL points that wait for those behind them.
     gathered: Gathered,
     /// What the user says of every tool.
@@ -143,6 +152,7 @@ impl<'a> Path<'a> {
             chosen: Vec::new(),
             feeds,
             linearise: Linearise::new(&machine.accuracy, trust_model),
+            watch: None,
             gathered: Gathered::default(),
             told_length: tool_length,
             length,
@@ -168,6 +178,11 @@ impl<'a> Path<'a> {
             findings: Vec::new(),
             failed: false,
         })
+    }
+
+    /// Shows every cut to `watch`.
+    pub fn watch(&mut self, watch: &'a mut dyn Watch) {
+        self.watch = Some(watch);
     }
 
     /// Findings since the last call; of their places only the line is filled in.

@@ -435,6 +435,9 @@ impl Path<'_> {
     pub(super) fn cut(&mut self, leg: &Leg<'_>, last: &Node, node: &Node) {
         let placer = self.route.placer(leg.setting);
         let whole = planned(self.machine, placer, leg.motion, leg.loose, last, node);
+        if let (false, Some(watch)) = (leg.loose, &mut self.watch) {
+            watch.cut(leg.line, &whole);
+        }
         match whole.whole() {
             Some(bound) => {
                 let slots = Slots::of(leg);

@@ -1,11 +1,16 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use post_core::diagnostic::Diagnostic;
+use post_core::machine::Machine;
 
 use crate::check::CheckArguments;
+use crate::input::standard;
+use crate::machines;
 use crate::new::NewArguments;
+use crate::study::StudyArguments;
 use crate::values::{Point, TcpArgument, UnitsArgument, not_negative, point, positive};
 
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
@@ -26,6 +31,7 @@ use crate::values::{Point, TcpArgument, UnitsArgument, not_negative, point, posi
   post words part.cls
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg
+  post study part.cls --machine ac-trunnion
 
 Exit codes: 0 the program is written; 1 refused, the messages say why; 2 the command line is wrong.",
     max_term_width = 100
@@ -61,17 +67,13 @@ pub enum Command {
     Schema,
     Check(CheckArguments),
     New(NewArguments),
+    Study(Box<StudyArguments>),
 }
 
 #[derive(Debug, Args)]
 pub struct PostArguments {
-    /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
-    #[arg(short, long, value_name = "MACHINE", required = true)]
-    pub machine: Option<String>,
-
-    /// The CL file, `-` for standard input.
-    #[arg(value_name = "CL-FILE", required = true)]
-    pub input: Option<PathBuf>,
+    #[command(flatten)]
+    pub job: JobArguments,
 
     /// The NC program, `-` for standard output. [default: beside the CL file, with the dialect's ending]
     #[arg(short, long, value_name = "FILE")]
@@ -84,6 +86,22 @@ pub struct PostArguments {
     /// No summary, warnings and errors alone.
     #[arg(short, long)]
     pub quiet: bool,
+
+    /// Takes the error model's word where the certificate finds more, and only reports it.
+    #[arg(long, help_heading = "Plugins")]
+    pub trust_model: bool,
+}
+
+/// A CL file, how it is read, and the machine.
+#[derive(Debug, Args)]
+pub struct JobArguments {
+    /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
+    #[arg(short, long, value_name = "MACHINE", required = true)]
+    pub machine: Option<String>,
+
+    /// The CL file, `-` for standard input.
+    #[arg(value_name = "CL-FILE", required = true)]
+    pub input: Option<PathBuf>,
 
     /// Units of the CL file's numbers, whatever it says.
     #[arg(long, value_enum, value_name = "UNITS", help_heading = "Reading")]
@@ -154,10 +172,6 @@ pub struct PostArguments {
     /// its code, so no folder is looked into that is not named here.
     #[arg(long, value_name = "FOLDER", help_heading = "Plugins")]
     pub plugins: Vec<PathBuf>,
-
-    /// Takes the error model's word where the certificate finds more, and only reports it.
-    #[arg(long, help_heading = "Plugins")]
-    pub trust_model: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, ValueEnum)]
@@ -175,9 +189,22 @@ pub enum UnknownArgument {
     Pass,
 }
 
-impl PostArguments {
+impl JobArguments {
+    /// The CL file.
+    pub fn input(&self) -> &Path {
+        self.input.as_deref().unwrap_or(standard())
+    }
+
+    /// The machine with all settings, and `more` after them.
+    pub fn machine(&self, more: &[String]) -> Result<Machine, Vec<Diagnostic>> {
+        let mut settings = self.settings();
+        settings.extend_from_slice(more);
+        let name = self.machine.as_deref().unwrap_or_default();
+        machines::load(name, &self.machines, &settings)
+    }
+
     /// What the short flags set, after what `--set` sets.
-    pub fn settings(&self) -> Vec<String> {
+    fn settings(&self) -> Vec<String> {
         let mut settings = self.set.clone();
         if let Some(mount) = &self.mount {
             settings.push(mount.setting());

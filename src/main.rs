@@ -10,7 +10,9 @@ mod plugins;
 mod posting;
 mod progress;
 mod render;
+mod study;
 mod summary;
+mod svg;
 mod values;
 mod words;
 
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
         }
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::New(arguments)) => new::run(arguments),
+        Some(Command::Study(arguments)) => study::run(arguments),
         None => posting::run(&arguments.post),
     };
     match done {

@@ -9,22 +9,18 @@ use post_core::{Job, Output, Post};
 use post_grammar::{ReadError, Reader, Units};
 use post_plugin::DialectSession;
 
-use crate::arguments::{Msys, PostArguments, UnknownArgument};
+use crate::arguments::{JobArguments, Msys, PostArguments, UnknownArgument};
 use crate::input::{Input, one, standard};
 use crate::output::{Target, Whole};
 use crate::progress::Progress;
 use crate::values::UnitsArgument;
-use crate::{machines, plugins, render, summary};
+use crate::{plugins, render, summary};
 
 /// Posts as the arguments say.
 pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
-    let input_path = arguments.input.as_deref().unwrap_or(standard());
-    let machine = machines::load(
-        arguments.machine.as_deref().unwrap_or_default(),
-        &arguments.machines,
-        &arguments.settings(),
-    )?;
-    let finder = plugins::finder(&arguments.plugins)?;
+    let input_path = arguments.job.input();
+    let machine = arguments.job.machine(&[])?;
+    let finder = plugins::finder(&arguments.job.plugins)?;
     let program = program_name(input_path, arguments.output.as_deref());
     let (mut dialect, dialect_use) = plugins::dialect(&finder, &machine, &program)?;
     let (mut model, model_use) = plugins::model(&finder, &machine)?;
@@ -32,28 +28,14 @@ pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
     let summary_file = summary_file(input_path, arguments, &path)?;
     let input = Input::open(input_path)?;
     let mut file = create(&path)?;
-    let mut progress = Progress::new(input.length);
-    let mut reader = Reader::new(input.bytes);
-    let mut post = Post::new(
-        &machine,
-        job(arguments, &input.name),
-        &mut dialect,
-        &mut model,
-        &mut file,
-    )
-    .map_err(|finding| vec![*finding])?;
-    while !post.gave_up() {
-        match reader.next_record() {
-            Ok(Some(record)) => post.record(&record),
-            Ok(None) => break,
-            Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
-            Err(ReadError::Io(error)) => {
-                return Err(one("input", format!("{}: {error}", input.name)));
-            }
-        }
-        progress.record(|| reader.bytes_read());
-    }
-    progress.finish();
+    let name = input.name.clone();
+    let job = Job {
+        trust_model: arguments.trust_model,
+        ..job(&arguments.job, &name)
+    };
+    let mut post = Post::new(&machine, job, &mut dialect, &mut model, &mut file)
+        .map_err(|finding| vec![*finding])?;
+    read(input, &mut post)?;
     let (report, findings) = post.finish();
     let Some(mut report) = report else {
         return Err(findings);
@@ -76,8 +58,27 @@ pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
     if !arguments.quiet {
         let to_stderr =
             [Some(path.as_path()), arguments.summary.as_deref()].contains(&Some(standard()));
-        summary::print(&report, &input.name, &path, to_stderr);
+        summary::print(&report, &name, &path, to_stderr);
     }
+    Ok(())
+}
+
+/// Reads a CL file to its end, or until there are so many faults that it is given up.
+pub fn read(input: Input, post: &mut Post<'_>) -> Result<(), Vec<Diagnostic>> {
+    let mut progress = Progress::new(input.length);
+    let mut reader = Reader::new(input.bytes);
+    while !post.gave_up() {
+        match reader.next_record() {
+            Ok(Some(record)) => post.record(&record),
+            Ok(None) => break,
+            Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
+            Err(ReadError::Io(error)) => {
+                return Err(one("input", format!("{}: {error}", input.name)));
+            }
+        }
+        progress.record(|| reader.bytes_read());
+    }
+    progress.finish();
     Ok(())
 }
 
@@ -131,7 +132,8 @@ fn summary_file(
     Ok(Some((create(path)?, path.clone())))
 }
 
-fn job(arguments: &PostArguments, file: &str) -> Job {
+/// How a CL file is posted.
+pub fn job(arguments: &JobArguments, file: &str) -> Job {
     Job {
         reading: Reading {
             file: file.to_owned(),
@@ -149,12 +151,12 @@ fn job(arguments: &PostArguments, file: &str) -> Job {
             ..Reading::default()
         },
         tool_length: arguments.tool_length,
-        trust_model: arguments.trust_model,
+        trust_model: false,
     }
 }
 
 /// The program is called after its file, or after the CL file.
-fn program_name(input: &Path, output: Option<&Path>) -> String {
+pub fn program_name(input: &Path, output: Option<&Path>) -> String {
     [output, Some(input)]
         .into_iter()
         .flatten()

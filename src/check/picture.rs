@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 
 use post_core::check::{Check, number};
 
+use crate::svg::{self, label};
+
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 700.0;
 /// Middle of the map, px.
@@ -16,15 +18,7 @@ const GREYS: [&str; 5] = ["#ffffff", "#dedede", "#bcbcbc", "#999999", "#767676"]
 
 /// The picture of a check.
 pub fn draw(check: &Check) -> String {
-    let mut svg = String::new();
-    let _ = writeln!(
-        svg,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" font-family=\"sans-serif\" font-size=\"13\">"
-    );
-    let _ = writeln!(
-        svg,
-        "<rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"#ffffff\"/>"
-    );
+    let mut svg = svg::open(WIDTH, HEIGHT);
     label(
         &mut svg,
         [320.0, 20.0],
@@ -233,16 +227,5 @@ fn legend(svg: &mut String, check: &Check) {
             tilt(check.reach.tilt_in_all_azimuths_deg),
             tilt(check.reach.tilt_in_some_azimuth_deg),
         ),
-    );
-}
-
-fn label(svg: &mut String, [x, y]: [f64; 2], anchor: &str, text: &str) {
-    let safe = text
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;");
-    let _ = writeln!(
-        svg,
-        "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\">{safe}</text>"
     );
 }

@@ -74,7 +74,9 @@ pub fn explained(
         .zip(places())
         .map(|(value, t)| (value - fit(t)).norm_squared())
         .sum();
-    (total > 0.0).then(|| 1.0 - left / total)
+    let size: f64 = values.iter().map(|value| value.norm_squared()).sum();
+    // Less than what rounding makes of a constant.
+    (total > 1e-24 * size).then(|| 1.0 - left / total)
 }
 
 #[cfg(test)]

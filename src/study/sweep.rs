@@ -1,0 +1,105 @@
+//! `--sweep NAME=FROM:TO:STEP`: the same file on the same machine, one number of it changed step by step.
+
+use post_core::diagnostic::Diagnostic;
+use post_core::study::{Distribution, Keeper, Kept};
+
+use super::Job;
+use crate::input::one;
+
+/// More values than this are a slip.
+const MOST: f64 = 200.0;
+
+/// A name and the values that it takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// A parameter of the machine, or any key.
+    pub name: String,
+    /// Its values, rising.
+    pub values: Vec<f64>,
+}
+
+/// What came of one value.
+pub struct Swept {
+    pub value: f64,
+    /// Over all moves, mm.
+    pub told: Distribution,
+    /// The move that is looked at.
+    pub kept: Option<Kept>,
+}
+
+/// `NAME=FROM:TO:STEP`.
+pub fn parse(text: &str) -> Result<Sweep, String> {
+    let form = || "it has the form NAME=FROM:TO:STEP, as in Lm=100:400:50".to_owned();
+    let (name, range) = text.split_once('=').ok_or_else(form)?;
+    let numbers: Vec<f64> = range
+        .split(':')
+        .map(|number| crate::values::finite(number.trim()))
+        .collect::<Result<_, _>>()?;
+    let [from, to, step] = numbers[..] else {
+        return Err(form());
+    };
+    if name.trim().is_empty() {
+        return Err(form());
+    }
+    if step <= 0.0 || to <= from {
+        return Err("the step must be above zero, and TO above FROM".to_owned());
+    }
+    let count = libm::floor((to - from) / step + 1e-9) + 1.0;
+    if count > MOST {
+        return Err(format!("{count} values are too many; {MOST} at most"));
+    }
+    Ok(Sweep {
+        name: name.trim().to_owned(),
+        values: (0..count as u32)
+            .map(|index| from + f64::from(index) * step)
+            .collect(),
+    })
+}
+
+/// Goes over the file once for each value, and keeps move `number`.
+pub fn run(job: &Job<'_>, sweep: &Sweep, number: usize) -> Result<Vec<Swept>, Vec<Diagnostic>> {
+    let mut swept = Vec::new();
+    for value in &sweep.values {
+        let setting = format!("{}={value:?}", sweep.name);
+        let machine = job.machine(&[setting])?;
+        let mut keeper = Keeper::new(number..number + 1);
+        job.pass(&machine, Some(&mut keeper)).map_err(|mut findings| {
+            findings.extend(one(
+                "study",
+                format!("this is with --sweep {} = {value}", sweep.name),
+            ));
+            findings
+        })?;
+        swept.push(Swept {
+            value: *value,
+            told: Distribution::of(&mut keeper.peaks),
+            kept: keeper.kept.pop(),
+        });
+    }
+    Ok(swept)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sweep_has_both_ends() {
+        let sweep = parse("Lm=100:400:50").unwrap();
+        assert_eq!(sweep.name, "Lm");
+        assert_eq!(
+            sweep.values,
+            [100.0, 150.0, 200.0, 250.0, 300.0, 350.0, 400.0]
+        );
+        assert_eq!(parse("a.b=0:1:0.1").unwrap().values.len(), 11);
+    }
+
+    #[test]
+    fn a_bad_sweep_is_refused() {
+        for text in [
+            "Lm", "Lm=1:2", "=1:2:1", "Lm=1:2:0", "Lm=2:1:1", "Lm=a:2:1", "Lm=0:1:1e-9", "Lm=1:inf:1",
+        ] {
+            assert!(parse(text).is_err(), "{text}");
+        }
+    }
+}

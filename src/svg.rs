@@ -1,0 +1,41 @@
+//! What all pictures share.
+
+use std::fmt::Write as _;
+
+/// The beginning of a picture on white; `</svg>` is its end.
+pub fn open(width: f64, height: f64) -> String {
+    let mut svg = String::new();
+    let _ = writeln!(
+        svg,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" font-family=\"sans-serif\" font-size=\"13\">"
+    );
+    let _ = writeln!(
+        svg,
+        "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>"
+    );
+    svg
+}
+
+/// A line of text; the anchor is `start`, `middle` or `end`.
+pub fn label(svg: &mut String, [x, y]: [f64; 2], anchor: &str, text: &str) {
+    let text = safe(text);
+    let _ = writeln!(
+        svg,
+        "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\">{text}</text>"
+    );
+}
+
+/// A line of text that runs upwards about its middle.
+pub fn upright(svg: &mut String, [x, y]: [f64; 2], text: &str) {
+    let text = safe(text);
+    let _ = writeln!(
+        svg,
+        "<text transform=\"translate({x:.2} {y:.2}) rotate(-90)\" text-anchor=\"middle\">{text}</text>"
+    );
+}
+
+fn safe(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}

@@ -25,12 +25,12 @@ impl Linearise {
         model: &mut dyn ModelSession,
     ) -> Result<(), Stuck> {
         let judged = self.judge(whole, model)?;
-        let Some(curve) = judged.curve.filter(|_| !judged.good) else {
+        if judged.good {
             self.keep(*whole.to, judged.bound);
             return Ok(());
-        };
-        let times = (curve.tip_peak / whole.tolerances.tip)
-            .max(curve.axis_peak.to_radians() / whole.tolerances.axis);
+        }
+        let times =
+            (judged.peak.tip / whole.tolerances.tip).max(judged.peak.axis / whole.tolerances.axis);
         let asked = libm::ceil(libm::sqrt(times.min(LIMIT))).max(2.0) as u32;
         let before = self.count();
         let mut count = asked;

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
+
 use super::GivenOption;
 use super::build::Builder;
 use super::file::{AccuracyFile, ControlPointFile, Method, Placement, Quantity};
@@ -35,7 +37,7 @@ pub struct Accuracy {
 }
 
 /// The point of the tool whose deviation is bounded.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ControlPoint {
     /// How far it stands from the point that the CL file gives, along the tool axis towards the holder, mm: the
     /// centre of a disc whose lower face the CL file guides, the centre of a ball. This point, not the tip, goes

@@ -20,8 +20,10 @@ pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
     missing(named)?;
     let linked = [
         post_fanuc::plugin(),
+        post_harmonic::plugin(),
         post_heidenhain::plugin(),
         post_linuxcnc::plugin(),
+        post_parabolic::plugin(),
         post_sampled::plugin(),
     ]
     .into_iter()

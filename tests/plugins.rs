@@ -15,7 +15,26 @@ use common::{CASES, Run, command, run, sample};
 use serde_json::Value;
 use tempfile::TempDir;
 
-const PLUGINS: [&str; 4] = ["fanuc", "heidenhain", "linuxcnc", "sampled"];
+const PLUGINS: [&str; 6] = [
+    "fanuc",
+    "harmonic",
+    "heidenhain",
+    "linuxcnc",
+    "parabolic",
+    "sampled",
+];
+
+/// Settings that make the models work that no machine file names.
+const MODELS: [&[&str]; 3] = [
+    &["--set", "accuracy.model=\"harmonic\""],
+    &[
+        "--set",
+        "accuracy.model=\"harmonic\"",
+        "--set",
+        "accuracy.harmonic.order=3",
+    ],
+    &["--set", "accuracy.model=\"parabolic\""],
+];
 
 /// The library that cargo built for a plugin: beside this test, or one folder up; with a hash in its name
 /// if cargo gave it one.
@@ -47,7 +66,7 @@ fn built(name: &str) -> PathBuf {
     )
 }
 
-/// A folder that holds the four libraries and nothing else.
+/// A folder that holds the stock libraries and nothing else.
 fn libraries() -> &'static Path {
     static FOLDER: OnceLock<TempDir> = OnceLock::new();
     FOLDER
@@ -66,9 +85,12 @@ fn libraries() -> &'static Path {
 fn both_forms_write_the_same_bytes() {
     let folder = libraries();
     let mut hashes: BTreeMap<String, String> = BTreeMap::new();
-    for case in CASES {
-        let (linked, linked_summary) = case.post(&[]);
-        let (opened, opened_summary) = case.post(&["--plugins", folder.to_str().unwrap()]);
+    let plain = CASES.iter().map(|case| (case, [].as_slice()));
+    let runs = plain.chain(MODELS.map(|model| (&CASES[0], model)));
+    for (case, model) in runs {
+        let (linked, linked_summary) = case.post(model);
+        let from = ["--plugins", folder.to_str().unwrap()];
+        let (opened, opened_summary) = case.post(&[model, &from].concat());
         assert!(
             linked.out == opened.out,
             "{}: the programs differ",

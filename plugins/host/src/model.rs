@@ -93,7 +93,7 @@ impl OpenedModel {
         if failed {
             return Err(self.last_error());
         }
-        if out.iter().all(is_finite) {
+        if out.iter().all(Deviation::is_finite) {
             Ok(out)
         } else {
             Err(self.say("the deviation of its curve is not a finite number"))
@@ -185,11 +185,6 @@ impl Drop for OpenedModel {
             unsafe { close(self.ctx) };
         }
     }
-}
-
-fn is_finite(deviation: &Deviation) -> bool {
-    let numbers = deviation.tip.iter().chain(&deviation.axis);
-    numbers.copied().all(f64::is_finite)
 }
 
 /// The host's function on its way through the plugin.

@@ -1,5 +1,7 @@
 //! The plugins that are part of the command, and those that the user's folders hold.
 
+pub mod kit;
+
 use std::path::PathBuf;
 
 use post_core::diagnostic::{Diagnostic, Place};

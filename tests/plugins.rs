@@ -205,3 +205,91 @@ fn a_broken_library_is_refused() {
         done.err
     );
 }
+
+#[test]
+fn the_kit_finds_nothing_wrong_with_the_stock_plugins() {
+    for name in PLUGINS {
+        let file = libraries().join(format!("{DLL_PREFIX}post_{name}{DLL_SUFFIX}"));
+        let opened = common::post(&["plugin", "test", file.to_str().unwrap()]);
+        assert_eq!((opened.code, opened.err.as_str()), (0, ""), "{name}");
+        assert!(
+            opened.out.contains("Nothing is wrong in "),
+            "{}",
+            opened.out
+        );
+        let linked = common::post(&["plugin", "test", name]);
+        let cases = |out: &str| out.split_once("\n\n").unwrap().1.to_owned();
+        assert_eq!(cases(&linked.out), cases(&opened.out));
+        assert!(linked.out.contains("(built in)"), "{}", linked.out);
+    }
+    let third = common::post(&["plugin", "test", "harmonic", "--option", "order=3"]);
+    assert_eq!(third.code, 0, "{}", third.err);
+    // Ends and three places between them.
+    assert!(
+        third.out.contains("parabola             5 "),
+        "{}",
+        third.out
+    );
+}
+
+#[test]
+fn the_kit_says_what_is_wrong_with_a_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder
+        .path()
+        .join(format!("{DLL_PREFIX}post_faulty{DLL_SUFFIX}"));
+    fs::copy(built("faulty"), &file).unwrap();
+    let file = file.to_str().unwrap();
+    for (fault, message) in [
+        (
+            "shrinks",
+            "parabola: it says 16.0000 µm for the tip, the deviation reaches 20.0000 µm at t = 0.5",
+        ),
+        (
+            "remembers",
+            "`value` must read nothing but the curve's terms",
+        ),
+        (
+            "panics",
+            "not a number: it does not refuse in words: error model `faulty`: the plugin panicked",
+        ),
+    ] {
+        let option = format!("fault={fault}");
+        let done = common::post(&["plugin", "test", file, "--option", &option]);
+        assert_eq!(done.code, 1, "{fault}: {}", done.out);
+        assert!(done.out.contains("WRONG"), "{fault}: {}", done.out);
+        assert!(!done.out.contains("Nothing is wrong"));
+        assert!(done.err.contains("error[plugin-test]: "), "{}", done.err);
+        assert!(done.err.contains(message), "{fault}: {}", done.err);
+    }
+    let good = common::post(&["plugin", "test", file]);
+    assert_eq!((good.code, good.err.as_str()), (0, ""));
+}
+
+#[test]
+fn the_kit_refuses_what_is_no_plugin() {
+    for (arguments, message) in [
+        (
+            ["--option", "order=9", "harmonic"],
+            "9 is not between 1 and 8",
+        ),
+        (
+            ["--option", "orders=2", "harmonic"],
+            "option `orders`: not known",
+        ),
+        (["--plugins", "tests", "cubic"], "there is no such plugin"),
+        (
+            ["--plugins", "tests", "tests/plugins.rs"],
+            "the file of a plugin is called",
+        ),
+    ] {
+        let done = common::post(&[&["plugin", "test"], arguments.as_slice()].concat());
+        assert_eq!((done.code, done.out.as_str()), (1, ""));
+        assert!(done.err.contains("error[plugin]"), "{}", done.err);
+        assert!(done.err.contains(message), "{}", done.err);
+    }
+    assert_eq!(
+        common::post(&["plugin", "test", "harmonic", "--option", "order"]).code,
+        2
+    );
+}

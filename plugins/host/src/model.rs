@@ -100,7 +100,8 @@ impl OpenedModel {
         }
     }
 
-    fn check(&self, curve: &Curve) -> Result<(), String> {
+    /// What the model answers is not believed before this.
+    pub(crate) fn check(&self, curve: &Curve) -> Result<(), String> {
         let peaks = [curve.tip_peak, curve.axis_peak];
         if !peaks.iter().all(|peak| peak.is_finite() && *peak >= 0.0) {
             return Err(self.say(&format!(
@@ -120,10 +121,9 @@ impl OpenedModel {
         }
         self.values(curve, [0.0, 0.5, 1.0]).map(|_| ())
     }
-}
 
-impl ModelSession for OpenedModel {
-    fn fit(
+    /// The model's answer as it comes.
+    pub(crate) fn answer(
         &mut self,
         tolerance: &Tolerance,
         deviation: &mut dyn FnMut(&[f64], &mut [Deviation]),
@@ -159,6 +159,17 @@ impl ModelSession for OpenedModel {
         if failed {
             return Err(self.last_error());
         }
+        Ok(curve)
+    }
+}
+
+impl ModelSession for OpenedModel {
+    fn fit(
+        &mut self,
+        tolerance: &Tolerance,
+        deviation: &mut dyn FnMut(&[f64], &mut [Deviation]),
+    ) -> Result<Curve, String> {
+        let curve = self.answer(tolerance, deviation)?;
         self.check(&curve)?;
         Ok(curve)
     }

@@ -10,8 +10,9 @@ const NUMBERS: usize = 6;
 /// Shrinks a bracket of golden-section search.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Steps of that search: a hundred-thousandth of the bracket, so that the length is right to 1e-9 of itself.
-const STEPS: usize = 24;
+/// Steps of that search: to a two-thousandth of the bracket. A length is flat at its peak, so that is right to
+/// some 1e-7 of itself.
+const STEPS: usize = 16;
 
 impl Deviation {
     /// Between `self` at t = 0 and `end` at t = 1, linearly.
@@ -187,7 +188,7 @@ mod tests {
             .fold(0.0, f64::max);
         for pieces in [4, 8, 16, 33] {
             let (size, at) = peak(pieces, shape);
-            assert!((size / best - 1.0).abs() < 1e-8, "{pieces}: {size}");
+            assert!((size / best - 1.0).abs() < 1e-6, "{pieces}: {size}");
             assert_eq!(shape(at), size);
         }
     }
@@ -200,7 +201,7 @@ mod tests {
         assert_eq!(peak(8, |_| 0.0), (0.0, 0.5));
         // A peak between an end and its neighbour.
         let (size, at) = peak(8, |t| 1.0 - (t - 0.02) * (t - 0.02));
-        assert!((size - 1.0).abs() < 1e-9 && (at - 0.02).abs() < 1e-4);
+        assert!((size - 1.0).abs() < 1e-7 && (at - 0.02).abs() < 3e-4);
     }
 
     #[test]

@@ -14,6 +14,9 @@ const UNKNOWN: u32 = 60_000;
 /// Cuts in the program.
 const CUTS: usize = 40;
 
+/// A program's text; or which event was refused, and why.
+type Written = Result<String, (usize, String)>;
+
 pub(super) fn test(
     plugin: &Plugin,
     options: &[(String, GivenValue)],
@@ -208,14 +211,13 @@ fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>> {
     events
 }
 
-/// The text of `events`, given in batches of so many; or which was refused, and why.
-#[allow(clippy::type_complexity)]
+/// Writes `events`, given in batches of so many.
 fn write(
     plugin: &Plugin,
     setup: &ProgramSetup,
     events: &[Event<'_>],
     batch: usize,
-) -> Result<Result<String, (usize, String)>, PluginFault> {
+) -> Result<Written, PluginFault> {
     let mut session = plugin.dialect(setup)?;
     let (mut out, mut ends) = (Vec::new(), Vec::new());
     let mut done = 0;
@@ -233,7 +235,7 @@ fn write(
 }
 
 /// A second run must write the same.
-fn same(name: &'static str, text: &str, other: Result<String, (usize, String)>) -> Case {
+fn same(name: &'static str, text: &str, other: Written) -> Case {
     let mut case = Case::named(name);
     match other {
         Err((_, fault)) => case.wrong(fault),

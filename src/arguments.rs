@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::check::CheckArguments;
 use crate::new::NewArguments;
+use crate::plugins::kit::PluginArguments;
 use crate::values::{Point, TcpArgument, UnitsArgument, not_negative, point, positive};
 
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
@@ -26,6 +27,7 @@ use crate::values::{Point, TcpArgument, UnitsArgument, not_negative, point, posi
   post words part.cls
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg
+  post plugin test target/release/libpost_mine.so
 
 Exit codes: 0 the program is written; 1 refused, the messages say why; 2 the command line is wrong.",
     max_term_width = 100
@@ -61,6 +63,7 @@ pub enum Command {
     Schema,
     Check(CheckArguments),
     New(NewArguments),
+    Plugin(PluginArguments),
 }
 
 #[derive(Debug, Args)]

@@ -387,7 +387,7 @@ pub(crate) struct ControlPointFile {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AccuracyFile {
-    /// The error model, a plugin; sampled if not said.
+    /// The error model, a plugin (sampled, harmonic, parabolic, or one of your own); sampled if not said.
     #[schemars(with = "Option<String>")]
     pub model: Option<Spanned<String>>,
     /// Where points are put in; bisect if not said.

@@ -20,7 +20,7 @@ pub struct Accuracy {
     pub options: Vec<GivenOption>,
     /// What is done about a move that strays.
     pub method: Method,
-    /// Points between two CL points where a move is compensated.
+    /// The least number of points put into a move that is compensated.
     pub points: u32,
     /// Where points are put in.
     pub placement: Placement,
@@ -76,7 +76,7 @@ impl Builder<'_> {
             }
             value
         });
-        let points = file.points.as_ref().map_or(9, |points| {
+        let points = file.points.as_ref().map_or(1, |points| {
             let count = *points.get_ref();
             if !(1..=MOST_POINTS).contains(&count) {
                 self.fault(

@@ -405,7 +405,7 @@ pub(crate) struct AccuracyFile {
     /// What is done about a move that strays; linearise if not said.
     #[serde(default)]
     pub method: Method,
-    /// Points between two CL points where a move is compensated; 9 if not said.
+    /// Points put into a move that is compensated, at least; 1 if not said.
     #[schemars(with = "Option<u32>", extend("minimum" = 1, "maximum" = 999))]
     pub points: Option<Spanned<i64>>,
     /// Drop CL points that the tolerance makes needless; false if not said.

@@ -10,6 +10,7 @@ use crate::check::CheckArguments;
 use crate::input::standard;
 use crate::machines;
 use crate::new::NewArguments;
+use crate::plugins::kit::PluginArguments;
 use crate::study::StudyArguments;
 use crate::values::{Point, TcpArgument, UnitsArgument, not_negative, point, positive};
 
@@ -32,6 +33,7 @@ use crate::values::{Point, TcpArgument, UnitsArgument, not_negative, point, posi
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg
   post study part.cls --machine ac-trunnion
+  post plugin test target/release/libpost_mine.so
 
 Exit codes: 0 the program is written; 1 refused, the messages say why; 2 the command line is wrong.",
     max_term_width = 100
@@ -68,6 +70,7 @@ pub enum Command {
     Check(CheckArguments),
     New(NewArguments),
     Study(Box<StudyArguments>),
+    Plugin(PluginArguments),
 }
 
 #[derive(Debug, Args)]

@@ -39,6 +39,7 @@ fn main() -> ExitCode {
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::New(arguments)) => new::run(arguments),
         Some(Command::Study(arguments)) => study::run(arguments),
+        Some(Command::Plugin(arguments)) => plugins::kit::run(arguments),
         None => posting::run(&arguments.post),
     };
     match done {

@@ -1,5 +1,7 @@
 //! The plugins that are part of the command, and those that the user's folders hold.
 
+pub mod kit;
+
 use std::path::PathBuf;
 
 use post_core::diagnostic::{Diagnostic, Place};
@@ -20,8 +22,10 @@ pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
     missing(named)?;
     let linked = [
         post_fanuc::plugin(),
+        post_harmonic::plugin(),
         post_heidenhain::plugin(),
         post_linuxcnc::plugin(),
+        post_parabolic::plugin(),
         post_sampled::plugin(),
     ]
     .into_iter()
@@ -106,6 +110,14 @@ pub fn model(
         .error_model(&given(&accuracy.options))
         .map_err(fault)?;
     Ok((opened, used(&plugin)))
+}
+
+/// Opens the error model `name` with its options as they are by default.
+pub fn plain_model(finder: &Finder, name: &str) -> Result<OpenedModel, Vec<Diagnostic>> {
+    finder
+        .find(name)
+        .and_then(|plugin| plugin.error_model(&[]))
+        .map_err(|fault| vec![diagnostic(&fault, &[], None)])
 }
 
 fn given(options: &[GivenOption]) -> Vec<(String, GivenValue)> {

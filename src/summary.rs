@@ -70,6 +70,16 @@ fn text(report: &Report, input: &str, target: &Path) -> String {
             }
         ),
     );
+    let point = report.control_point;
+    if point != Default::default() {
+        row(
+            "control point",
+            format!(
+                "{} mm above the point of the CL file, cutting edge at a radius of {} mm",
+                point.along, point.radius
+            ),
+        );
+    }
     row(
         "tip deviation",
         format!(

@@ -15,7 +15,26 @@ use common::{CASES, Run, command, run, sample};
 use serde_json::Value;
 use tempfile::TempDir;
 
-const PLUGINS: [&str; 4] = ["fanuc", "heidenhain", "linuxcnc", "sampled"];
+const PLUGINS: [&str; 6] = [
+    "fanuc",
+    "harmonic",
+    "heidenhain",
+    "linuxcnc",
+    "parabolic",
+    "sampled",
+];
+
+/// Settings that make the models work that no machine file names.
+const MODELS: [&[&str]; 3] = [
+    &["--set", "accuracy.model=\"harmonic\""],
+    &[
+        "--set",
+        "accuracy.model=\"harmonic\"",
+        "--set",
+        "accuracy.harmonic.order=3",
+    ],
+    &["--set", "accuracy.model=\"parabolic\""],
+];
 
 /// The library that cargo built for a plugin: beside this test, or one folder up; with a hash in its name
 /// if cargo gave it one.
@@ -47,7 +66,7 @@ fn built(name: &str) -> PathBuf {
     )
 }
 
-/// A folder that holds the four libraries and nothing else.
+/// A folder that holds the stock libraries and nothing else.
 fn libraries() -> &'static Path {
     static FOLDER: OnceLock<TempDir> = OnceLock::new();
     FOLDER
@@ -66,9 +85,12 @@ fn libraries() -> &'static Path {
 fn both_forms_write_the_same_bytes() {
     let folder = libraries();
     let mut hashes: BTreeMap<String, String> = BTreeMap::new();
-    for case in CASES {
-        let (linked, linked_summary) = case.post(&[]);
-        let (opened, opened_summary) = case.post(&["--plugins", folder.to_str().unwrap()]);
+    let plain = CASES.iter().map(|case| (case, [].as_slice()));
+    let runs = plain.chain(MODELS.map(|model| (&CASES[0], model)));
+    for (case, model) in runs {
+        let (linked, linked_summary) = case.post(model);
+        let from = ["--plugins", folder.to_str().unwrap()];
+        let (opened, opened_summary) = case.post(&[model, &from].concat());
         assert!(
             linked.out == opened.out,
             "{}: the programs differ",
@@ -181,5 +203,93 @@ fn a_broken_library_is_refused() {
         done.err.contains(&broken.display().to_string()),
         "{}",
         done.err
+    );
+}
+
+#[test]
+fn the_kit_finds_nothing_wrong_with_the_stock_plugins() {
+    for name in PLUGINS {
+        let file = libraries().join(format!("{DLL_PREFIX}post_{name}{DLL_SUFFIX}"));
+        let opened = common::post(&["plugin", "test", file.to_str().unwrap()]);
+        assert_eq!((opened.code, opened.err.as_str()), (0, ""), "{name}");
+        assert!(
+            opened.out.contains("Nothing is wrong in "),
+            "{}",
+            opened.out
+        );
+        let linked = common::post(&["plugin", "test", name]);
+        let cases = |out: &str| out.split_once("\n\n").unwrap().1.to_owned();
+        assert_eq!(cases(&linked.out), cases(&opened.out));
+        assert!(linked.out.contains("(built in)"), "{}", linked.out);
+    }
+    let third = common::post(&["plugin", "test", "harmonic", "--option", "order=3"]);
+    assert_eq!(third.code, 0, "{}", third.err);
+    // Ends and three places between them.
+    assert!(
+        third.out.contains("parabola             5 "),
+        "{}",
+        third.out
+    );
+}
+
+#[test]
+fn the_kit_says_what_is_wrong_with_a_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder
+        .path()
+        .join(format!("{DLL_PREFIX}post_faulty{DLL_SUFFIX}"));
+    fs::copy(built("faulty"), &file).unwrap();
+    let file = file.to_str().unwrap();
+    for (fault, message) in [
+        (
+            "shrinks",
+            "parabola: it says 16.0000 µm for the tip, the deviation reaches 20.0000 µm at t = 0.5",
+        ),
+        (
+            "remembers",
+            "`value` must read nothing but the curve's terms",
+        ),
+        (
+            "panics",
+            "not a number: it does not refuse in words: error model `faulty`: the plugin panicked",
+        ),
+    ] {
+        let option = format!("fault={fault}");
+        let done = common::post(&["plugin", "test", file, "--option", &option]);
+        assert_eq!(done.code, 1, "{fault}: {}", done.out);
+        assert!(done.out.contains("WRONG"), "{fault}: {}", done.out);
+        assert!(!done.out.contains("Nothing is wrong"));
+        assert!(done.err.contains("error[plugin-test]: "), "{}", done.err);
+        assert!(done.err.contains(message), "{fault}: {}", done.err);
+    }
+    let good = common::post(&["plugin", "test", file]);
+    assert_eq!((good.code, good.err.as_str()), (0, ""));
+}
+
+#[test]
+fn the_kit_refuses_what_is_no_plugin() {
+    for (arguments, message) in [
+        (
+            ["--option", "order=9", "harmonic"],
+            "9 is not between 1 and 8",
+        ),
+        (
+            ["--option", "orders=2", "harmonic"],
+            "option `orders`: not known",
+        ),
+        (["--plugins", "tests", "cubic"], "there is no such plugin"),
+        (
+            ["--plugins", "tests", "tests/plugins.rs"],
+            "the file of a plugin is called",
+        ),
+    ] {
+        let done = common::post(&[&["plugin", "test"], arguments.as_slice()].concat());
+        assert_eq!((done.code, done.out.as_str()), (1, ""));
+        assert!(done.err.contains("error[plugin]"), "{}", done.err);
+        assert!(done.err.contains(message), "{}", done.err);
+    }
+    assert_eq!(
+        common::post(&["plugin", "test", "harmonic", "--option", "order"]).code,
+        2
     );
 }

@@ -269,6 +269,7 @@ impl<'a> Post<'a> {
                 ..axis
             },
             rapid_deviation_mm: rapid,
+            control_point: machine.control_point,
             tolerance_mm: machine.accuracy.tolerance,
             axis_tolerance_deg: machine.accuracy.axis_tolerance.to_degrees(),
             axes,

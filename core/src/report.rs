@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::machine::ControlPoint;
+
 /// The summary of one program. Its keys are those of `--summary FILE.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
@@ -33,6 +35,9 @@ pub struct Report {
     pub axis_deviation_deg: Deviation,
     /// Certified largest deviation of the tip in a rapid, mm.
     pub rapid_deviation_mm: Deviation,
+    /// The point of the tool that deviations are those of: how far above the point of the CL file, and the radius of
+    /// the cutting edge about it, mm.
+    pub control_point: ControlPoint,
     /// Tolerances in force.
     pub tolerance_mm: f64,
     /// Tolerance of the tool axis, degrees.

@@ -255,7 +255,13 @@ fn axes(svg: &mut String, x: &Scale, y: &Scale) {
     }
     for (value, text) in x.ticks() {
         let across = LEFT + width() * x.share(value);
-        line(svg, [across, bottom], [across, bottom + 5.0], "#000000", 1.0);
+        line(
+            svg,
+            [across, bottom],
+            [across, bottom + 5.0],
+            "#000000",
+            1.0,
+        );
         label(svg, [across, bottom + 19.0], "middle", &text);
     }
     let _ = writeln!(

@@ -63,13 +63,14 @@ pub fn run(job: &Job<'_>, sweep: &Sweep, number: usize) -> Result<Vec<Swept>, Ve
         let setting = format!("{}={value:?}", sweep.name);
         let machine = job.machine(&[setting])?;
         let mut keeper = Keeper::new(number..number + 1);
-        job.pass(&machine, Some(&mut keeper)).map_err(|mut findings| {
-            findings.extend(one(
-                "study",
-                format!("this is with --sweep {} = {value}", sweep.name),
-            ));
-            findings
-        })?;
+        job.pass(&machine, Some(&mut keeper))
+            .map_err(|mut findings| {
+                findings.extend(one(
+                    "study",
+                    format!("this is with --sweep {} = {value}", sweep.name),
+                ));
+                findings
+            })?;
         swept.push(Swept {
             value: *value,
             told: Distribution::of(&mut keeper.peaks),
@@ -97,7 +98,14 @@ mod tests {
     #[test]
     fn a_bad_sweep_is_refused() {
         for text in [
-            "Lm", "Lm=1:2", "=1:2:1", "Lm=1:2:0", "Lm=2:1:1", "Lm=a:2:1", "Lm=0:1:1e-9", "Lm=1:inf:1",
+            "Lm",
+            "Lm=1:2",
+            "=1:2:1",
+            "Lm=1:2:0",
+            "Lm=2:1:1",
+            "Lm=a:2:1",
+            "Lm=0:1:1e-9",
+            "Lm=1:inf:1",
         ] {
             assert!(parse(text).is_err(), "{text}");
         }

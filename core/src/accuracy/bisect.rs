@@ -111,19 +111,29 @@ fn stuck(piece: &Move<'_>) -> Option<Stuck> {
 
 /// The node in the middle of a piece whose deviation is bounded by `bound`.
 fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
+    put_in(piece, 0.5, || bound.axis <= piece.tolerances.axis)
+}
+
+/// The node at a share of a piece: on the exact inverse solution, unless the axes jump there. `holds` says whether
+/// the tool axis stays within tolerance on the axes' own straight line.
+pub(super) fn put_in(
+    piece: &Move<'_>,
+    share: f64,
+    holds: impl FnOnce() -> bool,
+) -> Result<Node, Refused> {
     let (from, to, placer) = (piece.from, piece.to, piece.placer);
-    let t = (from.t + to.t) / 2.0;
+    let t = from.t * (1.0 - share) + to.t * share;
     let (first, last) = (&from.trace.joints, &to.trace.joints);
-    let target = piece.target(0.5);
+    let target = piece.target(share);
     let exact = placer.place_between(target, t, first, last);
-    let halfway = between(first, last, 0.5);
+    let even = between(first, last, share);
     let straight = exact.as_ref().is_ok_and(|node| {
         let joints = placer.solver().chain().joints();
         (0..joints.len())
             .filter(|joint| joints[*joint].rotary)
             .all(|joint| {
                 let turn = libm::fabs(last[joint] - first[joint]);
-                let off = libm::fabs(node.trace.joints[joint] - halfway[joint]);
+                let off = libm::fabs(node.trace.joints[joint] - even[joint]);
                 off <= turn / 4.0 + placer.axis_rounding()
             })
     });
@@ -132,14 +142,14 @@ fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
     }
     // A point that is off by all of the tolerance leaves nothing to the pieces beside it.
     let room = ROOM * piece.tolerances.axis;
-    if bound.axis <= piece.tolerances.axis
-        && let Ok(node) = placer.settled(target, t, &halfway)
+    if holds()
+        && let Ok(node) = placer.settled(target, t, &even)
         && node.axis_error <= room
     {
         return Ok(node);
     }
     // A pole joint is turned evenly, the others keep the tool axis as well as they can.
-    match placer.place_halfway(target, t, first, last) {
+    match placer.place_evenly(target, t, &even) {
         Some(node) if node.axis_error <= room => Ok(node),
         _ => exact,
     }

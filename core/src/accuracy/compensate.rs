@@ -13,6 +13,9 @@ use super::deviation::{Move, between};
 use super::linearise::{Linearise, Stuck};
 use super::node::{Node, Refused};
 
+/// No number of points helps a move that strays by more than this times the tolerance.
+const LIMIT: f64 = 1e6;
+
 impl Linearise {
     /// Compensates a move if its predicted peak exceeds the tolerance. Where what comes out is not within it, the
     /// move is linearised instead.
@@ -29,8 +32,14 @@ impl Linearise {
             self.keep(*whole.to, judged.bound);
             return Ok(());
         };
+        // Half of the tolerance for what a piece bows by, half for what the model misses.
+        let times = 2.0 * judged.peak.tip / whole.tolerances.tip;
+        let needed = libm::ceil(libm::sqrt(times.min(LIMIT))) as u32;
+        let count = needed.max(self.points + 1);
         let before = self.count();
-        let good = self.moved(whole, &curve, model).map_err(Stuck::Refused)?;
+        let good = self
+            .moved(whole, count, &curve, model)
+            .map_err(Stuck::Refused)?;
         if good || self.trust_model {
             return Ok(());
         }
@@ -39,16 +48,16 @@ impl Linearise {
         self.halve(whole, model)
     }
 
-    /// Puts the points in; says whether all pieces are within tolerance.
+    /// Makes `count` pieces; says whether all pieces are within tolerance.
     fn moved(
         &mut self,
         whole: &Move<'_>,
+        count: u32,
         curve: &Curve,
         model: &dyn ModelSession,
     ) -> Result<bool, Refused> {
         let mut from = *whole.from;
         let mut good = true;
-        let count = self.points + 1;
         for step in 1..=count {
             let to = if step == count {
                 *whole.to

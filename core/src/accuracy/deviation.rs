@@ -162,6 +162,14 @@ impl Move<'_> {
         radius * certificate::deviation(ends, bend.turn)
     }
 
+    /// How far the cutting edge strays beyond the control point at most, mm; no model sees that.
+    pub(super) fn edge(&self) -> f64 {
+        if self.placer.control_point().radius == 0.0 {
+            return 0.0;
+        }
+        self.edge_bow(self.course().1)
+    }
+
     fn sampled(&self, bend: Bend) -> Bound {
         let tolerances = self.tolerances;
         let tip_bend = self.tip_bend(bend);

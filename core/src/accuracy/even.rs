@@ -2,7 +2,8 @@
 
 use post_plugin::ModelSession;
 
-use super::deviation::{Bound, Move};
+use super::bisect::put_in;
+use super::deviation::Move;
 use super::linearise::{Linearise, Stuck};
 
 /// More pieces than this times what the model asked for do not help: the move is not smooth.
@@ -24,12 +25,12 @@ impl Linearise {
         model: &mut dyn ModelSession,
     ) -> Result<(), Stuck> {
         let judged = self.judge(whole, model)?;
-        let Some(curve) = judged.curve.filter(|_| !judged.good) else {
+        if judged.good {
             self.keep(*whole.to, judged.bound);
             return Ok(());
-        };
-        let times = (curve.tip_peak / whole.tolerances.tip)
-            .max(curve.axis_peak.to_radians() / whole.tolerances.axis);
+        }
+        let times =
+            (judged.peak.tip / whole.tolerances.tip).max(judged.peak.axis / whole.tolerances.axis);
         let asked = libm::ceil(libm::sqrt(times.min(LIMIT))).max(2.0) as u32;
         let before = self.count();
         let mut count = asked;
@@ -48,8 +49,6 @@ impl Linearise {
 
     /// Cuts a move into `count` equal pieces; says whether all of them are within tolerance.
     fn equal(&mut self, whole: &Move<'_>, count: u32) -> bool {
-        let (first, last) = (&whole.from.trace.joints, &whole.to.trace.joints);
-        let (start, end) = (whole.from.t, whole.to.t);
         let before = self.count();
         let mut from = *whole.from;
         let mut good = true;
@@ -58,10 +57,8 @@ impl Linearise {
                 *whole.to
             } else {
                 let share = f64::from(step) / f64::from(count);
-                let t = start * (1.0 - share) + end * share;
-                let placed = whole
-                    .placer
-                    .place_between(whole.target(share), t, first, last);
+                let holds = || whole.measured().axis <= whole.tolerances.axis;
+                let placed = put_in(whole, share, holds);
                 let Ok(node) = placed else {
                     self.take_back(before);
                     return false;
@@ -73,7 +70,7 @@ impl Linearise {
                 to: &to,
                 ..*whole
             };
-            let bound: Bound = piece.certify();
+            let bound = piece.certify();
             good &= whole.tolerances.hold(bound);
             self.keep(to, bound);
             if !good && !self.trust_model {

@@ -7,6 +7,7 @@
 use nalgebra::Vector3;
 use post_plugin::ModelSession;
 
+use super::bisect::put_in;
 use super::deviation::Bound;
 use super::linearise::{Linearise, Stuck};
 use super::node::Node;
@@ -153,9 +154,9 @@ fn reach(run: &Run<'_>, way: &[f64], (from, start): (&Node, Spot), length: f64) 
     let mut to = if to_end {
         run.end(run.legs())
     } else {
-        let [first, last] = [end.leg, end.leg + 1].map(|node| &run.nodes[node].trace.joints);
-        let target = run.target(end);
-        run.placer.place_between(target, end.t, first, last).ok()?
+        let point = run.start(end.leg);
+        let leg = run.leg(&point, end.leg);
+        put_in(&leg, end.t, || leg.measured().axis <= run.tolerances.axis).ok()?
     };
     // How the block bows: off the path in the middle, beside the line between its ends.
     let middle = run.spot(way, begin + length / 2.0);
@@ -165,7 +166,7 @@ fn reach(run: &Run<'_>, way: &[f64], (from, start): (&Node, Spot), length: f64) 
     let tolerance = run.tolerances.tip;
     let aside = bow.try_normalize(1e-12).unwrap_or_else(Vector3::zeros);
     let mut shift = 0.0;
-    if !to_end && tolerance.is_finite() {
+    if !to_end && run.balances && tolerance.is_finite() {
         shift = (size / 2.0).min(tolerance - run.placer.tip_rounding());
         if shift > run.placer.tip_rounding() {
             let (target, rotary) = (to.target, to.trace.joints);

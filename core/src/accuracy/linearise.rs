@@ -71,6 +71,8 @@ pub(super) struct Judged {
     pub bound: Bound,
     /// The model's answer, if it was asked.
     pub curve: Option<Curve>,
+    /// The peaks of the model's curve, the cutting edge's own share added.
+    pub peak: Bound,
 }
 
 impl Linearise {
@@ -168,6 +170,7 @@ impl Linearise {
                 good: true,
                 bound,
                 curve: None,
+                peak: Bound::default(),
             });
         }
         let tolerance = Tolerance {
@@ -181,10 +184,11 @@ impl Linearise {
                 }
             })
             .map_err(Stuck::Model)?;
-        let content = tolerances.hold(Bound {
-            tip: curve.tip_peak,
+        let peak = Bound {
+            tip: curve.tip_peak + piece.edge(),
             axis: curve.axis_peak.to_radians(),
-        });
+        };
+        let content = tolerances.hold(peak);
         let bound = piece.certify();
         let sure = tolerances.hold(bound);
         if content && !sure && !self.trust_model {
@@ -195,6 +199,7 @@ impl Linearise {
             good: content && (sure || self.trust_model),
             bound,
             curve: Some(curve),
+            peak,
         })
     }
 }

@@ -219,22 +219,15 @@ impl Placer {
         Ok(node)
     }
 
-    /// The node of `target` with the pole joint halfway between two sets of axis values and the others as near
-    /// to the wanted axis as they come; none where the chain has no pole.
-    pub fn place_halfway(
-        &self,
-        target: Pose,
-        t: f64,
-        first: &Joints,
-        last: &Joints,
-    ) -> Option<Node> {
+    /// The node of `target` with the pole joint where `even` has it and the others as near to the wanted axis as
+    /// they come, on the turns of `even`; none where the chain has no pole.
+    pub fn place_evenly(&self, target: Pose, t: f64, even: &Joints) -> Option<Node> {
         let pole = self.solver.pole_joint()?;
-        let mut joints: Joints = std::array::from_fn(|joint| (first[joint] + last[joint]) / 2.0);
-        let halfway = joints;
+        let mut joints = *even;
         self.solver.follow(&target, &mut joints);
         for (joint, axis) in self.solver.chain().joints().iter().enumerate() {
             if axis.rotary && joint != pole {
-                let turns = libm::rint((halfway[joint] - joints[joint]) / TAU);
+                let turns = libm::rint((even[joint] - joints[joint]) / TAU);
                 joints[joint] += TAU * turns;
             }
         }

@@ -21,6 +21,8 @@ pub struct Run<'a> {
     pub tolerances: Tolerances,
     /// The tip follows the words in a straight line by itself.
     pub control_keeps_tip: bool,
+    /// Points put in may stand off the path, so that blocks are balanced about it.
+    pub balances: bool,
 }
 
 /// A place on a run: a share of a leg.

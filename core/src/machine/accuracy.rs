@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
+
 use super::GivenOption;
 use super::build::Builder;
 use super::file::{AccuracyFile, ControlPointFile, Method, Placement, Quantity};
@@ -18,7 +20,7 @@ pub struct Accuracy {
     pub options: Vec<GivenOption>,
     /// What is done about a move that strays.
     pub method: Method,
-    /// Points between two CL points where a move is compensated.
+    /// The least number of points put into a move that is compensated.
     pub points: u32,
     /// Where points are put in.
     pub placement: Placement,
@@ -35,7 +37,7 @@ pub struct Accuracy {
 }
 
 /// The point of the tool whose deviation is bounded.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ControlPoint {
     /// How far it stands from the point that the CL file gives, along the tool axis towards the holder, mm: the
     /// centre of a disc whose lower face the CL file guides, the centre of a ball. This point, not the tip, goes
@@ -74,7 +76,7 @@ impl Builder<'_> {
             }
             value
         });
-        let points = file.points.as_ref().map_or(9, |points| {
+        let points = file.points.as_ref().map_or(1, |points| {
             let count = *points.get_ref();
             if !(1..=MOST_POINTS).contains(&count) {
                 self.fault(

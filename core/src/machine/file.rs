@@ -387,7 +387,7 @@ pub(crate) struct ControlPointFile {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AccuracyFile {
-    /// The error model, a plugin; sampled if not said.
+    /// The error model, a plugin (sampled, harmonic, parabolic, or one of your own); sampled if not said.
     #[schemars(with = "Option<String>")]
     pub model: Option<Spanned<String>>,
     /// Where points are put in; bisect if not said.
@@ -405,7 +405,7 @@ pub(crate) struct AccuracyFile {
     /// What is done about a move that strays; linearise if not said.
     #[serde(default)]
     pub method: Method,
-    /// Points between two CL points where a move is compensated; 9 if not said.
+    /// Points put into a move that is compensated, at least; 1 if not said.
     #[schemars(with = "Option<u32>", extend("minimum" = 1, "maximum" = 999))]
     pub points: Option<Spanned<i64>>,
     /// Drop CL points that the tolerance makes needless; false if not said.

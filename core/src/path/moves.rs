@@ -22,7 +22,7 @@ const EQUAL: f64 = 1e-9;
 const TURN: f64 = 1e-6;
 
 /// A control that shows an axis over one turn takes the shorter way: no block turns it by more, radians.
-const LONGEST: f64 = 2.9;
+pub(super) const LONGEST: f64 = 2.9;
 
 /// A move on its way to the dialect.
 #[derive(Clone, Copy, Debug)]
@@ -473,6 +473,8 @@ impl Path<'_> {
             nodes,
             tolerances: planned.tolerances,
             control_keeps_tip: planned.control_keeps_tip,
+            // A rapid has no surface to be balanced about.
+            balances: !first.loose,
         };
         match linearise.split(&run, self.model) {
             Ok(()) => {

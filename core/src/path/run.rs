@@ -1,7 +1,7 @@
 //! CL points that wait for what comes behind them: along one stretch of path some of them may be needless.
 
 use super::Path;
-use super::moves::Leg;
+use super::moves::{LONGEST, Leg};
 use crate::accuracy::Node;
 use crate::kinematics::orientation::angle;
 use crate::program::{Motion, Pace};
@@ -48,8 +48,9 @@ impl Path<'_> {
         if !self.machine.accuracy.reduce || leg.loose || self.compensating {
             return false;
         }
-        // A time of its own cannot be shared.
-        let steady = matches!(leg.motion.pace, Pace::PerMinute(_));
+        // A time of its own cannot be shared; what moves one axis at a time cannot be put together.
+        let steady = matches!(leg.motion.pace, Pace::PerMinute(_))
+            && self.machine.solution.exclusive.is_empty();
         steady
             && self.last.as_ref().is_some_and(|last| {
                 let apart = (self.machine.indexes && self.indexes(last, node))
@@ -61,13 +62,25 @@ impl Path<'_> {
     /// Takes a move into the run, or ends that and begins another with it.
     pub(super) fn gather(&mut self, leg: &Leg<'_>, last: &Node, node: &Node) {
         let corner = self.machine.accuracy.corner;
-        if !self.gathered.joins(leg, node, corner) {
+        if !self.gathered.joins(leg, node, corner) || self.turns_too_far(node) {
             self.end_run();
             self.gathered.setting = leg.setting;
             self.gathered.nodes.push(*last);
         }
         self.gathered.nodes.push(*node);
         self.gathered.legs.push((leg.line, *leg.motion));
+    }
+
+    /// With a move to `node`, a block of the run could turn an axis so far that a control which shows it over one
+    /// turn takes the other way round.
+    fn turns_too_far(&self, node: &Node) -> bool {
+        let axes = self.machine.axes.iter().enumerate();
+        let mut shown = axes.filter(|(_, axis)| axis.range.is_some());
+        shown.any(|(joint, _)| {
+            let value = node.trace.joints[joint];
+            let mut nodes = self.gathered.nodes.iter();
+            nodes.any(|node| (node.trace.joints[joint] - value).abs() > LONGEST)
+        })
     }
 
     /// Carries out the run that waits.

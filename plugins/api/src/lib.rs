@@ -5,6 +5,7 @@
 
 mod batch;
 mod block;
+mod deviation;
 mod dialect;
 mod event;
 #[doc(hidden)]
@@ -18,6 +19,7 @@ mod text;
 
 pub use batch::Batch;
 pub use block::{Axes, Block, Group, Modal, NumberStyle};
+pub use deviation::{ask, length};
 pub use dialect::{Dialect, DialectSession, Format, WriteFault};
 pub use event::{Compensation, Coolant, Event, Feed, Spindle, SpindleSense};
 pub use export::Linked;

@@ -4,6 +4,7 @@
 //! so what is tested on the one holds for the other. Nothing that a plugin returns is believed before it
 //! was checked.
 
+pub mod conformance;
 mod dialect;
 mod fault;
 mod finder;

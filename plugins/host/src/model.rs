@@ -93,14 +93,15 @@ impl OpenedModel {
         if failed {
             return Err(self.last_error());
         }
-        if out.iter().all(is_finite) {
+        if out.iter().all(Deviation::is_finite) {
             Ok(out)
         } else {
             Err(self.say("the deviation of its curve is not a finite number"))
         }
     }
 
-    fn check(&self, curve: &Curve) -> Result<(), String> {
+    /// What the model answers is not believed before this.
+    pub(crate) fn check(&self, curve: &Curve) -> Result<(), String> {
         let peaks = [curve.tip_peak, curve.axis_peak];
         if !peaks.iter().all(|peak| peak.is_finite() && *peak >= 0.0) {
             return Err(self.say(&format!(
@@ -120,10 +121,9 @@ impl OpenedModel {
         }
         self.values(curve, [0.0, 0.5, 1.0]).map(|_| ())
     }
-}
 
-impl ModelSession for OpenedModel {
-    fn fit(
+    /// The model's answer as it comes.
+    pub(crate) fn answer(
         &mut self,
         tolerance: &Tolerance,
         deviation: &mut dyn FnMut(&[f64], &mut [Deviation]),
@@ -159,6 +159,17 @@ impl ModelSession for OpenedModel {
         if failed {
             return Err(self.last_error());
         }
+        Ok(curve)
+    }
+}
+
+impl ModelSession for OpenedModel {
+    fn fit(
+        &mut self,
+        tolerance: &Tolerance,
+        deviation: &mut dyn FnMut(&[f64], &mut [Deviation]),
+    ) -> Result<Curve, String> {
+        let curve = self.answer(tolerance, deviation)?;
         self.check(&curve)?;
         Ok(curve)
     }
@@ -185,11 +196,6 @@ impl Drop for OpenedModel {
             unsafe { close(self.ctx) };
         }
     }
-}
-
-fn is_finite(deviation: &Deviation) -> bool {
-    let numbers = deviation.tip.iter().chain(&deviation.axis);
-    numbers.copied().all(f64::is_finite)
 }
 
 /// The host's function on its way through the plugin.

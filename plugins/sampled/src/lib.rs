@@ -4,7 +4,9 @@
 //! is judged from how far the middle of a piece lies off its chord: a smooth curve leaves the chords of
 //! the two halves by a quarter of that, and twice as much is allowed for.
 
-use post_plugin::{Curve, Deviation, ErrorModel, OptionSpec, Tolerance, Value, export_error_model};
+use post_plugin::{
+    Curve, Deviation, ErrorModel, OptionSpec, Tolerance, Value, ask, export_error_model, length,
+};
 
 /// Chebyshev-Lobatto places on 0 to 1, ends included: interpolation through them is well-behaved.
 const NODES: [f64; 10] = [
@@ -102,8 +104,7 @@ impl ErrorModel for Sampled {
             .extend((1..self.samples).map(|index| f64::from(index) / f64::from(self.samples)));
         self.ask(deviation)?;
         for (chunk, place) in terms.chunks_exact_mut(6).zip(&self.places) {
-            chunk[..3].copy_from_slice(&place.deviation.tip);
-            chunk[3..].copy_from_slice(&place.deviation.axis);
+            chunk.copy_from_slice(&place.deviation.to_terms());
         }
         self.sort();
         for place in &mut self.places {
@@ -161,14 +162,14 @@ impl ErrorModel for Sampled {
             let share = if end { 0.5 } else { 1.0 };
             let weight = sign * share / (t - node);
             if !weight.is_finite() {
-                return split(terms);
+                return Deviation::from_terms(terms);
             }
             weights += weight;
             for (sum, term) in sum.iter_mut().zip(terms) {
                 *sum += weight * term;
             }
         }
-        split(&sum.map(|sum| sum / weights))
+        Deviation::from_terms(&sum.map(|sum| sum / weights))
     }
 }
 
@@ -180,16 +181,8 @@ impl Sampled {
 
     /// Asks for the deviations at `self.asked` and adds them to the places, at their end.
     fn ask(&mut self, deviation: &mut dyn FnMut(&[f64], &mut [Deviation])) -> Result<(), String> {
-        self.answers.clear();
-        self.answers.resize(self.asked.len(), Deviation::default());
-        deviation(&self.asked, &mut self.answers);
+        ask(deviation, &self.asked, &mut self.answers)?;
         for (&t, &deviation) in self.asked.iter().zip(&self.answers) {
-            let numbers = deviation.tip.iter().chain(&deviation.axis);
-            if !numbers.copied().all(f64::is_finite) {
-                return Err(format!(
-                    "the deviation at {t} of the move is not a finite number"
-                ));
-            }
             self.places.push(Place {
                 t,
                 deviation,
@@ -236,17 +229,6 @@ impl Peak {
         let off = [0, 1, 2].map(|i| middle[i] - (before[i] + after[i]) / 2.0);
         let seen = length(&before).max(length(&middle)).max(length(&after));
         seen + length(&off) / 2.0
-    }
-}
-
-fn length(vector: &[f64; 3]) -> f64 {
-    vector.iter().map(|part| part * part).sum::<f64>().sqrt()
-}
-
-fn split(terms: &[f64]) -> Deviation {
-    Deviation {
-        tip: [terms[0], terms[1], terms[2]],
-        axis: [terms[3], terms[4], terms[5]],
     }
 }
 

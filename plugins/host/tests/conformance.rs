@@ -1,0 +1,217 @@
+//! The conformance kit finds what is wrong, and nothing where nothing is.
+
+// Clippy lets test functions unwrap, but not the helpers beside them.
+#![allow(clippy::unwrap_used)]
+
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+
+use post_host::conformance::{self, Report, Verdict};
+use post_host::{GivenValue, Kind, Plugin};
+use post_plugin::Linked;
+
+fn run(linked: Linked, options: &[(&str, GivenValue)]) -> Report {
+    let options: Vec<(String, GivenValue)> = options
+        .iter()
+        .map(|(key, value)| ((*key).to_owned(), value.clone()))
+        .collect();
+    conformance::test(&Plugin::linked(linked).unwrap(), &options).unwrap()
+}
+
+fn faulty(fault: &str) -> Report {
+    let fault = GivenValue::Text(fault.to_owned());
+    run(post_faulty::plugin(), &[("fault", fault)])
+}
+
+/// An example of this crate, built by `cargo test -p post-host`.
+fn example(name: &str) -> Plugin {
+    let this = std::env::current_exe().unwrap();
+    let folder = this.parent().unwrap().parent().unwrap().join("examples");
+    Plugin::open(&folder.join(format!("{DLL_PREFIX}post_{name}{DLL_SUFFIX}"))).unwrap()
+}
+
+#[test]
+fn the_stock_plugins_are_good() {
+    let number = GivenValue::Integer;
+    let reports = [
+        run(post_parabolic::plugin(), &[]),
+        run(post_harmonic::plugin(), &[]),
+        run(post_harmonic::plugin(), &[("order", number(2))]),
+        run(post_harmonic::plugin(), &[("order", number(3))]),
+        run(
+            post_harmonic::plugin(),
+            &[("order", number(8)), ("samples", number(15))],
+        ),
+        run(post_sampled::plugin(), &[]),
+        run(
+            post_sampled::plugin(),
+            &[("accuracy", GivenValue::Number(1e-4))],
+        ),
+        run(post_fanuc::plugin(), &[]),
+        run(post_heidenhain::plugin(), &[]),
+        run(post_linuxcnc::plugin(), &[]),
+        faulty("nothing"),
+    ];
+    for report in reports {
+        assert!(report.is_good(), "{report}");
+    }
+}
+
+#[test]
+fn what_a_model_may_miss_is_said_and_not_held_against_it() {
+    let verdict = |report: &Report, name: &str| {
+        let case = report.cases.iter().find(|case| case.name == name).unwrap();
+        case.verdict()
+    };
+    let parabolic = run(post_parabolic::plugin(), &[]);
+    assert_eq!(verdict(&parabolic, "two humps"), Verdict::Approximate);
+    assert!(parabolic.table().contains(
+        "two humps: it says 0.0000 µm for the tip, the deviation reaches 20.0000 µm at t = 0.25; the certificate \
+         will overrule it"
+    ));
+    let sampled = run(post_sampled::plugin(), &[]);
+    assert_eq!(verdict(&sampled, "two humps"), Verdict::Good);
+
+    let figures = |report: &Report, name: &str| {
+        let case = report.cases.iter().find(|case| case.name == name).unwrap();
+        case.figures.unwrap()
+    };
+    // Half a sine leaves 5.6 % of a parabola and the other way round; three places tell.
+    let harmonic = run(post_harmonic::plugin(), &[]);
+    for figures in [
+        figures(&harmonic, "parabola"),
+        figures(&parabolic, "half a sine"),
+    ] {
+        assert_eq!(figures.asked, 3);
+        assert!((figures.tip.left / figures.tip.actual - 0.056).abs() < 1e-4);
+        assert!((figures.axis.left / figures.axis.actual - 0.056).abs() < 1e-4);
+    }
+    // Two half waves meet the two humps that one cannot see.
+    let second = run(
+        post_harmonic::plugin(),
+        &[
+            ("order", GivenValue::Integer(2)),
+            ("samples", GivenValue::Integer(3)),
+        ],
+    );
+    assert!(figures(&second, "two humps").tip.left < 1e-12);
+}
+
+#[test]
+fn every_fault_is_found_where_it_is() {
+    for (fault, sentences) in [
+        (
+            "content",
+            &[
+                "parabola: it says 0.0000 µm for the tip, the deviation reaches 20.0000 µm at t = 0.5: it is \
+                 content with a plain bow over the tolerance of 5.0000 µm",
+            ] as &[&str],
+        ),
+        (
+            "understates",
+            &[
+                "parabola: its peak of the tip is 4.9500 µm, and its own curve reaches 20.0000 µm at t = 0.5",
+                "content with a plain bow",
+            ],
+        ),
+        (
+            "shrinks",
+            &[
+                "half a sine: it says 16.0000 µm for the tip, the deviation reaches 20.0000 µm at t = 0.5: on a \
+               plain bow it may be off by 1.0000 µm",
+            ],
+        ),
+        (
+            "misplaces",
+            &[
+                "parabola: its peak of the tool axis is to stand at t = 0, where its curve has 0.0000 °, not at \
+               0.5, where it has 0.2000 °",
+            ],
+        ),
+        (
+            "flat",
+            &["parabola: its curve leaves 9.9970 µm of a plain bow of 20.0000 µm in the tip"],
+        ),
+        (
+            "grows",
+            &[
+                "repeated: in round 1 its answer to `axis alone` is another than at first: tip peak 20.0000 µm instead of 0.0000 µm",
+            ],
+        ),
+        (
+            "remembers",
+            &["repeated: after `none` the curve of `parabola` has other values than before"],
+        ),
+        (
+            "flattens",
+            &["turned: the curve of `parabola`, turned, is another one"],
+        ),
+        (
+            "offset",
+            &[
+                "none: it says 1.0000 µm for the tip, the deviation reaches 0.0000 µm",
+                "scaled: the curve of `none`, scaled, is another one",
+            ],
+        ),
+        (
+            "outside",
+            &["none: it asks for the deviation at t = 1.5, outside the move"],
+        ),
+        (
+            "timid",
+            &["huge: no answer: error model `faulty`: that is too far"],
+        ),
+        (
+            "panics",
+            &[
+                "not a number: it does not refuse in words: error model `faulty`: the plugin panicked: the \
+               deviation at 0 of the move is not a finite number",
+            ],
+        ),
+        (
+            "passes",
+            &["infinite: it passes on what is no number: error model `faulty`: its peaks are NaN"],
+        ),
+    ] {
+        let report = faulty(fault);
+        let found: Vec<String> = report.wrong().collect();
+        for sentence in sentences {
+            assert!(
+                found.iter().any(|found| found.contains(sentence)),
+                "{fault}: {sentence}\n{report}"
+            );
+        }
+    }
+    let report = faulty("ignores");
+    assert!(report.is_good());
+    assert!(report.table().contains(
+        "not a number: it answers with a tip peak of 0.0000 µm where every deviation is NaN; it should refuse"
+    ));
+}
+
+#[test]
+fn dialects_are_run_too() {
+    let tiny = conformance::test(&example("tiny"), &[]).unwrap();
+    assert_eq!(tiny.kind, Kind::Dialect);
+    assert!(tiny.is_good(), "{tiny}");
+    assert!(
+        tiny.table()
+            .contains("program: it refuses Spindle: dialect `tiny`")
+    );
+
+    let panics = conformance::test(&example("panics"), &[]).unwrap();
+    let wrong: Vec<String> = panics.wrong().collect();
+    assert!(
+        wrong
+            .iter()
+            .any(|wrong| wrong.contains("the plugin panicked")),
+        "{panics}"
+    );
+}
+
+#[test]
+fn an_option_that_does_not_fit_is_refused() {
+    let plugin = Plugin::linked(post_harmonic::plugin()).unwrap();
+    let options = [("order".to_owned(), GivenValue::Integer(9))];
+    let fault = conformance::test(&plugin, &options).unwrap_err();
+    assert!(fault.to_string().contains("9 is not between 1 and 8"));
+}

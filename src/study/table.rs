@@ -94,7 +94,7 @@ fn fits(text: &mut String, study: &Study) {
     let _ = writeln!(
         text,
         "\n{:<24} {:>12} {:>12} {:>12} {:>16}",
-        "fit (R² as a vector)", "worst move", "mean R²", "least R²", "left, % of peak"
+        "fit (R² of the length)", "worst move", "mean R²", "least R²", "left, % of peak"
     );
     let row = &study.rows[study.focus];
     for (index, name) in study.models.iter().enumerate() {

@@ -1,5 +1,8 @@
 //! Writes a cutter-location file of any length: a finishing pass over a wavy surface, the tool leaning along
 //! the surface's normal. `cargo run --release --example generate -- 10000000 > big.cls`
+//!
+//! And a blade for a disc cutter, so many rows of it:
+//! `cargo run --example generate -- blade 4 > tests/samples/disc-blade.cls`
 
 use std::io::{self, BufWriter, Write};
 
@@ -8,14 +11,95 @@ const ROW: u64 = 2000;
 /// Rows before the surface is gone over again.
 const ROWS: u64 = 500;
 
+/// Swing length of the disc cutter, mm.
+const SWING: f64 = 312.0;
+/// Points of one row of the blade.
+const BLADE_ROW: usize = 25;
+/// Mean and standard deviation of the largest deviation over the moves of a row, mm (Sha et al. 2022, section 3.2).
+const BLADE_DEVIATION: [f64; 2] = [0.01715, 0.001348];
+
 fn main() -> io::Result<()> {
-    let count = std::env::args()
-        .nth(1)
-        .and_then(|count| count.parse().ok())
-        .unwrap_or(1000);
+    let mut words = std::env::args().skip(1);
+    let first = words.next();
+    let number = |word: Option<String>| word.and_then(|word| word.parse().ok());
     let mut out = BufWriter::new(io::stdout().lock());
-    write_file(&mut out, count)?;
+    if first.as_deref() == Some("blade") {
+        write_blade(&mut out, number(words.next()).unwrap_or(4))?;
+    } else {
+        write_file(&mut out, number(first).unwrap_or(1000))?;
+    }
     out.flush()
+}
+
+/// A blade as the disc cutter of Sha et al. 2022 mills it, to and fro in `rows` rows of 25 points, and off the part
+/// between them. The points lie on the arc through the two that section 2.2 of the paper gives, the tool axis across
+/// it, so that A alone turns while C stands at 90 degrees. The turns of A are such that the deviations at the paper's
+/// mean swing length have the mean and the standard deviation that it tells of its 24 moves.
+pub fn write_blade(out: &mut impl Write, rows: u64) -> io::Result<()> {
+    writeln!(out, "TOOL PATH/BLADE,TOOL,DISC_50")?;
+    writeln!(out, "UNITS/MM")?;
+    writeln!(out, "LOAD/TOOL,1,ADJUST,1")?;
+    writeln!(out, "SPINDL/6000,RPM,CLW")?;
+    let angles = blade_angles();
+    for row in 0..rows {
+        let back = !row.is_multiple_of(2);
+        let y = 2.0 * row as f64;
+        let places = (0..BLADE_ROW).map(|index| {
+            let angle = angles[if back { BLADE_ROW - 1 - index } else { index }];
+            blade_point(angle, y)
+        });
+        let places: Vec<[f64; 6]> = places.collect();
+        let over = |out: &mut dyn Write, [x, y, z, i, j, k]: [f64; 6], lift: f64| {
+            let z = z + lift;
+            writeln!(out, "GOTO/{x:.6},{y:.6},{z:.6},{i:.9},{j:.9},{k:.9}")
+        };
+        writeln!(out, "RAPID")?;
+        over(out, places[0], 20.0)?;
+        writeln!(out, "RAPID")?;
+        over(out, places[0], 0.0)?;
+        writeln!(out, "FEDRAT/MMPM,6000.0")?;
+        for place in &places[1..] {
+            over(out, *place, 0.0)?;
+        }
+        writeln!(out, "RAPID")?;
+        over(out, places[BLADE_ROW - 1], 20.0)?;
+    }
+    writeln!(out, "SPINDL/OFF")?;
+    writeln!(out, "END-OF-PATH")
+}
+
+/// Values of A along a row, radians; the last is that of the paper's second point.
+fn blade_angles() -> [f64; BLADE_ROW] {
+    let [mean, spread] = BLADE_DEVIATION;
+    let moves = (BLADE_ROW - 1) as f64;
+    let mut angles = [(-2.1501f64).to_radians(); BLADE_ROW];
+    for index in (0..BLADE_ROW - 1).rev() {
+        // Whole waves over the row have the mean 0; the squares of these heights sum up to 2, so that their standard
+        // deviation is 1.
+        let wave = [(1.0, 1.0), (5.0, 0.8), (7.0, 0.6)].map(|(count, height)| {
+            height * libm::sin(std::f64::consts::TAU * count * index as f64 / moves + count)
+        });
+        let deviation = mean + spread * wave.iter().sum::<f64>();
+        // A turn of Δ makes the tip stray by Lm·(1 - cos(Δ/2)).
+        angles[index] = angles[index + 1] - 2.0 * libm::acos(1.0 - deviation / SWING);
+    }
+    angles
+}
+
+/// Point and tool axis of the blade where A has this value, radians.
+fn blade_point(angle: f64, y: f64) -> [f64; 6] {
+    // The circle across the paper's two tool axes through its two points.
+    const RADIUS: f64 = 136.735;
+    const MIDDLE: [f64; 2] = [41.385, -128.381];
+    let (sine, cosine) = libm::sincos(angle);
+    [
+        MIDDLE[0] + RADIUS * sine,
+        y,
+        MIDDLE[1] + RADIUS * cosine,
+        sine,
+        0.0,
+        cosine,
+    ]
 }
 
 /// A file of `count` five-axis points in the form that NX writes.

@@ -1,7 +1,5 @@
 //! Curves over one move: the largest value, and how well one explains another.
 
-use nalgebra::Vector3;
-
 /// Even pieces that are looked at before the largest is refined.
 const PIECES: u32 = 64;
 
@@ -55,28 +53,23 @@ pub fn peak(curve: impl Fn(f64) -> f64) -> Peak {
     best
 }
 
-/// Coefficient of determination of `fit` as an explanation of `curve`, both vectors over a move:
-/// `R² = 1 - Σ|curve - fit|² / Σ|curve - mean|²` over 101 even samples. 1 is a perfect fit; none if the curve is
+/// Coefficient of determination of `fit` as an explanation of `curve`, both lengths over a move:
+/// `R² = 1 - Σ(curve - fit)² / Σ(curve - mean)²` over 101 even samples. 1 is a perfect fit; none if the curve is
 /// constant.
-pub fn explained(
-    curve: impl Fn(f64) -> Vector3<f64>,
-    fit: impl Fn(f64) -> Vector3<f64>,
-) -> Option<f64> {
+pub fn explained(curve: impl Fn(f64) -> f64, fit: impl Fn(f64) -> f64) -> Option<f64> {
     let places = || (0..=FIT_PIECES).map(|step| f64::from(step) / f64::from(FIT_PIECES));
-    let values: Vec<Vector3<f64>> = places().map(&curve).collect();
-    let mean = values.iter().sum::<Vector3<f64>>() / values.len() as f64;
-    let total: f64 = values
-        .iter()
-        .map(|value| (value - mean).norm_squared())
-        .sum();
-    let left: f64 = values
-        .iter()
-        .zip(places())
-        .map(|(value, t)| (value - fit(t)).norm_squared())
-        .sum();
-    let size: f64 = values.iter().map(|value| value.norm_squared()).sum();
+    let values: Vec<f64> = places().map(&curve).collect();
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let squares = |about: &dyn Fn(f64) -> f64| -> f64 {
+        let away = values
+            .iter()
+            .zip(places())
+            .map(|(value, t)| value - about(t));
+        away.map(|away| away * away).sum()
+    };
+    let total = squares(&|_| mean);
     // Less than what rounding makes of a constant.
-    (total > 1e-24 * size).then(|| 1.0 - left / total)
+    (total > 1e-24 * squares(&|_| 0.0)).then(|| 1.0 - squares(&fit) / total)
 }
 
 #[cfg(test)]
@@ -97,12 +90,11 @@ mod tests {
     /// The parabola 4t(1 - t) and the sine of the same height: 0.9862 (papers/README.md, parabolic).
     #[test]
     fn a_sine_explains_a_parabola_by_0_9862() {
-        let along = |size: f64| Vector3::new(0.6, 0.0, 0.8) * size;
-        let parabola = |t: f64| along(4.0 * t * (1.0 - t));
-        let sine = |t: f64| along(libm::sin(PI * t));
+        let parabola = |t: f64| 4.0 * t * (1.0 - t);
+        let sine = |t: f64| libm::sin(PI * t);
         let share = explained(parabola, sine).unwrap();
         assert!((share - 0.9862).abs() < 5e-5, "{share}");
         assert_eq!(explained(parabola, parabola), Some(1.0));
-        assert_eq!(explained(|_| along(1.0), sine), None);
+        assert_eq!(explained(|_| 0.1, sine), None);
     }
 }

@@ -35,7 +35,7 @@ pub struct Modelled {
     pub peak: Peak,
     /// The largest distance between deviation and model curve, mm.
     pub residual: f64,
-    /// R² of the model's curve as a vector; none where nothing deviates.
+    /// R² of the curve's length; none where nothing deviates.
     pub explained: Option<f64>,
     /// After compensation with this model, if its predicted peak is over tolerance; none where it cannot be done.
     pub compensated: Option<Placed>,
@@ -105,7 +105,7 @@ impl<'a> Survey<'a> {
                 at: curve.tip_at,
             },
             residual: peak(|t| (strays(cut, t) - value(t)).norm()).size,
-            explained: explained(|t| strays(cut, t), value),
+            explained: explained(|t| strays(cut, t).norm(), |t| value(t).norm()),
             compensated: None,
         };
         if let Some(fault) = model.fault() {

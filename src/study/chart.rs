@@ -27,6 +27,8 @@ pub struct Chart {
     pub x: String,
     /// What goes up, with its unit.
     pub y: String,
+    /// What goes up does so by its logarithm.
+    pub logarithmic: bool,
     /// What is drawn, the first at the back.
     pub series: Vec<Series>,
 }
@@ -129,7 +131,8 @@ impl Series {
 struct Scale {
     low: f64,
     high: f64,
-    step: f64,
+    /// From tick to tick; none if the axis is logarithmic.
+    step: Option<f64>,
 }
 
 impl Scale {
@@ -159,22 +162,58 @@ impl Scale {
             };
             high = libm::ceil(high / step + 0.1) * step;
         }
-        Self { low, high, step }
+        Self {
+            low,
+            high,
+            step: Some(step),
+        }
+    }
+
+    /// A logarithmic axis from a power of ten to another, four of them below the largest value at most.
+    fn decades(values: impl Iterator<Item = f64>) -> Self {
+        let (least, most) = values
+            .filter(|value| value.is_finite() && *value > 0.0)
+            .fold(
+                (f64::INFINITY, f64::MIN_POSITIVE),
+                |(least, most), value| (least.min(value), most.max(value)),
+            );
+        let high = libm::ceil(libm::log10(most));
+        let low = libm::floor(libm::log10(least)).clamp(high - 4.0, high - 1.0);
+        Self {
+            low: libm::exp10(low),
+            high: libm::exp10(high),
+            step: None,
+        }
     }
 
     fn share(&self, value: f64) -> f64 {
-        (value - self.low) / (self.high - self.low)
+        match self.step {
+            Some(_) => (value - self.low) / (self.high - self.low),
+            // What is too small to be seen runs along the foot.
+            None => libm::log(value.max(self.low) / self.low) / libm::log(self.high / self.low),
+        }
     }
 
     /// Values of the ticks, and how they are written.
     fn ticks(&self) -> Vec<(f64, String)> {
-        let decimals = (-libm::floor(libm::log10(self.step) + 1e-9)).max(0.0) as usize;
-        let first = libm::ceil(self.low / self.step - 1e-9);
-        let count = libm::floor((self.high - first * self.step) / self.step + 1e-9).max(0.0) as u32;
+        let Some(step) = self.step else {
+            let first = libm::rint(libm::log10(self.low)) as i32;
+            let last = libm::rint(libm::log10(self.high)) as i32;
+            return (first..=last)
+                .map(|power| {
+                    let value = libm::exp10(f64::from(power));
+                    let decimals = usize::try_from(-power).unwrap_or(0);
+                    (value, format!("{value:.decimals$}"))
+                })
+                .collect();
+        };
+        let decimals = (-libm::floor(libm::log10(step) + 1e-9)).max(0.0) as usize;
+        let first = libm::ceil(self.low / step - 1e-9);
+        let count = libm::floor((self.high - first * step) / step + 1e-9).max(0.0) as u32;
         (0..=count)
             .map(|index| {
                 // Adding zero turns -0 into 0.
-                let value = (first + f64::from(index)) * self.step + 0.0;
+                let value = (first + f64::from(index)) * step + 0.0;
                 (value, format!("{value:.decimals$}"))
             })
             .collect()
@@ -196,7 +235,12 @@ impl Chart {
     pub fn svg(&self) -> String {
         let corners: Vec<[f64; 2]> = self.series.iter().flat_map(Series::corners).collect();
         let x = Scale::new(corners.iter().map(|corner| corner[0]), 10.0, false);
-        let y = Scale::new(corners.iter().map(|corner| corner[1]), 8.0, true);
+        let ups = corners.iter().map(|corner| corner[1]);
+        let y = if self.logarithmic {
+            Scale::decades(ups)
+        } else {
+            Scale::new(ups, 8.0, true)
+        };
         let named: Vec<&Series> = self.series.iter().filter(|s| !s.name.is_empty()).collect();
         let longest = named.iter().map(|series| series.name.chars().count()).max();
         let columns = columns(longest.unwrap_or(0));
@@ -388,5 +432,9 @@ mod tests {
         assert_eq!(texts(&up), ["0", "5", "10", "15", "20"]);
         let across = Scale::new([-0.21, 0.2].into_iter(), 4.0, false);
         assert_eq!(texts(&across), ["-0.2", "0.0", "0.2"]);
+        let decades = Scale::decades([0.0, 0.03, 704.0].into_iter());
+        assert_eq!(texts(&decades), ["0.1", "1", "10", "100", "1000"]);
+        assert_eq!(decades.share(0.0), 0.0);
+        assert!((decades.share(10.0) - 0.5).abs() < 1e-12);
     }
 }

@@ -25,7 +25,7 @@ pub fn files(study: &Study) -> Vec<File> {
 
 /// Every move.
 fn moves(study: &Study) -> String {
-    let mut text = "move,cl_line,length_mm,turn_deg,peak_um,peak_at,axis_deg".to_owned();
+    let mut text = "move,cl_line,length_mm,turn_deg,peak_um,peak_at,edge_um,axis_deg".to_owned();
     for name in &study.models {
         for column in [
             "peak_um",
@@ -52,12 +52,15 @@ fn moves(study: &Study) -> String {
 fn one_move(text: &mut String, number: usize, row: &Row) {
     let _ = write!(
         text,
-        "{number},{},{:.6},{:.6},{:.6},{:.6},{:.9}",
+        "{number},{},{:.6},{:.6},{:.6},{:.6},{},{:.9}",
         row.line,
         row.length,
         row.turn.to_degrees(),
         row.raw.size * MICRO,
         row.raw.at,
+        row.edge
+            .map(|size| format!("{:.6}", size * MICRO))
+            .unwrap_or_default(),
         row.axis.to_degrees()
     );
     for model in &row.models {

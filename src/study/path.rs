@@ -52,6 +52,7 @@ pub fn chart(study: &Study, middle: &Kept, models: &mut Models) -> Option<Chart>
         note: format!("around {}", focus(study)),
         x: "along the chord of the move, mm".to_owned(),
         y: format!("across it, mm (deviation × {times})"),
+        logarithmic: false,
         series: vec![
             Series::line("ideal", ideal, GREY),
             Series::line("uncompensated", actual, LOOKS[1]),

@@ -19,6 +19,9 @@ const MOST_MOVES: usize = 300;
 
 const BINS: usize = 24;
 
+/// Where the largest deviation is more than this times the tolerance, what is left could not be seen.
+const HUGE: f64 = 20.0;
+
 /// Radii of the cutting edge, mm.
 const RADII: [f64; 3] = [10.0, 25.0, 50.0];
 
@@ -146,6 +149,7 @@ fn along(study: &Study, kept: &Kept, fits: &[Fit]) -> Chart {
         note: focus(study),
         x: "share of the move".to_owned(),
         y: "deviation from the CL path, µm".to_owned(),
+        logarithmic: false,
         series,
     }
 }
@@ -178,6 +182,7 @@ fn left(study: &Study, kept: &Kept, fits: &[Fit]) -> Chart {
         note: format!("{}; its peak is {peak:.3} µm", focus(study)),
         x: "share of the move".to_owned(),
         y: "distance from the model's curve, µm".to_owned(),
+        logarithmic: false,
         series: series.collect(),
     }
 }
@@ -215,6 +220,7 @@ fn neighbours(study: &Study, models: &mut Models) -> Chart {
         note: format!("around {}", focus(study)),
         x: "move (number in moves.csv, its middle under the number)".to_owned(),
         y: "deviation from the CL path, µm".to_owned(),
+        logarithmic: false,
         series,
     }
 }
@@ -271,6 +277,7 @@ fn before_after(study: &Study) -> Chart {
         },
         x: "move (number in moves.csv)".to_owned(),
         y: "largest deviation from the CL path, µm".to_owned(),
+        logarithmic: most > HUGE * study.machine.accuracy.tolerance,
         series,
     }
 }
@@ -283,7 +290,10 @@ fn spread(study: &Study) -> Chart {
         .unwrap_or(0);
     let before: Vec<f64> = study.rows.iter().map(|row| row.raw.size).collect();
     let after = &study.pieces[index];
-    let end = before.iter().chain(after).copied().fold(1e-9, f64::max);
+    // A few moves far off would leave all others in one bin.
+    let [.., most] = study.spreads[0].told.percentiles;
+    let end = after.iter().copied().fold(most.max(1e-6), f64::max) * 1.02;
+    let beyond = before.iter().filter(|size| **size > end).count();
     let width = end * MICRO / BINS as f64;
     let bars = |values: &[f64], side: f64| -> Vec<[f64; 3]> {
         let counts = histogram(values, end, BINS);
@@ -299,9 +309,16 @@ fn spread(study: &Study) -> Chart {
     let name = placement_name(study.machine.accuracy.placement);
     Chart {
         title: "How the largest deviations are spread, before and after".to_owned(),
-        note: format!("{}; a bin is {width:.3} µm wide", study.file),
+        note: match beyond {
+            0 => format!("{}; a bin is {width:.3} µm wide", study.file),
+            beyond => format!(
+                "{}; a bin is {width:.3} µm wide, the last holds {beyond} moves beyond it",
+                study.file
+            ),
+        },
         x: "largest deviation, µm".to_owned(),
         y: "share, %".to_owned(),
+        logarithmic: false,
         series: vec![
             Series {
                 name: format!("before, {} moves", before.len()),
@@ -343,8 +360,9 @@ fn edge(study: &Study, kept: &Kept) -> Option<Chart> {
         std::array::from_fn(|joint| (from[joint] + to[joint]) / 2.0 + share(joint) * away)
     };
     let mut series = Vec::new();
-    for (radius, look) in RADII.iter().zip([LOOKS[0], LOOKS[1], LOOKS[3]]) {
-        let (mut chain, mut formula) = (Vec::new(), Vec::new());
+    let mut formula = Vec::new();
+    for (radius, look) in RADII.iter().zip([LOOKS[0], DASHED, GREY]) {
+        let mut chain = Vec::new();
         for step in 0..=20 {
             let turn = most * f64::from(step) / 20.0;
             let bow = rim.bow(&at(-turn / 2.0), &at(turn / 2.0)).size;
@@ -355,12 +373,8 @@ fn edge(study: &Study, kept: &Kept) -> Option<Chart> {
             }
         }
         series.push(Series::line(format!("R = {radius} mm, chain"), chain, look));
-        series.push(Series::dots(
-            format!("R = {radius} mm, eq. 10"),
-            formula,
-            Marker::Cross,
-        ));
     }
+    series.push(Series::dots("eq. 10", formula, Marker::Cross));
     Some(Chart {
         title: "Deviation of a cutting edge of radius R that the tool's turn makes".to_owned(),
         note: format!(
@@ -369,6 +383,7 @@ fn edge(study: &Study, kept: &Kept) -> Option<Chart> {
         ),
         x: "rotary move, degrees (root of the sum of squares over the axes)".to_owned(),
         y: "deviation from the edge's chord, µm".to_owned(),
+        logarithmic: false,
         series,
     })
 }
@@ -390,6 +405,7 @@ fn swept(study: &Study) -> Chart {
         note: format!("{}, {} moves", study.file, study.rows.len()),
         x: format!("{name} (unit of the machine file)"),
         y: "deviation from the CL path, µm".to_owned(),
+        logarithmic: false,
         series: vec![
             Series::line("largest of all moves", of(&|step| step.told.max), LOOKS[0]),
             Series::line("mean of all moves", of(&|step| step.told.mean), DASHED),
@@ -423,6 +439,7 @@ fn swept_curves(study: &Study) -> Chart {
         note: focus(study),
         x: "share of the move".to_owned(),
         y: "deviation from the CL path, µm".to_owned(),
+        logarithmic: false,
         series: series.collect(),
     }
 }

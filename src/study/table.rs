@@ -12,8 +12,8 @@ use super::{File, Study, placement_name};
 /// Moves that are printed.
 const MOST: usize = 10;
 
-/// A move that strays by less is not fitted, mm: what is left of it is rounding.
-const LEAST: f64 = 1e-4;
+/// Fits of moves that stray by less are not told, mm: much of those is rounding.
+const LEAST: f64 = 1e-3;
 
 /// The text.
 pub fn text(study: &Study, folder: &Path, files: &[File]) -> String {
@@ -94,7 +94,7 @@ fn fits(text: &mut String, study: &Study) {
     let _ = writeln!(
         text,
         "\n{:<24} {:>12} {:>12} {:>12} {:>16}",
-        "fit (R² of the length)", "worst move", "mean R²", "least R²", "left, % of peak"
+        "R² of the length", "this move", "mean", "least", "left, % of peak"
     );
     let row = &study.rows[study.focus];
     for (index, name) in study.models.iter().enumerate() {
@@ -119,6 +119,11 @@ fn fits(text: &mut String, study: &Study) {
             model.explained.map_or(none, digits),
         );
     }
+    let _ = writeln!(
+        text,
+        "  this move is {}; mean and least are of moves that stray by 1 µm or more; what is left is of the vector",
+        study.focus + 1
+    );
 }
 
 fn percent(part: f64, whole: f64) -> String {

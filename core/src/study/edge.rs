@@ -1,5 +1,7 @@
 //! The cutting edge of a disc: how far it strays because the tool turns, wherever the control point goes.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector3;
 
 use super::curve::{Peak, peak};
@@ -30,21 +32,48 @@ impl Rim {
     /// How far a point of the rim strays at most from its chord, per mm of radius, while the axes go linearly
     /// between two sets of values (`|E|/R` of eq. 10 of the parabolic paper, by the chain itself).
     pub fn bow(&self, from: &Joints, to: &Joints) -> Peak {
+        let bows = self.bows(from, to);
+        peak(|t| {
+            let [a, b] = bows(t);
+            largest(a, b)
+        })
+    }
+
+    /// How far a point of an edge of some `radius`, mm, strays at most from its own chord, mm, if the middle of the
+    /// edge strays as `middle` says.
+    pub fn strays(
+        &self,
+        radius: f64,
+        (from, to): (&Joints, &Joints),
+        middle: impl Fn(f64) -> Vector3<f64>,
+    ) -> Peak {
+        let bows = self.bows(from, to);
+        peak(|t| {
+            let middle = middle(t);
+            let [a, b] = bows(t);
+            let around = |share: f64| {
+                let (sine, cosine) = libm::sincos(TAU * share);
+                (middle + (a * cosine + b * sine) * radius).norm()
+            };
+            peak(around).size
+        })
+    }
+
+    /// How the two directions stray from the straight line between their ends at a share of the move.
+    fn bows(&self, from: &Joints, to: &Joints) -> impl Fn(f64) -> [Vector3<f64>; 2] {
         let edges = |joints: &Joints| {
             self.chains
                 .each_ref()
                 .map(|chain| chain.forward(joints).edge)
         };
         let (first, last) = (edges(from), edges(to));
-        peak(|t| {
+        let (from, to) = (*from, *to);
+        move |t| {
             let joints: Joints =
                 std::array::from_fn(|joint| from[joint] * (1.0 - t) + to[joint] * t);
-            let [a, b] = edges(&joints);
-            largest(
-                a - first[0] * (1.0 - t) - last[0] * t,
-                b - first[1] * (1.0 - t) - last[1] * t,
-            )
-        })
+            let at = edges(&joints);
+            [0, 1].map(|edge| at[edge] - first[edge] * (1.0 - t) - last[edge] * t)
+        }
     }
 
     /// Eq. 10 of the parabolic paper (Sha et al. 2022) per mm of radius: the root of the sum of the fourth powers of
@@ -98,6 +127,20 @@ mod tests {
             let formula = Rim::formula([turn, 0.0].into_iter());
             assert!((bow.size / formula - 1.0).abs() < turn * turn / 10.0);
         }
+    }
+
+    /// The middle of the edge and the edge stray to the same side at one place of the circle: there it adds up.
+    #[test]
+    fn an_edge_strays_by_its_middle_and_its_bow() {
+        let rim = Rim::new(&head(), Vector3::z());
+        let (from, to) = (joints(0.0, 1.0), joints(0.0, 1.1));
+        let bow = rim.bow(&from, &to).size;
+        let flat = |_: f64| Vector3::zeros();
+        let edge = rim.strays(25.0, (&from, &to), flat).size;
+        assert!((edge - 25.0 * bow).abs() < 1e-9);
+        let across = Vector3::new(0.0, libm::cos(1.05), libm::sin(1.05));
+        let edge = rim.strays(25.0, (&from, &to), |_| across * 0.01).size;
+        assert!((edge - 25.0 * bow - 0.01).abs() < 1e-6, "{edge} {bow}");
     }
 
     /// Tool upright: C and A together turn the rim by the cross term 2·ΔA·ΔC as well, which eq. 10 leaves out.

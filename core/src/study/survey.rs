@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use post_plugin::{ModelSession, Tolerance};
 
 use super::curve::{Peak, explained, peak};
+use super::edge::Rim;
 use super::placed::{Placed, place, strays};
 use crate::Watch;
 use crate::accuracy::{Linearise, Move};
@@ -20,6 +21,8 @@ pub struct Row {
     pub turn: f64,
     /// Deviation of the control point with nothing done about it, mm, at the printed ends.
     pub raw: Peak,
+    /// Largest deviation of any point of the cutting edge, mm; none if the machine file names no radius.
+    pub edge: Option<f64>,
     /// Largest deviation of the tool axis, radians, likewise.
     pub axis: f64,
     /// What each model makes of it, in the order of [`Survey::new`].
@@ -49,6 +52,8 @@ pub struct Survey<'a> {
     placements: [Linearise; 3],
     compensate: Linearise,
     rotary: Vec<usize>,
+    /// Tool axis with all axes at zero, and radius of the cutting edge, mm.
+    tool: (Vector3<f64>, f64),
     /// One row a move, in order.
     pub rows: Vec<Row>,
     /// Largest deviation of every piece after each placement, mm.
@@ -79,6 +84,7 @@ impl<'a> Survey<'a> {
                 .filter(|(_, axis)| axis.joint.rotary)
                 .map(|(joint, _)| joint)
                 .collect(),
+            tool: (machine.tool_axis, machine.control_point.radius),
             rows: Vec::new(),
             pieces: Default::default(),
             compensated: vec![Vec::new(); models.len()],
@@ -131,6 +137,11 @@ impl Watch for Survey<'_> {
         let turn = libm::sqrt(turns.map(|turn| turn * turn).sum());
         let raw = peak(|t| strays(cut, t).norm());
         let axis = peak(|t| Vector3::from(cut.deviation(t).axis).norm().to_radians()).size;
+        let (tool_axis, radius) = self.tool;
+        let edge = (radius > 0.0).then(|| {
+            let rim = Rim::new(cut.placer.solver().chain(), tool_axis);
+            rim.strays(radius, (first, last), |t| strays(cut, t)).size
+        });
         let mut models = Vec::with_capacity(self.models.len());
         for index in 0..self.models.len() {
             models.push(self.model(index, cut).unwrap_or_else(|fault| {
@@ -149,6 +160,7 @@ impl Watch for Survey<'_> {
             length: (cut.to.target.tip - cut.from.target.tip).norm(),
             turn,
             raw,
+            edge,
             axis,
             models: models.into(),
             placed,

@@ -10,71 +10,30 @@ use nalgebra::Vector3;
 use post_plugin::{Curve, ModelSession};
 
 use super::deviation::{Move, between};
-use super::linearise::{Linearise, Stuck};
+use super::even::pieces;
+use super::linearise::{Judged, Linearise};
 use super::node::{Node, Refused};
 
-/// No number of points helps a move that strays by more than this times the tolerance.
-const LIMIT: f64 = 1e6;
-
 impl Linearise {
-    /// Compensates a move if its predicted peak exceeds the tolerance. Where what comes out is not within it, the
-    /// move is linearised instead.
-    ///
-    /// # Errors
-    /// Why it cannot be done.
+    /// Compensates a move whose predicted peak exceeds the tolerance. False where what comes out is not within it:
+    /// nothing is kept then.
     pub(super) fn compensate(
         &mut self,
         whole: &Move<'_>,
-        model: &mut dyn ModelSession,
-    ) -> Result<(), Stuck> {
-        let judged = self.judge(whole, model)?;
-        let Some(curve) = judged.curve.filter(|_| !judged.good) else {
-            self.keep(*whole.to, judged.bound);
-            return Ok(());
+        judged: &Judged,
+        model: &dyn ModelSession,
+    ) -> bool {
+        let Some(curve) = &judged.curve else {
+            return false;
         };
         // Half of the tolerance for what a piece bows by, half for what the model misses.
-        let times = 2.0 * judged.peak.tip / whole.tolerances.tip;
-        let needed = libm::ceil(libm::sqrt(times.min(LIMIT))) as u32;
-        let count = needed.max(self.points + 1);
-        let before = self.count();
-        let good = self
-            .moved(whole, count, &curve, model)
-            .map_err(Stuck::Refused)?;
-        if good || self.trust_model {
-            return Ok(());
-        }
-        self.take_back(before);
-        self.overruled += 1;
-        self.halve(whole, model)
-    }
-
-    /// Makes `count` pieces; says whether all pieces are within tolerance.
-    fn moved(
-        &mut self,
-        whole: &Move<'_>,
-        count: u32,
-        curve: &Curve,
-        model: &dyn ModelSession,
-    ) -> Result<bool, Refused> {
-        let mut from = *whole.from;
-        let mut good = true;
-        for step in 1..=count {
-            let to = if step == count {
-                *whole.to
-            } else {
-                compensated(whole, curve, model, f64::from(step) / f64::from(count))?
-            };
-            let piece = Move {
-                from: &from,
-                to: &to,
-                ..*whole
-            };
-            let bound = piece.certify();
-            good &= whole.tolerances.hold(bound);
-            self.keep(to, bound);
-            from = to;
-        }
-        Ok(good)
+        let needed = pieces(2.0 * judged.peak.tip / whole.tolerances.tip);
+        let made = self.equal(whole, needed.max(self.points + 1), |t| {
+            compensated(whole, curve, model, t)
+        });
+        let good = made.is_ok_and(|good| good);
+        self.overruled += u64::from(!good);
+        good
     }
 }
 

@@ -1,69 +1,58 @@
 //! `even`: as many equal pieces as the model's peak asks for.
 
-use post_plugin::ModelSession;
-
 use super::bisect::put_in;
 use super::deviation::Move;
-use super::linearise::{Linearise, Stuck};
+use super::linearise::{Judged, Linearise};
+use super::node::{Node, Refused};
 
 /// More pieces than this times what the model asked for do not help: the move is not smooth.
 const MOST: u32 = 4;
 
-/// Not even a model that sees an infinite deviation gets more pieces.
+/// No number of pieces helps a move that strays by more than this times its tolerance.
 const LIMIT: f64 = 1e6;
 
+/// Equal pieces that bring a deviation of `times` the tolerance within it: it falls with the square of their length.
+pub(super) fn pieces(times: f64) -> u32 {
+    libm::ceil(libm::sqrt(times.min(LIMIT))).max(2.0) as u32
+}
+
 impl Linearise {
-    /// Cuts a move into `n = ceil(sqrt(E/tolerance))` equal pieces, E the peak of the model: the deviation of a piece
-    /// falls with the square of its length. Where the certificate finds that too few, there are more; where no
-    /// number serves (close to a pole) the move is bisected.
-    ///
-    /// # Errors
-    /// Why it cannot be done.
-    pub(super) fn even(
-        &mut self,
-        whole: &Move<'_>,
-        model: &mut dyn ModelSession,
-    ) -> Result<(), Stuck> {
-        let judged = self.judge(whole, model)?;
-        if judged.good {
-            self.keep(*whole.to, judged.bound);
-            return Ok(());
-        }
-        let times =
-            (judged.peak.tip / whole.tolerances.tip).max(judged.peak.axis / whole.tolerances.axis);
-        let asked = libm::ceil(libm::sqrt(times.min(LIMIT))).max(2.0) as u32;
-        let before = self.count();
+    /// Cuts a move into `n = ceil(sqrt(E/tolerance))` equal pieces, E the peak of the model. Where the certificate
+    /// finds that too few, there are more. False where no number serves (close to a pole): nothing is kept then.
+    pub(super) fn even(&mut self, whole: &Move<'_>, judged: &Judged) -> bool {
+        let (peak, tolerances) = (&judged.peak, &whole.tolerances);
+        let asked = pieces((peak.tip / tolerances.tip).max(peak.axis / tolerances.axis));
         let mut count = asked;
         while count <= MOST * asked {
-            if self.equal(whole, count) || (self.trust_model && self.count() > before) {
-                return Ok(());
+            let made = self.equal(whole, count, |share| {
+                put_in(whole, share, || whole.measured().axis <= tolerances.axis)
+            });
+            if made.is_ok_and(|good| good) {
+                return true;
             }
-            self.take_back(before);
             if count == asked {
                 self.overruled += 1;
             }
             count += 1 + count / 8;
         }
-        self.halve(whole, model)
+        false
     }
 
-    /// Cuts a move into `count` equal pieces; says whether all of them are within tolerance.
-    fn equal(&mut self, whole: &Move<'_>, count: u32) -> bool {
+    /// Cuts a move into `count` equal pieces, whose ends `place` finds, if all of them are within tolerance or the
+    /// model is trusted; else nothing is kept.
+    pub(super) fn equal(
+        &mut self,
+        whole: &Move<'_>,
+        count: u32,
+        mut place: impl FnMut(f64) -> Result<Node, Refused>,
+    ) -> Result<bool, Refused> {
         let before = self.count();
         let mut from = *whole.from;
-        let mut good = true;
         for step in 1..=count {
             let to = if step == count {
                 *whole.to
             } else {
-                let share = f64::from(step) / f64::from(count);
-                let holds = || whole.measured().axis <= whole.tolerances.axis;
-                let placed = put_in(whole, share, holds);
-                let Ok(node) = placed else {
-                    self.take_back(before);
-                    return false;
-                };
-                node
+                place(f64::from(step) / f64::from(count)).inspect_err(|_| self.take_back(before))?
             };
             let piece = Move {
                 from: &from,
@@ -71,13 +60,13 @@ impl Linearise {
                 ..*whole
             };
             let bound = piece.certify();
-            good &= whole.tolerances.hold(bound);
-            self.keep(to, bound);
-            if !good && !self.trust_model {
-                return false;
+            if !whole.tolerances.hold(bound) && !self.trust_model {
+                self.take_back(before);
+                return Ok(false);
             }
+            self.keep(to, bound);
             from = to;
         }
-        good
+        Ok(true)
     }
 }

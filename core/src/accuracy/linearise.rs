@@ -122,15 +122,28 @@ impl Linearise {
             self.leg = at;
             let start = run.start(at);
             let leg = run.leg(&start, at);
-            let done = match (self.method, self.placement) {
-                (Method::Compensate, _) => self.compensate(&leg, model),
-                (_, Placement::Even) => self.even(&leg, model),
-                _ => self.halve(&leg, model),
-            };
-            done.map_err(|stuck| (at, stuck))?;
+            self.put_in(&leg, model).map_err(|stuck| (at, stuck))?;
             at += 1;
         }
         Ok(())
+    }
+
+    /// Puts points into a leg, as method and placement say; where they do not serve, by bisection, which knows what
+    /// to do close to a pole.
+    fn put_in(&mut self, leg: &Move<'_>, model: &mut dyn ModelSession) -> Result<(), Stuck> {
+        if (self.method, self.placement) == (Method::Linearise, Placement::Bisect) {
+            return self.halve(leg, model);
+        }
+        let judged = self.judge(leg, model)?;
+        if judged.good {
+            self.keep(*leg.to, judged.bound);
+            return Ok(());
+        }
+        let done = match self.method {
+            Method::Compensate => self.compensate(leg, &judged, model),
+            Method::Linearise => self.even(leg, &judged),
+        };
+        if done { Ok(()) } else { self.halve(leg, model) }
     }
 
     /// From here on pieces end in this leg.

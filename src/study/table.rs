@@ -33,10 +33,15 @@ fn head(text: &mut String, study: &Study) {
     let machine = &study.machine;
     let _ = writeln!(
         text,
-        "{} on {}: {} moves, tolerance {} µm, words {}",
+        "{} on {}: {} {}, tolerance {} µm, words {}",
         study.file,
         machine.name,
         study.rows.len(),
+        if study.rows.len() == 1 {
+            "move"
+        } else {
+            "moves"
+        },
         machine.accuracy.tolerance * MICRO,
         if study.exact {
             "not rounded"
@@ -84,7 +89,7 @@ fn spreads(text: &mut String, study: &Study) {
             text,
             " {:>9.3} {:>9}",
             told.max * MICRO,
-            points.unwrap_or_default()
+            points.as_deref().unwrap_or("-")
         );
     }
 }

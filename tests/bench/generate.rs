@@ -17,6 +17,9 @@ const SWING: f64 = 312.0;
 const BLADE_ROW: usize = 25;
 /// Mean and standard deviation of the largest deviation over the moves of a row, mm (Sha et al. 2022, section 3.2).
 const BLADE_DEVIATION: [f64; 2] = [0.01715, 0.001348];
+/// A at the second of the points of section 2.2, degrees, and X and Z there, mm.
+const BLADE_END: f64 = -2.1501;
+const BLADE_POINT: [f64; 2] = [36.2549, 8.2580];
 
 fn main() -> io::Result<()> {
     let mut words = std::env::args().skip(1);
@@ -32,9 +35,10 @@ fn main() -> io::Result<()> {
 }
 
 /// A blade as the disc cutter of Sha et al. 2022 mills it, to and fro in `rows` rows of 25 points, and off the part
-/// between them. The points lie on the arc through the two that section 2.2 of the paper gives, the tool axis across
-/// it, so that A alone turns while C stands at 90 degrees. The turns of A are such that the deviations at the paper's
-/// mean swing length have the mean and the standard deviation that it tells of its 24 moves.
+/// between them. The first half of the rows is the convex side, on the arc through the two points that section 2.2 of
+/// the paper gives, the others the concave side, on the same arc the other way round. The tool stands across it, so
+/// that A alone turns while C stands at 90 degrees. The turns of A are such that the deviations at the paper's mean
+/// swing length have the mean and the standard deviation that it tells of its 24 moves.
 pub fn write_blade(out: &mut impl Write, rows: u64) -> io::Result<()> {
     writeln!(out, "TOOL PATH/BLADE,TOOL,DISC_50")?;
     writeln!(out, "UNITS/MM")?;
@@ -46,7 +50,7 @@ pub fn write_blade(out: &mut impl Write, rows: u64) -> io::Result<()> {
         let y = 2.0 * row as f64;
         let places = (0..BLADE_ROW).map(|index| {
             let angle = angles[if back { BLADE_ROW - 1 - index } else { index }];
-            blade_point(angle, y)
+            blade_point(angle, y, 2 * row < rows)
         });
         let places: Vec<[f64; 6]> = places.collect();
         let over = |out: &mut dyn Write, [x, y, z, i, j, k]: [f64; 6], lift: f64| {
@@ -72,7 +76,7 @@ pub fn write_blade(out: &mut impl Write, rows: u64) -> io::Result<()> {
 fn blade_angles() -> [f64; BLADE_ROW] {
     let [mean, spread] = BLADE_DEVIATION;
     let moves = (BLADE_ROW - 1) as f64;
-    let mut angles = [(-2.1501f64).to_radians(); BLADE_ROW];
+    let mut angles = [BLADE_END.to_radians(); BLADE_ROW];
     for index in (0..BLADE_ROW - 1).rev() {
         // Whole waves over the row have the mean 0; the squares of these heights sum up to 2, so that their standard
         // deviation is 1.
@@ -87,15 +91,15 @@ fn blade_angles() -> [f64; BLADE_ROW] {
 }
 
 /// Point and tool axis of the blade where A has this value, radians.
-fn blade_point(angle: f64, y: f64) -> [f64; 6] {
-    // The circle across the paper's two tool axes through its two points.
-    const RADIUS: f64 = 136.735;
-    const MIDDLE: [f64; 2] = [41.385, -128.381];
+fn blade_point(angle: f64, y: f64, convex: bool) -> [f64; 6] {
+    // Of the circle across the paper's two tool axes through its two points.
+    let radius = if convex { 136.735 } else { -136.735 };
     let (sine, cosine) = libm::sincos(angle);
+    let (end_sine, end_cosine) = libm::sincos(BLADE_END.to_radians());
     [
-        MIDDLE[0] + RADIUS * sine,
+        BLADE_POINT[0] + radius * (sine - end_sine),
         y,
-        MIDDLE[1] + RADIUS * cosine,
+        BLADE_POINT[1] + radius * (cosine - end_cosine),
         sine,
         0.0,
         cosine,

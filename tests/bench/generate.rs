@@ -37,7 +37,7 @@ fn main() -> io::Result<()> {
 /// A blade as the disc cutter of Sha et al. 2022 mills it, to and fro in `rows` rows of 25 points, and off the part
 /// between them. The first half of the rows is the convex side, on the arc through the two points that section 2.2 of
 /// the paper gives, the others the concave side, on the same arc the other way round. The tool stands across it, so
-/// that A alone turns while C stands at 90 degrees. The turns of A are such that the deviations at the paper's mean
+/// that A alone turns and C stands still. The turns of A are such that the deviations at the paper's mean
 /// swing length have the mean and the standard deviation that it tells of its 24 moves.
 pub fn write_blade(out: &mut impl Write, rows: u64) -> io::Result<()> {
     writeln!(out, "TOOL PATH/BLADE,TOOL,DISC_50")?;

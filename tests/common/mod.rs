@@ -41,6 +41,7 @@ pub const CASES: &[Case] = &[
     case("ac-trunnion", "facets.apt", &[]),
     case("ac-trunnion", "plate.ncl", &[]),
     case("disc-cutter", "blade.cls", LENGTH),
+    case("disc-cutter", "disc-blade.cls", &[]),
     case("disc-cutter", "facets.apt", LENGTH),
     case("disc-cutter", "knife.ncl", &[]),
     case("disc-cutter", "knife.ncl", &["--tcp", "control"]),

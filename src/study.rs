@@ -91,6 +91,14 @@ pub struct Study {
     pub sweep: Option<(String, Vec<Swept>)>,
 }
 
+impl Study {
+    /// The CL file without its folder, for titles.
+    pub fn part(&self) -> String {
+        let name = Path::new(&self.file).file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+}
+
 /// How deviations are spread.
 pub struct Spread {
     pub name: String,

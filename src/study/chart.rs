@@ -169,7 +169,7 @@ impl Scale {
         }
     }
 
-    /// A logarithmic axis from a power of ten to another, four of them below the largest value at most.
+    /// A logarithmic axis from a power of ten to another, at most six of them.
     fn decades(values: impl Iterator<Item = f64>) -> Self {
         let (least, most) = values
             .filter(|value| value.is_finite() && *value > 0.0)
@@ -178,7 +178,7 @@ impl Scale {
                 |(least, most), value| (least.min(value), most.max(value)),
             );
         let high = libm::ceil(libm::log10(most));
-        let low = libm::floor(libm::log10(least)).clamp(high - 4.0, high - 1.0);
+        let low = libm::floor(libm::log10(least)).clamp(high - 6.0, high - 1.0);
         Self {
             low: libm::exp10(low),
             high: libm::exp10(high),
@@ -432,9 +432,9 @@ mod tests {
         assert_eq!(texts(&up), ["0", "5", "10", "15", "20"]);
         let across = Scale::new([-0.21, 0.2].into_iter(), 4.0, false);
         assert_eq!(texts(&across), ["-0.2", "0.0", "0.2"]);
-        let decades = Scale::decades([0.0, 0.03, 704.0].into_iter());
-        assert_eq!(texts(&decades), ["0.1", "1", "10", "100", "1000"]);
+        let decades = Scale::decades([0.0, 0.03, 70.4].into_iter());
+        assert_eq!(texts(&decades), ["0.01", "0.1", "1", "10", "100"]);
         assert_eq!(decades.share(0.0), 0.0);
-        assert!((decades.share(10.0) - 0.5).abs() < 1e-12);
+        assert!((decades.share(1.0) - 0.5).abs() < 1e-12);
     }
 }

@@ -17,6 +17,9 @@ pub const FINE: u32 = 120;
 /// More moves than this are drawn as the largest of every few.
 const MOST_MOVES: usize = 300;
 
+/// More points than this would run into one another.
+const MOST_POINTS: usize = 60;
+
 const BINS: usize = 24;
 
 /// Where the largest deviation is more than this times the tolerance, what is left could not be seen.
@@ -209,10 +212,16 @@ fn neighbours(study: &Study, models: &mut Models) -> Chart {
     let largest = before.iter().map(|point| point[1]).fold(0.0, f64::max);
     let ends = [before.first(), before.last()].map(|point| point.map_or(0.0, |point| point[0]));
     let name = placement_name(placement);
+    let every = points.len().div_ceil(MOST_POINTS).max(1);
+    let points = points.into_iter().step_by(every).collect();
+    let told = match every {
+        1 => "points put in".to_owned(),
+        every => format!("points put in, one of {every}"),
+    };
     let mut series = vec![
         Series::line("before", before, GREY),
         Series::line(format!("after {name}"), after, LOOKS[0]),
-        Series::dots("points put in", points, Marker::Circle),
+        Series::dots(told, points, Marker::Circle),
     ];
     series.extend(tolerance(study, ends, largest));
     Chart {
@@ -220,7 +229,7 @@ fn neighbours(study: &Study, models: &mut Models) -> Chart {
         note: format!("around {}", focus(study)),
         x: "move (number in moves.csv, its middle under the number)".to_owned(),
         y: "deviation from the CL path, µm".to_owned(),
-        logarithmic: false,
+        logarithmic: largest > HUGE * study.machine.accuracy.tolerance * MICRO,
         series,
     }
 }
@@ -242,17 +251,17 @@ fn before_after(study: &Study) -> Chart {
     let mut series = vec![Series::line(
         "uncompensated",
         largest(&|row| rows[row].raw.size),
-        LOOKS[0],
+        GREY,
     )];
     let most = rows.iter().map(|row| row.raw.size).fold(0.0, f64::max);
     let ends = [1.0, rows.len() as f64];
     series.extend(tolerance(study, ends, most * MICRO));
-    let mut looks = LOOKS[1..].iter();
+    let mut looks = [LOOKS[1], LOOKS[2], LOOKS[0], LOOKS[4], LOOKS[5]].into_iter();
     for (index, placement) in post_core::study::Survey::PLACEMENTS.iter().enumerate() {
         let peak = |row: usize| rows[row].placed[index].map_or(0.0, |placed| placed.peak);
         if let Some(look) = looks.next() {
             let name = format!("after {}", placement_name(*placement));
-            series.push(Series::line(name, largest(&peak), *look));
+            series.push(Series::line(name, largest(&peak), look));
         }
     }
     for (index, name) in study.models.iter().enumerate().take(2) {
@@ -261,17 +270,17 @@ fn before_after(study: &Study) -> Chart {
             series.push(Series::line(
                 format!("left by {name}"),
                 largest(&left),
-                *look,
+                look,
             ));
         }
     }
     Chart {
         title: "Largest deviation of every move, before and after".to_owned(),
         note: match every {
-            1 => format!("{}, {} moves", study.file, rows.len()),
+            1 => format!("{}, {} moves", study.part(), rows.len()),
             every => format!(
                 "{}, {} moves; the largest of every {every} is drawn",
-                study.file,
+                study.part(),
                 rows.len()
             ),
         },
@@ -310,10 +319,10 @@ fn spread(study: &Study) -> Chart {
     Chart {
         title: "How the largest deviations are spread, before and after".to_owned(),
         note: match beyond {
-            0 => format!("{}; a bin is {width:.3} µm wide", study.file),
+            0 => format!("{}; a bin is {width:.3} µm wide", study.part()),
             beyond => format!(
                 "{}; a bin is {width:.3} µm wide, the last holds {beyond} moves beyond it",
-                study.file
+                study.part()
             ),
         },
         x: "largest deviation, µm".to_owned(),
@@ -402,7 +411,7 @@ fn swept(study: &Study) -> Chart {
     };
     Chart {
         title: format!("Deviation over {name}"),
-        note: format!("{}, {} moves", study.file, study.rows.len()),
+        note: format!("{}, {} moves", study.part(), study.rows.len()),
         x: format!("{name} (unit of the machine file)"),
         y: "deviation from the CL path, µm".to_owned(),
         logarithmic: false,

@@ -51,9 +51,14 @@ pub fn parse(text: &str) -> Result<Sweep, String> {
     Ok(Sweep {
         name: name.trim().to_owned(),
         values: (0..count as u32)
-            .map(|index| from + f64::from(index) * step)
+            .map(|index| short(from + f64::from(index) * step))
             .collect(),
     })
+}
+
+/// A number without the last digits, in which sums are not what one would write.
+fn short(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
 }
 
 /// Goes over the file once for each value, and keeps move `number`.
@@ -92,7 +97,9 @@ mod tests {
             sweep.values,
             [100.0, 150.0, 200.0, 250.0, 300.0, 350.0, 400.0]
         );
-        assert_eq!(parse("a.b=0:1:0.1").unwrap().values.len(), 11);
+        let tenths = parse("a.b=0:1:0.1").unwrap().values;
+        assert_eq!(tenths.len(), 11);
+        assert_eq!(tenths[3], 0.3);
     }
 
     #[test]

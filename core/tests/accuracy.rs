@@ -366,7 +366,7 @@ fn hold(
         }
     }
     // Points that are to be met are met.
-    let must = kept(stops, &path, 10f64.to_radians());
+    let must = kept(stops, &path, bench.machine.accuracy.corner);
     for (index, stop) in stops.iter().enumerate() {
         if reduces && !must[index] {
             continue;

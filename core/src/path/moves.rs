@@ -7,6 +7,7 @@ use super::Path;
 use super::tally::{AXIS, RAPID, TIP};
 use crate::accuracy::{Bound, Node, Run};
 use crate::diagnostic::Diagnostic;
+use crate::feed::STILL;
 use crate::kinematics::orientation::angle;
 use crate::kinematics::{Joints, Pose};
 use crate::machine::Tcp;
@@ -465,13 +466,17 @@ impl Path<'_> {
             &nodes[0],
             &nodes[1],
         );
+        let moves = nodes
+            .windows(2)
+            .any(|pair| (pair[1].target.tip - pair[0].target.tip).norm() > STILL);
         let run = Run {
             placer,
             nodes,
             tolerances: planned.tolerances,
             control_keeps_tip: planned.control_keeps_tip,
-            // A rapid has no surface to be balanced about.
-            balances: !first.loose,
+            // A rapid has no surface to be balanced about. A tip that stands still must seem to: its feed is taken
+            // along the axes.
+            balances: !first.loose && moves,
         };
         match linearise.split(&run, self.model) {
             Ok(()) => {

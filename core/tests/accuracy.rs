@@ -29,6 +29,7 @@ struct Given {
     tolerance: f64,
     axis_tolerance: f64,
     pole: &'static str,
+    corner: f64,
 }
 
 const CONFIGS: [&str; 8] = [
@@ -44,6 +45,7 @@ const CONFIGS: [&str; 8] = [
 
 fn given(rng: &mut Rng) -> Given {
     let decimals = 3 + rng.pick(3) as u8;
+    let corner = [10.0, 10.0, 0.0, 60.0, 180.0][rng.pick(5)];
     let pointed = rng.pick(4);
     Given {
         tables: rng.pick(3),
@@ -63,6 +65,7 @@ fn given(rng: &mut Rng) -> Given {
         tolerance: rng.order(if decimals == 3 { -2.0 } else { -2.5 }, -1.0),
         axis_tolerance: rng.order(-1.2, 0.0),
         pole: ["exact", "blend"][rng.pick(2)],
+        corner,
     }
 }
 
@@ -120,8 +123,8 @@ fn machine(rng: &mut Rng, given: &Given) -> String {
     .unwrap();
     writeln!(
         out,
-        "[accuracy]\ntolerance = {}\naxis_tolerance = {}\nrapid_tolerance = 0.5\n{{more}}",
-        given.tolerance, given.axis_tolerance
+        "[accuracy]\ntolerance = {}\naxis_tolerance = {}\nrapid_tolerance = 0.5\ncorner = {}\n{{more}}",
+        given.tolerance, given.axis_tolerance, given.corner
     )
     .unwrap();
     out
@@ -141,10 +144,11 @@ enum Profile {
     Kinks,
     Turns,
     Pole,
+    Across,
     Mixed,
 }
 
-const PROFILES: [Profile; 8] = [
+const PROFILES: [Profile; 9] = [
     Profile::Smooth,
     Profile::Corners,
     Profile::Dense,
@@ -152,6 +156,7 @@ const PROFILES: [Profile; 8] = [
     Profile::Kinks,
     Profile::Turns,
     Profile::Pole,
+    Profile::Across,
     Profile::Mixed,
 ];
 
@@ -171,11 +176,25 @@ fn path(rng: &mut Rng, bench: &Bench, profile: Profile, count: usize) -> Vec<Sto
     let mut feed = Some(1000.0);
     let mut stops: Vec<Stop> = Vec::new();
     let even = rng.range(0.5, 4.0);
+    let beside = [
+        rng.order(-6.0, -1.5),
+        rng.order(-2.0, -0.5),
+        rng.range(-3.0, 3.0),
+    ];
     for index in 0..count {
         let mut joints = Joints::default();
         joints[c] = angles[0];
         joints[a] = angles[1];
-        let axis = bench.reference.forward(&joints).1;
+        let mut axis = bench.reference.forward(&joints).1;
+        if profile == Profile::Across {
+            // Past the pole of a machine whose C is upright, close by.
+            let share = index as f64 / (count - 1) as f64 - 0.5;
+            axis = leaned(
+                V::new(beside[0], beside[1] * share, 1.0).normalize(),
+                V::z(),
+                beside[2],
+            );
+        }
         let mut next = stop(tip, axis, feed);
         if index == 0 {
             next.feed = None;
@@ -490,9 +509,13 @@ fn every_block_stays_within_what_is_certified() {
     let mut sums = [0usize; CONFIGS.len()];
     let mut shares = [0.0f64; 2];
     for round in 0..rounds {
-        let given = given(&mut rng);
-        let machine = machine(&mut rng, &given);
         let profile = PROFILES[round % PROFILES.len()];
+        let given = given(&mut rng);
+        let given = Given {
+            usual: given.usual || profile == Profile::Across,
+            ..given
+        };
+        let machine = machine(&mut rng, &given);
         let samples = if round % 40 == 0 { 10_000 } else { 60 };
         let count = if samples > 100 { 5 } else { 24 };
         let bench = bench_of(&machine, &given, CONFIGS[0]);
@@ -776,6 +799,7 @@ fn points_of_a_circle_are_reduced_to_what_the_sagitta_allows() {
                 tolerance,
                 axis_tolerance: 0.1,
                 pole: "blend",
+                corner: 10.0,
             };
             hold(&bench, &given, &stops, &lines, &run, 20, &more).unwrap();
             // And against the circle itself, whose points are rounded and stand 0.05 mm apart.
@@ -931,6 +955,7 @@ fn a_compensated_program_is_certified_and_untouched_moves_stay() {
                     tolerance,
                     axis_tolerance: 1.0,
                     pole: "blend",
+                    corner: 10.0,
                 };
                 hold(&bench, &given, &stops, &lines, &run, 20, &more).unwrap();
                 for (index, peak) in peaks.iter().enumerate() {
@@ -1002,6 +1027,7 @@ fn a_wrapped_axis_goes_the_way_that_is_meant() {
                             tolerance,
                             axis_tolerance: 10.0,
                             pole: "blend",
+                            corner: 10.0,
                         };
                         if tolerance < 0.1 {
                             hold(&bench, &given, &stops, &lines, &run, 20, config)
@@ -1049,6 +1075,34 @@ fn a_turn_on_the_spot_keeps_its_pace() {
     }
     for time in &times {
         assert!((time / times[0] - 1.0).abs() < 0.01, "{times:?}");
+    }
+}
+
+/// Points so close that the tip stands still between them, while the axes turn: left out or not, that takes its time.
+#[test]
+fn a_turn_in_tiny_steps_keeps_its_pace() {
+    let lean = |degrees: f64| {
+        let (sine, cosine) = libm::sincos(degrees.to_radians());
+        V::new(0.0, -sine, cosine)
+    };
+    let mut stops = vec![stop(V::zeros(), lean(10.0), None)];
+    for index in 1..=20 {
+        let tip = V::new(0.0015 * f64::from(index), 0.0, 0.0);
+        stops.push(stop(tip, lean(10.0 + f64::from(index)), Some(100.0)));
+    }
+    for tcp in ["post", "control"] {
+        let mut times = Vec::new();
+        for config in CONFIGS {
+            let more = format!("[accuracy]\ntolerance = 0.2\naxis_tolerance = 5\n{config}");
+            let bench = Bench::new(&usual(true, tcp, "cyclic = true", &more), 4, 100.0);
+            let run = bench
+                .run_with(&text(&stops).0, &mut Shape::Fine, false)
+                .good(config);
+            times.push(run.report.unwrap().cutting_time_s);
+        }
+        for time in &times {
+            assert!((time / times[0] - 1.0).abs() < 0.01, "{tcp}: {times:?}");
+        }
     }
 }
 

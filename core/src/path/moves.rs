@@ -273,7 +273,7 @@ impl Path<'_> {
     }
 
     /// The sum of all rotary moves between two nodes, radians.
-    fn turn_between(&self, from: &Node, to: &Node) -> f64 {
+    pub(super) fn turn_between(&self, from: &Node, to: &Node) -> f64 {
         let axes = self.machine.axes.iter().enumerate();
         axes.filter(|(_, axis)| axis.joint.rotary)
             .map(|(joint, _)| (to.trace.joints[joint] - from.trace.joints[joint]).abs())

@@ -109,7 +109,11 @@ impl Linearise {
         self.pieces.clear();
         run.measure(&mut self.way);
         if self.method == Method::Linearise && self.placement == Placement::Fewest {
-            return self.fewest(run, model);
+            if self.fewest(run, model).is_ok() {
+                return Ok(());
+            }
+            // Points that were put in as far off as they could be left no way on (through a pole): bisection knows one.
+            self.pieces.clear();
         }
         let mut at = 0;
         while at < run.legs() {

@@ -135,7 +135,7 @@ impl Linearise {
     /// Puts points into a leg, as method and placement say; where they do not serve, by bisection, which knows what
     /// to do close to a pole.
     fn put_in(&mut self, leg: &Move<'_>, model: &mut dyn ModelSession) -> Result<(), Stuck> {
-        if (self.method, self.placement) == (Method::Linearise, Placement::Bisect) {
+        if self.method == Method::Linearise && self.placement != Placement::Even {
             return self.halve(leg, model);
         }
         let judged = self.judge(leg, model)?;

@@ -11,7 +11,7 @@ use crate::program::Pace;
 use crate::words::unit_length;
 
 /// A tip that moves by no more than this stands still but for the rounding of the words, mm.
-const STILL: f64 = 2e-3;
+pub(crate) const STILL: f64 = 2e-3;
 
 /// Writes feeds for one machine and dialect.
 #[derive(Clone, Debug)]

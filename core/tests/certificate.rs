@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
 use std::path::PathBuf;
 
-use common::{Random, Reference, Rng, angle, between, distance, slerp};
+use common::{Random, Reference, Rng, angle, between, blade, distance, slerp};
 use nalgebra::Vector3;
 use post_core::accuracy::certificate::{Bend, Course, chord_angle, deviation, quick, rim, tight};
 use post_core::kinematics::{Chain, Joint, Joints, Pose, Solver, Trace};
@@ -417,40 +417,6 @@ fn the_swing_head_move_of_the_parabolic_paper() {
             "{quick:?}"
         );
     }
-}
-
-/// Table 3.2 of Li 2024 (nonlinear error of a dual rotary table AC machine): 20 points of a blade, from the
-/// paper's text.
-fn blade() -> Option<Vec<Pose>> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../shared/papers/000_d91ffc0ea4534a10.txt");
-    let Ok(text) = fs::read_to_string(&path) else {
-        assert!(
-            std::env::var_os("CI").is_none(),
-            "{} is missing",
-            path.display()
-        );
-        eprintln!("skipped: {} is missing", path.display());
-        return None;
-    };
-    let points = text
-        .lines()
-        .skip_while(|line| !line.starts_with("Table 3.2"))
-        .map(|line| {
-            line.split_whitespace()
-                .filter_map(|field| field.parse().ok())
-                .collect::<Vec<f64>>()
-        })
-        .filter(|numbers| numbers.len() == 7)
-        .take(20)
-        .map(|numbers| Pose {
-            tip: Vector3::new(numbers[1], numbers[2], numbers[3]),
-            axis: Vector3::new(numbers[4], numbers[5], numbers[6]).normalize(),
-            ..Pose::default()
-        })
-        .collect::<Vec<_>>();
-    assert_eq!(points.len(), 20);
-    Some(points)
 }
 
 /// Worst deviation per move of the blade, µm: at the same t, perpendicular to the chord, and as `tight` bounds it.

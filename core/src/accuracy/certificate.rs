@@ -113,6 +113,11 @@ impl Course {
         }
     }
 
+    /// A bound on the second derivative of the tool axis, whatever axis is wanted.
+    pub fn axis_bend(&self) -> f64 {
+        self.axis[0].norm().max(self.axis[1].norm()) + self.fourth.axis / 8.0
+    }
+
     fn tip_bend(&self) -> f64 {
         self.tip[0].norm().max(self.tip[1].norm())
     }

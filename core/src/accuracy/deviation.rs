@@ -105,9 +105,9 @@ impl Move<'_> {
         let course = Course::new(chain, &from.trace, &to.trace);
         let tight = course.bend(from.target.axis, to.target.axis, sweep);
         let turn = if self.placer.control_point().radius > 0.0 {
-            quick
-                .turn
-                .min(certificate::rim(chain, &from.trace, &to.trace))
+            // Of the directions across the tool axis, and of the axis itself: either may bend more.
+            let rim = certificate::rim(chain, &from.trace, &to.trace);
+            quick.turn.min(rim.max(course.axis_bend()))
         } else {
             quick.turn
         };

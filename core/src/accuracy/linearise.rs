@@ -109,7 +109,11 @@ impl Linearise {
         self.pieces.clear();
         run.measure(&mut self.way);
         if self.method == Method::Linearise && self.placement == Placement::Fewest {
-            return self.fewest(run, model);
+            if self.fewest(run, model).is_ok() {
+                return Ok(());
+            }
+            // Points that were put in as far off as they could be left no way on (through a pole): bisection knows one.
+            self.pieces.clear();
         }
         let mut at = 0;
         while at < run.legs() {
@@ -131,7 +135,7 @@ impl Linearise {
     /// Puts points into a leg, as method and placement say; where they do not serve, by bisection, which knows what
     /// to do close to a pole.
     fn put_in(&mut self, leg: &Move<'_>, model: &mut dyn ModelSession) -> Result<(), Stuck> {
-        if (self.method, self.placement) == (Method::Linearise, Placement::Bisect) {
+        if self.method == Method::Linearise && self.placement != Placement::Even {
             return self.halve(leg, model);
         }
         let judged = self.judge(leg, model)?;

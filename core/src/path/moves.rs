@@ -7,6 +7,7 @@ use super::Path;
 use super::tally::{AXIS, RAPID, TIP};
 use crate::accuracy::{Bound, Node, Run};
 use crate::diagnostic::Diagnostic;
+use crate::feed::STILL;
 use crate::kinematics::orientation::angle;
 use crate::kinematics::{Joints, Pose};
 use crate::machine::Tcp;
@@ -272,7 +273,7 @@ impl Path<'_> {
     }
 
     /// The sum of all rotary moves between two nodes, radians.
-    fn turn_between(&self, from: &Node, to: &Node) -> f64 {
+    pub(super) fn turn_between(&self, from: &Node, to: &Node) -> f64 {
         let axes = self.machine.axes.iter().enumerate();
         axes.filter(|(_, axis)| axis.joint.rotary)
             .map(|(joint, _)| (to.trace.joints[joint] - from.trace.joints[joint]).abs())
@@ -468,13 +469,17 @@ impl Path<'_> {
             &nodes[0],
             &nodes[1],
         );
+        let moves = nodes
+            .windows(2)
+            .any(|pair| (pair[1].target.tip - pair[0].target.tip).norm() > STILL);
         let run = Run {
             placer,
             nodes,
             tolerances: planned.tolerances,
             control_keeps_tip: planned.control_keeps_tip,
-            // A rapid has no surface to be balanced about.
-            balances: !first.loose,
+            // A rapid has no surface to be balanced about. A tip that stands still must seem to: its feed is taken
+            // along the axes.
+            balances: !first.loose && moves,
         };
         match linearise.split(&run, self.model) {
             Ok(()) => {

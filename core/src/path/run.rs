@@ -3,6 +3,7 @@
 use super::Path;
 use super::moves::{LONGEST, Leg};
 use crate::accuracy::Node;
+use crate::feed::STILL;
 use crate::kinematics::orientation::angle;
 use crate::program::{Motion, Pace};
 
@@ -52,11 +53,22 @@ impl Path<'_> {
         let steady = matches!(leg.motion.pace, Pace::PerMinute(_))
             && self.machine.solution.exclusive.is_empty();
         steady
+            && self
+                .last
+                .as_ref()
+                .is_some_and(|last| !self.stands(last, node))
             && self.last.as_ref().is_some_and(|last| {
                 let apart = (self.machine.indexes && self.indexes(last, node))
                     || (self.machine.stages && self.special(last, node));
                 !apart
             })
+    }
+
+    /// The tip as good as stands still while the axes turn. Such a move is paced by the axes: together with others
+    /// it would be paced by the way of the tip, and they would turn in no time.
+    fn stands(&self, last: &Node, node: &Node) -> bool {
+        let way = (node.target.tip - last.target.tip).norm();
+        way <= STILL && self.turn_between(last, node).to_degrees() > way
     }
 
     /// Takes a move into the run, or ends that and begins another with it.

@@ -6,11 +6,14 @@
 )]
 
 pub mod posted;
+pub mod walk;
 
 use std::f64::consts::{PI, TAU};
+use std::fs;
+use std::path::PathBuf;
 
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
-use post_core::kinematics::{Chain, Joint, Joints, MAX_AXES};
+use post_core::kinematics::{Chain, Joint, Joints, MAX_AXES, Pose};
 
 /// SplitMix64: the same numbers on every system and in every run.
 pub struct Rng(pub u64);
@@ -343,4 +346,38 @@ pub fn distance(point: Vector3<f64>, from: Vector3<f64>, to: Vector3<f64>) -> f6
 /// Values between two sets of axis values.
 pub fn between(from: &Joints, to: &Joints, t: f64) -> Joints {
     std::array::from_fn::<f64, MAX_AXES, _>(|index| from[index] * (1.0 - t) + to[index] * t)
+}
+
+/// Table 3.2 of Li 2024 (nonlinear error of a dual rotary table AC machine): 20 points of a blade, from the
+/// paper's text.
+pub fn blade() -> Option<Vec<Pose>> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../../shared/papers/000_d91ffc0ea4534a10.txt");
+    let Ok(text) = fs::read_to_string(&path) else {
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "{} is missing",
+            path.display()
+        );
+        eprintln!("skipped: {} is missing", path.display());
+        return None;
+    };
+    let points = text
+        .lines()
+        .skip_while(|line| !line.starts_with("Table 3.2"))
+        .map(|line| {
+            line.split_whitespace()
+                .filter_map(|field| field.parse().ok())
+                .collect::<Vec<f64>>()
+        })
+        .filter(|numbers| numbers.len() == 7)
+        .take(20)
+        .map(|numbers| Pose {
+            tip: Vector3::new(numbers[1], numbers[2], numbers[3]),
+            axis: Vector3::new(numbers[4], numbers[5], numbers[6]).normalize(),
+            ..Pose::default()
+        })
+        .collect::<Vec<_>>();
+    assert_eq!(points.len(), 20);
+    Some(points)
 }

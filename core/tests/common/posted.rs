@@ -252,6 +252,11 @@ impl Bench {
     }
 
     pub fn run(&self, cl: &str) -> Run {
+        self.run_with(cl, &mut Samples, false)
+    }
+
+    /// With an error model of the test's own, and maybe nothing but its word.
+    pub fn run_with(&self, cl: &str, model: &mut dyn ModelSession, trust_model: bool) -> Run {
         let mut dialect = Recorder {
             format: Format {
                 words: self.machine.axes.iter().map(|_| self.decimals).collect(),
@@ -262,12 +267,13 @@ impl Bench {
             },
             asked: Vec::new(),
         };
-        let (mut model, mut output) = (Samples, Nowhere);
+        let mut output = Nowhere;
         let job = Job {
             tool_length: Some(self.length),
+            trust_model,
             ..Job::default()
         };
-        let mut post = Post::new(&self.machine, job, &mut dialect, &mut model, &mut output)
+        let mut post = Post::new(&self.machine, job, &mut dialect, model, &mut output)
             .expect("machine and dialect agree");
         let mut reader = Reader::new(cl.as_bytes());
         while !post.gave_up() {

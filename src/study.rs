@@ -3,8 +3,10 @@
 mod chart;
 mod csv;
 mod job;
+mod one_move;
 mod path;
 mod pictures;
+mod scale;
 mod sweep;
 mod table;
 

@@ -5,10 +5,8 @@ use std::fmt::Write as _;
 
 use post_core::study::{Placed, Row, Survey};
 
+use super::pictures::MICRO;
 use super::{File, Study, placement_name};
-
-/// Micrometres in a mm.
-const MICRO: f64 = 1e3;
 
 /// All tables.
 pub fn files(study: &Study) -> Vec<File> {

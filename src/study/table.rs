@@ -49,6 +49,14 @@ fn head(text: &mut String, study: &Study) {
             "as the dialect rounds them"
         }
     );
+    let axes = study.rows.iter().map(|row| row.axis.to_degrees());
+    let _ = writeln!(
+        text,
+        "with nothing done the tool axis strays by {:.4}° on average, {:.4}° at most, tolerance {:.4}°",
+        axes.clone().sum::<f64>() / study.rows.len() as f64,
+        axes.fold(0.0, f64::max),
+        machine.accuracy.axis_tolerance.to_degrees()
+    );
     if machine.control.tcp == Tcp::Control {
         text.push_str(
             "the control keeps the tip, so that only the tool axis deviates; --tcp post studies the tip\n",

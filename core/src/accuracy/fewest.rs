@@ -35,8 +35,17 @@ struct Tried {
     better: f64,
 }
 
+/// CL points that blocks go along, from one of them to another.
+#[derive(Clone, Copy)]
+struct Stretch<'a> {
+    run: &'a Run<'a>,
+    way: &'a [f64],
+    /// Its last CL point.
+    end: usize,
+}
+
 impl Linearise {
-    /// Cuts a run into as few blocks as it finds.
+    /// Cuts a run into as few blocks as it finds. Where nothing is gained by leaving CL points out, all are kept.
     ///
     /// # Errors
     /// Why it cannot be done, and in which leg.
@@ -46,22 +55,38 @@ impl Linearise {
         model: &mut dyn ModelSession,
     ) -> Result<(), (usize, Stuck)> {
         let way = std::mem::take(&mut self.way);
-        let done = self.stride(run, &way, model);
+        let stretch = |end: usize| Stretch {
+            run,
+            way: &way,
+            end,
+        };
+        let mut done = self.stride(stretch(run.legs()), 0, model);
+        if done.is_ok() && run.legs() > 1 && self.count() >= run.legs() {
+            let across = self.set_aside();
+            let kept =
+                (0..run.legs()).try_for_each(|leg| self.stride(stretch(leg + 1), leg, model));
+            if kept.is_err() || self.count() > across.len() {
+                self.bring_back(across);
+            } else {
+                done = kept;
+            }
+        }
         self.way = way;
         done
     }
 
+    /// Cuts what lies between CL point `first` and the end of the stretch.
     fn stride(
         &mut self,
-        run: &Run<'_>,
-        way: &[f64],
+        stretch: Stretch<'_>,
+        first: usize,
         model: &mut dyn ModelSession,
     ) -> Result<(), (usize, Stuck)> {
-        let total = way[run.legs()];
-        let mut from = run.start(0);
-        let mut start = Spot { leg: 0, t: 0.0 };
-        let mut step = total;
-        while start.t < 1.0 || start.leg + 1 < run.legs() {
+        let Stretch { run, way, end } = stretch;
+        let mut from = run.start(first);
+        let mut start = Spot { leg: first, t: 0.0 };
+        let mut step = way[end] - way[first];
+        while start.t < 1.0 || start.leg + 1 < end {
             if start.t >= 1.0 {
                 start = Spot {
                     leg: start.leg + 1,
@@ -69,7 +94,7 @@ impl Linearise {
                 };
                 from.t = 0.0;
             }
-            match longest(run, way, (&from, start), step) {
+            match stretch.longest((&from, start), step) {
                 Some((tried, bound)) => {
                     step = distance(way, tried.end) - distance(way, start);
                     self.enter(tried.end.leg);
@@ -91,131 +116,135 @@ impl Linearise {
     }
 }
 
-/// The longest block from `start` that is within tolerance; the first try is `step` mm long.
-fn longest(
-    run: &Run<'_>,
-    way: &[f64],
-    (from, start): (&Node, Spot),
-    step: f64,
-) -> Option<(Tried, Bound)> {
-    let begin = distance(way, start);
-    let rest = way[run.legs()] - begin;
-    let leg = way[start.leg + 1] - way[start.leg];
-    let mut best: Option<(f64, Tried, Bound)> = None;
-    // What is known to be too long.
-    let mut over = f64::INFINITY;
-    let mut length = step.min(rest);
-    for _ in 0..TRIES {
-        let Some(tried) = reach(run, way, (from, start), length) else {
-            if best.is_some() {
+impl Stretch<'_> {
+    /// The longest block from `start` that is within tolerance; the first try is `step` mm long.
+    fn longest(&self, (from, start): (&Node, Spot), step: f64) -> Option<(Tried, Bound)> {
+        let way = self.way;
+        let begin = distance(way, start);
+        let rest = way[self.end] - begin;
+        let leg = way[start.leg + 1] - way[start.leg];
+        let mut best: Option<(f64, Tried, Bound)> = None;
+        // What is known to be too long.
+        let mut over = f64::INFINITY;
+        let mut length = step.min(rest);
+        for _ in 0..TRIES {
+            let Some(tried) = self.reach((from, start), length) else {
+                if best.is_some() {
+                    break;
+                }
+                over = length;
+                length /= 2.0;
+                if length < SHORTEST * leg {
+                    return None;
+                }
+                continue;
+            };
+            let better = tried.better;
+            match tried.bound {
+                Some(bound) => {
+                    let enough = length >= rest || better < 1.0 + ENOUGH;
+                    best = Some((length, tried, bound));
+                    if enough {
+                        break;
+                    }
+                }
+                None => over = length,
+            }
+            let good = best.as_ref().map_or(0.0, |(length, ..)| *length);
+            let foreseen = length * better;
+            length = if foreseen > good * (1.0 + ENOUGH) && foreseen < over * (1.0 - ENOUGH) {
+                foreseen.min(8.0 * length)
+            } else if over.is_finite() {
+                // The bow did not foretell it: between what holds and what does not.
+                (good + over) / 2.0
+            } else {
+                break;
+            };
+            length = length.min(rest);
+            if good > 0.0 && (length < good * (1.0 + ENOUGH) || over < good * (1.0 + 2.0 * ENOUGH))
+            {
                 break;
             }
-            over = length;
-            length /= 2.0;
             if length < SHORTEST * leg {
                 return None;
             }
-            continue;
-        };
-        let better = tried.better;
-        match tried.bound {
-            Some(bound) => {
-                let enough = length >= rest || better < 1.0 + ENOUGH;
-                best = Some((length, tried, bound));
-                if enough {
-                    break;
-                }
-            }
-            None => over = length,
         }
-        let good = best.as_ref().map_or(0.0, |(length, ..)| *length);
-        let foreseen = length * better;
-        length = if foreseen > good * (1.0 + ENOUGH) && foreseen < over * (1.0 - ENOUGH) {
-            foreseen.min(8.0 * length)
-        } else if over.is_finite() {
-            // The bow did not foretell it: between what holds and what does not.
-            (good + over) / 2.0
-        } else {
-            break;
-        };
-        length = length.min(rest);
-        if good > 0.0 && (length < good * (1.0 + ENOUGH) || over < good * (1.0 + 2.0 * ENOUGH)) {
-            break;
-        }
-        if length < SHORTEST * leg {
-            return None;
-        }
+        best.map(|(_, tried, bound)| (tried, bound))
     }
-    best.map(|(_, tried, bound)| (tried, bound))
+
+    /// Tries a block of `length` mm; none if there is no way to stand at its end.
+    fn reach(&self, (from, start): (&Node, Spot), length: f64) -> Option<Tried> {
+        let Stretch {
+            run,
+            way,
+            end: last,
+        } = *self;
+        let begin = distance(way, start);
+        let to_end = begin + length >= way[last] * (1.0 - 1e-12);
+        let end = if to_end {
+            Spot {
+                leg: last - 1,
+                t: 1.0,
+            }
+        } else {
+            run.spot(way, begin + length)
+        };
+        let mut to = if to_end {
+            run.end(last)
+        } else {
+            let point = run.start(end.leg);
+            let leg = run.leg(&point, end.leg);
+            if eased(run, &point) || eased(run, leg.to) {
+                return None;
+            }
+            put_in(&leg, end.t, || leg.measured().axis <= run.tolerances.axis).ok()?
+        };
+        // How the block bows: off the path in the middle, beside the line between its ends.
+        let middle = run.spot(way, begin + length / 2.0);
+        let passed = run.passed(from, &to, 0.5, run.target(middle));
+        let bow = passed.off() - (from.off() + to.off()) / 2.0;
+        let size = bow.norm();
+        let tolerance = run.tolerances.tip;
+        let aside = bow.try_normalize(1e-12).unwrap_or_else(Vector3::zeros);
+        let mut shift = 0.0;
+        if !to_end && run.balances && tolerance.is_finite() {
+            shift = (size / 2.0).min(tolerance - run.placer.tip_rounding());
+            if shift > run.placer.tip_rounding() {
+                let (target, rotary) = (to.target, to.trace.joints);
+                let place = target.tip - aside * shift;
+                run.placer
+                    .settle_at(&mut to, target, place, end.t, &rotary)
+                    .ok()?;
+            } else {
+                shift = 0.0;
+            }
+        }
+        let bound = run.along((from, start), (&to, end), way);
+        let ahead = -from.off().dot(&aside);
+        let allowed = SAFE * tolerance + (ahead + shift.max(0.0)) / 2.0;
+        let by_tip = if size > 0.0 {
+            allowed / size
+        } else {
+            f64::INFINITY
+        };
+        // The tool axis bows with the square of the length too.
+        let axis = passed.axis_error;
+        let by_axis = if axis > 0.0 {
+            SAFE * run.tolerances.axis / axis
+        } else {
+            f64::INFINITY
+        };
+        Some(Tried {
+            to,
+            end,
+            bound,
+            better: libm::sqrt(by_tip.min(by_axis).max(0.0)),
+        })
+    }
 }
 
 /// The axes do not stand where the point alone would put them: close to a pole they are turned evenly, and a point put
 /// in on the exact solution would leave the turn for the end of the leg.
 fn eased(run: &Run<'_>, node: &Node) -> bool {
     node.axis_error > run.placer.axis_rounding()
-}
-
-/// Tries a block of `length` mm; none if there is no way to stand at its end.
-fn reach(run: &Run<'_>, way: &[f64], (from, start): (&Node, Spot), length: f64) -> Option<Tried> {
-    let begin = distance(way, start);
-    let to_end = begin + length >= way[run.legs()] * (1.0 - 1e-12);
-    let end = if to_end {
-        Spot {
-            leg: run.legs() - 1,
-            t: 1.0,
-        }
-    } else {
-        run.spot(way, begin + length)
-    };
-    let mut to = if to_end {
-        run.end(run.legs())
-    } else {
-        let point = run.start(end.leg);
-        let leg = run.leg(&point, end.leg);
-        if eased(run, &point) || eased(run, leg.to) {
-            return None;
-        }
-        put_in(&leg, end.t, || leg.measured().axis <= run.tolerances.axis).ok()?
-    };
-    // How the block bows: off the path in the middle, beside the line between its ends.
-    let middle = run.spot(way, begin + length / 2.0);
-    let passed = run.passed(from, &to, 0.5, run.target(middle));
-    let bow = passed.off() - (from.off() + to.off()) / 2.0;
-    let size = bow.norm();
-    let tolerance = run.tolerances.tip;
-    let aside = bow.try_normalize(1e-12).unwrap_or_else(Vector3::zeros);
-    let mut shift = 0.0;
-    if !to_end && run.balances && tolerance.is_finite() {
-        shift = (size / 2.0).min(tolerance - run.placer.tip_rounding());
-        if shift > run.placer.tip_rounding() {
-            let (target, rotary) = (to.target, to.trace.joints);
-            let place = target.tip - aside * shift;
-            run.placer
-                .settle_at(&mut to, target, place, end.t, &rotary)
-                .ok()?;
-        } else {
-            shift = 0.0;
-        }
-    }
-    let bound = run.along((from, start), (&to, end), way);
-    let ahead = -from.off().dot(&aside);
-    let allowed = SAFE * tolerance + (ahead + shift.max(0.0)) / 2.0;
-    let by_tip = if size > 0.0 {
-        allowed / size
-    } else {
-        f64::INFINITY
-    };
-    // The tool axis bows with the square of the length too.
-    let axis = passed.axis_error;
-    let by_axis = if axis > 0.0 {
-        SAFE * run.tolerances.axis / axis
-    } else {
-        f64::INFINITY
-    };
-    Some(Tried {
-        to,
-        end,
-        bound,
-        better: libm::sqrt(by_tip.min(by_axis).max(0.0)),
-    })
 }

@@ -169,6 +169,16 @@ impl Linearise {
         self.pieces.truncate(count);
     }
 
+    /// Takes all pieces out, to be compared with others.
+    pub(super) fn set_aside(&mut self) -> Vec<Piece> {
+        std::mem::take(&mut self.pieces)
+    }
+
+    /// Puts pieces in place of those there are.
+    pub(super) fn bring_back(&mut self, pieces: Vec<Piece>) {
+        self.pieces = pieces;
+    }
+
     /// Pieces so far.
     pub(super) fn count(&self) -> usize {
         self.pieces.len()

@@ -106,7 +106,17 @@ fn longest(
     let mut over = f64::INFINITY;
     let mut length = step.min(rest);
     for _ in 0..TRIES {
-        let tried = reach(run, way, (from, start), length)?;
+        let Some(tried) = reach(run, way, (from, start), length) else {
+            if best.is_some() {
+                break;
+            }
+            over = length;
+            length /= 2.0;
+            if length < SHORTEST * leg {
+                return None;
+            }
+            continue;
+        };
         let better = tried.better;
         match tried.bound {
             Some(bound) => {
@@ -139,6 +149,12 @@ fn longest(
     best.map(|(_, tried, bound)| (tried, bound))
 }
 
+/// The axes do not stand where the point alone would put them: close to a pole they are turned evenly, and a point put
+/// in on the exact solution would leave the turn for the end of the leg.
+fn eased(run: &Run<'_>, node: &Node) -> bool {
+    node.axis_error > run.placer.axis_rounding()
+}
+
 /// Tries a block of `length` mm; none if there is no way to stand at its end.
 fn reach(run: &Run<'_>, way: &[f64], (from, start): (&Node, Spot), length: f64) -> Option<Tried> {
     let begin = distance(way, start);
@@ -156,6 +172,9 @@ fn reach(run: &Run<'_>, way: &[f64], (from, start): (&Node, Spot), length: f64) 
     } else {
         let point = run.start(end.leg);
         let leg = run.leg(&point, end.leg);
+        if eased(run, &point) || eased(run, leg.to) {
+            return None;
+        }
         put_in(&leg, end.t, || leg.measured().axis <= run.tolerances.axis).ok()?
     };
     // How the block bows: off the path in the middle, beside the line between its ends.

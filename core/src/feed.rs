@@ -83,9 +83,17 @@ impl Feeds {
         least
     }
 
-    /// The feed of a cut of `length` mm of the tip's path, a `share` of its whole move.
+    /// The feed of a cut of `length` mm of the control point's path, a `share` of its whole move; the tip, whose words
+    /// a control that keeps it measures, goes `tip` mm.
     #[inline]
-    pub fn cut(&self, pace: Pace, length: f64, share: f64, from: &Joints, to: &Joints) -> Paced {
+    pub fn cut(
+        &self,
+        pace: Pace,
+        [length, tip]: [f64; 2],
+        share: f64,
+        from: &Joints,
+        to: &Joints,
+    ) -> Paced {
         let least = self.least_time(from, to);
         let asked = match pace {
             Pace::PerMinute(feed) if length > STILL => length / feed,
@@ -103,11 +111,14 @@ impl Feeds {
             let per_minute = match pace {
                 // No detour over lengths where the feed of the CL file can stand as it is.
                 Pace::PerMinute(feed)
-                    if !limited && length > STILL && (!turning || self.tcp == Tcp::Control) =>
+                    if !limited
+                        && length > STILL
+                        && tip > STILL
+                        && (!turning || self.tcp == Tcp::Control) =>
                 {
                     feed / self.unit
                 }
-                _ => self.measured(&self.travels(from, to), length) / minutes,
+                _ => self.measured(&self.travels(from, to), tip) / minutes,
             };
             Feed::PerMinute(self.feed.floor(per_minute))
         };

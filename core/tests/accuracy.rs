@@ -417,9 +417,15 @@ fn hold(
     // No block goes faster than was asked for.
     for block in blocks.iter().filter(|block| !block.rapid) {
         let asked = stops[leg(block.lines[1]) + 1].feed.unwrap_or(f64::INFINITY);
-        let length = (block.at(bench, 1.0).0 - block.at(bench, 0.0).0).norm();
+        let [(from, first), (to, last)] = [block.at(bench, 0.0), block.at(bench, 1.0)];
+        let length = (to - from).norm();
+        // Degrees a minute, where the control sees a tip that stands still under a control point that moves.
+        let tip = (to - from - (last - first) * given.along).norm();
+        let degrees = given.along != 0.0 && tip < 3e-3;
         match block.feed {
-            Some(Feed::PerMinute(feed)) if given.tcp == "control" && feed > asked + 1e-6 => {
+            Some(Feed::PerMinute(feed))
+                if given.tcp == "control" && !degrees && feed > asked + 1e-6 =>
+            {
                 return Err(format!("a feed of {feed}, asked {asked}"));
             }
             Some(Feed::InverseTime(feed))
@@ -1439,5 +1445,135 @@ fn long_runs_are_held() {
                 .unwrap_or_else(|fault| panic!("{profile:?}, {config:?}: {fault}, {given:?}"));
             println!("{profile:?}, {config:?}: {} blocks", found.blocks);
         }
+    }
+}
+
+/// A knife whose edge leads along a curve: with points left out, axis and edge both stay within what is certified of
+/// what the CL file asks for thereabouts.
+#[test]
+fn a_leading_edge_stays_within_what_is_certified() {
+    let axes = [("C", V::z(), 0.0), ("B", V::y(), 160.0), ("A", V::z(), 0.0)];
+    for config in CONFIGS {
+        for (tcp, bend) in [("post", 0.02f64), ("post", 0.002), ("control", 0.01)] {
+            let mut machine =
+                "name = \"knife\"\nchain = \"[w b X Y Z C B A t]\"\n[tool]\ngauge = [0, 0, 0]\nedge = [1, 0, 0]\n"
+                    .to_owned();
+            for (name, direction, height) in axes {
+                writeln!(
+                    machine,
+                    "[axis.{name}]\nrotary = [{}, {}, {}]\npoint = [0, 0, {height}]\ntravel = [-700, 700]\nmax_feed = 1e6",
+                    direction.x, direction.y, direction.z
+                )
+                .unwrap();
+            }
+            write!(
+                machine,
+                "{LINEAR}[control]\ndialect = \"recorder\"\ntcp = \"{tcp}\"\n[solution]\nedge = \"cl\"\n[accuracy]\ntolerance = 0.02\naxis_tolerance = 0.2\n{config}"
+            )
+            .unwrap();
+            let bench = Bench::new(&machine, 4, 50.0);
+            let mut cl = "UNITS/MM\nMULTAX/ON\nFEDRAT/1000,MMPM\n".to_owned();
+            let (mut path, mut edges) = (Vec::new(), Vec::new());
+            let mut tip = V::zeros();
+            for index in 0..120 {
+                let turn = bend * f64::from(index);
+                let (sine, cosine) = libm::sincos(turn);
+                let way = V::new(cosine, sine, 0.0);
+                let axis = leaned(V::z(), way, 0.35 + 0.1 * sine);
+                let edge = (way - axis * axis.dot(&way)).normalize();
+                writeln!(
+                    cl,
+                    "GOTO/{:.6},{:.6},{:.6},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9}",
+                    tip.x, tip.y, tip.z, axis.x, axis.y, axis.z, edge.x, edge.y, edge.z
+                )
+                .unwrap();
+                path.push((tip, axis));
+                edges.push(edge);
+                tip += way * 0.7;
+            }
+            cl += "FINI\n";
+            let run = bench.run_with(&cl, &mut Shape::Fine, false).good(config);
+            let report = run.report.as_ref().unwrap();
+            if config.contains("reduce") && bend < 0.02 {
+                assert!(
+                    report.points_dropped > 20,
+                    "{config}: {}",
+                    report.points_dropped
+                );
+            }
+            let (bound, turn) = (
+                report.tip_deviation_mm.value + 1e-5,
+                report.axis_deviation_deg.value.to_radians() + 1e-7,
+            );
+            let mut walk = Walk::new(&path);
+            for block in blocks(&bench, &run) {
+                for step in 0..=40 {
+                    let t = f64::from(step) / 40.0;
+                    let last = block.lines[1] as usize - 5;
+                    walk.reach(block.at(&bench, t), last, bound, turn)
+                        .unwrap_or_else(|off| panic!("{config}: {off:?} in {block:?}"));
+                    let edge = block.rotation(&bench, t) * V::x();
+                    // The tip says where it is to its tolerance, and no better.
+                    let (leg, at) = walk.at();
+                    let apart = (0..=20)
+                        .map(|look| at + 2.0 * bound / 0.7 * f64::from(look) / 20.0)
+                        .map(|at| {
+                            let (leg, at) = if at > 1.0 && leg + 2 < path.len() {
+                                (leg + 1, at - 1.0)
+                            } else {
+                                (leg, at.min(1.0))
+                            };
+                            angle(edge, slerp(edges[leg], edges[leg + 1], at))
+                        })
+                        .fold(f64::INFINITY, f64::min);
+                    assert!(
+                        apart <= turn + 1e-6,
+                        "{config}, {tcp}, {bend}: the edge is off by {}°, certified {}°",
+                        apart.to_degrees(),
+                        turn.to_degrees()
+                    );
+                }
+            }
+            assert!(walk.at().0 + 2 == path.len(), "{config}");
+        }
+    }
+}
+
+/// Where the control keeps the tip it measures the tip's words, not the way of the point above it: on the spot the
+/// feed is that of the rotary axes, and the block takes the time that the summary says.
+#[test]
+fn a_turn_on_the_spot_is_told_in_what_the_control_measures() {
+    for along in [0.0, 0.2, 30.0] {
+        let machine = usual(
+            true,
+            "control",
+            "cyclic = true",
+            "[accuracy]\ntolerance = 1\naxis_tolerance = 5",
+        );
+        let machine = machine.replace(
+            "gauge = [0, 0, 0]",
+            &format!("gauge = [0, 0, 0]\ncontrol_point = {{ along = {along} }}"),
+        );
+        let bench = Bench::new(&machine, 4, 100.0);
+        let lean = |degrees: f64| {
+            let (sine, cosine) = libm::sincos(degrees.to_radians());
+            V::new(0.0, -sine, cosine)
+        };
+        let stops = [
+            stop(V::zeros(), lean(10.0), None),
+            stop(V::zeros(), lean(10.3), Some(100.0)),
+        ];
+        let run = bench.run(&text(&stops).0).good("a turn");
+        let made = blocks(&bench, &run);
+        let turn: f64 = made[0].to[bench.place("A")] - made[0].from[bench.place("A")];
+        let Some(Feed::PerMinute(feed)) = made[0].feed else {
+            panic!("{:?}", made[0].feed);
+        };
+        let seconds = turn.abs().to_degrees() / feed * 60.0;
+        let told = run.report.unwrap().cutting_time_s;
+        assert!(
+            (seconds / told - 1.0).abs() < 0.05,
+            "{along}: F{feed}, {seconds} s, told {told} s"
+        );
     }
 }

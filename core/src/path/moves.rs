@@ -129,9 +129,11 @@ impl Path<'_> {
             Pace::Rapid => None,
             // A time for a way that nobody knows has no meaning; the way is made at rapid.
             Pace::InverseTime(_) => None,
-            Pace::PerMinute(_) => {
-                Some(self.feeds.cut(leg.motion.pace, 1.0, 1.0, &none, &none).feed)
-            }
+            Pace::PerMinute(_) => Some(
+                self.feeds
+                    .cut(leg.motion.pace, [1.0; 2], 1.0, &none, &none)
+                    .feed,
+            ),
         };
         let count = self.format.words.len();
         self.tally
@@ -528,7 +530,10 @@ impl Path<'_> {
         } else {
             // Between the printed tips: that is the way that the control will time.
             let length = (to.tip - from.tip).norm();
-            let paced = self.feeds.cut(leg.motion.pace, length, share, first, last);
+            let along = self.machine.control_point.along;
+            let turned = (to.trace.pose.axis - from.trace.pose.axis) * along;
+            let lengths = [length, (to.tip - from.tip - turned).norm()];
+            let paced = self.feeds.cut(leg.motion.pace, lengths, share, first, last);
             self.tally.limited += u64::from(paced.limited);
             self.tally.cutting += paced.minutes;
             Event::Linear {

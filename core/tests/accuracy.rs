@@ -2,6 +2,9 @@
 //! product that shares nothing with the crate, stays within what is certified, whatever the placement, with CL points
 //! left out or not, compensated or linearised; and nothing of the path is cut off.
 
+// Clippy lets test functions unwrap, but not the helpers beside them.
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use std::fmt::Write as _;
@@ -504,7 +507,7 @@ fn edges_go_straight(
     Ok(())
 }
 
-/// Random machines, random paths, every way of error control.
+/// Random machines, random paths, every way of error control. `ROUNDS` and `SEED` make it longer, or other.
 #[test]
 fn every_block_stays_within_what_is_certified() {
     let rounds: usize = std::env::var("ROUNDS").map_or(160, |rounds| rounds.parse().unwrap());

@@ -45,38 +45,32 @@ struct Stretch<'a> {
 }
 
 impl Linearise {
-    /// Cuts a run into as few blocks as it finds. Where nothing is gained by leaving CL points out, all are kept.
+    /// Cuts what lies between two CL points of a run into as few blocks as it finds.
     ///
     /// # Errors
     /// Why it cannot be done, and in which leg.
-    pub(super) fn fewest(
+    pub(super) fn stride(
         &mut self,
         run: &Run<'_>,
+        first: usize,
+        end: usize,
         model: &mut dyn ModelSession,
     ) -> Result<(), (usize, Stuck)> {
         let way = std::mem::take(&mut self.way);
-        let stretch = |end: usize| Stretch {
-            run,
-            way: &way,
-            end,
-        };
-        let mut done = self.stride(stretch(run.legs()), 0, model);
-        if done.is_ok() && run.legs() > 1 && self.count() >= run.legs() {
-            let across = self.set_aside();
-            let kept =
-                (0..run.legs()).try_for_each(|leg| self.stride(stretch(leg + 1), leg, model));
-            if kept.is_err() || self.count() > across.len() {
-                self.bring_back(across);
-            } else {
-                done = kept;
-            }
-        }
+        let done = self.stride_along(
+            Stretch {
+                run,
+                way: &way,
+                end,
+            },
+            first,
+            model,
+        );
         self.way = way;
         done
     }
 
-    /// Cuts what lies between CL point `first` and the end of the stretch.
-    fn stride(
+    fn stride_along(
         &mut self,
         stretch: Stretch<'_>,
         first: usize,

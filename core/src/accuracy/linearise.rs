@@ -78,13 +78,19 @@ pub(super) struct Judged {
 impl Linearise {
     /// Works as the machine file says. With `trust_model` the certificate only reports.
     pub fn new(accuracy: &Accuracy, trust_model: bool) -> Self {
-        Self {
-            method: accuracy.method,
-            points: accuracy.points,
-            placement: accuracy.placement,
+        let mut linearise = Self {
             trust_model,
             ..Self::default()
-        }
+        };
+        linearise.set(accuracy);
+        linearise
+    }
+
+    /// Works as another head's part of the machine file says.
+    pub(crate) fn set(&mut self, accuracy: &Accuracy) {
+        self.method = accuracy.method;
+        self.points = accuracy.points;
+        self.placement = accuracy.placement;
     }
 
     /// How often the certificate found more than the model promised, and points went in for it.
@@ -108,13 +114,27 @@ impl Linearise {
     ) -> Result<(), (usize, Stuck)> {
         self.pieces.clear();
         run.measure(&mut self.way);
-        if self.method == Method::Linearise && self.placement == Placement::Fewest {
-            if self.fewest(run, model).is_ok() {
+        let fewest = self.method == Method::Linearise && self.placement == Placement::Fewest;
+        if fewest && run.legs() > 1 {
+            // Points that were put in as far off as they could be may have left no way on (through a pole).
+            let across = self.stride(run, 0, run.legs(), model).is_ok();
+            let pieces = std::mem::take(&mut self.pieces);
+            let kept = self.from_point_to_point(run, model);
+            if across && (kept.is_err() || self.pieces.len() > pieces.len()) {
+                self.pieces = pieces;
                 return Ok(());
             }
-            // Points that were put in as far off as they could be left no way on (through a pole): bisection knows one.
-            self.pieces.clear();
+            return kept;
         }
+        self.from_point_to_point(run, model)
+    }
+
+    /// Blocks from CL point to CL point, as long as they can be; points go into the legs that need them.
+    fn from_point_to_point(
+        &mut self,
+        run: &Run<'_>,
+        model: &mut dyn ModelSession,
+    ) -> Result<(), (usize, Stuck)> {
         let mut at = 0;
         while at < run.legs() {
             if let Some((reach, bound)) = run.farthest(at, &self.way) {
@@ -124,9 +144,7 @@ impl Linearise {
                 continue;
             }
             self.leg = at;
-            let start = run.start(at);
-            let leg = run.leg(&start, at);
-            self.put_in(&leg, model).map_err(|stuck| (at, stuck))?;
+            self.put_in(run, at, model).map_err(|stuck| (at, stuck))?;
             at += 1;
         }
         Ok(())
@@ -134,20 +152,36 @@ impl Linearise {
 
     /// Puts points into a leg, as method and placement say; where they do not serve, by bisection, which knows what
     /// to do close to a pole.
-    fn put_in(&mut self, leg: &Move<'_>, model: &mut dyn ModelSession) -> Result<(), Stuck> {
-        if self.method == Method::Linearise && self.placement != Placement::Even {
-            return self.halve(leg, model);
-        }
-        let judged = self.judge(leg, model)?;
-        if judged.good {
-            self.keep(*leg.to, judged.bound);
+    fn put_in(
+        &mut self,
+        run: &Run<'_>,
+        at: usize,
+        model: &mut dyn ModelSession,
+    ) -> Result<(), Stuck> {
+        let start = run.start(at);
+        let leg = run.leg(&start, at);
+        let before = self.count();
+        let done = match (self.method, self.placement) {
+            (Method::Linearise, Placement::Bisect) => false,
+            (Method::Linearise, Placement::Fewest) => self.stride(run, at, at + 1, model).is_ok(),
+            _ => {
+                let judged = self.judge(&leg, model)?;
+                if judged.good {
+                    self.keep(*leg.to, judged.bound);
+                    return Ok(());
+                }
+                match self.method {
+                    Method::Compensate => self.compensate(&leg, &judged, model),
+                    Method::Linearise => self.even(&leg, &judged),
+                }
+            }
+        };
+        if done {
             return Ok(());
         }
-        let done = match self.method {
-            Method::Compensate => self.compensate(leg, &judged, model),
-            Method::Linearise => self.even(leg, &judged),
-        };
-        if done { Ok(()) } else { self.halve(leg, model) }
+        self.take_back(before);
+        self.leg = at;
+        self.halve(&leg, model)
     }
 
     /// From here on pieces end in this leg.
@@ -167,16 +201,6 @@ impl Linearise {
     /// So many pieces are good; the others are taken back.
     pub(super) fn take_back(&mut self, count: usize) {
         self.pieces.truncate(count);
-    }
-
-    /// Takes all pieces out, to be compared with others.
-    pub(super) fn set_aside(&mut self) -> Vec<Piece> {
-        std::mem::take(&mut self.pieces)
-    }
-
-    /// Puts pieces in place of those there are.
-    pub(super) fn bring_back(&mut self, pieces: Vec<Piece>) {
-        self.pieces = pieces;
     }
 
     /// Pieces so far.

@@ -219,10 +219,10 @@ impl<'a> Path<'a> {
     /// Line of the CL file before which everything is settled.
     pub fn settled_line(&self) -> Option<u64> {
         let command = self.waiting.front().map(|(_, line, _)| *line);
-        match (command, self.route.first_line()) {
-            (Some(a), Some(b)) => Some(a.min(b)),
-            (a, b) => a.or(b),
-        }
+        [command, self.route.first_line(), self.gathered.first_line()]
+            .into_iter()
+            .flatten()
+            .min()
     }
 
     /// The first event.
@@ -501,6 +501,7 @@ impl<'a> Path<'a> {
         };
         self.release(line);
         self.machine = &head.machine;
+        self.linearise.set(&self.machine.accuracy);
         if let Some(feeds) = Feeds::new(self.machine, &self.format) {
             self.feeds = feeds;
         }

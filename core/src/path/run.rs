@@ -8,7 +8,7 @@ use crate::kinematics::orientation::angle;
 use crate::program::{Motion, Pace};
 
 /// More legs than this do not wait: the point at the end of them is kept.
-const MOST: usize = 256;
+const MOST: usize = 1024;
 
 /// Directions of shorter moves mean nothing, mm.
 const LEAST: f64 = 1e-6;
@@ -22,6 +22,11 @@ pub(super) struct Gathered {
 }
 
 impl Gathered {
+    /// Line of the first leg that waits.
+    pub(super) fn first_line(&self) -> Option<u64> {
+        self.legs.first().map(|(line, _)| *line)
+    }
+
     /// Can a leg to `node` go on here, if the path turns by no more than `corner`, radians?
     fn joins(&self, leg: &Leg<'_>, node: &Node, corner: f64) -> bool {
         let (Some((_, motion)), [.., before, last]) = (self.legs.last(), self.nodes.as_slice())

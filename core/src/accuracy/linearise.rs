@@ -119,18 +119,18 @@ impl Linearise {
             // Points that were put in as far off as they could be may have left no way on (through a pole).
             let across = self.stride(run, 0, run.legs(), model).is_ok();
             let pieces = std::mem::take(&mut self.pieces);
-            let kept = self.from_point_to_point(run, model);
+            let kept = self.point_to_point(run, model);
             if across && (kept.is_err() || self.pieces.len() > pieces.len()) {
                 self.pieces = pieces;
                 return Ok(());
             }
             return kept;
         }
-        self.from_point_to_point(run, model)
+        self.point_to_point(run, model)
     }
 
     /// Blocks from CL point to CL point, as long as they can be; points go into the legs that need them.
-    fn from_point_to_point(
+    fn point_to_point(
         &mut self,
         run: &Run<'_>,
         model: &mut dyn ModelSession,

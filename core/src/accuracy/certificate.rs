@@ -152,26 +152,31 @@ impl Course {
 /// A bound on the second derivative of any unit vector across the tool axis that is fixed to the tool, by the same
 /// means as [`tight`]: the largest singular value of the second derivatives of two such vectors.
 pub fn rim(chain: &Chain, from: &Trace, to: &Trace) -> f64 {
-    let axis = chain.axis();
-    let first = axis.cross(&across(axis)).normalize();
-    let second = axis.cross(&first);
+    let directions = across(chain.axis());
     let turns: f64 = joint_turns(chain, from, to).sum();
     let at = |trace: &Trace| {
-        let [a, b] = [first, second].map(|vector| direction_bend(chain, vector, trace, from, to));
-        let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.dot(&b));
-        let half = (aa - bb) / 2.0;
-        libm::sqrt((aa + bb) / 2.0 + libm::sqrt(half * half + ab * ab))
+        let [a, b] = directions.map(|vector| direction_bend(chain, vector, trace, from, to));
+        longest_around(a, b)
     };
     at(from).max(at(to)) + turns * turns * turns * turns / 8.0
 }
 
-/// A direction that is not along `axis`.
-fn across(axis: Vector3<f64>) -> Vector3<f64> {
-    if axis.x.abs() < 0.8 {
+/// Two unit vectors across the unit vector `axis` and each other.
+pub(crate) fn across(axis: Vector3<f64>) -> [Vector3<f64>; 2] {
+    let beside = if libm::fabs(axis.x) < 0.8 {
         Vector3::x()
     } else {
         Vector3::y()
-    }
+    };
+    let first = axis.cross(&beside).normalize();
+    [first, axis.cross(&first)]
+}
+
+/// The largest length of `a·cos(φ) + b·sin(φ)`.
+pub(crate) fn longest_around(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
+    let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.dot(&b));
+    let difference = libm::hypot(aa - bb, 2.0 * ab);
+    libm::sqrt((aa + bb + difference) / 2.0)
 }
 
 fn joint_turns(chain: &Chain, from: &Trace, to: &Trace) -> impl Iterator<Item = f64> {

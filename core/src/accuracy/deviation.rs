@@ -6,7 +6,7 @@
 //! times what a direction across the tool bows from its own chord (eqs. 9 and 10 of Sha et al. 2022).
 
 use nalgebra::Vector3;
-use post_plugin::Deviation;
+use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
 use super::certificate::{self, Bend, Course, chord_angle};
 use super::node::{Node, Placer};
@@ -208,6 +208,22 @@ impl Move<'_> {
                 .try_normalize(1e-9)
                 .unwrap_or(from.edge),
         }
+    }
+
+    /// The curve that a model fits to the deviation.
+    ///
+    /// # Errors
+    /// The model's own, if it cannot answer.
+    pub fn fit(&self, model: &mut dyn ModelSession) -> Result<Curve, String> {
+        let tolerance = Tolerance {
+            tip: self.tolerances.tip,
+            axis: self.tolerances.axis.to_degrees(),
+        };
+        model.fit(&tolerance, &mut |ts, out| {
+            for (t, out) in ts.iter().zip(out) {
+                *out = self.deviation(*t);
+            }
+        })
     }
 
     /// Pose of the interpolated axes minus the CL path at the share `t` of this block.

@@ -3,7 +3,7 @@
 //! The model proposes, the certificate disposes: where it finds more than the model promised, further points go in,
 //! unless the user trusts the model.
 
-use post_plugin::{Curve, ModelSession, Tolerance};
+use post_plugin::{Curve, ModelSession};
 
 use super::deviation::{Bound, Move};
 use super::node::{Node, Refused};
@@ -224,17 +224,7 @@ impl Linearise {
                 peak: Bound::default(),
             });
         }
-        let tolerance = Tolerance {
-            tip: tolerances.tip,
-            axis: tolerances.axis.to_degrees(),
-        };
-        let curve = model
-            .fit(&tolerance, &mut |ts, out| {
-                for (t, out) in ts.iter().zip(out) {
-                    *out = piece.deviation(*t);
-                }
-            })
-            .map_err(Stuck::Model)?;
+        let curve = piece.fit(model).map_err(Stuck::Model)?;
         let peak = Bound {
             tip: curve.tip_peak + piece.edge(),
             axis: curve.axis_peak.to_radians(),

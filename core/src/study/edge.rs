@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 
 use super::curve::{Peak, peak};
+use crate::accuracy::certificate::{across, longest_around};
 use crate::kinematics::{Chain, Joints};
 
 /// The circle across the tool axis on which a cutting edge of radius 1 mm lies.
@@ -17,15 +18,8 @@ pub struct Rim {
 impl Rim {
     /// The rim of a tool whose axis is `axis` with all axes at zero, machine frame.
     pub fn new(chain: &Chain, axis: Vector3<f64>) -> Self {
-        let flat = if libm::fabs(axis.x) < 0.5 {
-            Vector3::x()
-        } else {
-            Vector3::y()
-        };
-        let first = axis.cross(&flat).normalize();
-        let second = axis.cross(&first).normalize();
         Self {
-            chains: [first, second].map(|edge| chain.clone().with_edge(Some(edge))),
+            chains: across(axis).map(|edge| chain.clone().with_edge(Some(edge))),
         }
     }
 
@@ -35,7 +29,7 @@ impl Rim {
         let bows = self.bows(from, to);
         peak(|t| {
             let [a, b] = bows(t);
-            largest(a, b)
+            longest_around(a, b)
         })
     }
 
@@ -82,13 +76,6 @@ impl Rim {
         let sum: f64 = turns.map(|turn| turn * turn * turn * turn).sum();
         libm::sqrt(sum) / 8.0
     }
-}
-
-/// The largest length of `a·cos(φ) + b·sin(φ)`.
-fn largest(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
-    let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.dot(&b));
-    let difference = libm::hypot(aa - bb, 2.0 * ab);
-    libm::sqrt((aa + bb + difference) / 2.0)
 }
 
 #[cfg(test)]

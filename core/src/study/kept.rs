@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use nalgebra::Vector3;
-use post_plugin::{Curve, ModelSession, Tolerance};
+use post_plugin::{Curve, ModelSession};
 
 use super::curve::{Peak, peak};
 use super::placed::{each, split, strays};
@@ -119,16 +119,7 @@ impl Kept {
     /// # Errors
     /// Why it cannot.
     pub fn fit(&self, model: &mut dyn ModelSession) -> Result<Curve, String> {
-        let cut = self.cut();
-        let tolerance = Tolerance {
-            tip: self.tolerances.tip,
-            axis: self.tolerances.axis.to_degrees(),
-        };
-        model.fit(&tolerance, &mut |ts, out| {
-            for (t, out) in ts.iter().zip(out) {
-                *out = cut.deviation(*t);
-            }
-        })
+        self.cut().fit(model)
     }
 
     /// The deviation with nothing done about it, in `pieces` even pieces.

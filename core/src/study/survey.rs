@@ -1,7 +1,7 @@
 //! Every move of a file, one row each.
 
 use nalgebra::Vector3;
-use post_plugin::{ModelSession, Tolerance};
+use post_plugin::ModelSession;
 
 use super::curve::{Peak, explained, peak};
 use super::edge::Rim;
@@ -95,15 +95,7 @@ impl<'a> Survey<'a> {
 
     fn model(&mut self, index: usize, cut: &Move<'_>) -> Result<Modelled, String> {
         let model = &mut *self.models[index];
-        let tolerance = Tolerance {
-            tip: cut.tolerances.tip,
-            axis: cut.tolerances.axis.to_degrees(),
-        };
-        let curve = model.fit(&tolerance, &mut |ts, out| {
-            for (t, out) in ts.iter().zip(out) {
-                *out = cut.deviation(*t);
-            }
-        })?;
+        let curve = cut.fit(model)?;
         let value = |t: f64| Vector3::from(model.value(&curve, t).tip);
         let modelled = Modelled {
             peak: Peak {

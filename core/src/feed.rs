@@ -32,6 +32,29 @@ struct AxisFeed {
     slowness: f64,
 }
 
+/// The time that a block is due by the CL file.
+///
+/// It is found for the move and shared out: pieces that are shorter than the words' decimals, or put off the path,
+/// have no pace of their own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Due {
+    /// Minutes.
+    pub minutes: f64,
+    /// The tip moves; else the feed is that of the axes.
+    pub moves: bool,
+}
+
+impl Due {
+    /// A share of it.
+    #[inline]
+    pub fn share(self, share: f64) -> Self {
+        Self {
+            minutes: self.minutes * share,
+            ..self
+        }
+    }
+}
+
 /// A cut's feed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paced {
@@ -83,24 +106,35 @@ impl Feeds {
         least
     }
 
-    /// The feed of a cut of `length` mm of the control point's path, a `share` of its whole move; the tip, whose words
-    /// a control that keeps it measures, goes `tip` mm.
+    /// What a move is due that goes `length` mm along the control point's path.
+    #[inline]
+    pub fn due(&self, pace: Pace, length: f64, from: &Joints, to: &Joints) -> Due {
+        let moves = length > STILL;
+        let minutes = match pace {
+            Pace::PerMinute(feed) if moves => length / feed,
+            // The tip stands still: the feed is taken along the axes, degrees as millimetres, as controls do.
+            Pace::PerMinute(feed) => self.travels(from, to).combined / feed,
+            Pace::InverseTime(feed) => 1.0 / feed,
+            Pace::Rapid => 0.0,
+        };
+        Due { minutes, moves }
+    }
+
+    /// The feed of a block in which the control point goes `length` mm, and the tip, whose words a control that keeps
+    /// it measures, `tip` mm. It is never faster than the CL file asks for.
     #[inline]
     pub fn cut(
         &self,
         pace: Pace,
+        due: Due,
         [length, tip]: [f64; 2],
-        share: f64,
         from: &Joints,
         to: &Joints,
     ) -> Paced {
         let least = self.least_time(from, to);
         let asked = match pace {
-            Pace::PerMinute(feed) if length > STILL => length / feed,
-            // The tip stands still: the feed is taken along the axes, degrees as millimetres, as controls do.
-            Pace::PerMinute(feed) => self.travels(from, to).combined / feed,
-            Pace::InverseTime(feed) => share / feed,
-            Pace::Rapid => 0.0,
+            Pace::PerMinute(feed) if due.moves => due.minutes.max(length / feed),
+            _ => due.minutes,
         };
         let minutes = asked.max(least).max(1e-9);
         let limited = least > asked * (1.0 + 1e-9);
@@ -112,7 +146,7 @@ impl Feeds {
                 // No detour over lengths where the feed of the CL file can stand as it is.
                 Pace::PerMinute(feed)
                     if !limited
-                        && length > STILL
+                        && due.moves
                         && tip > STILL
                         && (!turning || self.tcp == Tcp::Control) =>
                 {

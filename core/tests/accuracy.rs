@@ -422,9 +422,10 @@ fn hold(
         let asked = stops[leg(block.lines[1]) + 1].feed.unwrap_or(f64::INFINITY);
         let [(from, first), (to, last)] = [block.at(bench, 0.0), block.at(bench, 1.0)];
         let length = (to - from).norm();
-        // Degrees a minute, where the control sees a tip that stands still under a control point that moves.
+        // Degrees a minute, where the control sees a tip that stands still: in a piece of a move that is too short for
+        // the words, or under a control point that moves.
         let tip = (to - from - (last - first) * given.along).norm();
-        let degrees = given.along != 0.0 && tip < 3e-3;
+        let degrees = tip < 3e-3;
         match block.feed {
             Some(Feed::PerMinute(feed))
                 if given.tcp == "control" && !degrees && feed > asked + 1e-6 =>
@@ -1578,5 +1579,76 @@ fn a_turn_on_the_spot_is_told_in_what_the_control_measures() {
             (seconds / told - 1.0).abs() < 0.05,
             "{along}: F{feed}, {seconds} s, told {told} s"
         );
+    }
+}
+
+/// A loop that is smaller than the tolerance comes back to where it began: no block is written for it, and the
+/// certificate says how far the tool stays away from it.
+#[test]
+fn what_is_left_out_whole_is_certified() {
+    let radius = 0.045;
+    let mut cl = String::from(
+        "UNITS/MM\nLOAD/TOOL,1\nSPINDL/1000,CLW\nRAPID\nGOTO/0,0,10,0,0,1\nFEDRAT/500,MMPM\n",
+    );
+    for step in 0..=72 {
+        let around = f64::from(step) * std::f64::consts::PI / 36.0;
+        writeln!(
+            cl,
+            "GOTO/{:.6},{:.6},0",
+            radius * libm::cos(around) - radius,
+            radius * libm::sin(around)
+        )
+        .unwrap();
+    }
+    let machine = "name = \"mill\"\nchain = \"[w b X Y Z t]\"\n[tool]\ngauge = [0, 0, 300]\n\
+        [axis.X]\nlinear = [1, 0, 0]\ntravel = [-500, 500]\n[axis.Y]\nlinear = [0, 1, 0]\ntravel = [-500, 500]\n\
+        [axis.Z]\nlinear = [0, 0, 1]\ntravel = [-500, 500]\n[control]\ndialect = \"own\"\n\
+        [accuracy]\ntolerance = 0.1\nreduce = true\n";
+    for placement in ["bisect", "fewest"] {
+        let text = format!("{machine}placement = \"{placement}\"\n");
+        let run = Bench::new(&text, 4, 100.0).run(&cl).good(placement);
+        let certified = run
+            .report
+            .as_ref()
+            .map(|report| report.tip_deviation_mm.value);
+        let certified = certified.unwrap_or_default();
+        assert!(
+            (1.99 * radius..=0.1).contains(&certified),
+            "{placement}: {certified}"
+        );
+    }
+}
+
+/// Pieces shorter than the words' decimals have no pace of their own: a move of 20 µm that turns by 6° takes the same
+/// time however many pieces it is cut into.
+#[test]
+fn pieces_of_a_short_move_are_paced_as_the_move_is() {
+    let cl = "UNITS/MM\nLOAD/TOOL,1\nSPINDL/1000,CLW\nRAPID\nGOTO/0,0,50,0.3,0,0.9539392\nFEDRAT/250,MMPM\n\
+        GOTO/0,0,0,0.3,0,0.9539392\nGOTO/0.02,0,0,0.3984011,0,0.9172114\nGOTO/10,0,0,0.3984011,0,0.9172114\n";
+    let machine = "name = \"head\"\nchain = \"[w b X Y Z C A t]\"\n[tool]\ngauge = [0, 0, 0]\n\
+        [axis.X]\nlinear = [1, 0, 0]\ntravel = [-900, 900]\n[axis.Y]\nlinear = [0, 1, 0]\ntravel = [-900, 900]\n\
+        [axis.Z]\nlinear = [0, 0, 1]\ntravel = [-900, 900]\n\
+        [axis.C]\nrotary = [0, 0, 1]\npoint = [0, 0, 0]\ntravel = [-360, 360]\nmax_feed = 7200\n\
+        [axis.A]\nrotary = [1, 0, 0]\npoint = [0, 0, 150]\ntravel = [-110, 110]\nmax_feed = 7200\n\
+        [control]\ndialect = \"own\"\ntcp = \"post\"\n[accuracy]\n";
+    let mut times = Vec::new();
+    for config in [
+        "tolerance = 5",
+        "placement = \"bisect\"",
+        "placement = \"even\"",
+        "placement = \"fewest\"",
+        "method = \"compensate\"",
+    ] {
+        let run = Bench::new(&format!("{machine}{config}\n"), 3, 100.0)
+            .run(cl)
+            .good(config);
+        times.push(
+            run.report
+                .as_ref()
+                .map_or(0.0, |report| report.cutting_time_s),
+        );
+    }
+    for time in &times {
+        assert!((time - times[0]).abs() < 0.05, "{times:?}");
     }
 }

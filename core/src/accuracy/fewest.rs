@@ -96,6 +96,18 @@ impl Linearise {
                     from = tried.to;
                     start = tried.end;
                 }
+                // Not to any place between CL points, but to one of them perhaps.
+                None if start.t == 0.0
+                    && let Some((reach, bound)) = run.farthest(start.leg, end, way) =>
+                {
+                    self.enter(reach - 1);
+                    from = run.end(reach);
+                    self.keep(from, bound);
+                    start = Spot {
+                        leg: reach - 1,
+                        t: 1.0,
+                    };
+                }
                 None => {
                     // The axes jump here: the rest of the leg is bisected, which knows what to do close to a pole.
                     self.enter(start.leg);

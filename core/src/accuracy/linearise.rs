@@ -137,7 +137,7 @@ impl Linearise {
     ) -> Result<(), (usize, Stuck)> {
         let mut at = 0;
         while at < run.legs() {
-            if let Some((reach, bound)) = run.farthest(at, &self.way) {
+            if let Some((reach, bound)) = run.farthest(at, run.legs(), &self.way) {
                 self.leg = reach - 1;
                 self.keep(run.end(reach), bound);
                 at = reach;

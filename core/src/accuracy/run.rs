@@ -109,8 +109,9 @@ impl<'a> Run<'a> {
         Spot { leg, t }
     }
 
-    /// The farthest CL point that one block from CL point `at` reaches within tolerance, if any, and its bound.
-    pub(super) fn farthest(&self, at: usize, way: &[f64]) -> Option<(usize, Bound)> {
+    /// The farthest CL point up to `last` that one block from CL point `at` reaches within tolerance, if any, and its
+    /// bound.
+    pub(super) fn farthest(&self, at: usize, last: usize, way: &[f64]) -> Option<(usize, Bound)> {
         let start = self.start(at);
         let from = Spot { leg: at, t: 0.0 };
         let try_to = |reach: usize| {
@@ -120,7 +121,6 @@ impl<'a> Run<'a> {
             };
             self.along((&start, from), (&self.end(reach), to), way)
         };
-        let last = self.legs();
         // Twice as far each time, then the half between what holds and what does not.
         let mut good = (at, Bound::default());
         let mut step = 1;

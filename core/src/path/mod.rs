@@ -14,7 +14,7 @@ use post_plugin::{
 
 use crate::accuracy::{Linearise, Move, Node};
 use crate::diagnostic::{Diagnostic, Place};
-use crate::feed::Feeds;
+use crate::feed::{Due, Feeds};
 use crate::kinematics::Pose;
 use crate::machine::{Machine, Positions, Tcp, ToolLength};
 use crate::program::{Edges, Motion, Step, Tool};
@@ -69,6 +69,8 @@ pub struct Path<'a> {
     watch: Option<&'a mut dyn Watch>,
     /// CL points that wait for those behind them.
     gathered: Gathered,
+    /// What each leg of the run in hand is due.
+    due: Vec<Due>,
     /// What the user says of every tool.
     told_length: Option<f64>,
     /// Length of the tool in use.
@@ -154,6 +156,7 @@ impl<'a> Path<'a> {
             linearise: Linearise::new(&machine.accuracy, trust_model),
             watch: None,
             gathered: Gathered::default(),
+            due: Vec::new(),
             told_length: tool_length,
             length,
             length_unknown: tool_length.is_none(),

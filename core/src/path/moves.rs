@@ -7,7 +7,7 @@ use super::Path;
 use super::tally::{AXIS, RAPID, TIP};
 use crate::accuracy::{Bound, Node, Run};
 use crate::diagnostic::Diagnostic;
-use crate::feed::STILL;
+use crate::feed::{Due, STILL};
 use crate::kinematics::orientation::angle;
 use crate::kinematics::{Joints, Pose};
 use crate::machine::Tcp;
@@ -49,6 +49,18 @@ impl Slots {
     fn values(&self, leg: &Leg<'_>, bound: Bound) -> [f64; 3] {
         let chord = leg.motion.chord;
         [bound.tip + chord, bound.axis, bound.tip + chord]
+    }
+}
+
+/// What is due between two places of a run, each a leg and a share of it.
+fn due_between(due: &[Due], (first, from): (usize, f64), (last, to): (usize, f64)) -> Due {
+    if first == last {
+        return due[first].share(to - from);
+    }
+    let whole: f64 = due[first + 1..last].iter().map(|due| due.minutes).sum();
+    Due {
+        minutes: due[first].minutes * (1.0 - from) + whole + due[last].minutes * to,
+        moves: true,
     }
 }
 
@@ -129,11 +141,11 @@ impl Path<'_> {
             Pace::Rapid => None,
             // A time for a way that nobody knows has no meaning; the way is made at rapid.
             Pace::InverseTime(_) => None,
-            Pace::PerMinute(_) => Some(
-                self.feeds
-                    .cut(leg.motion.pace, [1.0; 2], 1.0, &none, &none)
-                    .feed,
-            ),
+            Pace::PerMinute(_) => {
+                let due = self.feeds.due(leg.motion.pace, 1.0, &none, &none);
+                let paced = self.feeds.cut(leg.motion.pace, due, [1.0; 2], &none, &none);
+                Some(paced.feed)
+            }
         };
         let count = self.format.words.len();
         self.tally
@@ -450,7 +462,8 @@ impl Path<'_> {
                 } else {
                     bound
                 };
-                self.piece(leg, last, node, 1.0, bound);
+                let due = self.due_of(leg, last, node);
+                self.piece(leg, last, node, due, bound);
             }
             None => self.split(&[*leg], &[*last, *node]),
         }
@@ -485,22 +498,23 @@ impl Path<'_> {
         };
         match linearise.split(&run, self.model) {
             Ok(()) => {
+                let mut due = std::mem::take(&mut self.due);
+                due.clear();
+                for (leg, pair) in legs.iter().zip(nodes.windows(2)) {
+                    due.push(self.due_of(leg, &pair[0], &pair[1]));
+                }
                 let mut from = nodes[0];
-                from.t = 0.0;
-                let mut kept = 0;
+                let (mut at, mut kept) = ((0, 0.0), 0);
                 for piece in linearise.pieces() {
                     let on_point = piece.to.t == 1.0;
                     kept += usize::from(on_point);
                     self.tally.points_added += u64::from(!on_point);
-                    // Moves with a time of their own are never put together.
-                    let share = if legs.len() == 1 {
-                        piece.to.t - from.t
-                    } else {
-                        1.0
-                    };
-                    self.piece(&legs[piece.leg], &from, &piece.to, share, piece.bound);
-                    from = piece.to;
+                    let end = (piece.leg, piece.to.t);
+                    let between = due_between(&due, at, end);
+                    self.piece(&legs[piece.leg], &from, &piece.to, between, piece.bound);
+                    (from, at) = (piece.to, end);
                 }
+                self.due = due;
                 self.tally.points_dropped += (legs.len() - kept.min(legs.len())) as u64;
             }
             Err((leg, stuck)) => {
@@ -512,9 +526,18 @@ impl Path<'_> {
         self.linearise = linearise;
     }
 
-    /// One block, a `share` of its move.
+    /// What a move is due.
     #[inline]
-    fn piece(&mut self, leg: &Leg<'_>, from: &Node, to: &Node, share: f64, bound: Bound) {
+    fn due_of(&self, leg: &Leg<'_>, from: &Node, to: &Node) -> Due {
+        let length = (to.tip - from.tip).norm();
+        let (first, last) = (&from.trace.joints, &to.trace.joints);
+        self.feeds.due(leg.motion.pace, length, first, last)
+    }
+
+    /// One block.
+    #[inline]
+    fn piece(&mut self, leg: &Leg<'_>, from: &Node, to: &Node, due: Due, bound: Bound) {
+        self.mark(leg, bound);
         // A block without a changed word moves nothing and is not written.
         if from.words == to.words {
             return;
@@ -529,11 +552,11 @@ impl Path<'_> {
             Event::Rapid { words }
         } else {
             // Between the printed tips: that is the way that the control will time.
-            let length = (to.tip - from.tip).norm();
             let along = self.machine.control_point.along;
             let turned = (to.trace.pose.axis - from.trace.pose.axis) * along;
-            let lengths = [length, (to.tip - from.tip - turned).norm()];
-            let paced = self.feeds.cut(leg.motion.pace, lengths, share, first, last);
+            let way = to.tip - from.tip;
+            let lengths = [way.norm(), (way - turned).norm()];
+            let paced = self.feeds.cut(leg.motion.pace, due, lengths, first, last);
             self.tally.limited += u64::from(paced.limited);
             self.tally.cutting += paced.minutes;
             Event::Linear {
@@ -545,7 +568,6 @@ impl Path<'_> {
         if self.machine.clamps {
             self.clamp(leg, from, to);
         }
-        self.mark(leg, bound);
         self.push(leg.line, event);
     }
 

@@ -206,6 +206,22 @@ fn a_broken_library_is_refused() {
     );
 }
 
+/// A library that was cut off on its way here would kill the process that maps it.
+#[test]
+fn a_library_that_is_cut_off_is_refused() {
+    let whole = fs::read(libraries().join(format!("{DLL_PREFIX}post_fanuc{DLL_SUFFIX}"))).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let cut_off = folder
+        .path()
+        .join(format!("{DLL_PREFIX}post_fanuc{DLL_SUFFIX}"));
+    for length in [0, 100, 5000, whole.len() / 2, whole.len() - 2000] {
+        fs::write(&cut_off, &whole[..length]).unwrap();
+        let done = common::post(&["plugin", "test", cut_off.to_str().unwrap()]);
+        assert_eq!(done.code, 1, "{length} bytes: {}", done.err);
+        assert!(done.err.contains("error[plugin]"), "{}", done.err);
+    }
+}
+
 #[test]
 fn the_kit_finds_nothing_wrong_with_the_stock_plugins() {
     for name in PLUGINS {

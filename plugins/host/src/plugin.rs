@@ -5,6 +5,7 @@
 use std::ffi::c_void;
 use std::path::{Path, PathBuf};
 
+use object::{Object as _, ObjectSegment as _};
 use post_plugin::raw::{self, PostDialect, PostModel, PostOption, PostPlugin, PostText};
 use post_plugin::{Linked, OptionKind, OptionSpec};
 
@@ -36,6 +37,21 @@ pub enum Kind {
 pub(crate) enum Table {
     Dialect(&'static PostDialect),
     Model(&'static PostModel),
+}
+
+/// Is all of a library there? The system maps what its headers promise and dies where the file ends before that.
+fn whole_library(bytes: &[u8]) -> Result<(), String> {
+    let file = object::File::parse(bytes).map_err(|error| format!("it is no library: {error}"))?;
+    let cut_off = file.segments().any(|segment| {
+        let (start, size) = segment.file_range();
+        start
+            .checked_add(size)
+            .is_none_or(|end| end > bytes.len() as u64)
+    });
+    if cut_off {
+        return Err("it is cut off: its headers promise more than the file holds".to_owned());
+    }
+    Ok(())
 }
 
 impl Plugin {
@@ -83,6 +99,7 @@ impl Plugin {
             }));
         }
         let bytes = std::fs::read(&whole).map_err(|error| fault(system(&error)))?;
+        whole_library(&bytes).map_err(|message| fault(Reason::Open { message }))?;
         // SAFETY: the library's initialisers run; the user named this file as one to be run.
         let library = unsafe { libloading::Library::new(whole.as_os_str()) }
             .map_err(|error| fault(system(&error)))?;

@@ -90,7 +90,8 @@ pub struct PostArguments {
     #[arg(short, long)]
     pub quiet: bool,
 
-    /// Takes the error model's word where the certificate finds more, and only reports it.
+    /// Takes the error model's word where the certificate finds more, and only reports it. (The placement `fewest` asks
+    /// no model.)
     #[arg(long, help_heading = "Plugins")]
     pub trust_model: bool,
 }

@@ -344,6 +344,14 @@ pub type File = (&'static str, String);
 fn write(folder: &Path, files: &[File]) -> Result<(), Vec<Diagnostic>> {
     fs::create_dir_all(folder)
         .map_err(|error| one("output", format!("{}: {error}", folder.display())))?;
+    // What an earlier study left here, and this one does not write, would be taken for its result.
+    let names = csv::NAMES.iter().chain(&pictures::NAMES);
+    for name in names.filter(|name| files.iter().all(|(written, _)| written != *name)) {
+        let path = folder.join(name);
+        if path.exists() {
+            fs::remove_file(&path).map_err(|error| posting::fault_at(&path, &error))?;
+        }
+    }
     for (name, text) in files {
         let path = folder.join(name);
         let mut file = posting::create(&path)?;

@@ -200,6 +200,52 @@ fn the_blade_of_the_parabolic_paper() {
     }
 }
 
+/// `fewest` with `reduce` needs at most three quarters of the blocks of `bisect`, and both keep 5 µm.
+#[test]
+fn the_blade_in_three_quarters_of_the_blocks() {
+    let study = study(&["tests/samples/disc-blade.cls", "-m", "disc-cutter"]);
+    let blocks = study.table("blocks.csv");
+    let of = |way: &str, reduce: &str| {
+        let line = blocks
+            .iter()
+            .find(|line| line["way"] == way && line["reduce"] == reduce)
+            .unwrap();
+        assert!(number(line, "certified_um") <= 5.0, "{line:?}");
+        number(line, "blocks")
+    };
+    let share = of("fewest", "true") / of("bisect", "false");
+    assert!(share <= 0.75, "{share}");
+}
+
+/// A second study into the same folder leaves nothing of the first that it does not write itself.
+#[test]
+fn a_folder_holds_one_study() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    let common = [
+        "study",
+        "tests/papers/disc-move.cls",
+        "-m",
+        "disc-cutter",
+        "-o",
+        path,
+    ];
+    let mut swept = common.to_vec();
+    swept.extend(["--sweep", "Lm=100:200:100"]);
+    assert_eq!(post(&swept).code, 0);
+    assert!(folder.path().join("sweep.csv").exists());
+    fs::write(folder.path().join("notes.txt"), "kept").unwrap();
+    assert_eq!(post(&common).code, 0);
+    for (name, there) in [
+        ("sweep.csv", false),
+        ("sweep.svg", false),
+        ("moves.csv", true),
+        ("notes.txt", true),
+    ] {
+        assert_eq!(folder.path().join(name).exists(), there, "{name}");
+    }
+}
+
 #[test]
 fn the_blade_is_what_the_generator_writes() {
     let mut text = Vec::new();

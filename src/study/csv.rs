@@ -8,6 +8,9 @@ use post_core::study::{Placed, Row, Survey};
 use super::pictures::MICRO;
 use super::{File, Study, placement_name};
 
+/// The files that there can be.
+pub const NAMES: [&str; 4] = ["moves.csv", "summary.csv", "blocks.csv", "sweep.csv"];
+
 /// All tables.
 pub fn files(study: &Study) -> Vec<File> {
     let mut files = vec![

@@ -23,6 +23,19 @@ pub const HUGE: f64 = 20.0;
 /// Curves of a sweep in one picture.
 const MOST_CURVES: usize = 7;
 
+/// The files that there can be.
+pub const NAMES: [&str; 9] = [
+    "before-after.svg",
+    "histogram.svg",
+    "move.svg",
+    "left.svg",
+    "neighbours.svg",
+    "path.svg",
+    "edge.svg",
+    "sweep.svg",
+    "sweep-curves.svg",
+];
+
 /// All pictures that there is something to show in.
 pub fn files(study: &Study, models: &mut Models) -> Vec<File> {
     let mut files = vec![
@@ -137,7 +150,7 @@ fn before_after(study: &Study) -> Chart {
     Chart {
         title: "Largest deviation of every move, before and after".to_owned(),
         note: match every {
-            1 => format!("{}, {} moves", study.part(), rows.len()),
+            1 => format!("{}, {}", study.part(), moves(rows.len())),
             every => format!(
                 "{}, {} moves; the largest of every {every} is drawn",
                 study.part(),
@@ -190,7 +203,7 @@ fn spread(study: &Study) -> Chart {
         logarithmic: false,
         series: vec![
             Series {
-                name: format!("before, {} moves", before.len()),
+                name: format!("before, {}", moves(before.len())),
                 draw: Draw::Bars(bars(&before, 0.05), "#707070"),
             },
             Series {
@@ -215,7 +228,7 @@ fn swept(study: &Study) -> Chart {
     };
     Chart {
         title: format!("Deviation over {name}"),
-        note: format!("{}, {} moves", study.part(), study.rows.len()),
+        note: format!("{}, {}", study.part(), moves(study.rows.len())),
         x: format!("{name} (unit of the machine file)"),
         y: "deviation from the CL path, µm".to_owned(),
         logarithmic: false,
@@ -254,5 +267,13 @@ fn swept_curves(study: &Study) -> Chart {
         y: "deviation from the CL path, µm".to_owned(),
         logarithmic: false,
         series: series.collect(),
+    }
+}
+
+/// So many moves, in words.
+pub fn moves(count: usize) -> String {
+    match count {
+        1 => "1 move".to_owned(),
+        count => format!("{count} moves"),
     }
 }

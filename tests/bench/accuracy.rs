@@ -3,29 +3,23 @@
 //!
 //! Each line is a whole job with its text thrown away. Of the file's cuts, `blocks in` are those that the CAM system
 //! wrote, `blocks out` those of the program; times are medians of a few runs. The last table sets what the
-//! certificate of a block costs against what its inverse solution costs, over the same points in the same run.
+//! certificate of a block costs against what its inverse solution costs, over the blocks of the same files in the same
+//! run.
 
 #[path = "common/job.rs"]
 mod job;
 
-#[path = "generate.rs"]
-#[expect(dead_code, reason = "its `main` is that of the example")]
-mod generate;
-
 use std::error::Error;
-use std::fs::File;
 use std::hint::black_box;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use nalgebra::Vector3;
-use post_core::Job;
-use post_core::accuracy::{Move, Node, Placer, Tolerances};
-use post_core::kinematics::Pose;
+use post_core::accuracy::{Linearise, Move, Node, Placer, Run, Tolerances};
 use post_core::program::Reading;
-use post_grammar::{Reader, Statement, Units};
-use post_plugin::Format;
+use post_core::{Job, Watch};
+use post_grammar::Units;
+use post_host::{OpenedModel, Plugin};
 
 const RUNS: usize = 3;
 
@@ -36,16 +30,12 @@ struct Case {
     machine: &'static str,
     settings: &'static [&'static str],
     millimetres: bool,
+    /// None: that of the machine file.
+    tool_length: Option<f64>,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/cl");
-    let folder = tempfile::tempdir()?;
-    let wave = folder.path().join("wave.cls");
-    let mut file = BufWriter::new(File::create(&wave)?);
-    generate::write_file(&mut file, 100_000)?;
-    file.flush()?;
-    drop(file);
     let cases = [
         Case {
             name: "creo5x",
@@ -53,6 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             machine: "ac-trunnion",
             settings: &["workpiece.mount=[-140,21,-40]"],
             millimetres: true,
+            tool_length: Some(100.0),
         },
         Case {
             name: "ust_a2",
@@ -60,6 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             machine: "head-head-360",
             settings: &[],
             millimetres: false,
+            tool_length: Some(100.0),
         },
         Case {
             name: "blade",
@@ -67,16 +59,36 @@ fn main() -> Result<(), Box<dyn Error>> {
             machine: "disc-cutter",
             settings: &[],
             millimetres: false,
+            tool_length: None,
         },
     ];
-    for case in &cases {
-        if !case.path.exists() {
-            say(&format!("skipped: {} is not there", case.path.display()));
-            continue;
-        }
+    let (there, missing): (Vec<&Case>, Vec<&Case>) =
+        cases.iter().partition(|case| case.path.exists());
+    for case in missing {
+        say(&format!("skipped: {} is not there", case.path.display()));
+    }
+    for case in &there {
         placements(case)?;
     }
-    certification(&wave)
+    say("\na block of the bisected program, on average, one core\n\
+        file     machine          blocks  inverse ns  certificate ns  ratio");
+    for case in &there {
+        certification(case)?;
+    }
+    Ok(())
+}
+
+impl Case {
+    fn job(&self) -> Job {
+        Job {
+            reading: Reading {
+                units: self.millimetres.then_some(Units::Millimetre),
+                ..Reading::default()
+            },
+            tool_length: self.tool_length,
+            ..Job::default()
+        }
+    }
 }
 
 fn say(line: &str) {
@@ -104,14 +116,7 @@ fn placements(case: &Case) -> Result<(), Box<dyn Error>> {
                 let mut last = None;
                 for _ in 0..RUNS {
                     let start = Instant::now();
-                    let job = Job {
-                        reading: Reading {
-                            units: case.millimetres.then_some(Units::Millimetre),
-                            ..Reading::default()
-                        },
-                        ..Job::default()
-                    };
-                    last = Some(job::run(&case.path, case.machine, &settings, job));
+                    last = Some(job::run(&case.path, case.machine, &settings, case.job()));
                     times.push(start.elapsed());
                 }
                 let report = match last {
@@ -146,74 +151,95 @@ fn median(times: &mut [Duration]) -> Duration {
     times[times.len() / 2]
 }
 
-/// What the certificate of a block costs beside the inverse solution of its end, over the same points.
-fn certification(path: &Path) -> Result<(), Box<dyn Error>> {
-    let poses = poses(path)?;
-    say(
-        "\nmachine          inverse ns  certificate ns  ratio  tight ns   (a block, on average, one core)",
-    );
-    for name in ["ac-trunnion", "head-head", "nutating-head"] {
-        let machine = job::machine(name, &["control.tcp=\"post\"".to_owned()])?;
-        let format = Format {
-            words: vec![4; machine.axes.len()],
-            feed: 3,
-            inverse_time: Some(4),
-            feed_per_revolution: 4,
-            extension: String::new(),
+/// Blocks of a program and the points that they go to, as the bisected moves of a file give them.
+struct Blocks {
+    nodes: Vec<[Node; 2]>,
+    placer: Option<Placer>,
+    linearise: Linearise,
+    model: OpenedModel,
+}
+
+/// More blocks than this say nothing new.
+const MOST: usize = 40_000;
+
+impl Watch for Blocks {
+    fn cut(&mut self, _: u64, cut: &Move<'_>) {
+        if self.nodes.len() > MOST {
+            return;
+        }
+        let run = Run {
+            placer: cut.placer,
+            nodes: &[*cut.from, *cut.to],
+            tolerances: cut.tolerances,
+            control_keeps_tip: cut.control_keeps_tip,
+            balances: true,
         };
-        let start = machine.solution.start;
-        let placer = Placer::for_machine(&machine, &format, 100.0, &start)
-            .map_err(|finding| finding.message)?;
-        let tolerances = Tolerances {
-            tip: machine.accuracy.tolerance,
-            axis: machine.accuracy.axis_tolerance,
-        };
-        let mut last = start;
-        let mut nodes: Vec<Node> = Vec::with_capacity(poses.len());
-        for pose in &poses {
-            if let Ok(node) = placer.place(*pose, 1.0, &last) {
-                last = node.trace.joints;
-                nodes.push(node);
+        if self.linearise.split(&run, &mut self.model).is_ok() {
+            let mut from = *cut.from;
+            for piece in self.linearise.pieces() {
+                self.nodes.push([from, piece.to]);
+                from = piece.to;
             }
         }
-        let block = |pair: &[Node]| -> (f64, f64) {
-            let piece = Move {
-                placer: &placer,
-                from: &pair[0],
-                to: &pair[1],
-                tolerances,
-                control_keeps_tip: false,
-            };
-            let bound = black_box(piece).certify();
-            (bound.tip, bound.axis)
-        };
-        let (mut inverse, mut certificate, mut tight) = (Vec::new(), Vec::new(), Vec::new());
-        for _ in 0..5 {
-            inverse.push(each(nodes.len(), |index| {
-                let from = &nodes[index.saturating_sub(1)].trace.joints;
-                black_box(placer.place(nodes[index].target, 1.0, from).is_ok());
-            }));
-            certificate.push(each(nodes.len() - 1, |index| {
-                black_box(block(&nodes[index..index + 2]));
-            }));
-            tight.push(each(nodes.len() - 1, |index| {
-                let piece = Move {
-                    placer: &placer,
-                    from: &nodes[index],
-                    to: &nodes[index + 1],
-                    tolerances,
-                    control_keeps_tip: false,
-                };
-                black_box(black_box(piece).measured());
-            }));
-        }
-        let [inverse, certificate, tight] =
-            [inverse, certificate, tight].map(|mut times| median(&mut times).as_secs_f64() * 1e9);
-        say(&format!(
-            "{name:<16} {inverse:>10.0} {certificate:>15.0} {:>6.2} {tight:>9.0}",
-            certificate / inverse
-        ));
+        self.placer.get_or_insert_with(|| cut.placer.clone());
     }
+}
+
+/// What the certificate of a block of the program costs, and the inverse solution of its end, on average.
+fn certification(case: &Case) -> Result<(), Box<dyn Error>> {
+    let settings: Vec<String> = case
+        .settings
+        .iter()
+        .map(|text| (*text).to_owned())
+        .collect();
+    let machine = job::machine(case.machine, &settings)?;
+    let mut blocks = Blocks {
+        nodes: Vec::new(),
+        placer: None,
+        linearise: Linearise::new(&machine.accuracy, false),
+        model: Plugin::linked(post_sampled::plugin())?.error_model(&[])?,
+    };
+    job::watched(
+        &case.path,
+        case.machine,
+        &settings,
+        case.job(),
+        Some(&mut blocks),
+    )?;
+    let Some(placer) = blocks.placer else {
+        return Ok(());
+    };
+    let tolerances = Tolerances {
+        tip: machine.accuracy.tolerance,
+        axis: machine.accuracy.axis_tolerance,
+    };
+    let nodes = &blocks.nodes;
+    let block = |index: usize| Move {
+        placer: &placer,
+        from: &nodes[index][0],
+        to: &nodes[index][1],
+        tolerances,
+        control_keeps_tip: false,
+    };
+    let (mut inverse, mut certificate) = (Vec::new(), Vec::new());
+    for _ in 0..5 {
+        inverse.push(each(nodes.len(), |index| {
+            let [from, to] = &nodes[index];
+            black_box(placer.place(to.target, 1.0, &from.trace.joints).is_ok());
+        }));
+        certificate.push(each(nodes.len(), |index| {
+            black_box(black_box(block(index)).certify());
+        }));
+    }
+    let [inverse, certificate] =
+        [inverse, certificate].map(|mut times| median(&mut times).as_secs_f64() * 1e9);
+    say(&format!(
+        "{:<8} {:<14} {:>8} {inverse:>11.0} {certificate:>15.0} {:>6.2}",
+        case.name,
+        case.machine,
+        nodes.len(),
+        certificate / inverse
+    ));
     Ok(())
 }
 
@@ -224,24 +250,4 @@ fn each(count: usize, mut call: impl FnMut(usize)) -> Duration {
         call(index);
     }
     start.elapsed() / count as u32
-}
-
-/// The five-axis points of a file.
-fn poses(path: &Path) -> Result<Vec<Pose>, Box<dyn Error>> {
-    let mut reader = Reader::new(File::open(path)?);
-    let mut poses = Vec::new();
-    while let Some(record) = reader.next_record()? {
-        if let Statement::Goto {
-            point,
-            axis: Some(axis),
-        } = record.statement
-        {
-            poses.push(Pose {
-                tip: Vector3::from(point),
-                axis: Vector3::from(axis).normalize(),
-                ..Pose::default()
-            });
-        }
-    }
-    Ok(poses)
 }

@@ -50,7 +50,16 @@ fn main() -> Result<(), Box<dyn Error>> {
                 "control.dialect=\"fanuc\"".to_owned(),
             ];
             times.push(timed(|| {
-                job::run(&path, machine, &settings, Job::default()).map(drop)
+                job::run(
+                    &path,
+                    machine,
+                    &settings,
+                    Job {
+                        tool_length: Some(100.0),
+                        ..Job::default()
+                    },
+                )
+                .map(drop)
             })?);
         }
     }

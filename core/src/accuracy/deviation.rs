@@ -57,51 +57,49 @@ impl Move<'_> {
     /// model may think, and none is asked.
     #[inline]
     pub fn whole(&self) -> Option<Bound> {
-        let bound = self.bound(self.quick());
+        let bound = self.bound(self.quick().0);
         self.tolerances.hold(bound).then_some(bound)
     }
 
     /// The tightest bound that needs no samples.
     pub fn measured(&self) -> Bound {
-        self.course().0
+        self.course(self.quick()).0
     }
 
     /// The tightest bound: where none at hand clears the move, it is sampled so densely that its bend can hide no
     /// more than a small share of the tolerance between them.
     pub fn certify(&self) -> Bound {
-        if let Some(bound) = self.whole() {
+        let quick = self.quick();
+        let bound = self.bound(quick.0);
+        if self.tolerances.hold(bound) {
             return bound;
         }
-        let (bound, bend) = self.course();
+        let (bound, bend) = self.course(quick);
         if self.tolerances.hold(bound) {
             return bound;
         }
         bound.least(self.sampled(bend))
     }
 
-    /// The bend that norms alone give.
+    /// The bend that norms alone give, and how far the wanted directions turn, radians.
     #[inline]
-    fn quick(&self) -> Bend {
-        // An upper bound on the sweep is enough here, and cheaper than the angle.
+    fn quick(&self) -> (Bend, f64) {
+        // An upper bound on the sweep is enough, and cheaper than the angle.
         let (from, to) = (&self.from.target, &self.to.target);
         let chain = self.placer.solver().chain();
         let mut sweep = (from.axis - to.axis).norm();
         if chain.edge().is_some() {
             sweep = sweep.max((from.edge - to.edge).norm());
         }
-        certificate::quick(chain, &self.from.trace, &self.to.trace, chord_angle(sweep))
+        let sweep = chord_angle(sweep);
+        let bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
+        (bend, sweep)
     }
 
-    /// The bound by the block's second derivatives, and its bend.
-    fn course(&self) -> (Bound, Bend) {
+    /// The bound by the block's second derivatives, and its bend; see [`Move::quick`].
+    fn course(&self, (quick, sweep): (Bend, f64)) -> (Bound, Bend) {
         let (from, to) = (self.from, self.to);
         let chain = self.placer.solver().chain();
-        let mut sweep = angle(from.target.axis, to.target.axis);
-        let edged = chain.edge().is_some();
-        if edged {
-            sweep = sweep.max(angle(from.target.edge, to.target.edge));
-        }
-        let quick = certificate::quick(chain, &from.trace, &to.trace, sweep);
         let course = Course::new(chain, &from.trace, &to.trace);
         let tight = course.bend(from.target.axis, to.target.axis, sweep);
         let turn = if self.placer.control_point().radius > 0.0 {
@@ -114,7 +112,7 @@ impl Move<'_> {
         let bend = Bend {
             tip: quick.tip.min(tight.tip),
             // The bound from norms holds for every direction of the tool, the other for its axis alone.
-            axis: if edged {
+            axis: if chain.edge().is_some() {
                 quick.axis
             } else {
                 quick.axis.min(tight.axis)
@@ -167,7 +165,7 @@ impl Move<'_> {
         if self.placer.control_point().radius == 0.0 {
             return 0.0;
         }
-        self.edge_bow(self.course().1)
+        self.edge_bow(self.course(self.quick()).1)
     }
 
     fn sampled(&self, bend: Bend) -> Bound {

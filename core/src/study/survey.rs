@@ -126,7 +126,8 @@ impl Watch for Survey<'_> {
     fn cut(&mut self, line: u64, cut: &Move<'_>) {
         let (first, last) = (&cut.from.trace.joints, &cut.to.trace.joints);
         let turns = self.rotary.iter().map(|joint| last[*joint] - first[*joint]);
-        let turn = libm::sqrt(turns.map(|turn| turn * turn).sum());
+        // A sum of nothing would be -0.
+        let turn = libm::sqrt(turns.fold(0.0, |sum, turn| sum + turn * turn));
         let raw = peak(|t| strays(cut, t).norm());
         let axis = peak(|t| Vector3::from(cut.deviation(t).axis).norm().to_radians()).size;
         let (tool_axis, radius) = self.tool;

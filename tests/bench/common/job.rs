@@ -6,7 +6,7 @@ use std::path::Path;
 
 use post_core::machine::{self, Machine, Source};
 use post_core::report::Report;
-use post_core::{Job, Output, Post, words};
+use post_core::{Job, Output, Post, Watch, words};
 use post_grammar::Reader;
 use post_host::{Plugin, ProgramSetup, ProgramWord};
 use post_plugin::Units;
@@ -33,6 +33,17 @@ pub fn run(
     settings: &[String],
     job: Job,
 ) -> Result<Report, Box<dyn Error>> {
+    watched(path, name, settings, job, None)
+}
+
+/// [`run`] with someone who looks at every cut.
+pub fn watched(
+    path: &Path,
+    name: &str,
+    settings: &[String],
+    job: Job,
+    watch: Option<&mut dyn Watch>,
+) -> Result<Report, Box<dyn Error>> {
     let machine = machine(name, settings)?;
     let depth = words::depth(&machine);
     let setup = ProgramSetup {
@@ -58,13 +69,12 @@ pub fn run(
     };
     let mut dialect = Plugin::linked(dialect)?.dialect(&setup)?;
     let mut model = Plugin::linked(post_sampled::plugin())?.error_model(&[])?;
-    let job = Job {
-        tool_length: Some(100.0),
-        ..job
-    };
     let mut nowhere = Nowhere;
     let mut post = Post::new(&machine, job, &mut dialect, &mut model, &mut nowhere)
         .map_err(|finding| finding.message)?;
+    if let Some(watch) = watch {
+        post.watch(watch);
+    }
     let mut reader = Reader::new(File::open(path)?);
     while let Some(record) = reader.next_record()? {
         post.record(&record);

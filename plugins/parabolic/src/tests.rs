@@ -80,6 +80,7 @@ fn table_3_1_is_a_parabola_to_its_rounding() {
     let at = |t: f64| tip(TABLE[(t * 22.0) as usize]);
     let (model, curve) = fit(at);
     let (explained, _) = compare(&TABLE, |t| model.value(&curve, t).tip[0]);
+    println!("parabola: R² {explained:.5}");
     assert!((explained - 0.999_18).abs() < 5e-6, "{explained}");
 
     // With the last place as the second difference has it, the rest is the rounding of four decimals.
@@ -87,6 +88,7 @@ fn table_3_1_is_a_parabola_to_its_rounding() {
     table[22] = 2.0 * table[21] - table[20] - 0.0163;
     let (model, curve) = fit(|t| tip(table[(t * 22.0) as usize]));
     let (explained, largest) = compare(&table, |t| model.value(&curve, t).tip[0]);
+    println!("parabola, the last row put right: R² {explained:.7}, off by {largest:.1e} at most");
     assert!(
         explained > 0.999_999 && largest < 3e-4,
         "{explained} {largest}"

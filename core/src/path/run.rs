@@ -4,7 +4,9 @@ use super::Path;
 use super::moves::{LONGEST, Leg};
 use crate::accuracy::Node;
 use crate::feed::STILL;
+use crate::kinematics::Second;
 use crate::kinematics::orientation::angle;
+use crate::machine::Axis;
 use crate::program::{Motion, Pace};
 
 /// More legs than this do not wait: the point at the end of them is kept.
@@ -46,6 +48,11 @@ impl Gathered {
     }
 }
 
+/// It moves where another axis ends.
+fn in_reserve(axis: &Axis) -> bool {
+    matches!(axis.second, Some(Second::Reserve { .. }))
+}
+
 impl Path<'_> {
     /// Does a move to `node` wait, as part of a run?
     #[inline]
@@ -54,16 +61,15 @@ impl Path<'_> {
         if !self.machine.accuracy.reduce || leg.loose || self.compensating {
             return false;
         }
-        // A time of its own cannot be shared; what moves one axis at a time cannot be put together.
+        // A time of its own cannot be shared; axes that exclude one another, or of which one moves where the other
+        // ends, cannot move in one block.
         let steady = matches!(leg.motion.pace, Pace::PerMinute(_))
-            && self.machine.solution.exclusive.is_empty();
+            && self.machine.solution.exclusive.is_empty()
+            && !self.machine.axes.iter().any(in_reserve);
         steady
-            && self
-                .last
-                .as_ref()
-                .is_some_and(|last| !self.stands(last, node))
             && self.last.as_ref().is_some_and(|last| {
-                let apart = (self.machine.indexes && self.indexes(last, node))
+                let apart = self.stands(last, node)
+                    || (self.machine.indexes && self.indexes(last, node))
                     || (self.machine.stages && self.special(last, node));
                 !apart
             })

@@ -2,7 +2,7 @@
 
 use post_core::machine::Machine;
 use post_core::study::{Kept, Rim, Stretch};
-use post_plugin::ModelSession;
+use post_plugin::{ModelSession, length};
 
 use super::chart::{Chart, DASHED, GREY, LOOKS, Marker, Series};
 use super::pictures::{FINE, HUGE, MICRO, digits, focus, sampled, tolerance};
@@ -38,19 +38,15 @@ pub fn fits(kept: &Kept, study: &Study, models: &mut Models) -> Vec<Fit> {
         fits.push(Fit {
             name: name.clone(),
             explained: modelled.explained,
-            curve: sampled(|t| length(value(t))),
+            curve: sampled(|t| length(&value(t))),
             left: sampled(|t| {
                 let strays: [f64; 3] = kept.deviation(t).into();
                 let fitted = value(t);
-                length([0, 1, 2].map(|part| strays[part] - fitted[part]))
+                length(&[0, 1, 2].map(|part| strays[part] - fitted[part]))
             }),
         });
     }
     fits
-}
-
-fn length(vector: [f64; 3]) -> f64 {
-    libm::sqrt(vector.iter().map(|part| part * part).sum())
 }
 
 /// Deviation along one move and the curves that the models fit (parabolic fig. 5; harmonic fig. 3.2).

@@ -6,7 +6,7 @@ use std::path::Path;
 use post_core::machine::Tcp;
 use post_core::study::{Row, Survey};
 
-use super::pictures::{MICRO, digits};
+use super::pictures::{self, MICRO, digits};
 use super::{File, Study, placement_name};
 
 /// Moves that are printed.
@@ -33,15 +33,10 @@ fn head(text: &mut String, study: &Study) {
     let machine = &study.machine;
     let _ = writeln!(
         text,
-        "{} on {}: {} {}, tolerance {} µm, words {}",
+        "{} on {}: {}, tolerance {} µm, words {}",
         study.file,
         machine.name,
-        study.rows.len(),
-        if study.rows.len() == 1 {
-            "move"
-        } else {
-            "moves"
-        },
+        pictures::moves(study.rows.len()),
         machine.accuracy.tolerance * MICRO,
         if study.exact {
             "not rounded"

@@ -69,16 +69,21 @@ impl Move<'_> {
     /// The tightest bound: where none at hand clears the move, it is sampled so densely that its bend can hide no
     /// more than a small share of the tolerance between them.
     pub fn certify(&self) -> Bound {
-        let quick = self.quick();
-        let bound = self.bound(quick.0);
-        if self.tolerances.hold(bound) {
-            return bound;
-        }
-        let (bound, bend) = self.course(quick);
+        let (bound, bend) = self.known();
         if self.tolerances.hold(bound) {
             return bound;
         }
         bound.least(self.sampled(bend))
+    }
+
+    /// A bound that needs no samples and its bend: the cheap one where it clears the move, else the tightest.
+    pub(super) fn known(&self) -> (Bound, Bend) {
+        let quick = self.quick();
+        let bound = self.bound(quick.0);
+        if self.tolerances.hold(bound) {
+            return (bound, quick.0);
+        }
+        self.course(quick)
     }
 
     /// The bend that norms alone give, and how far the wanted directions turn, radians.
@@ -224,20 +229,24 @@ impl Move<'_> {
         })
     }
 
+    /// Where the control point is at the share `t` of this block, at which the chain has this pose: there, or above the
+    /// tip that the control keeps on its line.
+    pub(super) fn reached(&self, pose: &Pose, t: f64) -> Vector3<f64> {
+        if !self.control_keeps_tip {
+            return pose.tip;
+        }
+        let along = self.placer.control_point().along;
+        let tip = |node: &Node| node.tip - node.trace.pose.axis * along;
+        tip(self.from) * (1.0 - t) + tip(self.to) * t + pose.axis * along
+    }
+
     /// Pose of the interpolated axes minus the CL path at the share `t` of this block.
     pub fn deviation(&self, t: f64) -> Deviation {
         let (from, to) = (self.from, self.to);
         let joints = between(&from.trace.joints, &to.trace.joints, t);
         let chain = self.placer.solver().chain();
         let pose = chain.forward(&joints);
-        let reached = if self.control_keeps_tip {
-            let along = self.placer.control_point().along;
-            let tip = |node: &Node| node.tip - node.trace.pose.axis * along;
-            tip(from) * (1.0 - t) + tip(to) * t + pose.axis * along
-        } else {
-            pose.tip
-        };
-        let tip = reached - (from.target.tip * (1.0 - t) + to.target.tip * t);
+        let tip = self.reached(&pose, t) - (from.target.tip * (1.0 - t) + to.target.tip * t);
         let mut turn = turned(great_circle(from.target.axis, to.target.axis, t), pose.axis);
         if chain.edge().is_some() {
             let edge = great_circle(from.target.edge, to.target.edge, t);

@@ -212,22 +212,25 @@ impl Stretch<'_> {
         let size = bow.norm();
         let tolerance = run.tolerances.tip;
         let aside = bow.try_normalize(1e-12).unwrap_or_else(Vector3::zeros);
-        let mut shift = 0.0;
-        if !to_end && run.balances && tolerance.is_finite() {
-            shift = (size / 2.0).min(tolerance - run.placer.tip_rounding());
-            if shift > run.placer.tip_rounding() {
-                let (target, rotary) = (to.target, to.trace.joints);
-                let place = target.tip - aside * shift;
-                run.placer
-                    .settle_at(&mut to, target, place, end.t, &rotary)
-                    .ok()?;
-            } else {
-                shift = 0.0;
-            }
+        let rounding = run.placer.tip_rounding();
+        let room = if !to_end && run.balances && tolerance.is_finite() {
+            tolerance - rounding
+        } else {
+            0.0
+        };
+        let mut shift = (size / 2.0).min(room);
+        if shift > rounding {
+            let (target, rotary) = (to.target, to.trace.joints);
+            let place = target.tip - aside * shift;
+            run.placer
+                .settle_at(&mut to, target, place, end.t, &rotary)
+                .ok()?;
+        } else {
+            shift = 0.0;
         }
         let bound = run.along((from, start), (&to, end), way);
         let ahead = -from.off().dot(&aside);
-        let allowed = SAFE * tolerance + (ahead + shift.max(0.0)) / 2.0;
+        let allowed = SAFE * tolerance + (ahead + shift) / 2.0;
         let by_tip = if size > 0.0 {
             allowed / size
         } else {

@@ -144,7 +144,7 @@ impl Linearise {
                 continue;
             }
             self.leg = at;
-            self.put_in(run, at, model).map_err(|stuck| (at, stuck))?;
+            self.cut_leg(run, at, model).map_err(|stuck| (at, stuck))?;
             at += 1;
         }
         Ok(())
@@ -152,7 +152,7 @@ impl Linearise {
 
     /// Puts points into a leg, as method and placement say; where they do not serve, by bisection, which knows what
     /// to do close to a pole.
-    fn put_in(
+    fn cut_leg(
         &mut self,
         run: &Run<'_>,
         at: usize,

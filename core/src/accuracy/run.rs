@@ -183,13 +183,7 @@ impl<'a> Run<'a> {
             ..Trace::default()
         };
         chain.trace(&mut trace);
-        let along = self.placer.control_point().along;
-        let tip = if self.control_keeps_tip {
-            let tip = |node: &Node| node.tip - node.trace.pose.axis * along;
-            tip(from) * (1.0 - share) + tip(to) * share + trace.pose.axis * along
-        } else {
-            trace.pose.tip
-        };
+        let tip = self.block(from, to).reached(&trace.pose, share);
         let mut node = Node {
             t: share,
             target,
@@ -202,11 +196,8 @@ impl<'a> Run<'a> {
     }
 
     fn hold(&self, from: &Node, to: &Node) -> Option<Bound> {
-        let block = self.block(from, to);
-        block.whole().or_else(|| {
-            let bound = block.measured();
-            self.tolerances.hold(bound).then_some(bound)
-        })
+        let (bound, _) = self.block(from, to).known();
+        self.tolerances.hold(bound).then_some(bound)
     }
 }
 

@@ -43,13 +43,13 @@ impl Slots {
     fn of(leg: &Leg<'_>) -> Self {
         Self(if leg.loose { &[RAPID] } else { &[TIP, AXIS] })
     }
+}
 
-    /// Deviations of a block in all places.
-    #[inline]
-    fn values(&self, leg: &Leg<'_>, bound: Bound) -> [f64; 3] {
-        let chord = leg.motion.chord;
-        [bound.tip + chord, bound.axis, bound.tip + chord]
-    }
+/// Deviations of a block in all places.
+#[inline]
+fn values(leg: &Leg<'_>, bound: Bound) -> [f64; 3] {
+    let chord = leg.motion.chord;
+    [bound.tip + chord, bound.axis, bound.tip + chord]
 }
 
 /// What is due between two places of a run, each a leg and a share of it.
@@ -457,7 +457,7 @@ impl Path<'_> {
             Some(bound) => {
                 let slots = Slots::of(leg);
                 // The cheap bound decides whether the block can be the worst one; the tight one is kept.
-                let bound = if self.worst(&slots, slots.values(leg, bound)) {
+                let bound = if self.worst(&slots, values(leg, bound)) {
                     whole.measured().least(bound)
                 } else {
                     bound
@@ -610,7 +610,7 @@ impl Path<'_> {
     #[inline]
     fn mark(&mut self, leg: &Leg<'_>, bound: Bound) {
         let slots = Slots::of(leg);
-        let values = slots.values(leg, bound);
+        let values = values(leg, bound);
         for &slot in slots.0 {
             let deviation = &mut self.tally.deviations[slot];
             // Of blocks that are equal but for rounding errors, the first is named.

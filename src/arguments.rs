@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use post_core::diagnostic::Diagnostic;
-use post_core::machine::Machine;
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
 
 use crate::check::CheckArguments;
 use crate::input::standard;

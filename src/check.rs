@@ -8,10 +8,10 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use post_core::Output as _;
-use post_core::check::{Check, Comparison, Differing, compare};
-use post_core::diagnostic::Diagnostic;
-use post_core::machine::Machine;
+use post_machine::check::{Check, Comparison, Differing, compare};
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+use post_posting::Output as _;
 
 use crate::input::{one, standard};
 use crate::output::Target;

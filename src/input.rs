@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use post_core::diagnostic::Diagnostic;
+use post_machine::diagnostic::Diagnostic;
 
 /// The name of standard input and output.
 pub fn standard() -> &'static Path {

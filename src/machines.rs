@@ -4,8 +4,8 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use post_core::diagnostic::Diagnostic;
-use post_core::machine::{self, Machine, Source};
+use post_machine::description::{self, Machine, Source};
+use post_machine::diagnostic::Diagnostic;
 
 use crate::values;
 
@@ -30,7 +30,7 @@ pub fn load(
         .into_iter()
         .collect();
     near.extend(folders);
-    machine::load(source, settings, &mut |parent| find(parent, &near))
+    description::load(source, settings, &mut |parent| find(parent, &near))
 }
 
 /// The folders of machines: those of the command line, of the environment, and `machines` here.
@@ -124,5 +124,5 @@ pub fn print(named: &[PathBuf]) -> Result<(), Vec<Diagnostic>> {
 /// Prints the JSON Schema of machine files.
 pub fn print_schema() {
     // A reader that has seen enough closes the pipe.
-    let _ = writeln!(std::io::stdout().lock(), "{:#}", machine::schema());
+    let _ = writeln!(std::io::stdout().lock(), "{:#}", description::schema());
 }

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use clap::{Args, ValueEnum};
-use post_core::Output as _;
-use post_core::diagnostic::Diagnostic;
-use post_core::machine;
+use post_machine::description;
+use post_machine::diagnostic::Diagnostic;
+use post_posting::Output as _;
 
 use crate::input::one;
 use crate::values::{TcpArgument, finite};
@@ -137,11 +137,11 @@ pub fn run(arguments: &NewArguments) -> Result<(), Vec<Diagnostic>> {
     strangers(&wishes)?;
     let text = template::write(&wishes);
     // Nothing is written that the loader would refuse.
-    let source = machine::Source {
+    let source = description::Source {
         name: path.display().to_string(),
         text: text.clone(),
     };
-    let machine = machine::load(source, &[], &mut |parent| {
+    let machine = description::load(source, &[], &mut |parent| {
         Err(format!("there is no machine {parent}"))
     })?;
     let checked = check::derive(&machine, 0.0)?;

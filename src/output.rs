@@ -4,7 +4,7 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use post_core::Output;
+use post_posting::Output;
 use tempfile::NamedTempFile;
 
 /// Where a text goes.

@@ -4,15 +4,15 @@ pub mod kit;
 
 use std::path::PathBuf;
 
-use post_core::diagnostic::{Diagnostic, Place};
-use post_core::machine::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
-use post_core::report::PluginUse;
-use post_core::words;
 use post_host::{
     Finder, GivenValue, OpenedDialect, OpenedModel, Plugin, PluginFault, ProgramSetup, ProgramWord,
     Reason,
 };
+use post_machine::axis_words;
+use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
+use post_machine::diagnostic::{Diagnostic, Place};
 use post_plugin::Units;
+use post_posting::report::PluginUse;
 
 use crate::values;
 
@@ -77,13 +77,13 @@ pub fn dialect(
             OutputUnits::Inch => Units::Inch,
         },
         tcp: control.tcp == Tcp::Control,
-        words: words::order(machine)
+        words: axis_words::order(machine)
             .into_iter()
             .map(|place| ProgramWord {
                 name: machine.axes[place].name.clone(),
                 rotary: machine.axes[place].joint.rotary,
                 wrapped: machine.axes[place].range.is_some(),
-                depth: words::is_depth(machine, place),
+                depth: axis_words::is_depth(machine, place),
             })
             .collect(),
         options: given(&control.options),

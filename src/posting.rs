@@ -3,11 +3,11 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use post_core::diagnostic::{Diagnostic, Severity};
-use post_core::program::{Reading, Unknown};
-use post_core::{Job, Output, Post};
 use post_grammar::{ReadError, Reader, Units};
+use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::DialectSession;
+use post_posting::program::{Reading, Unknown};
+use post_posting::{Job, Output, Post};
 
 use crate::arguments::{JobArguments, Msys, PostArguments, UnknownArgument};
 use crate::input::{Input, one, standard};

@@ -3,7 +3,7 @@
 use std::io::{IsTerminal, Write};
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use post_core::diagnostic::{Diagnostic, Place, Severity};
+use post_machine::diagnostic::{Diagnostic, Place, Severity};
 
 /// Longest line shown whole; of a longer one the part around the fault is shown.
 const WIDEST: usize = 200;
@@ -28,7 +28,7 @@ pub fn findings(findings: &[Diagnostic]) {
         .count();
     if errors > 0 {
         let plural = if errors == 1 { "" } else { "s" };
-        let more = if errors >= post_core::MOST_FAULTS {
+        let more = if errors >= post_posting::MOST_FAULTS {
             " (and perhaps more: reading stopped here)"
         } else {
             ""

@@ -15,13 +15,13 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use clap::Args;
-use post_core::Output as _;
-use post_core::diagnostic::Diagnostic;
-use post_core::machine::{Machine, Placement};
-use post_core::report::Report;
-use post_core::study::{Distribution, Keeper, Kept, Row, Survey};
 use post_host::OpenedModel;
+use post_machine::description::{Machine, Placement};
+use post_machine::diagnostic::Diagnostic;
 use post_plugin::ModelSession;
+use post_posting::Output as _;
+use post_posting::report::Report;
+use post_study::{Distribution, Keeper, Kept, Row, Survey};
 
 use crate::arguments::JobArguments;
 use crate::input::one;

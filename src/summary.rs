@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-use post_core::report::{Deviation, Report};
+use post_posting::report::{Deviation, Report};
 
 /// The summary as JSON.
 pub fn json(report: &Report) -> String {

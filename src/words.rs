@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
 
-use post_core::diagnostic::{Diagnostic, unreadable};
-use post_core::program::{Usage, usage};
 use post_grammar::{ReadError, Reader};
+use post_machine::diagnostic::{Diagnostic, unreadable};
+use post_posting::program::{Usage, usage};
 
 use crate::input::{Input, one};
 

@@ -6,13 +6,13 @@
 //! the axes stand at the start, which the operator sets to zero there, so the program cannot go anywhere that he
 //! has not seen.
 
-use post_core::Output as _;
-use post_core::check::{Commission, Probe, Sign, Trial, number};
-use post_core::diagnostic::Diagnostic;
-use post_core::kinematics::Joints;
-use post_core::machine::{Axis, Machine, OutputUnits, Tcp};
-use post_core::words;
+use post_machine::axis_words;
+use post_machine::check::{Commission, Probe, Sign, Trial, number};
+use post_machine::description::{Axis, Machine, OutputUnits, Tcp};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Joints;
 use post_plugin::{Batch, DialectSession, Event, Feed, Format};
+use post_posting::Output as _;
 
 use super::{CheckArguments, print, program_path};
 use crate::input::{one, standard};
@@ -31,7 +31,7 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Vec<Di
             format!("{} cannot be solved: {lack:?}", machine.name),
         )
     })?;
-    let order = words::order(&plain);
+    let order = axis_words::order(&plain);
     let plan = Commission::of(&probe, &order);
     let finder = plugins::finder(&arguments.plugins)?;
     let name = arguments
@@ -215,7 +215,7 @@ impl Writer<'_> {
         if axis.joint.rotary {
             1.0
         } else {
-            words::unit_length(self.machine.control.units)
+            axis_words::unit_length(self.machine.control.units)
         }
     }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
-use post_core::check::{Check, number};
+use post_machine::check::{Check, number};
 
 use crate::svg::{self, label};
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use post_core::check::{
+use post_machine::check::{
     AxisLine, Check, Class, Comparison, Pole, Reach, Reading, Share, Sign, Solutions, Volume,
     number,
 };

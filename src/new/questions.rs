@@ -3,7 +3,7 @@
 use std::io::{self, BufRead, Write as _};
 
 use clap::ValueEnum;
-use post_core::diagnostic::Diagnostic;
+use post_machine::diagnostic::Diagnostic;
 
 use super::template::Class;
 use super::{Given, NewArguments, Wishes, dialect, range};

@@ -4,8 +4,8 @@ use std::env::consts::DLL_SUFFIX;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use post_core::diagnostic::Diagnostic;
 use post_host::{GivenValue, Plugin, conformance};
+use post_machine::diagnostic::Diagnostic;
 
 use super::{diagnostic, finder};
 use crate::check::print;

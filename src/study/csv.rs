@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use post_core::study::{Placed, Row, Survey};
+use post_study::{Placed, Row, Survey};
 
 use super::pictures::MICRO;
 use super::{File, Study, placement_name};

@@ -1,11 +1,11 @@
 //! One CL file on one machine, gone over as often as it takes, its text thrown away.
 
-use post_core::diagnostic::Diagnostic;
-use post_core::machine::Machine;
-use post_core::report::Report;
-use post_core::{Output, Post, Watch};
 use post_host::{Finder, OpenedDialect};
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Batch, DialectSession, Format, WriteFault};
+use post_posting::report::Report;
+use post_posting::{Output, Post, Watch};
 
 use crate::arguments::JobArguments;
 use crate::input::{Input, one, standard};

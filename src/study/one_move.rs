@@ -1,8 +1,8 @@
 //! Pictures of the move that is looked at and of its neighbours.
 
-use post_core::machine::Machine;
-use post_core::study::{Kept, Rim, Stretch};
+use post_machine::description::Machine;
 use post_plugin::{ModelSession, length};
+use post_study::{Kept, Rim, Stretch};
 
 use super::chart::{Chart, DASHED, GREY, LOOKS, Marker, Series};
 use super::pictures::{FINE, HUGE, MICRO, digits, focus, sampled, tolerance};

@@ -1,7 +1,7 @@
 //! The path of the tool as it should be, as it is, and compensated (harmonic figs. 3.3a and 4.1).
 
-use post_core::study::Kept;
 use post_plugin::ModelSession;
+use post_study::Kept;
 
 use super::chart::{Chart, GREY, LOOKS, Marker, Series};
 use super::pictures::{FINE, focus};

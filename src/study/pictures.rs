@@ -1,7 +1,7 @@
 //! The pictures of a study. Which figure of which paper each follows is in its docstring: parabolic is Sha et al.
 //! 2022, harmonic is Li 2024.
 
-use post_core::study::{Survey, histogram};
+use post_study::{Survey, histogram};
 
 use super::chart::{Chart, DASHED, Draw, GREY, LIMIT, LOOKS, Series};
 use super::{File, Models, Study, one_move, path, placement_name};

@@ -1,7 +1,7 @@
 //! `--sweep NAME=FROM:TO:STEP`: the same file on the same machine, one number of it changed step by step.
 
-use post_core::diagnostic::Diagnostic;
-use post_core::study::{Distribution, Keeper, Kept};
+use post_machine::diagnostic::Diagnostic;
+use post_study::{Distribution, Keeper, Kept};
 
 use super::Job;
 use crate::input::one;

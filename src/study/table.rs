@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use post_core::machine::Tcp;
-use post_core::study::{Row, Survey};
+use post_machine::description::Tcp;
+use post_study::{Row, Survey};
 
 use super::pictures::{self, MICRO, digits};
 use super::{File, Study, placement_name};

@@ -15,11 +15,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use post_core::accuracy::{Linearise, Move, Node, Placer, Run, Tolerances};
-use post_core::program::Reading;
-use post_core::{Job, Watch};
 use post_grammar::Units;
 use post_host::{OpenedModel, Plugin};
+use post_posting::accuracy::{Linearise, Move, Node, Placer, Run, Tolerances};
+use post_posting::program::Reading;
+use post_posting::{Job, Watch};
 
 const RUNS: usize = 3;
 

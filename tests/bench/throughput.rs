@@ -18,7 +18,7 @@ use std::io::{BufWriter, Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use post_core::Job;
+use post_posting::Job;
 
 /// Points of the file; more by the first argument behind `--`.
 const POINTS: u64 = 1_000_000;

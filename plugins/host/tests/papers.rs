@@ -1,5 +1,5 @@
 //! The models on the moves of the two papers, the kinematics written out from their formulas: figures that
-//! owe nothing to the chain in post-core.
+//! owe nothing to the chain in post-machine.
 
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]

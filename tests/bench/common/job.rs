@@ -4,12 +4,13 @@ use std::error::Error;
 use std::fs::{self, File};
 use std::path::Path;
 
-use post_core::machine::{self, Machine, Source};
-use post_core::report::Report;
-use post_core::{Job, Output, Post, Watch, words};
 use post_grammar::Reader;
 use post_host::{Plugin, ProgramSetup, ProgramWord};
+use post_machine::axis_words;
+use post_machine::description::{self, Machine, Source};
 use post_plugin::Units;
+use post_posting::report::Report;
+use post_posting::{Job, Output, Post, Watch};
 
 /// A machine of the library.
 pub fn machine(name: &str, settings: &[String]) -> Result<Machine, Box<dyn Error>> {
@@ -23,7 +24,7 @@ pub fn machine(name: &str, settings: &[String]) -> Result<Machine, Box<dyn Error
         .map_err(|error| error.to_string())
     };
     let source = find(name)?;
-    machine::load(source, settings, &mut find).map_err(|faults| format!("{faults:?}").into())
+    description::load(source, settings, &mut find).map_err(|faults| format!("{faults:?}").into())
 }
 
 /// Posts a CL file through the plugin boundary.
@@ -45,13 +46,13 @@ pub fn watched(
     watch: Option<&mut dyn Watch>,
 ) -> Result<Report, Box<dyn Error>> {
     let machine = machine(name, settings)?;
-    let depth = words::depth(&machine);
+    let depth = axis_words::depth(&machine);
     let setup = ProgramSetup {
         program: "BENCH".to_owned(),
         machine: machine.name.clone(),
         units: Units::Millimetre,
-        tcp: machine.control.tcp == machine::Tcp::Control,
-        words: words::order(&machine)
+        tcp: machine.control.tcp == description::Tcp::Control,
+        words: axis_words::order(&machine)
             .into_iter()
             .map(|place| ProgramWord {
                 name: machine.axes[place].name.clone(),

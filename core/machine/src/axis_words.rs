@@ -1,0 +1,249 @@
+//! From axis values to the words of the program and back: work offset, units, decimals, order.
+
+use nalgebra::Vector3;
+use post_plugin::Format;
+
+use crate::description::{Machine, OutputUnits, Tcp};
+use crate::kinematics::{Joints, MAX_AXES, Solver};
+
+/// Values of the words of a block, in the order in which they are written.
+pub type WordValues = [f64; MAX_AXES];
+
+/// How axis values are written.
+#[derive(Clone, Debug)]
+pub struct Words {
+    tcp: Tcp,
+    /// In the order of writing.
+    words: Vec<Word>,
+    /// Axis values with the tip on the part origin and every rotary axis at zero.
+    zero: Joints,
+}
+
+/// One word.
+#[derive(Clone, Copy, Debug)]
+struct Word {
+    /// Place in the chain.
+    joint: usize,
+    rotary: bool,
+    /// What the control shows where the drawing has the axis at zero, mm or radians.
+    reading: f64,
+    /// The control shows the axis within one turn from here, degrees.
+    turn_from: Option<f64>,
+    /// Coordinate of the part frame, for a linear word when the control keeps the tip.
+    coordinate: usize,
+    /// Axis units (mm, radians) in one unit of the word (mm or inch, degrees).
+    unit: f64,
+    /// Its inverse.
+    per_unit: f64,
+    /// Ten to the number of decimals.
+    scale: f64,
+    /// Its inverse: one printed number is always the same `f64`, so `==` compares what is printed.
+    per_scale: f64,
+}
+
+/// The order in which addresses stand in a block.
+const ORDER: &str = "XYZUVWABC";
+
+/// Places in the chain, in the order in which their words are written.
+pub fn order(machine: &Machine) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..machine.axes.len()).collect();
+    places.sort_by_key(|place| {
+        let name = &machine.axes[*place].name;
+        let letter = name.chars().next().and_then(|letter| ORDER.find(letter));
+        (letter.unwrap_or(ORDER.len()), name.clone())
+    });
+    places
+}
+
+/// The axis moves along the tool with all axes at zero: it moves last when the tool comes near. That is one of
+/// the linear axes, and any quill beside it.
+pub fn is_depth(machine: &Machine, place: usize) -> bool {
+    let Some(depth) = depth(machine) else {
+        return false;
+    };
+    let joint = |place: usize| &machine.axes[place].joint;
+    let along = joint(place).direction.dot(&joint(depth).direction);
+    place == depth || (!joint(place).rotary && libm::fabs(along) > 1.0 - 1e-6)
+}
+
+/// The linear axis along the tool with all axes at zero; a quill only if there is no other.
+pub fn depth(machine: &Machine) -> Option<usize> {
+    let along = |place: &usize| {
+        let joint = &machine.axes[*place].joint;
+        libm::fabs(joint.direction.dot(&machine.tool_axis))
+    };
+    (0..machine.axes.len())
+        .filter(|place| !machine.axes[*place].joint.rotary)
+        .max_by(|a, b| {
+            let main = |place: &usize| {
+                let axis = &machine.axes[*place];
+                axis.second.is_none() && axis.indexed.is_none()
+            };
+            let nearer = along(a) - along(b);
+            if libm::fabs(nearer) < 1e-6 {
+                main(a).cmp(&main(b))
+            } else {
+                nearer.total_cmp(&0.0)
+            }
+        })
+}
+
+/// mm in one unit of the program.
+pub fn unit_length(units: OutputUnits) -> f64 {
+    match units {
+        OutputUnits::Mm => 1.0,
+        OutputUnits::Inch => 25.4,
+    }
+}
+
+impl Words {
+    /// Words of a machine as a dialect's `format` prints them.
+    pub fn new(machine: &Machine, format: &Format) -> Self {
+        let length = unit_length(machine.control.units);
+        let words = order(machine)
+            .into_iter()
+            .zip(&format.words)
+            .map(|(joint, decimals)| {
+                let axis = &machine.axes[joint];
+                let scale = (0..*decimals).fold(1.0, |scale, _| scale * 10.0);
+                let unit = if axis.joint.rotary {
+                    1f64.to_radians()
+                } else {
+                    length
+                };
+                Word {
+                    joint,
+                    rotary: axis.joint.rotary,
+                    reading: axis.zero,
+                    turn_from: axis.range.map(|[least, _]| least / unit),
+                    coordinate: match axis.name.as_str() {
+                        "X" => 0,
+                        "Y" => 1,
+                        _ => 2,
+                    },
+                    unit,
+                    per_unit: 1.0 / unit,
+                    scale,
+                    per_scale: 1.0 / scale,
+                }
+            })
+            .collect();
+        Self {
+            tcp: machine.control.tcp,
+            words,
+            zero: [0.0; MAX_AXES],
+        }
+    }
+
+    /// Number of words.
+    pub fn len(&self) -> usize {
+        self.words.len()
+    }
+
+    /// No words.
+    pub fn is_empty(&self) -> bool {
+        self.words.is_empty()
+    }
+
+    /// Takes the work offset from a solver: where the axes stand when the tip of its tool is on the part
+    /// origin and every rotary axis at zero. None if the linear axes cannot bring it there.
+    pub fn set_zero(&mut self, solver: &Solver) -> Option<()> {
+        let mut zero = [0.0; MAX_AXES];
+        for word in self.words.iter().filter(|word| word.rotary) {
+            zero[word.joint] = -word.reading;
+        }
+        let turns = solver.chain().turns(&zero);
+        solver.place(Vector3::zeros(), &mut zero, &turns).ok()?;
+        self.zero = zero;
+        Some(())
+    }
+
+    /// Puts the rotary values on printed numbers and writes them to `values`.
+    #[inline]
+    pub fn print_rotary(&self, joints: &mut Joints, values: &mut WordValues) {
+        for (place, word) in self.words.iter().enumerate() {
+            if word.rotary {
+                let asked = joints[word.joint] + word.reading;
+                let value = word.printed(asked * word.per_unit);
+                joints[word.joint] = value * word.unit - word.reading;
+                values[place] = match word.turn_from {
+                    None => value,
+                    Some(from) => word.printed(value - 360.0 * libm::floor((value - from) / 360.0)),
+                };
+            }
+        }
+    }
+
+    /// Where the control keeps the tip: writes `tip` to `values` and gives the printed tip, which is where the
+    /// control brings it. None where the words are axis positions: [`Words::print_linear`].
+    #[inline]
+    pub fn print_tip(&self, tip: Vector3<f64>, values: &mut WordValues) -> Option<Vector3<f64>> {
+        if self.tcp == Tcp::Post {
+            return None;
+        }
+        let mut printed = tip;
+        for (place, word) in self.words.iter().enumerate() {
+            if !word.rotary {
+                let coordinate = word.coordinate;
+                values[place] = word.printed(tip[coordinate] * word.per_unit);
+                printed[coordinate] = values[place] * word.unit;
+            }
+        }
+        Some(printed)
+    }
+
+    /// Puts the linear axes on printed numbers and writes them to `values`.
+    #[inline]
+    pub fn print_linear(&self, joints: &mut Joints, values: &mut WordValues) {
+        for (place, word) in self.words.iter().enumerate() {
+            if !word.rotary {
+                let zero = self.zero[word.joint];
+                values[place] = word.printed((joints[word.joint] - zero) * word.per_unit);
+                joints[word.joint] = values[place] * word.unit + zero;
+            }
+        }
+    }
+
+    /// Values of a joint that are printed inside its travel: those between the outermost printed numbers in
+    /// it, and so far beyond them as is still printed as they are. mm or radians.
+    pub fn printed_travel(&self, joint: usize, [least, most]: [f64; 2]) -> [f64; 2] {
+        let Some(word) = self.words.iter().find(|word| word.joint == joint) else {
+            return [least, most];
+        };
+        let steps = |value: f64| (value + word.reading) * word.per_unit * word.scale;
+        let value = |steps: f64| steps * word.per_scale * word.unit - word.reading;
+        // A limit that is a printed number but for its last bits is that number.
+        let first = libm::ceil(steps(least) - 1e-6) - 0.499;
+        let last = libm::floor(steps(most) + 1e-6) + 0.499;
+        [value(first), value(last)]
+    }
+
+    /// The largest error of the tip that rounding the linear words can make, mm.
+    pub fn rounding(&self) -> f64 {
+        self.words
+            .iter()
+            .filter(|word| !word.rotary)
+            .map(|word| 0.5 * word.unit / word.scale)
+            .sum()
+    }
+
+    /// The largest error of the tool axis that rounding the rotary words can make, radians.
+    pub fn axis_rounding(&self) -> f64 {
+        self.words
+            .iter()
+            .filter(|word| word.rotary)
+            .map(|word| 0.5 * word.unit / word.scale)
+            .sum()
+    }
+}
+
+impl Word {
+    /// The number nearest to `value` that has its decimals, never -0.
+    #[inline]
+    fn printed(&self, value: f64) -> f64 {
+        // Adding and taking away 1.5·2^52 rounds to an integer, ties to even, for all that a machine can
+        // reach; the functions of the library cost a call each.
+        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+        (value * self.scale + ROUND - ROUND) * self.per_scale + 0.0
+    }
+}

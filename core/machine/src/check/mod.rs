@@ -1,0 +1,174 @@
+//! What can be derived from a machine file, so that its builder can compare it with the machine.
+//!
+//! Everything here comes from the forward product and from [`Solver::inverse`](crate::kinematics::Solver) of
+//! the machine as it would be used for posting; nothing is asked of the file twice. Directions and tips are
+//! in the part frame, which with all axes at zero is parallel to the machine frame; lengths in mm, angles of
+//! the reports in degrees as the control shows them.
+
+mod class;
+mod commission;
+mod nominal;
+mod pointing;
+mod probe;
+mod reach;
+mod round_trip;
+mod signs;
+mod volume;
+
+use serde::Serialize;
+
+pub use class::{AxisLine, Class};
+pub use commission::{Commission, Trial};
+pub use nominal::{Comparison, Differing, Share, compare};
+pub use pointing::{Pole, Poles, Reading, Solutions, WayOfPointing};
+pub use reach::{Map, Reach};
+pub use round_trip::RoundTrip;
+pub use signs::Sign;
+pub use volume::Volume;
+
+pub use probe::Probe;
+
+use crate::description::Machine;
+use crate::diagnostic::Diagnostic;
+use crate::kinematics::NoClosedForm;
+
+/// Everything that `post check` tells of one machine.
+#[derive(Clone, Debug, Serialize)]
+pub struct Check {
+    /// Name of the machine.
+    pub machine: String,
+    /// Length of the tool that it was derived with, mm from the gauge point.
+    pub tool_length_mm: f64,
+    /// Chain and class.
+    pub class: Class,
+    /// How the chain is solved: in closed form, or numerically.
+    pub solved: String,
+    /// What each axis does, a line an axis and direction.
+    pub signs: Vec<Sign>,
+    /// The solutions for one direction, written out.
+    pub typical: Option<Solutions>,
+    /// Directions that can be made in no single way.
+    pub poles: Poles,
+    /// Which directions the tool can take, and in how many ways.
+    pub reach: Reach,
+    /// Where the tip can go with the tool upright.
+    pub volume: Option<Volume>,
+    /// Forward and inverse against each other.
+    pub round_trip: RoundTrip,
+    /// What looks wrong.
+    pub warnings: Vec<String>,
+}
+
+impl Check {
+    /// Derives all of it with a tool of `length` mm.
+    ///
+    /// # Errors
+    /// What the chain lacks.
+    pub fn of(machine: &Machine, length: f64) -> Result<Self, NoClosedForm> {
+        let probe = Probe::new(machine, length)?;
+        let class = Class::of(&probe);
+        let reach = Reach::of(&probe);
+        let volume = Volume::of(&probe);
+        let round_trip = RoundTrip::of(&probe);
+        let warnings = warnings(&probe, &reach, volume.as_ref(), &round_trip);
+        Ok(Self {
+            machine: machine.name.clone(),
+            tool_length_mm: length,
+            class,
+            solved: if probe.closed_form() {
+                "closed form"
+            } else {
+                "numerically, from the point before; each solution verified by the forward product"
+            }
+            .to_owned(),
+            signs: signs::table(&probe),
+            typical: pointing::typical(&probe),
+            poles: Poles::of(&probe),
+            reach,
+            volume,
+            round_trip,
+            warnings,
+        })
+    }
+
+    /// The warnings as findings.
+    pub fn findings(&self) -> Vec<Diagnostic> {
+        self.warnings
+            .iter()
+            .map(|warning| Diagnostic::warning("check", warning.clone()))
+            .collect()
+    }
+}
+
+/// A tip error of the round trip above this is no rounding error any more, mm.
+const ROUND_TRIP: f64 = 1e-6;
+
+fn warnings(
+    probe: &Probe<'_>,
+    reach: &Reach,
+    volume: Option<&Volume>,
+    round_trip: &RoundTrip,
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let machine = probe.machine();
+    if reach.ways_upright == 0 {
+        warnings.push(
+            "the tool cannot stand upright in the part (axis +Z) inside the travel of the rotary axes"
+                .to_owned(),
+        );
+    }
+    if reach.share_of_sphere == 0.0 && probe.freedom() == 2 {
+        warnings.push("no direction of the tool can be made inside travel".to_owned());
+    }
+    if let Some(volume) = volume {
+        for out in &volume.origin_out {
+            warnings.push(format!(
+                "with the tool upright and {} mm long, the part origin is out of travel: {} would stand at {:.3}, its travel is {:.3} to {:.3}",
+                number(probe.length(), 3),
+                out.axis,
+                out.value,
+                out.travel[0],
+                out.travel[1],
+            ));
+        }
+    }
+    for axis in &machine.axes {
+        if axis.joint.rotary && axis.indexed.is_none() && axis.max_feed.is_infinite() {
+            warnings.push(format!(
+                "{} has no max_feed: no block will be slowed down for it, and the way that is taken does not weigh it",
+                axis.name
+            ));
+        }
+        if axis.joint.rotary
+            && let Some([least, most]) = axis.travel
+            && (least > 0.0 || most < 0.0)
+        {
+            warnings.push(format!(
+                "{} cannot stand at the drawing's zero: its travel is {} to {}; the work offset is taken there",
+                axis.name,
+                number(axis.reading(least), 3),
+                number(axis.reading(most), 3)
+            ));
+        }
+    }
+    if round_trip.tip_mm > ROUND_TRIP || round_trip.not_found > 0 {
+        warnings.push(format!(
+            "the inverse does not give back what the forward product made: off by up to {:.1e} mm, {} of {} poses not found",
+            round_trip.tip_mm, round_trip.not_found, round_trip.poses
+        ));
+    }
+    warnings
+}
+
+/// `value` with at most `decimals` decimals, no zeros behind, never `-0`.
+pub fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => &text,
+    };
+    if text == "-0" {
+        return "0".to_owned();
+    }
+    text.to_owned()
+}

@@ -1,0 +1,236 @@
+//! A machine ready to be asked: its solver, where its axes stand at rest, and its travel.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::Vector3;
+
+use crate::description::Machine;
+use crate::kinematics::{Chain, Joint, Joints, MAX_AXES, NoClosedForm, Pose, Solver, Unreachable};
+
+/// A value is inside travel if it passes an end by no more than this, mm or radians.
+const GRACE: f64 = 1e-9;
+
+/// Step of a difference quotient, radians.
+const STEP: f64 = 1e-5;
+
+/// A machine with a tool in it.
+#[derive(Clone, Debug)]
+pub struct Probe<'a> {
+    machine: &'a Machine,
+    solver: Solver,
+    length: f64,
+    /// Axis values at rest: the drawing's zero, or the nearest value inside travel; an indexed axis where it starts.
+    home: Joints,
+    freedom: usize,
+}
+
+impl<'a> Probe<'a> {
+    /// `machine` with a tool of `length` mm.
+    ///
+    /// # Errors
+    /// What the chain lacks.
+    pub fn new(machine: &'a Machine, length: f64) -> Result<Self, NoClosedForm> {
+        let mut home = [0.0; MAX_AXES];
+        for (value, axis) in home.iter_mut().zip(&machine.axes) {
+            if let Some(indexed) = &axis.indexed {
+                *value = indexed.start;
+            } else if let Some([least, most]) = axis.travel {
+                *value = 0f64.clamp(least, most);
+            }
+        }
+        let mut probe = Self {
+            machine,
+            solver: machine.solver(length)?,
+            length,
+            home,
+            freedom: 0,
+        };
+        probe.freedom = probe.measure_freedom();
+        Ok(probe)
+    }
+
+    /// The machine.
+    pub fn machine(&self) -> &'a Machine {
+        self.machine
+    }
+
+    /// Length of the tool, mm.
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// Its chain with the tool in it.
+    pub fn chain(&self) -> &Chain {
+        self.solver.chain()
+    }
+
+    /// Axis values at rest.
+    pub fn home(&self) -> &Joints {
+        &self.home
+    }
+
+    /// In how many independent ways the tool axis can move: 0, 1 (along a curve) or 2 (over an area).
+    pub fn freedom(&self) -> usize {
+        self.freedom
+    }
+
+    /// Places of the rotary axes that point the tool.
+    pub fn free(&self) -> Vec<usize> {
+        self.machine.pointing()
+    }
+
+    /// The solutions come from formulas.
+    pub fn closed_form(&self) -> bool {
+        self.solver.closed_form()
+    }
+
+    /// Least and largest value of an axis; of one that turns without end, half a turn to both sides.
+    pub fn span(&self, place: usize) -> [f64; 2] {
+        let axis = &self.machine.axes[place];
+        match (&axis.indexed, axis.travel) {
+            (Some(indexed), _) if self.machine.redundant().contains(&place) => [indexed.start; 2],
+            (_, Some(travel)) => travel,
+            (_, None) => [-PI, PI],
+        }
+    }
+
+    /// All ways to put the tip on `tip` with the tool axis along `axis` (part frame), turns and travel left aside.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn inverse(
+        &self,
+        tip: Vector3<f64>,
+        axis: Vector3<f64>,
+    ) -> Result<Vec<Joints>, Unreachable> {
+        let pose = Pose {
+            tip,
+            axis,
+            ..Pose::default()
+        };
+        self.solver.inverse(&pose, &self.home, 1e-7)
+    }
+
+    /// How many full turns of the rotary values of `joints` lie inside travel; an axis that turns without end
+    /// counts once.
+    pub fn turns(&self, joints: &Joints) -> usize {
+        let mut count = 1;
+        for place in self.free() {
+            if let Some([least, most]) = self.machine.axes[place].travel {
+                let first = libm::ceil((least - joints[place] - GRACE) / TAU);
+                let last = libm::floor((most - joints[place] + GRACE) / TAU);
+                count *= (last - first + 1.0).max(0.0) as usize;
+            }
+        }
+        count
+    }
+
+    /// The rotary values of `joints` on the turns inside travel that are nearest to rest; none if an axis has
+    /// no such turn.
+    pub fn inside(&self, joints: &Joints) -> Option<Joints> {
+        let mut inside = *joints;
+        for place in self.free() {
+            let home = self.home[place];
+            let nearest = joints[place] - TAU * libm::rint((joints[place] - home) / TAU);
+            let within = |value: f64| {
+                self.machine.axes[place]
+                    .travel
+                    .is_none_or(|[least, most]| (least - GRACE..=most + GRACE).contains(&value))
+            };
+            inside[place] = [nearest, nearest + TAU, nearest - TAU]
+                .into_iter()
+                .find(|value| within(*value))?;
+        }
+        Some(inside)
+    }
+
+    /// Ways to point the tool along `axis` (part frame) inside the travel of the rotary axes.
+    pub fn ways(&self, axis: Vector3<f64>) -> usize {
+        match self.inverse(Vector3::zeros(), axis) {
+            Ok(solutions) => solutions.iter().map(|joints| self.turns(joints)).sum(),
+            Err(_) => 0,
+        }
+    }
+
+    /// `vector` as a given run of the chain's rotary axes turns it, the axes standing at `values`.
+    pub fn turned(
+        &self,
+        places: impl Iterator<Item = usize>,
+        values: &Joints,
+        vector: Vector3<f64>,
+    ) -> Vector3<f64> {
+        let mut run: Vec<Joint> = Vec::new();
+        let mut angles = [0.0; MAX_AXES];
+        for place in places {
+            let joint = self.chain().joints()[place];
+            if joint.rotary {
+                angles[run.len()] = values[place];
+                run.push(joint);
+            }
+        }
+        Chain::new(run, Vector3::zeros(), Vector3::zeros(), vector)
+            .forward(&angles)
+            .axis
+    }
+
+    /// The rank of what the free rotary axes do to the tool axis, the largest over some settings: a setting may
+    /// happen to be singular.
+    fn measure_freedom(&self) -> usize {
+        let free = self.free();
+        let mut freedom = 0;
+        for share in [0.31, 0.47, 0.62, 0.83] {
+            let mut joints = self.home;
+            for (index, place) in free.iter().enumerate() {
+                let [least, most] = self.span(*place);
+                let share = share + 0.07 * index as f64;
+                joints[*place] = least + (most - least) * (share - libm::floor(share));
+            }
+            let slopes: Vec<Vector3<f64>> = free
+                .iter()
+                .map(|place| {
+                    let (mut ahead, mut behind) = (joints, joints);
+                    ahead[*place] += STEP;
+                    behind[*place] -= STEP;
+                    let chain = self.chain();
+                    (chain.forward(&ahead).axis - chain.forward(&behind).axis) / (2.0 * STEP)
+                })
+                .collect();
+            for (index, slope) in slopes.iter().enumerate() {
+                if slope.norm() > 1e-4 {
+                    freedom = freedom.max(1);
+                }
+                if slopes[..index]
+                    .iter()
+                    .any(|other| other.cross(slope).norm() > 1e-4)
+                {
+                    return 2;
+                }
+            }
+        }
+        freedom
+    }
+}
+
+/// A direction in words: `+X` within half a degree of an axis of the frame, else its three numbers.
+pub fn named(direction: Vector3<f64>) -> String {
+    match principal(direction) {
+        Some((index, sign)) => format!(
+            "{}{}",
+            if sign > 0.0 { '+' } else { '-' },
+            ["X", "Y", "Z"][index]
+        ),
+        None => {
+            let [x, y, z] = [direction.x, direction.y, direction.z]
+                .map(|number| format!("{:.3}", number + 0.0).replace("-0.000", "0.000"));
+            format!("({x}, {y}, {z})")
+        }
+    }
+}
+
+/// Which axis of the frame a direction lies along within half a degree, and on which side.
+pub fn principal(direction: Vector3<f64>) -> Option<(usize, f64)> {
+    let index = direction.iamax();
+    let along = direction[index];
+    let across = libm::sqrt((direction.norm_squared() - along * along).max(0.0));
+    (across < 0.0087 * direction.norm()).then_some((index, if along > 0.0 { 1.0 } else { -1.0 }))
+}

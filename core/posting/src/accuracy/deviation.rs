@@ -1,0 +1,319 @@
+//! The deviation of one block from one straight piece of the CL path, and what is proven of it.
+//!
+//! What is bounded is the deviation of the tool's control point from its chord at the same share of the block, and
+//! that of the tool axis from the great circle between its ends. With a cutting edge of radius R about the tool
+//! axis, every point of that circle is within the bound on the tip: it strays with the control point, and by R
+//! times what a direction across the tool bows from its own chord (eqs. 9 and 10 of Sha et al. 2022).
+
+use nalgebra::Vector3;
+use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
+
+use super::certificate::{self, Bend, Course, chord_angle};
+use super::node::{Node, Placer};
+use post_machine::kinematics::orientation::angle;
+use post_machine::kinematics::{Joints, Pose};
+
+/// What the pieces of a move must stay within.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Tip, mm; infinite where the control keeps the tip.
+    pub tip: f64,
+    /// Tool axis, radians; infinite in a rapid.
+    pub axis: f64,
+}
+
+/// Proven bounds on the deviation along a piece.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bound {
+    /// Tip, mm.
+    pub tip: f64,
+    /// Tool axis, radians.
+    pub axis: f64,
+}
+
+/// A block between two nodes, along a straight piece of the path, and what it must keep.
+#[derive(Clone, Copy, Debug)]
+pub struct Move<'a> {
+    /// Solves points put in.
+    pub placer: &'a Placer,
+    /// Where it begins.
+    pub from: &'a Node,
+    /// Where it ends.
+    pub to: &'a Node,
+    /// What its pieces must stay within.
+    pub tolerances: Tolerances,
+    /// The tip follows the words in a straight line by itself.
+    pub control_keeps_tip: bool,
+}
+
+/// Between samples the certificate may be blind by this share of the tolerance.
+const BLIND: f64 = 0.02;
+
+/// A block that needs more samples than this to be certified is split instead.
+const MOST_SAMPLES: f64 = 64.0;
+
+impl Move<'_> {
+    /// The bound of the whole move, if the cheap certificate clears it: then no point is needed, whatever a
+    /// model may think, and none is asked.
+    #[inline]
+    pub fn whole(&self) -> Option<Bound> {
+        let bound = self.bound(self.quick().0);
+        self.tolerances.hold(bound).then_some(bound)
+    }
+
+    /// The tightest bound that needs no samples.
+    pub fn measured(&self) -> Bound {
+        self.course(self.quick()).0
+    }
+
+    /// The tightest bound: where none at hand clears the move, it is sampled so densely that its bend can hide no
+    /// more than a small share of the tolerance between them.
+    pub fn certify(&self) -> Bound {
+        let (bound, bend) = self.known();
+        if self.tolerances.hold(bound) {
+            return bound;
+        }
+        bound.least(self.sampled(bend))
+    }
+
+    /// A bound that needs no samples and its bend: the cheap one where it clears the move, else the tightest.
+    pub(super) fn known(&self) -> (Bound, Bend) {
+        let quick = self.quick();
+        let bound = self.bound(quick.0);
+        if self.tolerances.hold(bound) {
+            return (bound, quick.0);
+        }
+        self.course(quick)
+    }
+
+    /// The bend that norms alone give, and how far the wanted directions turn, radians.
+    #[inline]
+    fn quick(&self) -> (Bend, f64) {
+        // An upper bound on the sweep is enough, and cheaper than the angle.
+        let (from, to) = (&self.from.target, &self.to.target);
+        let chain = self.placer.solver().chain();
+        let mut sweep = (from.axis - to.axis).norm();
+        if chain.edge().is_some() {
+            sweep = sweep.max((from.edge - to.edge).norm());
+        }
+        let sweep = chord_angle(sweep);
+        let bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
+        (bend, sweep)
+    }
+
+    /// The bound by the block's second derivatives, and its bend; see [`Move::quick`].
+    fn course(&self, (quick, sweep): (Bend, f64)) -> (Bound, Bend) {
+        let (from, to) = (self.from, self.to);
+        let chain = self.placer.solver().chain();
+        let course = Course::new(chain, &from.trace, &to.trace);
+        let tight = course.bend(from.target.axis, to.target.axis, sweep);
+        let turn = if self.placer.control_point().radius > 0.0 {
+            // Of the directions across the tool axis, and of the axis itself: either may bend more.
+            let rim = certificate::rim(chain, &from.trace, &to.trace);
+            quick.turn.min(rim.max(course.axis_bend()))
+        } else {
+            quick.turn
+        };
+        let bend = Bend {
+            tip: quick.tip.min(tight.tip),
+            // The bound from norms holds for every direction of the tool, the other for its axis alone.
+            axis: if chain.edge().is_some() {
+                quick.axis
+            } else {
+                quick.axis.min(tight.axis)
+            },
+            turn,
+        };
+        let mut bound = self.bound(bend);
+        if !self.control_keeps_tip {
+            let followed = course.tip([from.off(), to.off()]) + self.edge_bow(bend);
+            bound.tip = bound.tip.min(followed);
+        }
+        (bound, bend)
+    }
+
+    /// The bound that a bend proves.
+    #[inline]
+    fn bound(&self, bend: Bend) -> Bound {
+        let (from, to) = (self.from, self.to);
+        let axis_ends = from.axis_error.max(to.axis_error);
+        let tip_ends = from.tip_error.max(to.tip_error);
+        Bound {
+            tip: certificate::deviation(tip_ends, self.tip_bend(bend)) + self.edge_bow(bend),
+            axis: chord_angle(certificate::deviation(axis_ends, bend.axis)),
+        }
+    }
+
+    /// What the control point bends by. A control that keeps the tip straight swings the points above it.
+    #[inline]
+    fn tip_bend(&self, bend: Bend) -> f64 {
+        if self.control_keeps_tip {
+            libm::fabs(self.placer.control_point().along) * bend.turn
+        } else {
+            bend.tip
+        }
+    }
+
+    /// How far a cutting edge strays beyond the control point, mm.
+    #[inline]
+    fn edge_bow(&self, bend: Bend) -> f64 {
+        let radius = self.placer.control_point().radius;
+        if radius == 0.0 {
+            return 0.0;
+        }
+        let ends = self.from.axis_error.max(self.to.axis_error);
+        radius * certificate::deviation(ends, bend.turn)
+    }
+
+    /// How far the cutting edge strays beyond the control point at most, mm; no model sees that.
+    pub(super) fn edge(&self) -> f64 {
+        if self.placer.control_point().radius == 0.0 {
+            return 0.0;
+        }
+        self.edge_bow(self.course(self.quick()).1)
+    }
+
+    fn sampled(&self, bend: Bend) -> Bound {
+        let tolerances = self.tolerances;
+        let tip_bend = self.tip_bend(bend);
+        let axis_bend = if tolerances.axis.is_infinite() {
+            0.0
+        } else {
+            bend.axis
+        };
+        let needed = (tip_bend / (8.0 * BLIND * tolerances.tip))
+            .max(axis_bend / (8.0 * BLIND * tolerances.axis));
+        let count = libm::ceil(libm::sqrt(needed)).clamp(1.0, MOST_SAMPLES);
+        let mut tip = self.from.tip_error.max(self.to.tip_error);
+        let mut axis = self.from.axis_error.max(self.to.axis_error);
+        for step in 1..count as u32 {
+            let deviation = self.deviation(f64::from(step) / count);
+            tip = tip.max(Vector3::from(deviation.tip).norm());
+            axis = axis.max(Vector3::from(deviation.axis).norm().to_radians());
+        }
+        let blind = 1.0 / (8.0 * count * count);
+        Bound {
+            tip: tip + tip_bend * blind + self.edge_bow(bend),
+            axis: chord_angle(axis + axis_bend * blind),
+        }
+    }
+
+    /// What the CL file asks for at the share `t` of the way: the control point on the chord, the tool axis on the
+    /// great circle, a leading edge as near to its own as stands across the axis.
+    pub fn target(&self, t: f64) -> Pose {
+        let (from, to) = (&self.from.target, &self.to.target);
+        let axis = great_circle(from.axis, to.axis, t);
+        let edge = from.edge * (1.0 - t) + to.edge * t;
+        Pose {
+            tip: from.tip * (1.0 - t) + to.tip * t,
+            axis,
+            edge: (edge - axis * axis.dot(&edge))
+                .try_normalize(1e-9)
+                .unwrap_or(from.edge),
+        }
+    }
+
+    /// The curve that a model fits to the deviation.
+    ///
+    /// # Errors
+    /// The model's own, if it cannot answer.
+    pub fn fit(&self, model: &mut dyn ModelSession) -> Result<Curve, String> {
+        let tolerance = Tolerance {
+            tip: self.tolerances.tip,
+            axis: self.tolerances.axis.to_degrees(),
+        };
+        model.fit(&tolerance, &mut |ts, out| {
+            for (t, out) in ts.iter().zip(out) {
+                *out = self.deviation(*t);
+            }
+        })
+    }
+
+    /// Where the control point is at the share `t` of this block, at which the chain has this pose: there, or above the
+    /// tip that the control keeps on its line.
+    pub(super) fn reached(&self, pose: &Pose, t: f64) -> Vector3<f64> {
+        if !self.control_keeps_tip {
+            return pose.tip;
+        }
+        let along = self.placer.control_point().along;
+        let tip = |node: &Node| node.tip - node.trace.pose.axis * along;
+        tip(self.from) * (1.0 - t) + tip(self.to) * t + pose.axis * along
+    }
+
+    /// Pose of the interpolated axes minus the CL path at the share `t` of this block.
+    pub fn deviation(&self, t: f64) -> Deviation {
+        let (from, to) = (self.from, self.to);
+        let joints = between(&from.trace.joints, &to.trace.joints, t);
+        let chain = self.placer.solver().chain();
+        let pose = chain.forward(&joints);
+        let tip = self.reached(&pose, t) - (from.target.tip * (1.0 - t) + to.target.tip * t);
+        let mut turn = turned(great_circle(from.target.axis, to.target.axis, t), pose.axis);
+        if chain.edge().is_some() {
+            let edge = great_circle(from.target.edge, to.target.edge, t);
+            let edge = turned(edge, pose.edge);
+            // Whichever of axis and edge is farther off.
+            if edge.norm() > turn.norm() {
+                turn = edge;
+            }
+        }
+        Deviation {
+            tip: tip.into(),
+            axis: turn.into(),
+        }
+    }
+}
+
+impl Tolerances {
+    /// Does a bound keep them?
+    #[inline]
+    pub fn hold(&self, bound: Bound) -> bool {
+        bound.tip <= self.tip && bound.axis <= self.axis
+    }
+}
+
+impl Bound {
+    /// The smaller of two bounds on the same block.
+    pub fn least(self, other: Self) -> Self {
+        Self {
+            tip: self.tip.min(other.tip),
+            axis: self.axis.min(other.axis),
+        }
+    }
+
+    /// What holds for both of two blocks.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            tip: self.tip.max(other.tip),
+            axis: self.axis.max(other.axis),
+        }
+    }
+}
+
+/// Axis values at the share `t` of the way from one set to another.
+#[inline]
+pub(super) fn between(from: &Joints, to: &Joints, t: f64) -> Joints {
+    std::array::from_fn(|joint| from[joint] * (1.0 - t) + to[joint] * t)
+}
+
+/// The turn from `wanted` to `reached`, degrees, along its axis.
+fn turned(wanted: Vector3<f64>, reached: Vector3<f64>) -> Vector3<f64> {
+    let cross = wanted.cross(&reached);
+    let sine = cross.norm();
+    if sine > 0.0 {
+        cross * (libm::atan2(sine, wanted.dot(&reached)).to_degrees() / sine)
+    } else {
+        Vector3::zeros()
+    }
+}
+
+/// The unit vector at `t` on the great circle between two.
+fn great_circle(from: Vector3<f64>, to: Vector3<f64>, t: f64) -> Vector3<f64> {
+    let sweep = angle(from, to);
+    let sine = libm::sin(sweep);
+    if sine < 1e-9 {
+        return (from * (1.0 - t) + to * t)
+            .try_normalize(1e-9)
+            .unwrap_or(from);
+    }
+    (from * libm::sin((1.0 - t) * sweep) + to * libm::sin(t * sweep)) / sine
+}

@@ -1,0 +1,246 @@
+//! Cuts a run of CL points into blocks within tolerance.
+//!
+//! The model proposes, the certificate disposes: where it finds more than the model promised, further points go in,
+//! unless the user trusts the model.
+
+use post_plugin::{Curve, ModelSession};
+
+use super::deviation::{Bound, Move};
+use super::node::{Node, Refused};
+use super::run::Run;
+use post_machine::description::{Accuracy, Method, Placement};
+
+/// A block within tolerance.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece {
+    /// Where it ends; it begins where the one before it ends. Its `t` is the share of its leg.
+    pub to: Node,
+    /// The leg of the run that it ends in.
+    pub leg: usize,
+    /// Bounds on its deviation.
+    pub bound: Bound,
+}
+
+/// Why a move cannot be brought within tolerance.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stuck {
+    /// A point put in has no node.
+    Refused(Refused),
+    /// The words' decimals alone are too coarse.
+    Rounding {
+        /// Error of the tip that rounding makes, mm.
+        tip: f64,
+        /// Error of the tool axis, radians.
+        axis: f64,
+    },
+    /// The axes jump: pieces of a millionth of the move are still over.
+    Jump {
+        /// The joint that turns farthest.
+        joint: usize,
+        /// From this value, radians.
+        from: f64,
+        /// To this value.
+        to: f64,
+    },
+    /// The model cannot answer.
+    Model(String),
+}
+
+/// Cuts runs into blocks.
+#[derive(Debug, Default)]
+pub struct Linearise {
+    pub(super) method: Method,
+    pub(super) points: u32,
+    placement: Placement,
+    pub(super) trust_model: bool,
+    pub(super) overruled: u64,
+    pieces: Vec<Piece>,
+    /// The leg that is being cut.
+    leg: usize,
+    /// Nodes yet to be reached, the next on top.
+    pub(super) stack: Vec<Node>,
+    /// Way of the tip from the start of the run to each of its nodes, mm.
+    pub(super) way: Vec<f64>,
+}
+
+/// What model and certificate say of a piece.
+pub(super) struct Judged {
+    /// Both are content, or the certificate needs no model.
+    pub good: bool,
+    /// What is proven.
+    pub bound: Bound,
+    /// The model's answer, if it was asked.
+    pub curve: Option<Curve>,
+    /// The peaks of the model's curve, the cutting edge's own share added.
+    pub peak: Bound,
+}
+
+impl Linearise {
+    /// Works as the machine file says. With `trust_model` the certificate only reports.
+    pub fn new(accuracy: &Accuracy, trust_model: bool) -> Self {
+        let mut linearise = Self {
+            trust_model,
+            ..Self::default()
+        };
+        linearise.set(accuracy);
+        linearise
+    }
+
+    /// Works as another head's part of the machine file says.
+    pub(crate) fn set(&mut self, accuracy: &Accuracy) {
+        self.method = accuracy.method;
+        self.points = accuracy.points;
+        self.placement = accuracy.placement;
+    }
+
+    /// How often the certificate found more than the model promised, and points went in for it.
+    pub fn overruled(&self) -> u64 {
+        self.overruled
+    }
+
+    /// The blocks of the last run that was split, in order.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// Cuts a run into blocks: see [`Linearise::pieces`].
+    ///
+    /// # Errors
+    /// Why it cannot be done, and in which leg.
+    pub fn split(
+        &mut self,
+        run: &Run<'_>,
+        model: &mut dyn ModelSession,
+    ) -> Result<(), (usize, Stuck)> {
+        self.pieces.clear();
+        run.measure(&mut self.way);
+        let fewest = self.method == Method::Linearise && self.placement == Placement::Fewest;
+        if fewest && run.legs() > 1 {
+            // Points that were put in as far off as they could be may have left no way on (through a pole).
+            let across = self.stride(run, 0, run.legs(), model).is_ok();
+            let pieces = std::mem::take(&mut self.pieces);
+            let kept = self.point_to_point(run, model);
+            if across && (kept.is_err() || self.pieces.len() > pieces.len()) {
+                self.pieces = pieces;
+                return Ok(());
+            }
+            return kept;
+        }
+        self.point_to_point(run, model)
+    }
+
+    /// Blocks from CL point to CL point, as long as they can be; points go into the legs that need them.
+    fn point_to_point(
+        &mut self,
+        run: &Run<'_>,
+        model: &mut dyn ModelSession,
+    ) -> Result<(), (usize, Stuck)> {
+        let mut at = 0;
+        while at < run.legs() {
+            if let Some((reach, bound)) = run.farthest(at, run.legs(), &self.way) {
+                self.leg = reach - 1;
+                self.keep(run.end(reach), bound);
+                at = reach;
+                continue;
+            }
+            self.leg = at;
+            self.cut_leg(run, at, model).map_err(|stuck| (at, stuck))?;
+            at += 1;
+        }
+        Ok(())
+    }
+
+    /// Puts points into a leg, as method and placement say; where they do not serve, by bisection, which knows what
+    /// to do close to a pole.
+    fn cut_leg(
+        &mut self,
+        run: &Run<'_>,
+        at: usize,
+        model: &mut dyn ModelSession,
+    ) -> Result<(), Stuck> {
+        let start = run.start(at);
+        let leg = run.leg(&start, at);
+        let before = self.count();
+        let done = match (self.method, self.placement) {
+            (Method::Linearise, Placement::Bisect) => false,
+            (Method::Linearise, Placement::Fewest) => self.stride(run, at, at + 1, model).is_ok(),
+            _ => {
+                let judged = self.judge(&leg, model)?;
+                if judged.good {
+                    self.keep(*leg.to, judged.bound);
+                    return Ok(());
+                }
+                match self.method {
+                    Method::Compensate => self.compensate(&leg, &judged, model),
+                    Method::Linearise => self.even(&leg, &judged),
+                }
+            }
+        };
+        if done {
+            return Ok(());
+        }
+        self.take_back(before);
+        self.leg = at;
+        self.halve(&leg, model)
+    }
+
+    /// From here on pieces end in this leg.
+    pub(super) fn enter(&mut self, leg: usize) {
+        self.leg = leg;
+    }
+
+    /// A piece is good.
+    pub(super) fn keep(&mut self, to: Node, bound: Bound) {
+        self.pieces.push(Piece {
+            to,
+            leg: self.leg,
+            bound,
+        });
+    }
+
+    /// So many pieces are good; the others are taken back.
+    pub(super) fn take_back(&mut self, count: usize) {
+        self.pieces.truncate(count);
+    }
+
+    /// Pieces so far.
+    pub(super) fn count(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// Is a piece within tolerance?
+    pub(super) fn judge(
+        &mut self,
+        piece: &Move<'_>,
+        model: &mut dyn ModelSession,
+    ) -> Result<Judged, Stuck> {
+        let tolerances = piece.tolerances;
+        let bound = piece.measured();
+        if tolerances.hold(bound) {
+            return Ok(Judged {
+                good: true,
+                bound,
+                curve: None,
+                peak: Bound::default(),
+            });
+        }
+        let curve = piece.fit(model).map_err(Stuck::Model)?;
+        let peak = Bound {
+            tip: curve.tip_peak + piece.edge(),
+            axis: curve.axis_peak.to_radians(),
+        };
+        let content = tolerances.hold(peak);
+        let bound = piece.certify();
+        let sure = tolerances.hold(bound);
+        if content && !sure && !self.trust_model {
+            self.overruled += 1;
+        }
+        // A model that sees more than the certificate proves is wrong on the safe side: points go in.
+        Ok(Judged {
+            good: content && (sure || self.trust_model),
+            bound,
+            curve: Some(curve),
+            peak,
+        })
+    }
+}

@@ -1,0 +1,377 @@
+//! A node: one point of the path with the axis values chosen for it, as they will be printed.
+
+use std::cell::Cell;
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+
+use super::certificate::chord_angle;
+use post_plugin::Format;
+
+use post_machine::axis_words::{WordValues, Words};
+use post_machine::description::{ControlPoint, Machine};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::choose::{Limit, OverTravel, Turning};
+use post_machine::kinematics::{Joints, Pose, Solver, Trace, Unreachable};
+
+/// A point of the path, solved and rounded.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Node {
+    /// Place within its move, 0 to 1.
+    pub t: f64,
+    /// What the CL file asks for.
+    pub target: Pose,
+    /// The printed words.
+    pub words: WordValues,
+    /// The chain at the printed words.
+    pub trace: Trace,
+    /// Where the tip comes to stand: by the chain, or by the control that keeps it.
+    pub tip: Vector3<f64>,
+    /// How far the tip is off its target by rounding, mm.
+    pub tip_error: f64,
+    /// How far the tool axis is off, radians.
+    pub axis_error: f64,
+}
+
+impl Node {
+    /// How far the tip is off its target, mm, part frame.
+    #[inline]
+    pub fn off(&self) -> Vector3<f64> {
+        self.tip - self.target.tip
+    }
+
+    /// Fills in how far tip and tool axis are off their target.
+    #[inline]
+    pub(super) fn measure(&mut self) {
+        let (reached, wanted) = (&self.trace.pose, &self.target);
+        self.axis_error = chord_angle((reached.axis - wanted.axis).norm());
+        // Zero for a tool that turns.
+        if reached.edge != Vector3::zeros() {
+            let edge_error = chord_angle((reached.edge - wanted.edge).norm());
+            self.axis_error = self.axis_error.max(edge_error);
+        }
+        self.tip_error = self.off().norm();
+    }
+}
+
+/// Why a point has no node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Refused {
+    /// The chain cannot reach it.
+    Unreachable(Unreachable),
+    /// Every solution leaves the travel of some axis; this is the one of the nearest solution.
+    OverTravel {
+        /// Which axis, by how much.
+        over: OverTravel,
+        /// How many solutions there were.
+        tried: usize,
+    },
+    /// A solution does not stand up to the forward product.
+    Unverified {
+        /// By how much the tip misses, mm.
+        tip: f64,
+        /// By how much the tool axis misses, radians.
+        axis: f64,
+    },
+}
+
+/// Solves points one after the other.
+#[derive(Clone, Debug)]
+pub struct Placer {
+    solver: Solver,
+    words: Words,
+    turning: Turning,
+    linear: Vec<Limit>,
+    /// The branch of the last point: most likely that of the next.
+    branch: Cell<usize>,
+    axis_tolerance: f64,
+    control_point: ControlPoint,
+    tip_rounding: f64,
+    axis_rounding: f64,
+}
+
+/// Positions at the very end of travel come out a rounding error beyond it, mm.
+const SLACK: f64 = 1e-9;
+
+impl Placer {
+    /// For a machine with a tool of `length` mm in it, its redundant axes held at the values of `held`.
+    ///
+    /// # Errors
+    /// What the machine lacks for being solved.
+    pub fn for_machine(
+        machine: &Machine,
+        format: &Format,
+        length: f64,
+        held: &Joints,
+    ) -> Result<Self, Box<Diagnostic>> {
+        let fault = |message: String| Diagnostic::error("machine-chain", message).boxed();
+        let solver = |length: f64| {
+            machine
+                .solver_at(length, held)
+                .map_err(|lack| fault(format!("the chain cannot be solved: {lack:?}")))
+        };
+        let tip = solver(length)?;
+        let mut words = Words::new(machine, format);
+        // The operator measures to the tip, whichever point is guided.
+        words.set_zero(&tip).ok_or_else(|| {
+            fault("with every rotary axis at zero the linear axes do not span the space".to_owned())
+        })?;
+        let along = machine.control_point.along;
+        let solver = if along == 0.0 {
+            tip
+        } else {
+            solver(length - along)?
+        };
+        Ok(Self::new(machine, solver, words))
+    }
+
+    /// For a machine with the tool of `solver` in it.
+    pub fn new(machine: &Machine, solver: Solver, words: Words) -> Self {
+        let limits = |rotary: bool| {
+            machine
+                .axes
+                .iter()
+                .enumerate()
+                .filter(|(_, axis)| axis.joint.rotary == rotary)
+                .filter_map(|(joint, axis)| {
+                    // Angles are checked before they are rounded, linear positions after it.
+                    axis.travel.map(|travel| Limit {
+                        joint,
+                        travel: if rotary {
+                            words.printed_travel(joint, travel)
+                        } else {
+                            [travel[0] - SLACK, travel[1] + SLACK]
+                        },
+                    })
+                })
+                .collect()
+        };
+        let cyclic = (0..machine.axes.len())
+            .filter(|joint| machine.axes[*joint].travel.is_none())
+            .collect();
+        Self {
+            turning: Turning {
+                limits: limits(true),
+                cyclic,
+            },
+            linear: limits(false),
+            tip_rounding: if solver.closed_form() {
+                words.rounding() + 1e-6
+            } else {
+                // What rounded angles do to the tip is not made up for: it stays with the tolerance.
+                f64::INFINITY
+            },
+            axis_rounding: words.axis_rounding() + 1e-8,
+            solver,
+            words,
+            branch: Cell::new(0),
+            axis_tolerance: machine.accuracy.axis_tolerance,
+            control_point: machine.control_point,
+        }
+    }
+
+    /// The point of the tool that poses and errors are those of.
+    #[inline]
+    pub fn control_point(&self) -> ControlPoint {
+        self.control_point
+    }
+
+    /// The solver in use.
+    pub fn solver(&self) -> &Solver {
+        &self.solver
+    }
+
+    /// The node of `target` nearest to `last`.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn place(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
+        let solver = &self.solver;
+        if !solver.closed_form() {
+            let joints = solver
+                .search(&target, last, self.axis_tolerance)
+                .map_err(Refused::Unreachable)?;
+            return self.settled(target, t, &joints);
+        }
+        let branches = solver
+            .orient(&target, self.axis_tolerance)
+            .map_err(Refused::Unreachable)?;
+        let tried = branches.count();
+        let choice = self
+            .turning
+            .nearest(solver, &branches, last, self.branch.get());
+        match choice.joints {
+            Ok(joints) => {
+                self.branch.set(choice.index);
+                self.settled(target, t, &joints)
+            }
+            Err(over) => Err(Refused::OverTravel { over, tried }),
+        }
+    }
+
+    /// [`Placer::settle`] into a new node.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn settled(&self, target: Pose, t: f64, rotary: &Joints) -> Result<Node, Refused> {
+        let mut node = Node::default();
+        self.settle(&mut node, target, t, rotary)?;
+        Ok(node)
+    }
+
+    /// The node of `target` with the pole joint where `even` has it and the others as near to the wanted axis as
+    /// they come, on the turns of `even`; none where the chain has no pole.
+    pub fn place_evenly(&self, target: Pose, t: f64, even: &Joints) -> Option<Node> {
+        let pole = self.solver.pole_joint()?;
+        let mut joints = *even;
+        self.solver.follow(&target, &mut joints);
+        for (joint, axis) in self.solver.chain().joints().iter().enumerate() {
+            if axis.rotary && joint != pole {
+                let turns = libm::rint((even[joint] - joints[joint]) / TAU);
+                joints[joint] += TAU * turns;
+            }
+        }
+        let inside = self.turning.limits.iter().all(|limit| {
+            let [least, most] = limit.travel;
+            (least..=most).contains(&joints[limit.joint])
+        });
+        if !inside {
+            return None;
+        }
+        self.settled(target, t, &joints).ok()
+    }
+
+    /// The node of a `target` between two sets of axis values: the solution that makes the way from one to the
+    /// other shortest.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn place_between(
+        &self,
+        target: Pose,
+        t: f64,
+        first: &Joints,
+        last: &Joints,
+    ) -> Result<Node, Refused> {
+        let solver = &self.solver;
+        if !solver.closed_form() {
+            return self.place(target, t, first);
+        }
+        let branches = solver
+            .orient(&target, self.axis_tolerance)
+            .map_err(Refused::Unreachable)?;
+        match self.turning.between(solver, &branches, first, last) {
+            Ok(joints) => self.settled(target, t, &joints),
+            Err(over) => Err(Refused::OverTravel {
+                over,
+                tried: branches.count(),
+            }),
+        }
+    }
+
+    /// The node of `target` with given rotary values: the tip is put on its place, whatever they are.
+    ///
+    /// # Errors
+    /// Why there is none.
+    #[inline]
+    pub fn settle(
+        &self,
+        node: &mut Node,
+        target: Pose,
+        t: f64,
+        rotary: &Joints,
+    ) -> Result<(), Refused> {
+        self.settle_at(node, target, target.tip, t, rotary)
+    }
+
+    /// [`Placer::settle`] with the tip put at `place`, off the target on purpose.
+    ///
+    /// # Errors
+    /// Why there is none.
+    #[inline]
+    pub fn settle_at(
+        &self,
+        node: &mut Node,
+        target: Pose,
+        place: Vector3<f64>,
+        t: f64,
+        rotary: &Joints,
+    ) -> Result<(), Refused> {
+        let chain = self.solver.chain();
+        node.t = t;
+        node.target = target;
+        let joints = &mut node.trace.joints;
+        *joints = *rotary;
+        // The rotary words first: the linear axes then make up for their rounding.
+        self.words.print_rotary(joints, &mut node.words);
+        node.trace.turns = chain.turns(joints);
+        let along = self.control_point.along;
+        let printed = self
+            .words
+            .print_tip(place - target.axis * along, &mut node.words);
+        let wanted = match printed {
+            None => place,
+            Some(tip) if along == 0.0 => tip,
+            // The control keeps the tip there; the point above it goes where the tool really leans.
+            Some(tip) => tip + chain.forward(joints).axis * along,
+        };
+        self.solver
+            .place(wanted, joints, &node.trace.turns)
+            .map_err(Refused::Unreachable)?;
+        if printed.is_none() {
+            self.words.print_linear(joints, &mut node.words);
+        }
+        for limit in &self.linear {
+            let value = joints[limit.joint];
+            let [least, most] = limit.travel;
+            if value < least || value > most {
+                return Err(Refused::OverTravel {
+                    over: OverTravel {
+                        joint: limit.joint,
+                        value,
+                        limit: if value < least { least } else { most },
+                    },
+                    tried: 1,
+                });
+            }
+        }
+        chain.trace(&mut node.trace);
+        node.tip = node.trace.pose.tip;
+        node.measure();
+        // The forward chain stands behind every node: what it misses by must be rounding.
+        let missed = if place == target.tip {
+            node.tip_error
+        } else {
+            (node.tip - place).norm()
+        };
+        // What a rounded angle does to a point above the tip that the control keeps is not made up for.
+        let swung = if printed.is_some() {
+            along.abs() * node.axis_error
+        } else {
+            0.0
+        };
+        if missed <= self.tip_rounding + swung {
+            Ok(())
+        } else {
+            Err(Refused::Unverified {
+                tip: missed,
+                axis: node.axis_error,
+            })
+        }
+    }
+
+    /// The largest error of the tip that rounding can make, mm.
+    pub fn tip_rounding(&self) -> f64 {
+        self.tip_rounding
+    }
+
+    /// Values of a rotary joint that are printed inside its travel, radians.
+    pub fn printed_travel(&self, joint: usize, travel: [f64; 2]) -> [f64; 2] {
+        self.words.printed_travel(joint, travel)
+    }
+
+    /// The largest error of the tool axis that rounding can make, radians.
+    pub fn axis_rounding(&self) -> f64 {
+        self.axis_rounding
+    }
+}

@@ -1,0 +1,218 @@
+//! A run: CL points that follow one another without a corner, a change of feed or anything between them.
+//!
+//! A block may go along several legs of a run. It is held against each of them: where the axes stand when the block
+//! passes a CL point is put beside that point, and between two such places the block is a move like any other, so
+//! that the same bounds hold. Which share of the block belongs to which CL point is free as long as the order is
+//! kept; the share of the way is taken, which the tip goes at an almost even pace.
+
+use super::deviation::{Bound, Move, Tolerances, between};
+use super::node::{Node, Placer};
+use post_machine::kinematics::orientation::angle;
+use post_machine::kinematics::{Pose, Trace};
+
+/// CL points that follow one another, and what the blocks along them must keep.
+#[derive(Clone, Copy, Debug)]
+pub struct Run<'a> {
+    /// Solves points put in.
+    pub placer: &'a Placer,
+    /// The CL points, two at least.
+    pub nodes: &'a [Node],
+    /// What the blocks must stay within.
+    pub tolerances: Tolerances,
+    /// The tip follows the words in a straight line by itself.
+    pub control_keeps_tip: bool,
+    /// Points put in may stand off the path, so that blocks are balanced about it.
+    pub balances: bool,
+}
+
+/// A place on a run: a share of a leg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spot {
+    /// Which leg.
+    pub leg: usize,
+    /// Share of it, 0 to 1.
+    pub t: f64,
+}
+
+impl<'a> Run<'a> {
+    /// Straight pieces of the CL path.
+    pub fn legs(&self) -> usize {
+        self.nodes.len() - 1
+    }
+
+    /// The CL point that a leg starts from.
+    pub(super) fn start(&self, leg: usize) -> Node {
+        Node {
+            t: 0.0,
+            ..self.nodes[leg]
+        }
+    }
+
+    /// The CL point that the last of `legs` legs ends in.
+    pub(super) fn end(&self, legs: usize) -> Node {
+        Node {
+            t: 1.0,
+            ..self.nodes[legs]
+        }
+    }
+
+    /// A leg from `start`, its CL point or one put into it.
+    pub(super) fn leg<'m>(&'m self, start: &'m Node, leg: usize) -> Move<'m> {
+        self.block(start, &self.nodes[leg + 1])
+    }
+
+    fn block<'m>(&'m self, from: &'m Node, to: &'m Node) -> Move<'m> {
+        Move {
+            placer: self.placer,
+            from,
+            to,
+            tolerances: self.tolerances,
+            control_keeps_tip: self.control_keeps_tip,
+        }
+    }
+
+    /// What the CL file asks for at a spot.
+    pub(super) fn target(&self, spot: Spot) -> Pose {
+        let leg = self.block(&self.nodes[spot.leg], &self.nodes[spot.leg + 1]);
+        leg.target(spot.t)
+    }
+
+    /// Fills `way` with the way of the tip to each CL point, mm; of a run whose tip stands still, with that of the
+    /// tool axis, radians.
+    pub(super) fn measure(&self, way: &mut Vec<f64>) {
+        way.clear();
+        let mut sum = 0.0;
+        way.push(sum);
+        for pair in self.nodes.windows(2) {
+            sum += (pair[1].target.tip - pair[0].target.tip).norm();
+            way.push(sum);
+        }
+        if sum > 0.0 {
+            return;
+        }
+        for (index, pair) in self.nodes.windows(2).enumerate() {
+            sum += angle(pair[0].target.axis, pair[1].target.axis);
+            way[index + 1] = sum;
+        }
+    }
+
+    /// The spot at a distance from the start.
+    pub(super) fn spot(&self, way: &[f64], at: f64) -> Spot {
+        let after = way.partition_point(|end| *end <= at);
+        let leg = after.clamp(1, self.legs()) - 1;
+        let length = way[leg + 1] - way[leg];
+        let t = if length > 0.0 {
+            ((at - way[leg]) / length).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
+        Spot { leg, t }
+    }
+
+    /// The farthest CL point up to `last` that one block from CL point `at` reaches within tolerance, if any, and its
+    /// bound.
+    pub(super) fn farthest(&self, at: usize, last: usize, way: &[f64]) -> Option<(usize, Bound)> {
+        let start = self.start(at);
+        let from = Spot { leg: at, t: 0.0 };
+        let try_to = |reach: usize| {
+            let to = Spot {
+                leg: reach - 1,
+                t: 1.0,
+            };
+            self.along((&start, from), (&self.end(reach), to), way)
+        };
+        // Twice as far each time, then the half between what holds and what does not.
+        let mut good = (at, Bound::default());
+        let mut step = 1;
+        let mut bad = loop {
+            let reach = (at + step).min(last);
+            match try_to(reach) {
+                Some(bound) => good = (reach, bound),
+                None => break reach,
+            }
+            if reach == last {
+                break last + 1;
+            }
+            step *= 2;
+        };
+        while bad - good.0 > 1 {
+            let middle = (good.0 + bad) / 2;
+            match try_to(middle) {
+                Some(bound) => good = (middle, bound),
+                None => bad = middle,
+            }
+        }
+        (good.0 > at).then_some(good)
+    }
+
+    /// The bound of a block between two spots, against every leg that it passes; none if it is over tolerance.
+    pub(super) fn along(
+        &self,
+        (from, start): (&Node, Spot),
+        (to, end): (&Node, Spot),
+        way: &[f64],
+    ) -> Option<Bound> {
+        let mut bound = Bound::default();
+        let mut last = Node { t: 0.0, ..*from };
+        let chord = to.tip - from.tip;
+        let square = chord.norm_squared();
+        for leg in start.leg..end.leg {
+            let target = self.nodes[leg + 1].target;
+            let even = share(way, start, end, leg);
+            let mut next = self.passed(from, to, even, target);
+            if square > 0.0 {
+                // The share at which the tip is beside the CL point, not before or behind it.
+                let beside = even - next.off().dot(&chord) / square;
+                if beside > last.t && beside < 1.0 {
+                    next = self.passed(from, to, beside, target);
+                }
+            }
+            bound = bound.and(self.hold(&last, &next)?);
+            last = next;
+        }
+        Some(bound.and(self.hold(&last, to)?))
+    }
+
+    /// Where the axes stand at the share `share` of a block, put beside what the CL file asks for there.
+    pub(super) fn passed(&self, from: &Node, to: &Node, share: f64, target: Pose) -> Node {
+        let chain = self.placer.solver().chain();
+        let joints = between(&from.trace.joints, &to.trace.joints, share);
+        let mut trace = Trace {
+            joints,
+            turns: chain.turns(&joints),
+            ..Trace::default()
+        };
+        chain.trace(&mut trace);
+        let tip = self.block(from, to).reached(&trace.pose, share);
+        let mut node = Node {
+            t: share,
+            target,
+            trace,
+            tip,
+            ..Node::default()
+        };
+        node.measure();
+        node
+    }
+
+    fn hold(&self, from: &Node, to: &Node) -> Option<Bound> {
+        let (bound, _) = self.block(from, to).known();
+        self.tolerances.hold(bound).then_some(bound)
+    }
+}
+
+/// At which share of a block from `start` to `end` the CL point behind `leg` is passed.
+fn share(way: &[f64], start: Spot, end: Spot, leg: usize) -> f64 {
+    let place = |spot: Spot| distance(way, spot);
+    let whole = place(end) - place(start);
+    if whole > 0.0 {
+        ((way[leg + 1] - place(start)) / whole).clamp(0.0, 1.0)
+    } else {
+        1.0
+    }
+}
+
+/// Way of the tip from the start of the run to a spot, mm.
+pub(super) fn distance(way: &[f64], spot: Spot) -> f64 {
+    way[spot.leg] * (1.0 - spot.t) + way[spot.leg + 1] * spot.t
+}

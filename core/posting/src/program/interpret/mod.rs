@@ -1,0 +1,671 @@
+//! Settles what is modal in a CL file: units, axis, feed, frames, cycles; arcs and splines become chords.
+
+mod curves;
+mod cycles;
+mod feeds;
+mod tools;
+
+use nalgebra::Vector3;
+use post_grammar::{Circle, Coolant as CoolantWord, Delay, Delta, Record, Side, Statement, Units};
+use post_plugin::{Coolant, SpindleSense};
+
+use super::cycle::Drill;
+use super::frame::Frame;
+use super::met::{Unknown, WordsMet};
+use super::motion::{Motion, Pace, Step};
+use super::words::{Usage, usage};
+use post_machine::description::{Insert, ToolLength};
+use post_machine::diagnostic::{Diagnostic, Place};
+
+/// How a file is to be read.
+#[derive(Clone, Debug, Default)]
+pub struct Reading {
+    /// The file's name in messages.
+    pub file: String,
+    /// Units of the numbers, whatever the file says.
+    pub units: Option<Units>,
+    /// The tool that a file without `LOADTL` works with.
+    pub tool: Option<u32>,
+    /// Take points and axes into the frame of `MSYS`.
+    pub apply_msys: bool,
+    /// What to do with unknown words.
+    pub unknown: Unknown,
+    /// What becomes of `INSERT`.
+    pub insert: Insert,
+    /// Which tool length counts.
+    pub tool_length: ToolLength,
+    /// How far chords may stray from arcs and splines, mm.
+    pub chord_tolerance: f64,
+}
+
+/// Turns records into steps.
+#[derive(Debug)]
+pub struct Interpreter {
+    reading: Reading,
+    /// Units that the file names.
+    units: Option<Units>,
+    /// mm in one unit of the file.
+    scale: f64,
+    /// Some feed word names a metric or an inch unit.
+    feed_units: Option<Units>,
+    /// Modal tool axis, frame of the file.
+    axis: Vector3<f64>,
+    /// Modal leading edge, frame of the file; zero until the file gives one.
+    edge: Vector3<f64>,
+    /// `TLAXIS`, part frame.
+    told_axis: Option<Vector3<f64>>,
+    /// An index move came since the last move: see whether it agrees with `TLAXIS`.
+    check_axis: bool,
+    /// Last point, mm, frame of the file.
+    tip: Option<Vector3<f64>>,
+    rapid: bool,
+    /// `FEDRAT/RAPID` is in force.
+    rapid_feed: bool,
+    feed: Option<FeedWord>,
+    frame: Frame,
+    pending: Option<Pending>,
+    cycle: Option<(Drill, FeedWord)>,
+    last_cycle: Option<(Drill, FeedWord)>,
+    rpm: Option<f64>,
+    sense: SpindleSense,
+    coolant: Coolant,
+    side: Option<Side>,
+    /// Number, register and length (as written) of the tool in the spindle.
+    loaded: Option<(u32, u32, Option<f64>)>,
+    /// A further cutter was described, and no tool was loaded for it.
+    cutter_changed: bool,
+    /// Some number was read that the units gave its meaning.
+    measured: bool,
+    /// Some move was read since the last tool was loaded.
+    cut_any: bool,
+    told_cutter: bool,
+    /// Cutter compensation is in force, and its register.
+    compensated: bool,
+    register: Option<u32>,
+    tool_name: String,
+    diameter: Option<f64>,
+    cutter_length: Option<f64>,
+    finished: bool,
+    findings: Vec<Diagnostic>,
+    met: WordsMet,
+}
+
+/// A feed as the file has it; one a revolution waits for the speed of the spindle at the move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum FeedWord {
+    Pace(Pace),
+    /// mm.
+    PerRevolution(f64),
+}
+
+/// A curve that is not yet complete.
+#[derive(Clone, Debug)]
+enum Pending {
+    Arc(Circle),
+    Spline {
+        knots: Vec<f64>,
+        points: Vec<Vector3<f64>>,
+    },
+}
+
+impl Interpreter {
+    /// Nothing read yet.
+    pub fn new(reading: Reading) -> Self {
+        let scale = reading.units.map_or(1.0, millimetres);
+        let frame = Frame::new(reading.apply_msys);
+        Self {
+            reading,
+            units: None,
+            scale,
+            feed_units: None,
+            axis: Vector3::z(),
+            edge: Vector3::zeros(),
+            told_axis: None,
+            check_axis: false,
+            tip: None,
+            rapid: false,
+            rapid_feed: false,
+            feed: None,
+            frame,
+            pending: None,
+            cycle: None,
+            last_cycle: None,
+            rpm: None,
+            sense: SpindleSense::Clockwise,
+            coolant: Coolant::Flood,
+            side: None,
+            loaded: None,
+            cutter_changed: false,
+            measured: false,
+            cut_any: false,
+            told_cutter: false,
+            compensated: false,
+            register: None,
+            tool_name: String::new(),
+            diameter: None,
+            cutter_length: None,
+            finished: false,
+            findings: Vec::new(),
+            met: WordsMet::default(),
+        }
+    }
+
+    /// A tool was loaded.
+    pub fn has_tool(&self) -> bool {
+        self.loaded.is_some()
+    }
+
+    /// Findings since the last call.
+    pub fn take_findings(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.findings)
+    }
+
+    /// There are findings.
+    #[inline]
+    pub fn has_findings(&self) -> bool {
+        !self.findings.is_empty()
+    }
+
+    /// Words that were ignored, and how often.
+    pub fn ignored(&self) -> impl Iterator<Item = (&str, u64)> {
+        self.met.ignored()
+    }
+
+    /// Takes one record and gives the steps it means to `emit`, in order.
+    #[inline]
+    pub fn record(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+        if let Statement::Goto { point, axis } = &record.statement
+            && self.pending.is_none()
+            && self.cycle.is_none()
+            && !self.finished
+        {
+            self.plain_goto(record, *point, *axis, emit);
+            return;
+        }
+        self.other(record, emit);
+    }
+
+    /// What is left open at the end of the file.
+    pub fn finish(&mut self) {
+        match self.pending.take() {
+            None => {}
+            Some(Pending::Arc(_)) => self.findings.push(Diagnostic::error(
+                "arc",
+                "the file ends with a CIRCLE that no GOTO ends",
+            )),
+            Some(Pending::Spline { .. }) => self.findings.push(Diagnostic::error(
+                "spline",
+                "the file ends within a NURBS: no GOTO, END-OF-PATH or FINI follows it",
+            )),
+        }
+        if self.tip.is_some() && self.units.is_none() && self.reading.units.is_none() {
+            match self.feed_units {
+                Some(Units::Inch) => self.findings.push(
+                    Diagnostic::warning(
+                        "units",
+                        "the file has no UNITS; its points were taken as mm, but its feeds are in inches",
+                    )
+                    .help("say --units inch or --units mm"),
+                ),
+                Some(_) => {}
+                None => self.findings.push(
+                    Diagnostic::warning("units", "the file has no UNITS; its numbers were taken as mm")
+                        .help("say --units inch or --units mm"),
+                ),
+            }
+        }
+        self.findings.extend(self.met.unknown(self.reading.unknown));
+    }
+
+    fn other(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+        if self.finished {
+            if !matches!(record.statement, Statement::Remark(_) | Statement::Fini) {
+                self.count("FINI", record, Usage::Used);
+                if self.met.times("FINI") == 2 {
+                    self.warn(
+                        record,
+                        "after-fini",
+                        "records behind FINI are left out".to_owned(),
+                    );
+                }
+            }
+            return;
+        }
+        match &record.statement {
+            Statement::Goto { point, axis } => self.goto(record, *point, *axis, emit),
+            Statement::GotoEdge { point, axis, edge } => {
+                match Vector3::from(*edge).try_normalize(1e-9) {
+                    Some(edge) => {
+                        self.edge = edge;
+                        self.goto(record, *point, Some(*axis), emit);
+                    }
+                    None => self.fault(
+                        record,
+                        "axis",
+                        "the direction of the leading edge is null".to_owned(),
+                        "the last three of nine numbers say where the edge points",
+                    ),
+                }
+            }
+            Statement::Head(name) => {
+                self.tip = None;
+                emit(Step::Head(name.clone()));
+            }
+            Statement::Godlta(delta) => {
+                let Some(tip) = self.tip else {
+                    self.fault(
+                        record,
+                        "godlta",
+                        "GODLTA steps from the last point, and there is none".to_owned(),
+                        "put a FROM or GOTO before it",
+                    );
+                    return;
+                };
+                if self.cycle.is_some() {
+                    self.fault(
+                        record,
+                        "godlta",
+                        "GODLTA while a cycle is on: from which of its heights?".to_owned(),
+                        "put a CYCLE/OFF before it, or write GOTO",
+                    );
+                    return;
+                }
+                let step = match delta {
+                    Delta::Step(step) => Vector3::from(*step),
+                    Delta::AlongAxis(length) => self.axis * *length,
+                };
+                let point = tip / self.scale + step;
+                self.goto(record, point.into(), None, emit);
+            }
+            Statement::From { point, axis } => {
+                let tip = self.point(*point);
+                if !self.set_axis(record, *axis) {
+                    return;
+                }
+                self.measured = true;
+                self.tip = Some(tip);
+                let (tip, axis) = self.frame.to_part(tip, self.axis);
+                emit(Step::From { tip, axis });
+            }
+            Statement::Gohome(None) => {
+                self.rapid = false;
+                self.tip = None;
+                emit(Step::Home);
+            }
+            Statement::Gohome(Some((point, axis))) => {
+                self.rapid = true;
+                // A cycle does not act at home.
+                let cycle = self.cycle.take();
+                self.goto(record, *point, *axis, emit);
+                self.cycle = cycle;
+            }
+            Statement::Rapid => self.rapid = true,
+            Statement::Feed(feed) => self.set_feed(record, *feed),
+            Statement::Spindle(spindle) => {
+                self.load_told(record, emit);
+                self.spindle(record, *spindle, emit);
+            }
+            Statement::Coolant(word) => {
+                let coolant = match word {
+                    CoolantWord::Off => Coolant::Off,
+                    CoolantWord::On => self.coolant,
+                    CoolantWord::Flood => Coolant::Flood,
+                    CoolantWord::Mist => Coolant::Mist,
+                    CoolantWord::Through => Coolant::Through,
+                    CoolantWord::Air => Coolant::Air,
+                };
+                if coolant != Coolant::Off {
+                    self.coolant = coolant;
+                }
+                self.load_told(record, emit);
+                emit(Step::Coolant(coolant));
+            }
+            Statement::LoadTool(tool) => self.load(record, tool, emit),
+            Statement::SelectTool(number) => {
+                if self.loaded.map(|(loaded, ..)| loaded) != Some(*number) {
+                    emit(Step::Preselect(*number));
+                }
+            }
+            Statement::ToolData { numbers, .. } => self.cutter(numbers, 2),
+            Statement::Cutter(numbers) => self.cutter(numbers, 6),
+            Statement::Units(units) => {
+                let scale = millimetres(self.reading.units.unwrap_or(*units));
+                if scale != self.scale && self.measured {
+                    self.fault(
+                        record,
+                        "units",
+                        "UNITS comes after points or feeds that were read in other units"
+                            .to_owned(),
+                        "put it before them, or say --units",
+                    );
+                }
+                self.units = Some(*units);
+                self.scale = scale;
+            }
+            Statement::Multax(on) => {
+                if !on {
+                    self.axis = Vector3::z();
+                }
+            }
+            Statement::Msys { origin, x, y } => {
+                let origin = self.point(*origin);
+                let done = self
+                    .frame
+                    .set_msys(origin, Vector3::from(*x), Vector3::from(*y));
+                if let Err(message) = done {
+                    self.fault(record, "msys", message.to_owned(), "");
+                }
+            }
+            Statement::Circle(circle) => {
+                if self.pending.is_some() {
+                    self.fault(
+                        record,
+                        "arc",
+                        "the curve before this CIRCLE is not ended by a GOTO".to_owned(),
+                        "",
+                    );
+                }
+                self.pending = Some(Pending::Arc(circle.clone()));
+            }
+            Statement::Nurbs => {
+                self.end_spline(record, emit);
+                match self.tip {
+                    Some(tip) => {
+                        self.pending = Some(Pending::Spline {
+                            knots: Vec::new(),
+                            points: vec![tip],
+                        });
+                    }
+                    None => self.fault(
+                        record,
+                        "spline",
+                        "NURBS begins at the last point, and there is none".to_owned(),
+                        "put a GOTO before it",
+                    ),
+                }
+            }
+            Statement::Knot(_) | Statement::Control { .. } => self.spline_data(record),
+            Statement::Cycle(cycle) => self.cycle(record, cycle),
+            Statement::Cutcom(cutcom) => {
+                self.load_told(record, emit);
+                self.cutcom(*cutcom, emit);
+            }
+            Statement::Rotate(rotate) => match self.frame.rotate(rotate) {
+                Ok((axis, angle)) => {
+                    emit(Step::Index { axis, angle });
+                    self.axis = match (self.frame.turned(), self.told_axis) {
+                        (None, Some(axis)) => axis,
+                        _ => Vector3::z(),
+                    };
+                    self.check_axis = self.frame.turned().is_some();
+                    // Where the tool stands is not known in the frame that begins here.
+                    self.tip = None;
+                }
+                Err(message) => self.fault(
+                    record,
+                    "rotabl",
+                    message.to_owned(),
+                    "write ROTABL/AAXIS,…, BAXIS or CAXIS",
+                ),
+            },
+            Statement::ToolAxis(axis) => match Vector3::from(*axis).try_normalize(1e-9) {
+                Some(axis) => {
+                    self.told_axis = Some(axis);
+                    if self.frame.turned().is_none() {
+                        self.axis = axis;
+                    }
+                }
+                None => self.fault(record, "axis", "the tool axis is null".to_owned(), ""),
+            },
+            Statement::Delay(Delay::Seconds(seconds)) => emit(Step::Dwell(*seconds)),
+            Statement::Delay(Delay::Revolutions(turns)) => match self.rpm {
+                Some(rpm) if rpm > 0.0 => emit(Step::Dwell(turns * 60.0 / rpm)),
+                _ => self.fault(
+                    record,
+                    "dwell",
+                    "a dwell in revolutions needs a spindle speed".to_owned(),
+                    "put a SPINDL before it",
+                ),
+            },
+            Statement::Stop => emit(Step::Stop),
+            Statement::OptionalStop => emit(Step::OptionalStop),
+            Statement::ToolPath { name, tool } => {
+                self.end_spline(record, emit);
+                // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
+                self.axis = Vector3::z();
+                self.tool_name = tool.clone().unwrap_or_default();
+                emit(Step::Comment(name.clone()));
+            }
+            Statement::EndOfPath => self.end_spline(record, emit),
+            Statement::PartName(text) | Statement::Print(text) => emit(Step::Comment(text.clone())),
+            Statement::Insert(text) => match self.reading.insert {
+                Insert::Comment => emit(Step::Comment(text.clone())),
+                Insert::Literal => emit(Step::Literal(text.clone())),
+            },
+            Statement::Csys(_) | Statement::Remark(_) => {
+                self.count(record.statement.word(), record, Usage::Ignored);
+            }
+            Statement::Fini => {
+                self.end_spline(record, emit);
+                self.finished = true;
+                self.count("FINI", record, Usage::Used);
+            }
+            Statement::Other { word, .. } => {
+                let usage = usage(&record.statement);
+                self.count(word, record, usage);
+                if usage == Usage::Refused {
+                    self.fault(
+                        record,
+                        "refused-word",
+                        format!("{word} changes where the tool goes, and post does not know how"),
+                        "let the CAM system write the result instead",
+                    );
+                }
+                if usage == Usage::Unknown && self.reading.unknown == Unknown::Pass {
+                    emit(Step::Comment(record.text().into_owned()));
+                }
+            }
+        }
+    }
+
+    /// A `GOTO` that neither ends a curve nor stands in a cycle: nearly all of a file.
+    #[inline]
+    fn plain_goto(
+        &mut self,
+        record: &Record<'_>,
+        point: [f64; 3],
+        axis: Option<[f64; 3]>,
+        emit: &mut impl FnMut(Step),
+    ) {
+        if !self.set_axis(record, axis) {
+            return;
+        }
+        if self.check_axis || self.loaded.is_none() || self.cutter_changed {
+            self.before_move(record, emit);
+        }
+        let tip = self.point(point);
+        if let Some(pace) = self.pace(record) {
+            self.advance(tip, pace, 0.0, emit);
+        }
+    }
+
+    fn goto(
+        &mut self,
+        record: &Record<'_>,
+        point: [f64; 3],
+        axis: Option<[f64; 3]>,
+        emit: &mut impl FnMut(Step),
+    ) {
+        let pending = match self.pending.take() {
+            Some(Pending::Arc(circle)) => Some(circle),
+            Some(spline) => {
+                self.pending = Some(spline);
+                self.end_spline(record, emit);
+                None
+            }
+            None => None,
+        };
+        if pending.is_none() && self.cycle.is_none() {
+            self.plain_goto(record, point, axis, emit);
+            return;
+        }
+        let start_axis = self.axis;
+        if !self.set_axis(record, axis) {
+            return;
+        }
+        self.before_move(record, emit);
+        let tip = self.point(point);
+        if let Some(circle) = pending {
+            self.arc(record, &circle, tip, start_axis, emit);
+        } else if let Some((drill, feed)) = self.cycle
+            && let Some(pace) = self.resolved(record, feed)
+        {
+            self.drill(drill, pace, tip, emit);
+        }
+    }
+
+    /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
+    /// cutter without a tool.
+    #[cold]
+    fn before_move(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+        if std::mem::take(&mut self.check_axis)
+            && let (Some(turned), Some(told)) = (self.frame.turned(), self.told_axis)
+            && (turned * self.axis - told).norm() > 1e-3
+        {
+            self.fault(
+                record,
+                "rotabl",
+                "the index angles (ROTABL) do not turn the tool to the axis that TLAXIS names"
+                    .to_owned(),
+                "one of the two is wrong: check the operation's set-up in the CAM system",
+            );
+        }
+        if self.loaded.is_none() {
+            self.load_told(record, emit);
+        }
+        if self.cutter_changed && !self.told_cutter {
+            self.told_cutter = true;
+            self.warn(
+                record,
+                "cutter",
+                "another cutter was described (CUTTER, TLDATA), but no tool was loaded for it: this is cut with the tool before".to_owned(),
+            );
+        }
+    }
+
+    /// Takes the axis of a six-number point; false if it is none.
+    #[inline]
+    fn set_axis(&mut self, record: &Record<'_>, axis: Option<[f64; 3]>) -> bool {
+        let Some(axis) = axis else {
+            return true;
+        };
+        let axis = Vector3::from(axis);
+        let square = axis.norm_squared();
+        if square < 1e-12 {
+            self.fault(
+                record,
+                "axis",
+                "the tool axis is null".to_owned(),
+                "i, j, k are a direction, from the tip to the holder",
+            );
+            return false;
+        }
+        self.axis = axis * (1.0 / square.sqrt());
+        true
+    }
+
+    #[inline]
+    fn point(&self, point: [f64; 3]) -> Vector3<f64> {
+        Vector3::from(point) * self.scale
+    }
+
+    /// How fast the next move goes; a fault if nothing says so.
+    #[inline]
+    fn pace(&mut self, record: &Record<'_>) -> Option<Pace> {
+        if std::mem::take(&mut self.rapid) || self.rapid_feed {
+            return Some(Pace::Rapid);
+        }
+        let Some(feed) = self.feed else {
+            if self.tip.is_none() {
+                // The first approach of a file that names no feed yet comes from the tool change.
+                return Some(Pace::Rapid);
+            }
+            self.fault(
+                record,
+                "no-feed",
+                "this move has no feed: no FEDRAT before it, and no RAPID".to_owned(),
+                "the CAM system must write a FEDRAT",
+            );
+            return None;
+        };
+        self.resolved(record, feed)
+    }
+
+    /// Emits one straight move and keeps its end.
+    #[inline]
+    fn advance(&mut self, tip: Vector3<f64>, pace: Pace, chord: f64, emit: &mut impl FnMut(Step)) {
+        self.tip = Some(tip);
+        self.measured = true;
+        self.cut_any = true;
+        let (tip, axis) = self.frame.to_part(tip, self.axis);
+        let edge = if self.edge == Vector3::zeros() {
+            self.edge
+        } else {
+            self.frame.direction_to_part(self.edge)
+        };
+        emit(Step::Move(Motion {
+            tip,
+            axis,
+            edge,
+            pace,
+            chord,
+        }));
+    }
+
+    fn count(&mut self, word: &str, record: &Record<'_>, usage: Usage) {
+        self.met
+            .count(word, usage, || record_place(&self.reading.file, record));
+    }
+
+    fn place(&self, record: &Record<'_>) -> Option<Place> {
+        Some(record_place(&self.reading.file, record))
+    }
+
+    #[cold]
+    fn fault(&mut self, record: &Record<'_>, code: &'static str, message: String, help: &str) {
+        let mut diagnostic = Diagnostic::error(code, message).at(self.place(record));
+        if !help.is_empty() {
+            diagnostic = diagnostic.help(help);
+        }
+        self.findings.push(diagnostic);
+    }
+
+    #[cold]
+    fn warn(&mut self, record: &Record<'_>, code: &'static str, message: String) {
+        let place = self.place(record);
+        self.findings
+            .push(Diagnostic::warning(code, message).at(place));
+    }
+}
+
+/// Where a record stands.
+pub(crate) fn record_place(file: &str, record: &Record<'_>) -> Place {
+    let text = record.text().into_owned();
+    Place {
+        file: file.to_owned(),
+        line: record.line,
+        span: 0..text.len(),
+        text,
+    }
+}
+
+/// mm in one unit.
+fn millimetres(units: Units) -> f64 {
+    match units {
+        Units::Millimetre => 1.0,
+        Units::Inch => 25.4,
+        Units::Centimetre => 10.0,
+        Units::Metre => 1000.0,
+        Units::Foot => 304.8,
+    }
+}

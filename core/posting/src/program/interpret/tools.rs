@@ -1,0 +1,165 @@
+//! Tools, cutters, spindle and radius compensation.
+
+use post_grammar::{Cutcom, LoadTool, Record, Sense, Side, Spindle as SpindleWord, SpindleUnit};
+use post_plugin::{Compensation, Spindle, SpindleSense};
+
+use super::Interpreter;
+use crate::program::motion::{Step, Tool};
+use post_machine::description::ToolLength;
+
+impl Interpreter {
+    pub(super) fn spindle(
+        &mut self,
+        record: &Record<'_>,
+        spindle: SpindleWord,
+        emit: &mut impl FnMut(Step),
+    ) {
+        let step = match spindle {
+            SpindleWord::Off => Spindle::Off,
+            SpindleWord::Orient => Spindle::Orient,
+            SpindleWord::On { speed, unit, sense } => {
+                if let Some(speed) = speed {
+                    let per_minute = match unit {
+                        SpindleUnit::Rpm => None,
+                        SpindleUnit::SurfaceMetric => Some(speed * 1000.0),
+                        SpindleUnit::SurfaceInch => Some(speed * 304.8),
+                    };
+                    self.rpm = match (per_minute, self.diameter) {
+                        (None, _) => Some(speed),
+                        (Some(surface), Some(diameter)) if diameter > 0.0 => {
+                            Some(surface / (std::f64::consts::PI * diameter))
+                        }
+                        _ => {
+                            self.fault(
+                                record,
+                                "spindle",
+                                "a surface speed needs the cutter's diameter".to_owned(),
+                                "put a CUTTER or TLDATA before it",
+                            );
+                            return;
+                        }
+                    };
+                }
+                if let Some(sense) = sense {
+                    self.sense = match sense {
+                        Sense::Clockwise => SpindleSense::Clockwise,
+                        Sense::CounterClockwise => SpindleSense::CounterClockwise,
+                    };
+                }
+                let Some(rpm) = self.rpm else {
+                    self.fault(
+                        record,
+                        "spindle",
+                        "the spindle is switched on, and no speed was given".to_owned(),
+                        "",
+                    );
+                    return;
+                };
+                Spindle::On {
+                    rpm,
+                    sense: self.sense,
+                }
+            }
+        };
+        emit(Step::Spindle(step));
+    }
+
+    pub(super) fn load(
+        &mut self,
+        record: &Record<'_>,
+        tool: &LoadTool,
+        emit: &mut impl FnMut(Step),
+    ) {
+        let register = tool.register.unwrap_or(tool.number);
+        if tool.number == 0 || register == 0 {
+            self.fault(
+                record,
+                "tool",
+                "tool 0 and length register 0 mean none: the tool's length would not be known"
+                    .to_owned(),
+                "let the CAM system number its tools from 1",
+            );
+            return;
+        }
+        let cutter = match self.reading.tool_length {
+            ToolLength::Cl => self.cutter_length,
+            ToolLength::Assembly => None,
+        };
+        let length = tool.length.map(|length| length * self.scale).or(cutter);
+        // NX repeats LOAD in every operation; the same tool stays in the spindle.
+        let loaded = Some((tool.number, register, tool.length));
+        if self.loaded == loaded {
+            return;
+        }
+        self.loaded = loaded;
+        self.measured |= tool.length.is_some();
+        self.register = None;
+        self.cutter_changed = false;
+        self.cut_any = false;
+        if self.compensated {
+            self.compensated = false;
+            emit(Step::Compensate(Compensation::Off));
+            self.warn(
+                record,
+                "compensation",
+                "the tool is changed with cutter compensation in force; it is switched off"
+                    .to_owned(),
+            );
+        }
+        // The tool comes from the changer: no arc begins where the last one stood.
+        self.tip = None;
+        emit(Step::Tool(Tool {
+            number: tool.number,
+            register,
+            length,
+            name: self.tool_name.clone(),
+        }));
+    }
+
+    /// Loads the tool that the user names, before the first record that needs one.
+    pub(super) fn load_told(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+        if self.loaded.is_none()
+            && let Some(number) = self.reading.tool.take()
+        {
+            let tool = LoadTool {
+                number,
+                ..LoadTool::default()
+            };
+            self.load(record, &tool, emit);
+        }
+    }
+
+    /// A cutter's description; `length` is where its length stands.
+    pub(super) fn cutter(&mut self, numbers: &[f64], length: usize) {
+        let diameter = numbers.first().map(|diameter| diameter * self.scale);
+        // Files that load their tools describe the cutter just before or after that.
+        self.cutter_changed |= self.diameter.is_some() && self.diameter != diameter && self.cut_any;
+        self.diameter = diameter;
+        self.cutter_length = numbers.get(length).map(|length| length * self.scale);
+    }
+
+    pub(super) fn cutcom(&mut self, cutcom: Cutcom, emit: &mut impl FnMut(Step)) {
+        let side = match cutcom.side {
+            Some(Side::Off) => {
+                self.compensated = false;
+                emit(Step::Compensate(Compensation::Off));
+                return;
+            }
+            Some(side) => {
+                self.side = Some(side);
+                Some(side)
+            }
+            None => self.side,
+        };
+        self.register = cutcom.register.or(self.register);
+        let tool = self.loaded.map(|(number, ..)| number);
+        let register = self.register.or(tool).unwrap_or(1);
+        self.compensated |= matches!(side, Some(Side::Left | Side::Right));
+        match side {
+            Some(Side::Left) => emit(Step::Compensate(Compensation::Left { register })),
+            Some(Side::Right) => emit(Step::Compensate(Compensation::Right { register })),
+            // CAMWorks switches it ON first and names the side in the next record.
+            Some(Side::Off) | None => {}
+        }
+    }
+}

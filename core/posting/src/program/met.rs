@@ -1,0 +1,97 @@
+//! Words that were met and had no effect: counted, so that nothing is dropped in silence.
+
+use std::collections::BTreeMap;
+
+use super::words::Usage;
+use post_machine::diagnostic::{Diagnostic, Place};
+
+/// What to do with a word that is not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unknown {
+    /// Refuse the file.
+    Error,
+    /// Leave it out and say so.
+    #[default]
+    Warn,
+    /// Write it into the program as a comment.
+    Pass,
+}
+
+/// Counts of words by name.
+#[derive(Debug, Default)]
+pub(crate) struct WordsMet {
+    counts: BTreeMap<String, WordCount>,
+}
+
+#[derive(Debug)]
+struct WordCount {
+    usage: Usage,
+    count: u64,
+    /// Where it was met first.
+    first: Place,
+}
+
+impl WordsMet {
+    /// Counts a word; `place` is asked for its first occurrence alone.
+    pub(crate) fn count(&mut self, word: &str, usage: Usage, place: impl FnOnce() -> Place) {
+        if let Some(count) = self.counts.get_mut(word) {
+            count.count += 1;
+            return;
+        }
+        let count = WordCount {
+            usage,
+            count: 1,
+            first: place(),
+        };
+        self.counts.insert(word.to_owned(), count);
+    }
+
+    /// How often a word was met.
+    pub(crate) fn times(&self, word: &str) -> u64 {
+        self.counts.get(word).map_or(0, |count| count.count)
+    }
+
+    /// Words that say nothing to a machine, and how often.
+    pub(crate) fn ignored(&self) -> impl Iterator<Item = (&str, u64)> {
+        self.counts
+            .iter()
+            .filter(|(_, count)| count.usage == Usage::Ignored)
+            .map(|(word, count)| (word.as_str(), count.count))
+    }
+
+    /// A finding for each word that is not known.
+    pub(crate) fn unknown(&self, policy: Unknown) -> impl Iterator<Item = Diagnostic> {
+        self.counts
+            .iter()
+            .filter(|(_, count)| count.usage == Usage::Unknown)
+            .map(move |(word, count)| {
+                let what = if post_grammar::vocabulary().contains(&word.as_str()) {
+                    "is not supported"
+                } else {
+                    "is not a word that post knows"
+                };
+                let message = format!("{word} {what}: met {}", times(count.count));
+                let finding = match policy {
+                    Unknown::Error => Diagnostic::error("unknown-word", message).help(
+                        "--unknown=warn leaves it out, --unknown=pass writes it as a comment",
+                    ),
+                    Unknown::Warn => {
+                        Diagnostic::warning("unknown-word", format!("{message}; left out"))
+                    }
+                    Unknown::Pass => Diagnostic::warning(
+                        "unknown-word",
+                        format!("{message}; written as a comment"),
+                    ),
+                };
+                finding.at(Some(count.first.clone()))
+            })
+    }
+}
+
+fn times(count: u64) -> String {
+    match count {
+        1 => "once".to_owned(),
+        2 => "twice".to_owned(),
+        count => format!("{count} times"),
+    }
+}

@@ -1,0 +1,228 @@
+//! What is said of a point that cannot be reached and of a move that cannot be made.
+
+use crate::accuracy::{Refused, Stuck};
+use crate::program::Motion;
+use post_machine::description::{Axis, Machine, Positions};
+use post_machine::diagnostic::{Diagnostic, Extreme};
+use post_machine::kinematics::choose::OverTravel;
+use post_machine::kinematics::{Joints, Unreachable};
+
+/// Why a point has no axis values.
+pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
+    match *refused {
+        Refused::Unreachable(Unreachable::Axis { miss }) => Diagnostic::error(
+            "out-of-reach",
+            format!(
+                "{} cannot point the tool this way: the nearest orientation misses by {:.4}°, {:.4}° is allowed",
+                machine.name,
+                miss.to_degrees(),
+                machine.accuracy.axis_tolerance.to_degrees()
+            ),
+        )
+        .extreme(Extreme {
+            key: u64::MAX,
+            by: miss,
+            value: format!("{:.4}° off", miss.to_degrees()),
+        })
+        .help("another machine, another set-up, or --msys apply if the axes are written in another frame"),
+        Refused::Unreachable(Unreachable::Linear) => Diagnostic::error(
+            "out-of-reach",
+            format!("the linear axes of {} cannot bring the tip here at these angles", machine.name),
+        ),
+        Refused::Unreachable(Unreachable::Numeric { miss }) => Diagnostic::error(
+            "out-of-reach",
+            format!(
+                "no axis values of {} were found for this point: the nearest pose misses it by {miss:.4} mm",
+                machine.name
+            ),
+        )
+        .help("this machine is solved numerically, from the point before: a point between may help"),
+        Refused::OverTravel { over, .. } if no_position(machine, over) => {
+            let axis = &machine.axes[over.joint];
+            Diagnostic::error(
+                "out-of-reach",
+                format!(
+                    "{} would have to stand at {:.3}°, and the nearest of its positions is {:.3}°",
+                    axis.name,
+                    axis.reading(over.value),
+                    axis.reading(over.limit)
+                ),
+            )
+            .help("an index axis stands at its positions alone: another set-up of the part")
+        }
+        Refused::OverTravel { over, tried } => {
+            let side = u64::from(over.value > over.limit);
+            let axis = &machine.axes[over.joint];
+            let sign = if axis.joint.rotary { "°" } else { " mm" };
+            let diagnostic = Diagnostic::error(
+                "over-travel",
+                format!(
+                    "{} would be {:.3}{sign}, its limit is {:.3}{sign}; {}",
+                    axis.name,
+                    axis.reading(over.value),
+                    axis.reading(over.limit),
+                    match tried {
+                        1 => "there is no other solution".to_owned(),
+                        tried => format!("none of the {tried} solutions stays inside travel"),
+                    }
+                ),
+            );
+            let diagnostic = diagnostic.extreme(Extreme {
+                key: over.joint as u64 * 2 + side,
+                by: libm::fabs(over.value - over.limit) / axis.unit(),
+                value: format!("{} {:.3}{sign}", axis.name, axis.reading(over.value)),
+            });
+            if axis.joint.rotary {
+                diagnostic.help("another set-up of the part, or a machine that tilts so far")
+            } else {
+                diagnostic.help("set the part elsewhere with --mount X,Y,Z, give the tool's length, or say --units if the file's units are wrong")
+            }
+        }
+        Refused::Unverified { tip, axis } => Diagnostic::error(
+            "kinematics",
+            format!(
+                "the solution found misses the point by {tip:.6} mm and {:.6}° when it is put through the chain",
+                axis.to_degrees()
+            ),
+        )
+        .help("this is a fault of post: please report it with the machine file and this line"),
+    }
+}
+
+/// An index axis that has no position there, inside its travel.
+fn no_position(machine: &Machine, over: OverTravel) -> bool {
+    let axis = &machine.axes[over.joint];
+    let inside = axis
+        .travel
+        .is_none_or(|[least, most]| (least..=most).contains(&over.value));
+    inside
+        && axis
+            .indexed
+            .as_ref()
+            .is_some_and(|indexed| indexed.positions != Positions::Any)
+}
+
+/// Inside its travel, on the side of zero that the machine file forbids.
+fn forbidden(machine: &Machine, over: &OverTravel) -> bool {
+    let travel = machine.axes[over.joint].travel;
+    let inside = travel.is_none_or(|[least, most]| (least..=most).contains(&over.value));
+    let require = &machine.solution.require;
+    inside && require.iter().any(|(joint, _)| *joint == over.joint)
+}
+
+/// An indexed axis that stands differently.
+fn indexes<'m>(machine: &'m Machine, from: &Joints, to: &Joints) -> Option<&'m Axis> {
+    let moves = |(joint, axis): &(usize, &Axis)| {
+        axis.indexed.is_some() && libm::fabs(from[*joint] - to[*joint]) > 1e-6
+    };
+    let mut axes = machine.axes.iter().enumerate();
+    axes.find(moves).map(|(_, axis)| axis)
+}
+
+/// Why a cut cannot go on: what each solution asks of the axes, whether it is on the branch that the cut is
+/// on, and where the axes stand before.
+pub(crate) fn no_way(
+    machine: &Machine,
+    from: &Joints,
+    tried: &[(Result<Joints, OverTravel>, bool, Joints)],
+) -> Diagnostic {
+    let rotary = |joints: &Joints| {
+        let axes = machine.axes.iter().zip(joints);
+        axes.filter(|(axis, _)| axis.joint.rotary)
+            .map(|(axis, value)| format!("{} {:.3}°", axis.name, axis.reading(*value)))
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    let reasons: Vec<String> = tried
+        .iter()
+        .map(|(carried, same, joints)| match carried {
+            Err(over) if forbidden(machine, over) => {
+                let axis = &machine.axes[over.joint];
+                format!(
+                    "going on to {} takes {} to {:.3}°, on the side of zero that [solution] require forbids",
+                    rotary(joints),
+                    axis.name,
+                    axis.reading(over.value)
+                )
+            }
+            Err(over) => {
+                let axis = &machine.axes[over.joint];
+                let travel = axis.travel.map_or(String::new(), |[least, most]| {
+                    format!(
+                        " (travel {:.3}° to {:.3}°)",
+                        axis.reading(least),
+                        axis.reading(most)
+                    )
+                });
+                format!(
+                    "going on to {} takes {} to {:.3}°{travel}",
+                    rotary(joints),
+                    axis.name,
+                    axis.reading(over.value)
+                )
+            }
+            Ok(joints) if let Some(axis) = indexes(machine, from, joints) => format!(
+                "{} would turn in the cut, and it moves off the part alone (indexed): {}",
+                axis.name,
+                rotary(joints)
+            ),
+            Ok(joints) if *same => format!(
+                "{} lies on the same branch, but no path of the axes keeps the tolerance",
+                rotary(joints)
+            ),
+            Ok(joints) => format!(
+                "{} lies on the other branch: the axes must jump",
+                rotary(joints)
+            ),
+        })
+        .collect();
+    let help = if machine.rewind.is_some() {
+        "[rewind] finds no way either: drawn back, the tool would leave the travel, or its plane lies below the tip"
+    } else {
+        "retract before this line, give the machine a [rewind], or let it start elsewhere: [solution] start, prefer"
+    };
+    Diagnostic::error(
+        "jump",
+        format!(
+            "this cut cannot go on from {}: {}",
+            rotary(from),
+            reasons.join("; ")
+        ),
+    )
+    .help(help)
+}
+
+/// Why a move cannot be brought within tolerance.
+pub(crate) fn stuck(machine: &Machine, stuck: &Stuck, motion: &Motion) -> Diagnostic {
+    match stuck {
+        Stuck::Refused(refused) => {
+            let mut diagnostic = self::refused(machine, refused);
+            diagnostic.message = format!("on the way to this point: {}", diagnostic.message);
+            diagnostic
+        }
+        Stuck::Rounding { tip, axis } => Diagnostic::error(
+            "rounding",
+            format!(
+                "the decimals of the dialect alone move the tip by {tip:.6} mm and the tool axis by {:.6}°; allowed are {:.6} mm and {:.6}°",
+                axis.to_degrees(),
+                machine.accuracy.tolerance - motion.chord,
+                machine.accuracy.axis_tolerance.to_degrees()
+            ),
+        )
+        .help("more decimals in [control] or a wider tolerance in [accuracy]"),
+        Stuck::Jump { joint, from, to } => Diagnostic::error(
+            "jump",
+            format!(
+                "{} must jump from {:.3}° to {:.3}° within this cut: no path of the axes keeps the tolerance",
+                machine.axes[*joint].name,
+                machine.axes[*joint].reading(*from),
+                machine.axes[*joint].reading(*to)
+            ),
+        )
+        .help("its travel ends here and the other solution lies far away: retract before this line, or set the part differently"),
+        Stuck::Model(message) => Diagnostic::error(
+            "model",
+            format!("the error model {} cannot answer: {message}", machine.accuracy.model),
+        ),
+    }
+}

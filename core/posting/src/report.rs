@@ -1,0 +1,104 @@
+//! What was done, for the summary.
+
+use serde::Serialize;
+
+use post_machine::description::ControlPoint;
+
+/// The summary of one program. Its keys are those of `--summary FILE.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Report {
+    /// Name of the machine.
+    pub machine: String,
+    /// Name of the dialect.
+    pub dialect: String,
+    /// Who keeps the tip on its path: `control` or `post`.
+    pub tcp: String,
+    /// Name of the error model.
+    pub model: String,
+    /// Records read from the CL file.
+    pub records: u64,
+    /// Moves that they mean (arcs, splines and cycles count with all their moves).
+    pub moves: u64,
+    /// Blocks with a motion in the NC program.
+    pub blocks: u64,
+    /// Lines of the NC program.
+    pub nc_lines: u64,
+    /// Points put in to keep the tolerance.
+    pub points_added: u64,
+    /// CL points that no block ends on, because the tolerance makes them needless.
+    pub points_dropped: u64,
+    /// Points put in because the certificate found more than the model promised.
+    pub model_overruled: u64,
+    /// Certified largest deviation of the tip in a cut, mm.
+    pub tip_deviation_mm: Deviation,
+    /// Certified largest deviation of the tool axis in a cut, degrees.
+    pub axis_deviation_deg: Deviation,
+    /// Certified largest deviation of the tip in a rapid, mm.
+    pub rapid_deviation_mm: Deviation,
+    /// The point of the tool that deviations are those of: how far above the point of the CL file, and the radius of
+    /// the cutting edge about it, mm.
+    pub control_point: ControlPoint,
+    /// Tolerances in force.
+    pub tolerance_mm: f64,
+    /// Tolerance of the tool axis, degrees.
+    pub axis_tolerance_deg: f64,
+    /// What of each axis was used.
+    pub axes: Vec<AxisRange>,
+    /// Times that another branch of the solution or another full turn was taken, off the part.
+    pub branch_changes: u64,
+    /// Times that the tool was drawn back in a cut, turned and brought back.
+    pub rewinds: u64,
+    /// Points at which a rotary axis was held or turned early close to a pole, within the tolerance of the axis.
+    pub points_eased: u64,
+    /// Time of cuts, rapids and dwells, s; tool changes not among it.
+    pub time_s: f64,
+    /// Of it, in cuts, s.
+    pub cutting_time_s: f64,
+    /// Blocks slowed down because an axis would have gone faster than its `max_feed`.
+    pub blocks_limited: u64,
+    /// Words of the CL file that say nothing to a machine, and how often.
+    pub ignored_words: Vec<(String, u64)>,
+    /// Plugins that took part.
+    pub plugins: Vec<PluginUse>,
+    /// Warnings, as sentences.
+    pub warnings: Vec<String>,
+}
+
+/// A deviation and where it stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Deviation {
+    /// How large; the unit is in the key.
+    pub value: f64,
+    /// Line of the NC program.
+    pub block: u64,
+    /// Line of the CL file.
+    pub line: u64,
+}
+
+/// Range of an axis.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct AxisRange {
+    /// Its address.
+    pub name: String,
+    /// Least axis position, mm or degrees.
+    pub min: f64,
+    /// Largest axis position, mm or degrees.
+    pub max: f64,
+    /// Its travel; none for a cyclic axis.
+    pub travel: Option<[f64; 2]>,
+    /// Its way over all blocks, mm or degrees.
+    pub way: f64,
+}
+
+/// A plugin that took part.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PluginUse {
+    /// Its name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+    /// The library it was opened from; none if it is linked in.
+    pub path: Option<String>,
+    /// Hash of the library's bytes.
+    pub hash: Option<String>,
+}

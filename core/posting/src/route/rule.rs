@@ -1,0 +1,115 @@
+//! What is to be small over the path: the measure of a move of the axes.
+
+use post_machine::description::{Machine, Rule, Side};
+use post_machine::kinematics::{Joints, MAX_AXES};
+
+/// An axis without `max_feed` counts as one with so many mm/min or degrees/min.
+const USUAL_FEED: f64 = 10_000.0;
+
+/// Axis values this close to zero lie on both sides, mm or radians.
+const NEAR_ZERO: f64 = 1e-6;
+
+/// Measures moves of one machine.
+#[derive(Clone, Debug)]
+pub(crate) struct Measure {
+    rule: Rule,
+    count: usize,
+    rotary: [bool; MAX_AXES],
+    /// Minutes for one mm or radian at the largest feed.
+    slowness: Joints,
+    prefer: Vec<(usize, Side)>,
+    /// What the control shows at zero of each axis.
+    zero: Joints,
+}
+
+impl Measure {
+    pub(crate) fn new(machine: &Machine) -> Self {
+        let mut slowness = [0.0; MAX_AXES];
+        let mut rotary = [false; MAX_AXES];
+        let mut zero = [0.0; MAX_AXES];
+        for (place, axis) in machine.axes.iter().enumerate() {
+            rotary[place] = axis.joint.rotary;
+            zero[place] = axis.zero;
+            slowness[place] = if axis.max_feed.is_finite() {
+                1.0 / axis.max_feed
+            } else {
+                1.0 / (USUAL_FEED * axis.unit())
+            };
+        }
+        Self {
+            rule: machine.solution.rule,
+            count: machine.axes.len(),
+            rotary,
+            slowness,
+            prefer: machine.solution.prefer.clone(),
+            zero,
+        }
+    }
+
+    /// The cost of a move: minutes under `time`, degrees (mm) under the other rules. Those decide by the
+    /// measure alone only where it differs; the time breaks their ties.
+    #[inline]
+    pub(crate) fn between(&self, from: &Joints, to: &Joints) -> f64 {
+        self.weigh(from, to, true)
+    }
+
+    /// [`Measure::between`] of the rotary axes alone: nobody knows where the tool comes from.
+    pub(crate) fn approach(&self, from: &Joints, to: &Joints) -> f64 {
+        self.weigh(from, to, false)
+    }
+
+    #[inline]
+    fn weigh(&self, from: &Joints, to: &Joints, linear: bool) -> f64 {
+        if linear && self.rule == Rule::Time {
+            // Unused places cost nothing.
+            let mut time = 0.0;
+            for index in 0..MAX_AXES {
+                time += (to[index] - from[index]).abs() * self.slowness[index];
+            }
+            return time;
+        }
+        let mut time = 0.0;
+        let (mut squares, mut largest): (f64, f64) = (0.0, 0.0);
+        for index in 0..self.count {
+            let way = (to[index] - from[index]).abs();
+            if self.rotary[index] {
+                squares += way * way;
+                largest = largest.max(way);
+            } else if !linear {
+                continue;
+            }
+            time += way * self.slowness[index];
+        }
+        let tie = 1e-6 * time;
+        match self.rule {
+            Rule::Time => time,
+            Rule::Travel => squares.sqrt().to_degrees() + tie,
+            Rule::LargestAxis => largest.to_degrees() + tie,
+            Rule::Axis(place) => {
+                let way = (to[place] - from[place]).abs();
+                let unit = if self.rotary[place] {
+                    1f64.to_radians()
+                } else {
+                    1.0
+                };
+                way / unit + tie
+            }
+        }
+    }
+
+    /// How many axes stand on a side that is not preferred.
+    #[inline]
+    pub(crate) fn against(&self, joints: &Joints) -> u32 {
+        let stands =
+            |(place, side): &&(usize, Side)| wrong_side(joints[*place] + self.zero[*place], *side);
+        self.prefer.iter().filter(stands).count() as u32
+    }
+}
+
+/// The value that the control shows lies on the other side of zero.
+pub(crate) fn wrong_side(value: f64, side: Side) -> bool {
+    match side {
+        Side::Positive => value < -NEAR_ZERO,
+        Side::Negative => value > NEAR_ZERO,
+    }
+}

@@ -1,0 +1,335 @@
+//! Whole runs, from CL text to the events a dialect is asked to write, and the way back from their words.
+
+use nalgebra::{Matrix3, Vector3};
+use post_grammar::{ReadError, Reader};
+use post_machine::description::{Machine, Source, Tcp, load};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Joints;
+use post_plugin::{
+    Batch, Curve, Deviation, DialectSession, Event, Feed, Format, ModelSession, Tolerance,
+    WriteFault,
+};
+use post_posting::report::Report;
+use post_posting::{Job, Output, Post};
+
+use super::{Reference, between};
+
+/// What a dialect was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Asked {
+    /// Line of the CL file.
+    pub line: u64,
+    /// Kind of the event.
+    pub kind: &'static str,
+    pub words: Vec<f64>,
+    pub feed: Option<Feed>,
+}
+
+struct Recorder {
+    format: Format,
+    asked: Vec<Asked>,
+}
+
+impl DialectSession for Recorder {
+    fn format(&self) -> &Format {
+        &self.format
+    }
+
+    fn write_batch(
+        &mut self,
+        batch: &Batch,
+        out: &mut Vec<u8>,
+        ends: &mut Vec<usize>,
+    ) -> Result<(), WriteFault> {
+        for (index, event) in batch.iter().enumerate() {
+            let (words, feed) = match event {
+                Event::Position { words, feed } => (words, feed),
+                Event::Rapid { words } => (words, None),
+                Event::Linear { words, feed } => (words, Some(feed)),
+                _ => (&[][..], None),
+            };
+            self.asked.push(Asked {
+                line: batch.line(index),
+                kind: event.name(),
+                words: words.to_vec(),
+                feed,
+            });
+            out.extend_from_slice(b"block\n");
+            ends.push(out.len());
+        }
+        Ok(())
+    }
+}
+
+/// An error model that looks at 33 places and has no opinion.
+struct Samples;
+
+impl ModelSession for Samples {
+    fn fit(
+        &mut self,
+        _: &Tolerance,
+        deviation: &mut dyn FnMut(&[f64], &mut [Deviation]),
+    ) -> Result<Curve, String> {
+        let places: [f64; 33] = std::array::from_fn(|step| step as f64 / 32.0);
+        let mut out = [Deviation::default(); 33];
+        deviation(&places, &mut out);
+        let peak = |part: fn(&Deviation) -> [f64; 3]| {
+            out.iter()
+                .map(|place| Vector3::from(part(place)).norm())
+                .fold(0.0, f64::max)
+        };
+        Ok(Curve {
+            tip_peak: peak(|place| place.tip),
+            tip_at: 0.5,
+            axis_peak: peak(|place| place.axis),
+            axis_at: 0.5,
+            terms: [0.0; 60],
+        })
+    }
+
+    fn value(&self, _: &Curve, _: f64) -> Deviation {
+        Deviation::default()
+    }
+}
+
+struct Nowhere;
+
+impl Output for Nowhere {
+    fn write(&mut self, _: &[u8]) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// What came of a run.
+#[derive(Debug)]
+pub struct Run {
+    pub asked: Vec<Asked>,
+    pub report: Option<Report>,
+    pub findings: Vec<Diagnostic>,
+}
+
+impl Run {
+    /// Blocks with a motion.
+    pub fn motions(&self) -> Vec<&Asked> {
+        let asked = self.asked.iter();
+        asked.filter(|asked| !asked.words.is_empty()).collect()
+    }
+
+    /// The words with which CL lines that end in motion are arrived at.
+    pub fn arrival(&self, line: u64) -> Option<&[f64]> {
+        let asked = self.asked.iter();
+        asked
+            .filter(|asked| !asked.words.is_empty() && asked.line <= line)
+            .map(|asked| &asked.words[..])
+            .next_back()
+    }
+
+    /// The messages of all findings.
+    pub fn told(&self) -> String {
+        let findings = self.findings.iter();
+        findings
+            .map(|finding| format!("{}: {}", finding.code, finding.message))
+            .collect::<Vec<_>>()
+            .join("\n")
+    }
+
+    pub fn good(self, what: &str) -> Self {
+        assert!(self.report.is_some(), "{what}: {}", self.told());
+        self
+    }
+}
+
+/// A machine, and the same once more for the isometries.
+pub struct Bench {
+    /// The machine file.
+    pub text: String,
+    pub machine: Machine,
+    pub reference: Reference,
+    /// Places in the chain, in the order of the words.
+    pub order: Vec<usize>,
+    /// Axis values with the tip on the part origin and every rotary axis at zero.
+    zero: Joints,
+    decimals: u8,
+    length: f64,
+}
+
+impl Bench {
+    /// From the text of a machine file with three linear axes or, where the post keeps the tip, fewer.
+    pub fn new(text: &str, decimals: u8, length: f64) -> Self {
+        let source = Source {
+            name: "machine.toml".to_owned(),
+            text: text.to_owned(),
+        };
+        let machine = load(source, &[], &mut |_| Err(String::new()))
+            .unwrap_or_else(|faults| panic!("{faults:#?}\n{text}"));
+        let reference = Reference {
+            joints: machine.axes.iter().map(|axis| axis.joint).collect(),
+            mount: machine.mount,
+            tip: machine.gauge - machine.tool_axis * length,
+            axis: machine.tool_axis,
+        };
+        let mut order: Vec<usize> = (0..machine.axes.len()).collect();
+        order.sort_by_key(|place| "XYZABC".find(&machine.axes[*place].name));
+        let mut bench = Self {
+            text: text.to_owned(),
+            machine,
+            reference,
+            order,
+            zero: Joints::default(),
+            decimals,
+            length,
+        };
+        // Without three linear axes there is no position that could be counted from the part origin.
+        if bench.reference.linear().len() == 3 {
+            bench.zero = bench.put(Vector3::zeros(), Joints::default());
+        }
+        bench
+    }
+
+    /// The place of an axis in the chain.
+    pub fn place(&self, name: &str) -> usize {
+        let axes = self.machine.axes.iter();
+        let mut named = axes.enumerate().filter(|(_, axis)| axis.name == name);
+        named.next().expect("an axis of that name").0
+    }
+
+    /// Places of the rotary axes.
+    pub fn rotary(&self) -> Vec<usize> {
+        let joints = self.reference.joints.iter().enumerate();
+        joints
+            .filter(|(_, joint)| joint.rotary)
+            .map(|(place, _)| place)
+            .collect()
+    }
+
+    /// The linear axes where they put the tip on `tip`, the rotary ones standing as they do.
+    pub fn put(&self, tip: Vector3<f64>, mut joints: Joints) -> Joints {
+        let linear = self.reference.linear();
+        for place in &linear {
+            joints[*place] = 0.0;
+        }
+        let columns: Vec<Vector3<f64>> = linear
+            .iter()
+            .map(|place| self.reference.direction(&joints, *place))
+            .collect();
+        let way = tip - self.reference.forward(&joints).0;
+        let values = Matrix3::from_columns(&columns)
+            .try_inverse()
+            .expect("linear axes that span the space")
+            * way;
+        for (place, value) in linear.iter().zip(values.iter()) {
+            joints[*place] = *value;
+        }
+        joints
+    }
+
+    /// Axis values of printed words, whoever keeps the tip.
+    pub fn joints(&self, words: &[f64]) -> Joints {
+        let mut joints = Joints::default();
+        let mut tip = Vector3::zeros();
+        for (index, (place, word)) in self.order.iter().zip(words).enumerate() {
+            if self.reference.joints[*place].rotary {
+                joints[*place] = word.to_radians();
+            } else {
+                joints[*place] = word + self.zero[*place];
+                tip[index] = *word;
+            }
+        }
+        if self.machine.control.tcp == Tcp::Control {
+            joints = self.put(tip, joints);
+        }
+        joints
+    }
+
+    /// Tip and tool axis at `t` of a block from `from` to `to`, part frame.
+    pub fn at(&self, from: &[f64], to: &[f64], t: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let joints = between(&self.joints(from), &self.joints(to), t);
+        let (mut tip, axis) = self.reference.forward(&joints);
+        if self.machine.control.tcp == Tcp::Control {
+            tip = Vector3::from_fn(|row, _| from[row] * (1.0 - t) + to[row] * t);
+        }
+        (tip, axis)
+    }
+
+    pub fn run(&self, cl: &str) -> Run {
+        self.run_with(cl, &mut Samples, false)
+    }
+
+    /// With an error model of the test's own, and maybe nothing but its word.
+    pub fn run_with(&self, cl: &str, model: &mut dyn ModelSession, trust_model: bool) -> Run {
+        let mut dialect = Recorder {
+            format: Format {
+                words: self.machine.axes.iter().map(|_| self.decimals).collect(),
+                feed: 1,
+                inverse_time: Some(4),
+                feed_per_revolution: 4,
+                extension: "nc".to_owned(),
+            },
+            asked: Vec::new(),
+        };
+        let mut output = Nowhere;
+        let job = Job {
+            tool_length: Some(self.length),
+            trust_model,
+            ..Job::default()
+        };
+        let mut post = Post::new(&self.machine, job, &mut dialect, model, &mut output)
+            .expect("machine and dialect agree");
+        let mut reader = Reader::new(cl.as_bytes());
+        while !post.gave_up() {
+            match reader.next_record() {
+                Ok(Some(record)) => post.record(&record),
+                Ok(None) => break,
+                Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
+                Err(other) => panic!("{other}"),
+            }
+        }
+        let (report, findings) = post.finish();
+        Run {
+            asked: dialect.asked,
+            report,
+            findings,
+        }
+    }
+}
+
+/// One point of a CL file, its numbers as they are written.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    pub tip: Vector3<f64>,
+    pub axis: Vector3<f64>,
+    pub rapid: bool,
+}
+
+/// A point whose numbers are those that a CL file with so many decimals holds.
+pub fn point(tip: Vector3<f64>, axis: Vector3<f64>, rapid: bool) -> Point {
+    let rounded =
+        |vector: Vector3<f64>, scale: f64| vector.map(|value| libm::rint(value * scale) / scale);
+    Point {
+        tip: rounded(tip, 1e4),
+        axis: rounded(axis, 1e9),
+        rapid,
+    }
+}
+
+/// A CL file with two lines a point, its pace and its numbers.
+pub fn cl(points: &[Point], feed: f64) -> String {
+    let mut text = "UNITS/MM\nMULTAX/ON\nSPINDL/3000,RPM,CLW\n".to_owned();
+    for Point { tip, axis, rapid } in points {
+        text += &if *rapid {
+            "RAPID\n".to_owned()
+        } else {
+            format!("FEDRAT/{feed},MMPM\n")
+        };
+        text += &format!(
+            "GOTO/{:.4},{:.4},{:.4},{:.9},{:.9},{:.9}\n",
+            tip.x, tip.y, tip.z, axis.x, axis.y, axis.z
+        );
+    }
+    text + "FINI\n"
+}
+
+/// Line of the CL file of point `index`.
+pub fn line(index: usize) -> u64 {
+    3 + 2 * (index as u64 + 1)
+}

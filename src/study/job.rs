@@ -5,7 +5,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Batch, DialectSession, Format, WriteFault};
 use post_posting::report::Report;
-use post_posting::{Output, Post, Watch};
+use post_posting::{Observer, Output, Post};
 
 use crate::arguments::JobArguments;
 use crate::input::{Input, one, standard};
@@ -49,7 +49,7 @@ impl<'a> Job<'a> {
     pub fn pass(
         &self,
         machine: &Machine,
-        watch: Option<&mut dyn Watch>,
+        watch: Option<&mut dyn Observer>,
     ) -> Result<(Report, Vec<Diagnostic>), Vec<Diagnostic>> {
         let path = self.arguments.input();
         let program = posting::program_name(path, None);

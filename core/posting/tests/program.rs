@@ -11,11 +11,14 @@ use nalgebra::Vector3;
 use post_grammar::{Reader, Units};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::{Compensation, Spindle};
-use post_posting::program::{Interpreter, Motion, Pace, Reading, Step, Unknown};
+use post_posting::Flow;
+use post_posting::expand::{Line, expanded};
+use post_posting::program::{Command, Interpreter, Motion, Pace, Reading, Unknown};
 
 /// What comes of a text.
 struct Run {
-    steps: Vec<Step>,
+    /// Curves and cycles as moves.
+    steps: Vec<Flow<Line>>,
     findings: Vec<Diagnostic>,
 }
 
@@ -27,20 +30,22 @@ impl Run {
         };
         let text = text.replace(';', "\n");
         let mut reader = Reader::new(text.as_bytes());
-        let mut interpreter = Interpreter::new(reading);
+        let mut interpreter = Interpreter::new(reading.clone());
         let mut steps = Vec::new();
         while let Some(record) = reader.next_record().unwrap() {
-            interpreter.record(&record, &mut |step| steps.push(step));
+            interpreter.record(&record, &mut |step| steps.push((record.line, step)));
         }
         interpreter.finish();
-        let findings = interpreter.take_findings();
+        let mut findings = interpreter.take_findings();
+        let (steps, faults) = expanded(steps, reading.chord_tolerance);
+        findings.extend(faults);
         Self { steps, findings }
     }
 
     fn moves(&self) -> Vec<Motion> {
-        let motion = |step: &Step| match step {
-            Step::Move(motion) => Some(*motion),
-            _ => None,
+        let motion = |step: &Flow<Line>| match step {
+            Flow::Point(line) => Some(line.motion),
+            Flow::Command { .. } => None,
         };
         self.steps.iter().filter_map(motion).collect()
     }
@@ -52,7 +57,15 @@ impl Run {
         let steps: Vec<String> = self
             .steps
             .iter()
-            .filter(|step| !matches!(step, Step::Index { .. }))
+            .filter(|step| {
+                !matches!(
+                    step,
+                    Flow::Command {
+                        command: Command::Index { .. },
+                        ..
+                    }
+                )
+            })
             .map(step)
             .collect();
         steps.join("; ")
@@ -104,24 +117,28 @@ fn placed(tip: Vector3<f64>, axis: Vector3<f64>) -> String {
     format!("{} @{}", vector(tip), vector(axis))
 }
 
-fn step(step: &Step) -> String {
-    match step {
-        Step::Move(motion) => {
+fn step(step: &Flow<Line>) -> String {
+    let command = match step {
+        Flow::Point(line) => {
+            let motion = &line.motion;
             let pace = match motion.pace {
                 Pace::Rapid => "R".to_owned(),
                 Pace::PerMinute(feed) => format!("F{}", number(feed)),
                 Pace::InverseTime(feed) => format!("V{}", number(feed)),
             };
-            format!("{pace} {}", placed(motion.tip, motion.axis))
+            return format!("{pace} {}", placed(motion.tip, motion.axis));
         }
-        Step::From { tip, axis } => format!("from {}", placed(*tip, *axis)),
-        Step::Tool(tool) => format!("T{}/{}", tool.number, tool.register),
-        Step::Spindle(Spindle::On { rpm, .. }) => format!("S{}", number(*rpm)),
-        Step::Compensate(Compensation::Off) => "G40".to_owned(),
-        Step::Compensate(Compensation::Left { register }) => format!("G41 {register}"),
-        Step::Compensate(Compensation::Right { register }) => format!("G42 {register}"),
-        Step::Comment(text) => format!("# {text}"),
-        Step::Home => "home".to_owned(),
+        Flow::Command { command, .. } => command,
+    };
+    match command {
+        Command::From { tip, axis } => format!("from {}", placed(*tip, *axis)),
+        Command::Tool(tool) => format!("T{}/{}", tool.number, tool.register),
+        Command::Spindle(Spindle::On { rpm, .. }) => format!("S{}", number(*rpm)),
+        Command::Compensate(Compensation::Off) => "G40".to_owned(),
+        Command::Compensate(Compensation::Left { register }) => format!("G41 {register}"),
+        Command::Compensate(Compensation::Right { register }) => format!("G42 {register}"),
+        Command::Comment(text) => format!("# {text}"),
+        Command::Home => "home".to_owned(),
         other => format!("{other:?}"),
     }
 }

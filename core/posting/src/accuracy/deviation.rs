@@ -10,6 +10,7 @@ use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
 use super::certificate::{self, Bend, Course, chord_angle};
 use super::node::{Node, Placer};
+use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::orientation::angle;
 use post_machine::kinematics::{Joints, Pose};
 
@@ -51,6 +52,36 @@ const BLIND: f64 = 0.02;
 
 /// A block that needs more samples than this to be certified is split instead.
 const MOST_SAMPLES: f64 = 64.0;
+
+impl<'n> Move<'n> {
+    /// A motion between two nodes, and what it must keep: within the tolerance of a rapid if it is `loose` (off the
+    /// part), `chord` mm of it being spent already.
+    #[inline]
+    pub fn planned(
+        machine: &Machine,
+        placer: &'n Placer,
+        chord: f64,
+        loose: bool,
+        [from, to]: [&'n Node; 2],
+    ) -> Self {
+        let accuracy = &machine.accuracy;
+        let (tip, axis) = if loose {
+            (accuracy.rapid_tolerance, f64::INFINITY)
+        } else {
+            (accuracy.tolerance, accuracy.axis_tolerance)
+        };
+        Self {
+            placer,
+            from,
+            to,
+            tolerances: Tolerances {
+                tip: tip - chord,
+                axis,
+            },
+            control_keeps_tip: machine.control.tcp == Tcp::Control,
+        }
+    }
+}
 
 impl Move<'_> {
     /// The bound of the whole move, if the cheap certificate clears it: then no point is needed, whatever a

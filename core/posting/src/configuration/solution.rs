@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::rule::wrong_side;
-use super::turns::unwound;
+use super::full_turns::unwound;
+use super::metric::wrong_side;
 use post_machine::description::{Machine, Positions, Side};
 use post_machine::kinematics::choose::{Limit, OverTravel};
 use post_machine::kinematics::orientation::{Branches, angle};

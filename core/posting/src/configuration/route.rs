@@ -1,4 +1,4 @@
-//! The route: which of several solutions is taken at each point, decided over whole passes.
+//! Which of several solutions is taken at each point, decided over whole passes.
 //!
 //! Points come in one by one; a lattice keeps the cheapest way to every way of standing at the newest. What is
 //! decided comes out: as soon as one state is left, at the latest when so many points wait as the machine's
@@ -7,32 +7,26 @@
 //! In a cut the axes go on from where they are; another branch or another full turn is taken off the part, in a
 //! rapid, or by the machine's `[rewind]` move. Where a cut cannot go on, the fault says what was tried.
 
-mod cost;
-mod lattice;
-mod lost;
-mod pole;
-mod rule;
-mod settle;
-mod stand;
-mod turns;
+use std::rc::Rc;
 
 use post_plugin::Format;
 
-use crate::accuracy::{Linearise, Move, Placer, Tolerances};
+use crate::accuracy::{Linearise, Move, Placer};
 use crate::program::{Motion, Pace};
-use post_machine::description::{Machine, Positions, Tcp};
+use post_machine::description::{Machine, Positions};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Pose, Unreachable};
 
-pub(crate) use lattice::pose;
-use lattice::{Judge, Lattice};
-use stand::Found;
+use super::settle;
+use super::solution::Found;
+use super::trellis::{Judge, Lattice};
 
 /// A point of the path with the axis values that were chosen for it.
 #[derive(Clone, Debug)]
 pub(crate) struct Chosen {
     /// Line of the CL file.
     pub line: u64,
+    /// The control point's path: see [`super::Configuration`].
     pub motion: Motion,
     /// Which placer solves it: see [`Route::placer`].
     pub setting: usize,
@@ -51,27 +45,36 @@ pub(crate) struct Chosen {
 /// Chooses axis values.
 #[derive(Debug)]
 pub(crate) struct Route<'a> {
-    machine: &'a Machine,
+    pub(super) machine: &'a Machine,
     format: Format,
     tool_length: f64,
     /// A placer for each set of values that the redundant axes were held at.
-    settings: Vec<(Joints, Placer)>,
+    pub(super) settings: Vec<(Joints, Rc<Placer>)>,
     /// Which of them new points get.
-    setting: usize,
-    lattice: Lattice,
+    pub(super) setting: usize,
+    pub(super) lattice: Lattice,
     /// The first layer is settled and has one state.
-    anchored: bool,
+    pub(super) anchored: bool,
     /// The layer whose states the roots name.
-    mark: usize,
+    pub(super) mark: usize,
     /// Where the axes stand if there is no layer.
-    near: Joints,
+    pub(super) near: Joints,
     /// Axis values before a rewind: see [`lattice::State::rewind`].
-    rewound: Vec<Joints>,
+    pub(super) rewound: Vec<Joints>,
     judge: Trial<'a>,
     /// Redundant axes can be put elsewhere as long as the last rapid is not settled.
-    tries_positions: bool,
-    chosen: Vec<Chosen>,
-    way: settle::Way,
+    pub(super) tries_positions: bool,
+    pub(super) chosen: Vec<Chosen>,
+    pub(super) way: settle::Way,
+}
+
+/// A point that is left out.
+#[derive(Debug)]
+pub(crate) enum Lost {
+    /// It cannot be reached; the path goes on from the point before.
+    Point(Box<Diagnostic>),
+    /// It can be reached, but the path cannot go on to it; the next point begins a path anew.
+    Path(Box<Diagnostic>),
 }
 
 /// Settings beyond this are forgotten at the next index move.
@@ -107,36 +110,8 @@ impl Judge for Trial<'_> {
             return false;
         };
         let loose = motion.pace == Pace::Rapid;
-        let planned = planned(self.machine, placer, motion, loose, &from, &to);
+        let planned = Move::planned(self.machine, placer, motion.chord, loose, [&from, &to]);
         planned.whole().is_some() || self.linearise.comes_through(&planned)
-    }
-}
-
-/// A motion between two nodes, and what it must keep; off the part (`loose`) that is a rapid's tolerance.
-#[inline]
-pub(crate) fn planned<'n>(
-    machine: &Machine,
-    placer: &'n Placer,
-    motion: &Motion,
-    loose: bool,
-    from: &'n crate::accuracy::Node,
-    to: &'n crate::accuracy::Node,
-) -> Move<'n> {
-    let accuracy = &machine.accuracy;
-    let (tip, axis) = if loose {
-        (accuracy.rapid_tolerance, f64::INFINITY)
-    } else {
-        (accuracy.tolerance, accuracy.axis_tolerance)
-    };
-    Move {
-        placer,
-        from,
-        to,
-        tolerances: Tolerances {
-            tip: tip - motion.chord,
-            axis,
-        },
-        control_keeps_tip: machine.control.tcp == Tcp::Control,
     }
 }
 
@@ -157,7 +132,7 @@ impl<'a> Route<'a> {
             format: format.clone(),
             tool_length,
             lattice: Lattice::new(machine, &placer),
-            settings: vec![(near, placer)],
+            settings: vec![(near, Rc::new(placer))],
             setting: 0,
             anchored: false,
             mark: 0,
@@ -174,7 +149,7 @@ impl<'a> Route<'a> {
     }
 
     /// The placer that solves a chosen point.
-    pub(crate) fn placer(&self, setting: usize) -> &Placer {
+    pub(crate) fn placer(&self, setting: usize) -> &Rc<Placer> {
         &self.settings[setting].1
     }
 
@@ -236,7 +211,7 @@ impl<'a> Route<'a> {
         self.tries_positions = tries_positions(machine);
         self.tool_length = tool_length;
         self.lattice = Lattice::new(machine, &placer);
-        self.settings = vec![(held, placer)];
+        self.settings = vec![(held, Rc::new(placer))];
         self.setting = 0;
         Ok(())
     }
@@ -273,23 +248,22 @@ impl<'a> Route<'a> {
     }
 
     /// The setting with these values of the redundant axes.
-    fn setting_for(&mut self, held: &Joints) -> Result<usize, Box<Diagnostic>> {
+    pub(super) fn setting_for(&mut self, held: &Joints) -> Result<usize, Box<Diagnostic>> {
         let known = self.settings.iter().position(|(known, _)| known == held);
         if let Some(known) = known {
             return Ok(known);
         }
         let placer = Placer::for_machine(self.machine, &self.format, self.tool_length, held)?;
-        self.settings.push((*held, placer));
+        self.settings.push((*held, Rc::new(placer)));
         Ok(self.settings.len() - 1)
     }
 
     /// Takes the next point. What is decided by it waits in [`Route::take_chosen`].
     ///
     /// # Errors
-    /// Why the point cannot be reached, or the path not go on to it; it is left out. In the second case the next
-    /// point begins a path anew.
+    /// Why the point cannot be reached, or the path not go on to it; it is left out.
     #[inline]
-    pub(crate) fn add(&mut self, line: u64, motion: &Motion) -> Result<(), Box<Diagnostic>> {
+    pub(crate) fn add(&mut self, line: u64, motion: &Motion) -> Result<(), Lost> {
         let pushed = self.push(line, motion);
         if pushed.is_err() || !self.alive() {
             self.find_way(line, motion, pushed)?;
@@ -300,7 +274,7 @@ impl<'a> Route<'a> {
 
     /// Pushes a point in the present setting.
     #[inline]
-    fn push(&mut self, line: u64, motion: &Motion) -> Result<Found, Unreachable> {
+    pub(super) fn push(&mut self, line: u64, motion: &Motion) -> Result<Found, Unreachable> {
         self.lattice.push(
             line,
             motion,
@@ -313,7 +287,7 @@ impl<'a> Route<'a> {
 
     /// There is a way to stand at the newest point.
     #[inline]
-    fn alive(&self) -> bool {
+    pub(super) fn alive(&self) -> bool {
         let newest = self.lattice.layers.last();
         newest.is_some_and(|layer| layer.count > 0)
     }

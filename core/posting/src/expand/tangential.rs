@@ -1,4 +1,4 @@
-//! Where the leading edge of a knife or disc points: along the direction of travel, or along the second vector
+//! Tangential control: where the leading edge of a knife or disc points, along the direction of travel, or along the second vector
 //! of the CL points.
 //!
 //! Along a path the edge at a point lies between the directions of the moves before and behind it, so that it
@@ -8,8 +8,12 @@ use std::collections::VecDeque;
 
 use nalgebra::Vector3;
 
-use super::motion::{Motion, Pace, Step};
+use super::{Line, Out};
+use crate::findings::Findings;
+use crate::program::{Command, Motion, Pace};
+use crate::stream::Flow;
 use post_machine::description::{EdgeSource, Machine, Rewind};
+use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::orientation::angle;
 
 /// Ways shorter than this have no direction, mm.
@@ -23,7 +27,7 @@ const MOST_HELD: usize = 1024;
 
 /// Gives every move its edge; holds moves back until the next direction of travel is known.
 #[derive(Debug)]
-pub(crate) struct Edges {
+pub(super) struct Tangential {
     source: EdgeSource,
     /// Radians.
     corner: f64,
@@ -34,13 +38,11 @@ pub(crate) struct Edges {
     tip: Option<Vector3<f64>>,
     /// The last cut with a direction, and that direction.
     cut: Option<(u64, Motion, Vector3<f64>)>,
-    /// What is wrong, each with its line.
-    faults: Vec<(u64, &'static str)>,
     /// What came behind it: moves without a direction (rapids, straight in and out), and commands.
-    behind: VecDeque<(u64, Step)>,
+    behind: VecDeque<Flow<Line>>,
 }
 
-impl Edges {
+impl Tangential {
     /// None for a tool that turns.
     pub(crate) fn new(machine: &Machine) -> Option<Self> {
         Some(Self {
@@ -50,107 +52,115 @@ impl Edges {
             edge: machine.edge?,
             tip: None,
             cut: None,
-            faults: Vec::new(),
             behind: VecDeque::new(),
         })
     }
 
-    /// Takes a step; what is settled comes out.
-    pub(crate) fn step(&mut self, line: u64, step: Step, emit: &mut dyn FnMut(u64, Step)) {
-        match step {
-            Step::Move(motion) if self.source == EdgeSource::Cl => {
-                let along = if motion.edge == Vector3::zeros() {
-                    self.edge
-                } else {
-                    if across(motion.edge, motion.axis).is_none() {
-                        self.faults
-                            .push((line, "the leading edge lies along the tool axis"));
-                    }
-                    motion.edge
-                };
-                self.pass(line, motion, Some(along), emit);
-            }
-            Step::Move(motion) => {
-                let from = self.tip.replace(motion.tip);
-                let way = from
-                    .filter(|_| motion.pace != Pace::Rapid)
-                    .map(|from| motion.tip - from)
-                    .filter(|way| way.norm() > SHORT)
-                    .and_then(|way| across(way, motion.axis));
-                match way {
-                    Some(way) => {
-                        self.settle(Some(way), emit);
-                        self.cut = Some((line, motion, way));
-                    }
-                    None => self.hold(line, Step::Move(motion), emit),
+    /// Line of the first step that waits.
+    pub(super) fn first_line(&self) -> Option<u64> {
+        let behind = || match self.behind.front()? {
+            Flow::Point(at) => Some(at.line),
+            Flow::Command { line, .. } => Some(*line),
+        };
+        self.cut.map(|(line, ..)| line).or_else(behind)
+    }
+
+    /// Takes a move; what is settled goes on.
+    pub(super) fn go(&mut self, line: u64, motion: Motion, out: &mut Out<'_>, findings: &Findings) {
+        if self.source == EdgeSource::Cl {
+            let along = if motion.edge == Vector3::zeros() {
+                self.edge
+            } else {
+                if across(motion.edge, motion.axis).is_none() {
+                    fault(findings, line, "the leading edge lies along the tool axis");
                 }
+                motion.edge
+            };
+            self.pass(line, motion, Some(along), out);
+            return;
+        }
+        let from = self.tip.replace(motion.tip);
+        let way = from
+            .filter(|_| motion.pace != Pace::Rapid)
+            .map(|from| motion.tip - from)
+            .filter(|way| way.norm() > SHORT)
+            .and_then(|way| across(way, motion.axis));
+        match way {
+            Some(way) => {
+                self.settle(Some(way), out, findings);
+                self.cut = Some((line, motion, way));
             }
-            Step::From { tip, .. } => {
-                self.settle(None, emit);
-                self.tip = Some(tip);
-                emit(line, step);
-            }
-            step if step.leaves() => {
-                self.settle(None, emit);
-                self.tip = None;
-                emit(line, step);
-            }
-            step => self.hold(line, step, emit),
+            None => self.hold(Flow::Point(Line { line, motion }), out, findings),
         }
     }
 
-    /// Faults since the last call.
-    pub(crate) fn take_faults(&mut self) -> Vec<(u64, &'static str)> {
-        std::mem::take(&mut self.faults)
+    /// Takes a command.
+    pub(super) fn command(
+        &mut self,
+        line: u64,
+        command: Command,
+        out: &mut Out<'_>,
+        findings: &Findings,
+    ) {
+        if !command.leaves() {
+            self.hold(Flow::Command { line, command }, out, findings);
+            return;
+        }
+        self.settle(None, out, findings);
+        self.tip = match command {
+            Command::From { tip, .. } => Some(tip),
+            _ => None,
+        };
+        out.command(line, command);
     }
 
     /// What waits has nothing behind it.
-    pub(crate) fn finish(&mut self, emit: &mut dyn FnMut(u64, Step)) {
-        self.settle(None, emit);
+    pub(super) fn finish(&mut self, out: &mut Out<'_>, findings: &Findings) {
+        self.settle(None, out, findings);
     }
 
-    fn hold(&mut self, line: u64, step: Step, emit: &mut dyn FnMut(u64, Step)) {
-        self.behind.push_back((line, step));
+    fn hold(&mut self, next: Flow<Line>, out: &mut Out<'_>, findings: &Findings) {
+        self.behind.push_back(next);
         if self.behind.len() >= MOST_HELD {
-            self.settle(None, emit);
+            self.settle(None, out, findings);
         }
     }
 
     /// Settles what waits; the next cut goes along `go`.
-    fn settle(&mut self, go: Option<Vector3<f64>>, emit: &mut dyn FnMut(u64, Step)) {
+    fn settle(&mut self, go: Option<Vector3<f64>>, out: &mut Out<'_>, findings: &Findings) {
         let moves = self
             .behind
             .iter()
-            .any(|(_, step)| matches!(step, Step::Move(_)));
+            .any(|next| matches!(next, Flow::Point(_)));
         // Where no cut came before, the edge stands as the first cut wants it from the beginning.
         let mut turned = self.cut.is_none();
         let mut last = None;
         if let Some((line, motion, come)) = self.cut.take() {
             match go.filter(|_| !moves) {
                 Some(go) if angle(come, go) > self.corner => {
-                    self.pass(line, motion, Some(come), emit);
-                    self.corner_turn(line, motion, go, emit);
+                    self.pass(line, motion, Some(come), out);
+                    self.corner_turn(line, motion, go, out, findings);
                 }
-                Some(go) => self.pass(line, motion, Some(come + go), emit),
-                None => self.pass(line, motion, Some(come), emit),
+                Some(go) => self.pass(line, motion, Some(come + go), out),
+                None => self.pass(line, motion, Some(come), out),
             }
         }
-        for (line, step) in std::mem::take(&mut self.behind) {
-            let Step::Move(motion) = step else {
-                emit(line, step);
+        for next in std::mem::take(&mut self.behind) {
+            let Flow::Point(Line { line, motion }) = next else {
+                out.push(next);
                 continue;
             };
             if turned {
-                self.pass(line, motion, go, emit);
+                self.pass(line, motion, go, out);
                 continue;
             }
-            self.pass(line, motion, None, emit);
+            self.pass(line, motion, None, out);
             last = Some((line, motion));
             if let Some(go) = go
                 && motion.pace == Pace::Rapid
             {
                 // Off the part: turned here, before the way in.
-                self.pass(line, motion, Some(go), emit);
+                self.pass(line, motion, Some(go), out);
                 turned = true;
             }
         }
@@ -158,7 +168,7 @@ impl Edges {
         if let (false, Some(go), Some((line, motion))) = (turned, go, last)
             && angle(self.edge, go) > self.corner
         {
-            self.corner_turn(line, motion, go, emit);
+            self.corner_turn(line, motion, go, out, findings);
         }
     }
 
@@ -168,17 +178,18 @@ impl Edges {
         line: u64,
         motion: Motion,
         edge: Vector3<f64>,
-        emit: &mut dyn FnMut(u64, Step),
+        out: &mut Out<'_>,
+        findings: &Findings,
     ) {
         let away = self
             .rewind
             .and_then(|rewind| Some((rewind, motion.drawn_back(&rewind, 0.0)?)));
         if let Some((rewind, away)) = away {
-            let out = Motion {
+            let away_from_part = Motion {
                 pace: Pace::feed_or_rapid(rewind.retract_feed),
                 ..away
             };
-            self.pass(line, out, None, emit);
+            self.pass(line, away_from_part, None, out);
             let turn = Motion {
                 pace: rewind.turn_feed.map_or(Pace::Rapid, |feed| {
                     let way = angle(self.edge, edge).to_degrees();
@@ -186,25 +197,26 @@ impl Edges {
                 }),
                 ..away
             };
-            self.pass(line, turn, Some(edge), emit);
+            self.pass(line, turn, Some(edge), out);
             let back = Motion {
                 pace: rewind.plunge_feed.map_or(motion.pace, Pace::PerMinute),
                 ..motion
             };
-            self.pass(line, back, Some(edge), emit);
+            self.pass(line, back, Some(edge), out);
         } else {
             if self.rewind.is_some() {
-                self.faults.push((
+                fault(
+                    findings,
                     line,
                     "at this corner the tool must be drawn back and turned, and it cannot be: the plane of [rewind] lies below the tip, or the tool is nearly level",
-                ));
+                );
             }
             if angle(self.edge, edge) > HALF {
                 // Right about: by the side, for the way round must be said.
                 let side = motion.axis.cross(&self.edge);
-                self.pass(line, motion, Some(side), emit);
+                self.pass(line, motion, Some(side), out);
             }
-            self.pass(line, motion, Some(edge), emit);
+            self.pass(line, motion, Some(edge), out);
         }
     }
 
@@ -213,7 +225,7 @@ impl Edges {
         line: u64,
         mut motion: Motion,
         along: Option<Vector3<f64>>,
-        emit: &mut dyn FnMut(u64, Step),
+        out: &mut Out<'_>,
     ) {
         // Straight into the part there is no direction of travel: the edge stays as it is.
         let edge = along
@@ -223,8 +235,17 @@ impl Edges {
             .unwrap_or_else(Vector3::y);
         self.edge = edge;
         motion.edge = edge;
-        emit(line, Step::Move(motion));
+        out.push(Flow::Point(Line { line, motion }));
     }
+}
+
+/// A fault of the leading edge at `line`.
+fn fault(findings: &Findings, line: u64, message: &str) {
+    findings.at(
+        line,
+        Diagnostic::error("edge", message)
+            .help("[rewind] and [solution] edge say how a leading edge is turned"),
+    );
 }
 
 /// The part of a direction across the tool axis, of length one.

@@ -2,11 +2,11 @@
 //! go on. What has cost least so far is kept for each state (Viterbi), so that the cheapest path through all of
 //! them is known at every point.
 
+use super::cost::Cost;
+use super::metric::Measure;
+use super::solution::{Axes, Found, Stand};
 use crate::accuracy::Placer;
 use crate::program::{Motion, Pace};
-use crate::route::cost::Cost;
-use crate::route::rule::Measure;
-use crate::route::stand::{Axes, Found, Stand};
 use post_machine::description::{Machine, Pole};
 use post_machine::kinematics::orientation::{Branches, angle};
 use post_machine::kinematics::{Joints, Pose, Unreachable};

@@ -1,10 +1,10 @@
 //! Where the path cannot go on: another index position off the part, a rewind, or a fault that says what was tried.
 
-use super::Route;
-use super::lattice::{Kind, State, pose};
-use super::stand::{Found, both};
+use super::route::{Lost, Route};
+use super::solution::{Found, both};
+use super::trellis::{Kind, State, pose};
 use crate::accuracy::Refused;
-use crate::program::Motion;
+use crate::program::{Motion, Pace};
 use crate::refusal;
 use post_machine::description::Positions;
 use post_machine::diagnostic::Diagnostic;
@@ -21,7 +21,7 @@ impl Route<'_> {
         line: u64,
         motion: &Motion,
         pushed: Result<Found, Unreachable>,
-    ) -> Result<(), Box<Diagnostic>> {
+    ) -> Result<(), Lost> {
         let kind = match (&pushed, self.lattice.layers.last()) {
             (Ok(_), Some(layer)) => layer.kind,
             _ => Kind::First,
@@ -29,19 +29,20 @@ impl Route<'_> {
         if pushed.is_ok() {
             self.lattice.pop();
         }
-        if self.try_positions(line, motion)? {
+        if self.try_positions(line, motion).map_err(Lost::Point)? {
             return Ok(());
         }
         let found = match pushed {
             Ok(found) => found,
             Err(unreachable) => {
-                return Err(
-                    refusal::refused(self.machine, &Refused::Unreachable(unreachable)).boxed(),
-                );
+                let refused = Refused::Unreachable(unreachable);
+                return Err(Lost::Point(
+                    refusal::refused(self.machine, &refused).boxed(),
+                ));
             }
         };
         if kind != Kind::Cut {
-            return Err(self.over_travel(&found));
+            return Err(Lost::Point(self.over_travel(&found)));
         }
         if self.machine.rewind.is_some() && self.try_rewind(line, motion) {
             return Ok(());
@@ -50,7 +51,7 @@ impl Route<'_> {
         // Behind the fault the path begins anew, so that what follows is checked too.
         self.settle_all();
         self.leave();
-        Err(fault)
+        Err(Lost::Path(fault))
     }
 
     /// Pushes a point if there is a way to stand at it.
@@ -105,7 +106,7 @@ impl Route<'_> {
         let settled = usize::from(self.anchored);
         let off_part = |kind: Kind| kind != Kind::Cut;
         let back = match motion.pace {
-            crate::program::Pace::Rapid => self.lattice.layers.len(),
+            Pace::Rapid => self.lattice.layers.len(),
             _ => match (settled..self.lattice.layers.len())
                 .rev()
                 .find(|layer| off_part(self.lattice.layers[*layer].kind))

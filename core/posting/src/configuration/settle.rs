@@ -1,9 +1,9 @@
 //! Settling: the cheapest way through the lattice is walked back, eased close to poles, and handed out.
 
 use super::cost::Cost;
-use super::lattice::{HELD, Kind, Lattice, State, pose};
-use super::pole::{Gate, taut};
-use super::{Chosen, Route};
+use super::route::{Chosen, Route};
+use super::taut::{Gate, taut};
+use super::trellis::{HELD, Kind, Lattice, State, pose};
 use crate::program::{Motion, Pace};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::POLE;

@@ -5,7 +5,7 @@
 pub(crate) struct Cost {
     rewinds: u32,
     against: u32,
-    /// See [`super::rule::Measure`]; infinite where there is no way.
+    /// See [`super::metric::Measure`]; infinite where there is no way.
     travel: f64,
 }
 

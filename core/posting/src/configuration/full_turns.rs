@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::stand::{Axes, Stand};
+use super::solution::{Axes, Stand};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::choose::OverTravel;
 

@@ -1,15 +1,35 @@
-//! What a CL file means: moves of the tip and the tool axis in mm in the part frame, and the steps between them.
+//! What a CL file means: moves and curves of the tip and the tool axis in mm in the part frame, and the commands
+//! between them.
 
 use nalgebra::Vector3;
+use post_machine::description::{Retract, Rewind};
 use post_plugin::{Compensation, Coolant, Spindle};
 
-use post_machine::description::{Retract, Rewind};
+use super::{Arc, DrillCycle, Spline};
 
-/// One step of the program, with every modal word settled.
+/// One step of the program, with every modal word settled. Curves and cycles keep their shape: whether they are
+/// written as such or as moves is for dialect and machine to say.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
-    /// The tool moves.
+    /// Along a straight line.
     Move(Motion),
+    /// Along an arc or a helix.
+    Arc(Box<ArcStep>),
+    /// Along a spline.
+    Spline(Box<SplineStep>),
+    /// A cycle at one point.
+    Cycle(Box<CycleStep>),
+    /// The cycle in force ends (`CYCLE/OFF`).
+    EndCycle,
+    /// The points that follow lie in a plane that the CL file names, until it names another or none.
+    Plane(Option<Box<PlaneStep>>),
+    /// Not a motion.
+    Command(Command),
+}
+
+/// What is said between the motions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
     /// The tool stands here, and has not moved (`FROM`).
     From {
         /// Tip, mm, part frame.
@@ -50,7 +70,7 @@ pub enum Step {
     Home,
 }
 
-impl Step {
+impl Command {
     /// The tool leaves the part: what comes behind begins anew.
     pub(crate) fn leaves(&self) -> bool {
         matches!(
@@ -74,6 +94,42 @@ pub struct Motion {
     pub pace: Pace,
     /// How far this line strays from the curve that the CL file asks for (arcs, splines), mm, proven.
     pub chord: f64,
+}
+
+/// An arc, a helix, or a spiral between two radii.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArcStep {
+    /// Its course in the part frame.
+    pub arc: Arc,
+    /// The move to its end, whose pace is that of the whole arc.
+    pub end: Motion,
+    /// The tool axis at its start, part frame; it turns evenly to that of the end.
+    pub start_axis: Vector3<f64>,
+}
+
+/// A spline that begins where the tool stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SplineStep {
+    /// Its course in the part frame.
+    pub spline: Spline,
+    /// The move to its end.
+    pub end: Motion,
+}
+
+/// A cycle at one point: what is done there, along the tool axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CycleStep {
+    /// The cycle in force.
+    pub cycle: DrillCycle,
+    /// The point that its heights count from, and its feed.
+    pub point: Motion,
+}
+
+/// A plane that stays for an operation, the tool standing upright on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneStep {
+    /// Its X, Y and Z axes as unit vectors of the part frame.
+    pub axes: [Vector3<f64>; 3],
 }
 
 impl Motion {

@@ -1,8 +1,8 @@
-//! The last records, for messages: a fault may be found when the record that it belongs to is long read.
+//! Text of the last records, for messages: a fault may be found when the record that it belongs to is long read.
 
 /// Text of the records whose moves are not settled yet.
 #[derive(Debug, Default)]
-pub(crate) struct Recent {
+pub(crate) struct SourceBuffer {
     text: Vec<u8>,
     /// Line and where its text begins.
     lines: Vec<(u64, usize)>,
@@ -11,7 +11,7 @@ pub(crate) struct Recent {
 /// Records are forgotten in runs of this length.
 const RUN: usize = 1024;
 
-impl Recent {
+impl SourceBuffer {
     /// Keeps a record; `settled` gives the line before which no fault will be found any more.
     #[inline]
     pub(crate) fn keep(&mut self, line: u64, raw: &[u8], settled: impl FnOnce() -> Option<u64>) {
@@ -60,13 +60,13 @@ mod tests {
 
     #[test]
     fn what_is_not_settled_is_remembered() {
-        let mut recent = Recent::default();
+        let mut source = SourceBuffer::default();
         for line in 1..5000u64 {
-            recent.keep(line, format!("GOTO/{line}").as_bytes(), || Some(line - 10));
+            source.keep(line, format!("GOTO/{line}").as_bytes(), || Some(line - 10));
         }
-        assert_eq!(recent.text(4999).as_deref(), Some("GOTO/4999"));
-        assert_eq!(recent.text(4600).as_deref(), Some("GOTO/4600"));
-        assert_eq!(recent.text(17), None);
-        assert!(recent.lines.len() <= 2 * RUN);
+        assert_eq!(source.text(4999).as_deref(), Some("GOTO/4999"));
+        assert_eq!(source.text(4600).as_deref(), Some("GOTO/4600"));
+        assert_eq!(source.text(17), None);
+        assert!(source.lines.len() <= 2 * RUN);
     }
 }

@@ -1,9 +1,7 @@
 //! CL points that wait for what comes behind them: along one stretch of path some of them may be needless.
 
-use super::Path;
-use super::moves::{LONGEST, Leg};
+use super::{Blocks, LONGEST, Leg, Reason, STILL, Surroundings};
 use crate::accuracy::Node;
-use crate::feed::STILL;
 use crate::program::{Motion, Pace};
 use post_machine::description::Axis;
 use post_machine::kinematics::Second;
@@ -20,7 +18,6 @@ const LEAST: f64 = 1e-6;
 pub(super) struct Gathered {
     legs: Vec<(u64, Motion)>,
     nodes: Vec<Node>,
-    setting: usize,
 }
 
 impl Gathered {
@@ -40,7 +37,6 @@ impl Gathered {
             node.target.tip - last.target.tip,
         );
         self.legs.len() < MOST
-            && self.setting == leg.setting
             && motion.pace == leg.motion.pace
             && first.norm() > LEAST
             && second.norm() > LEAST
@@ -53,7 +49,7 @@ fn in_reserve(axis: &Axis) -> bool {
     matches!(axis.second, Some(Second::Reserve { .. }))
 }
 
-impl Path<'_> {
+impl Blocks<'_> {
     /// Does a move to `node` wait, as part of a run?
     #[inline]
     pub(super) fn gathers(&self, leg: &Leg<'_>, node: &Node) -> bool {
@@ -83,11 +79,16 @@ impl Path<'_> {
     }
 
     /// Takes a move into the run, or ends that and begins another with it.
-    pub(super) fn gather(&mut self, leg: &Leg<'_>, last: &Node, node: &Node) {
+    pub(super) fn gather(
+        &mut self,
+        leg: &Leg<'_>,
+        last: &Node,
+        node: &Node,
+        to: &mut Surroundings<'_, '_>,
+    ) {
         let corner = self.machine.accuracy.corner;
         if !self.gathered.joins(leg, node, corner) || self.turns_too_far(node) {
-            self.end_run();
-            self.gathered.setting = leg.setting;
+            self.end_run(to);
             self.gathered.nodes.push(*last);
         }
         self.gathered.nodes.push(*node);
@@ -108,13 +109,16 @@ impl Path<'_> {
 
     /// Carries out the run that waits.
     #[inline]
-    pub(super) fn end_run(&mut self) {
+    pub(super) fn end_run(&mut self, to: &mut Surroundings<'_, '_>) {
         if !self.gathered.legs.is_empty() {
-            self.carry_out_run();
+            self.carry_out_run(to);
         }
     }
 
-    fn carry_out_run(&mut self) {
+    fn carry_out_run(&mut self, to: &mut Surroundings<'_, '_>) {
+        let Some(placer) = self.placer.clone() else {
+            return;
+        };
         let mut gathered = std::mem::take(&mut self.gathered);
         let chords = gathered.legs.iter().map(|(_, motion)| motion.chord);
         let chord = chords.fold(0.0, f64::max);
@@ -129,12 +133,12 @@ impl Path<'_> {
                 line: *line,
                 motion,
                 loose: false,
-                setting: gathered.setting,
+                reason: Reason::Point,
             })
             .collect();
         match (legs.as_slice(), gathered.nodes.as_slice()) {
-            ([leg], [last, node]) => self.cut(leg, last, node),
-            (legs, nodes) => self.split(legs, nodes),
+            ([leg], [last, node]) => self.cut(&placer, leg, last, node, to),
+            (legs, nodes) => self.split(&placer, legs, nodes, to),
         }
         gathered.legs.clear();
         gathered.nodes.clear();

@@ -34,7 +34,7 @@ const fn case(machine: &'static str, sample: &'static str, with: &'static [&'sta
 const LENGTH: &[&str] = &["--tool-length", "120"];
 
 /// The first machines, each with every sample that it can make, and both ways of keeping the tip for every
-/// dialect. `tests/library.rs` has a program for every machine.
+/// dialect. `tests/it/library.rs` has a program for every machine.
 pub const CASES: &[Case] = &[
     case("ac-trunnion", "blade.cls", &[]),
     case("ac-trunnion", "blade.cls", &["--tcp", "control"]),

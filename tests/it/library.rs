@@ -11,6 +11,7 @@ use std::path::Path;
 
 use common::read_back::{Model, Point, V, angle, blocks, points, table};
 use common::{check_numbers, post, read_json, root};
+use post_testkit::shared;
 
 /// A machine with its program, `tests/machines/<machine>.<ending>`, and the one that it must refuse,
 /// `tests/machines/<machine>.refused.<ending>`.
@@ -354,12 +355,9 @@ const LINUXCNC: &[Poses] = &[
 /// The machines that claim the law of a LinuxCNC module stand where it says.
 #[test]
 fn the_machines_of_linuxcnc_are_its_own() {
-    let data = root().join("../shared/data/kinematics");
-    if !data.is_dir() {
-        assert!(std::env::var_os("CI").is_none());
-        eprintln!("skipped: {} is not there", data.display());
+    let Some(data) = shared("data/kinematics") else {
         return;
-    }
+    };
     for (file, machine, parameters, length) in LINUXCNC {
         let mut table = table(machine);
         for (name, value) in *parameters {

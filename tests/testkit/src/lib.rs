@@ -8,15 +8,17 @@
     reason = "tests alone use it"
 )]
 
+mod data;
 pub mod posted;
 pub mod walk;
 
 use std::f64::consts::{PI, TAU};
 use std::fs;
-use std::path::PathBuf;
 
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use post_machine::kinematics::{Chain, Joint, Joints, MAX_AXES, Pose};
+
+pub use data::{repository, shared};
 
 /// SplitMix64: the same numbers on every system and in every run.
 pub struct Rng(pub u64);
@@ -354,17 +356,8 @@ pub fn between(from: &Joints, to: &Joints, t: f64) -> Joints {
 /// Table 3.2 of Li 2024 (nonlinear error of a dual rotary table AC machine): 20 points of a blade, from the
 /// paper's text.
 pub fn blade() -> Option<Vec<Pose>> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../shared/papers/000_d91ffc0ea4534a10.txt");
-    let Ok(text) = fs::read_to_string(&path) else {
-        assert!(
-            std::env::var_os("CI").is_none(),
-            "{} is missing",
-            path.display()
-        );
-        eprintln!("skipped: {} is missing", path.display());
-        return None;
-    };
+    let path = shared("papers/000_d91ffc0ea4534a10.txt")?;
+    let text = fs::read_to_string(path).expect("a readable file");
     let points = text
         .lines()
         .skip_while(|line| !line.starts_with("Table 3.2"))

@@ -6,8 +6,6 @@
     reason = "clippy lets tests unwrap, but not the helpers beside them"
 )]
 
-pub mod read_back;
-
 use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

@@ -16,7 +16,7 @@
  * - No C++ exception and no longjmp may leave a function.
  *
  * This header is for 64-bit machines; the assertions at its end say so if it is not one.
- * The block between the marks is written by `UPDATE_HEADER=1 cargo test -p post-plugin --test header`.
+ * The block between the marks is written by `UPDATE_HEADER=1 cargo test -p post-plugin --test it header`.
  */
 #ifndef POST_PLUGIN_H
 #define POST_PLUGIN_H

@@ -4,7 +4,7 @@
 //! enum, no ownership: whoever made a thing frees it. Text is UTF-8 without a terminating zero and lives
 //! as long as the call that hands it over. Text of a plugin leaves it through a [`PostSink`].
 //!
-//! `include/post_plugin.h` says the same in C; `tests/header.rs` keeps the two together.
+//! `include/post_plugin.h` says the same in C; `tests/it/header.rs` keeps the two together.
 
 #![allow(unsafe_code)]
 

@@ -2,12 +2,11 @@
 //! as a builder would write them: its tables turn the other way, which `reversed = true` is made for.
 
 use std::fs;
-use std::path::PathBuf;
 
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Source, load};
 use post_machine::kinematics::{Joints, Pose};
-use post_testkit::{angle, turned};
+use post_testkit::{angle, shared, turned};
 
 /// A table that turns by `letter` under C, both the other way; R and d are the module's.
 fn table(letter: &str, direction: &str) -> String {
@@ -67,18 +66,8 @@ struct Table {
 
 /// None if the data are not at hand, which is a failure in CI.
 fn read(name: &str, rotary: &str) -> Option<Table> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../shared/data/kinematics")
-        .join(name);
-    let Ok(text) = fs::read_to_string(&path) else {
-        assert!(
-            std::env::var_os("CI").is_none(),
-            "{} is missing",
-            path.display()
-        );
-        eprintln!("skipped: {} is missing", path.display());
-        return None;
-    };
+    let text =
+        fs::read_to_string(shared(&format!("data/kinematics/{name}"))?).expect("a readable file");
     // The header names the module's settings: `pins: x-rot-point=3 …`.
     let pins = text.lines().next()?.split("pins:").nth(1)?;
     let mut settings = Vec::new();

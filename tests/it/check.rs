@@ -3,7 +3,7 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Isometry3, Point3, Translation3, Unit, UnitQuaternion, V
 use post_grammar::parse_expression;
 use toml::{Table, Value};
 
-use super::root;
+use crate::repository;
 
 pub type V = Vector3<f64>;
 
@@ -73,7 +73,7 @@ pub fn overlay(base: &mut Table, layer: Table) {
 
 /// A file of the library with what it extends.
 pub fn table(machine: &str) -> Table {
-    let text = fs::read_to_string(root().join(format!("machines/{machine}.toml"))).unwrap();
+    let text = fs::read_to_string(repository().join(format!("machines/{machine}.toml"))).unwrap();
     let table: Table = text.parse().unwrap();
     match table.get("extends") {
         Some(parent) => {

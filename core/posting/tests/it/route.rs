@@ -9,7 +9,7 @@ use post_machine::kinematics::{Joints, Pose, Solver};
 use post_plugin::Feed;
 use post_testkit::posted::Asked;
 use post_testkit::posted::{Bench, Point, Run, cl, line, point};
-use post_testkit::{Rng, across, angle, distance, slerp, turned};
+use post_testkit::{Rng, across, angle, distance, repository, slerp, turned};
 
 /// A machine of a class: chain, rotary axes with their lines, gauge and tool length.
 #[derive(Clone, Copy)]
@@ -818,9 +818,9 @@ fn looking_ahead_is_better_than_taking_the_nearest() {
 /// The sample of an ultrasonic knife on the trunnion table: refused taking the nearest, posted looking ahead.
 #[test]
 fn the_knife_is_posted_looking_ahead() {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let read =
-        |path: &str| std::fs::read_to_string(root.join(path)).expect("a file of the repository");
+    let read = |path: &str| {
+        std::fs::read_to_string(repository().join(path)).expect("a file of the repository")
+    };
     let (machine, text) = (
         read("machines/ac-trunnion.toml"),
         read("tests/samples/knife.ncl"),

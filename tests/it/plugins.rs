@@ -3,7 +3,7 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
@@ -295,7 +295,7 @@ fn the_kit_refuses_what_is_no_plugin() {
         ),
         (["--plugins", "tests", "cubic"], "there is no such plugin"),
         (
-            ["--plugins", "tests", "tests/plugins.rs"],
+            ["--plugins", "tests", "tests/it/plugins.rs"],
             "the file of a plugin is called",
         ),
     ] {

@@ -2,10 +2,10 @@
 //! and, where something can be done about it, a remedy.
 
 use std::fs;
-use std::path::PathBuf;
 
 use post_machine::description::{Machine, Source, Tcp, load};
 use post_machine::diagnostic::{Diagnostic, Severity};
+use post_testkit::repository;
 
 /// A good machine; every refusal changes some of its text.
 const GOOD: &str = r#"name = "trunnion"
@@ -87,7 +87,7 @@ fn underlined(finding: &Diagnostic) -> String {
 
 #[test]
 fn every_machine_of_the_workspace_loads() {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../machines");
+    let folder = repository().join("machines");
     let read =
         |name: &str| fs::read_to_string(folder.join(name)).map_err(|error| error.to_string());
     let mut count = 0;

@@ -4,11 +4,7 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
-#[path = "bench/generate.rs"]
-#[expect(dead_code, reason = "its `main` is that of the example")]
-mod generate;
+use crate::{common, generate};
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -366,7 +362,7 @@ fn what_is_printed_and_drawn() {
         .lines()
         .filter(|line| !line.starts_with("in "))
         .collect();
-    insta::with_settings!({ snapshot_path => "snapshots/study" }, {
+    insta::with_settings!({ snapshot_path => "../snapshots/study" }, {
         insta::assert_snapshot!("printed", printed.join("\n"));
         insta::assert_snapshot!("picture", study.read("sweep.svg"));
     });

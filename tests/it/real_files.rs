@@ -6,32 +6,18 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use common::{Run, check_numbers, command, read_json, root, run, sample};
 use nalgebra::{Rotation3, Unit, Vector3};
+use post_testkit::shared;
 use serde_json::Value;
 
 type V = Vector3<f64>;
-
-/// The folder of files; none, where they are not at hand. In CI that is a fault.
-fn data() -> Option<PathBuf> {
-    let folder = root().join("../shared/data/cl");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    assert!(
-        std::env::var_os("CI").is_none(),
-        "{} is not there",
-        folder.display()
-    );
-    eprintln!("skipped: {} is not there", folder.display());
-    None
-}
 
 fn post(file: &Path, machine: &str, with: &str) -> (Run, Option<Value>) {
     let folder = tempfile::tempdir().unwrap();
@@ -197,7 +183,9 @@ const REFUSED: &[(&str, &str, &str, &str)] = &[
 
 #[test]
 fn files_are_posted_within_tolerance() {
-    let Some(data) = data() else { return };
+    let Some(data) = shared("data/cl") else {
+        return;
+    };
     let mut failed = Vec::new();
     for (file, machine, with) in GOOD {
         let (done, summary) = post(&data.join(file), machine, with);
@@ -228,7 +216,9 @@ fn files_are_posted_within_tolerance() {
 
 #[test]
 fn files_are_refused_for_a_reason() {
-    let Some(data) = data() else { return };
+    let Some(data) = shared("data/cl") else {
+        return;
+    };
     for (file, machine, with, code) in REFUSED {
         let (done, summary) = post(&data.join(file), machine, with);
         let name = format!("{file} on {machine} {with}");
@@ -247,7 +237,9 @@ fn files_are_refused_for_a_reason() {
 
 #[test]
 fn every_file_is_among_them() {
-    let Some(data) = data() else { return };
+    let Some(data) = shared("data/cl") else {
+        return;
+    };
     let listed: BTreeSet<String> = GOOD
         .iter()
         .map(|row| row.0)
@@ -263,7 +255,9 @@ fn every_file_is_among_them() {
 
 #[test]
 fn the_words_of_every_file_are_listed() {
-    let Some(data) = data() else { return };
+    let Some(data) = shared("data/cl") else {
+        return;
+    };
     for entry in fs::read_dir(data).unwrap() {
         let path = entry.unwrap().path();
         let done = run(command().arg("words").arg(&path), b"");
@@ -682,7 +676,9 @@ fn samples_are_read_back_on_every_arrangement() {
 
 #[test]
 fn real_files_are_read_back() {
-    let Some(data) = data() else { return };
+    let Some(data) = shared("data/cl") else {
+        return;
+    };
     const CREO: &str = "creo5x_4r19415_finition.ncl";
     for case in [
         Check {
@@ -888,7 +884,7 @@ fn reduced_programs_are_read_back() {
             )
         },
     )];
-    if let Some(data) = data() {
+    if let Some(data) = shared("data/cl") {
         const CREO: &str = "creo5x_4r19415_finition.ncl";
         files.push((
             data.join(CREO),
@@ -958,7 +954,7 @@ fn reduced_programs_are_read_back() {
 /// their circles, and the axes would travel beyond the points of the file by up to a diameter.
 #[test]
 fn arcs_of_nx_stay_among_the_points_of_the_file() {
-    let Some(folder) = data() else {
+    let Some(folder) = shared("data/cl") else {
         return;
     };
     for (file, machine, arguments) in [
@@ -1011,7 +1007,7 @@ const FIVE_AXES: [&str; 4] = [
 /// point met exactly): never more travel, whatever machine of the library reaches the file. Prints the table.
 #[test]
 fn the_choice_travels_no_farther_than_the_greedy_one() {
-    let Some(folder) = data() else {
+    let Some(folder) = shared("data/cl") else {
         return;
     };
     const GREEDY: &str = " --set solution.look_ahead=1 --set solution.pole=exact";

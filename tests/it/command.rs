@@ -3,7 +3,7 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use std::fs;
 use std::path::Path;

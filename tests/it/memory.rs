@@ -1,14 +1,9 @@
 //! Memory must not grow with the file. Linux alone: the peak is read from /proc while the command runs.
 
-#![cfg(target_os = "linux")]
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-#[path = "bench/generate.rs"]
-#[expect(dead_code, reason = "its `main` is that of the example")]
-mod generate;
-
-mod common;
+use crate::{common, generate};
 
 use std::fs::{self, File};
 use std::io::BufWriter;

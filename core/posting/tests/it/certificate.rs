@@ -4,7 +4,6 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
-use std::path::PathBuf;
 
 use nalgebra::Vector3;
 use post_machine::description::{Source, load};
@@ -12,7 +11,7 @@ use post_machine::kinematics::{Chain, Joint, Joints, Pose, Solver, Trace};
 use post_posting::accuracy::certificate::{
     Bend, Course, chord_angle, deviation, quick, rim, tight,
 };
-use post_testkit::{Random, Reference, Rng, angle, between, blade, distance, slerp};
+use post_testkit::{Random, Reference, Rng, angle, between, blade, distance, repository, slerp};
 
 /// The chain at the ends of a block.
 fn traces(chain: &Chain, from: &Joints, to: &Joints) -> [Trace; 2] {
@@ -352,9 +351,7 @@ fn tight_tends_to_the_second_derivative() {
 
 /// A machine of the workspace.
 fn machine_file(name: &str, settings: &[String]) -> post_machine::description::Machine {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../machines")
-        .join(name);
+    let path = repository().join("machines").join(name);
     let source = Source {
         name: name.to_owned(),
         text: fs::read_to_string(path).expect("a machine file"),

@@ -1,12 +1,12 @@
 //! Whole programs under review: every machine with every sample that it can make.
 //!
 //! After a change of the output, read each new snapshot as the machine's operator would, then accept it:
-//! `cargo insta review`, or `INSTA_UPDATE=always cargo test --test snapshots`.
+//! `cargo insta review`, or `INSTA_UPDATE=always cargo test --test it snapshots`.
 
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

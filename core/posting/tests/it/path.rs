@@ -2,179 +2,20 @@
 //! words are taken apart again, put through the isometries of `common` and sampled densely.
 
 use nalgebra::{Rotation3, Vector3};
-use post_grammar::{ReadError, Reader};
 use post_machine::description::{Machine, Source, load};
-use post_machine::diagnostic::{Diagnostic, Severity};
+use post_machine::diagnostic::Severity;
 use post_machine::kinematics::{Joint, Joints};
-use post_plugin::{
-    Batch, Curve, Deviation, DialectSession, Event, Feed, Format, ModelSession, Tolerance,
-    WriteFault,
-};
+use post_plugin::Feed;
 use post_posting::program::Reading;
-use post_posting::report::Report;
-use post_posting::{Job, MOST_FAULTS, Output, Post};
+use post_posting::{Job, MOST_FAULTS};
+use post_testkit::posted::{self, Asked, Point, Run, Samples, cl, line, post};
 use post_testkit::{Reference, Rng, angle, between, distance, slerp};
 
-/// What a dialect was asked for.
-#[derive(Clone, Debug, PartialEq)]
-struct Asked {
-    /// Line of the CL file.
-    line: u64,
-    /// Kind of the event.
-    kind: &'static str,
-    words: Vec<f64>,
-    feed: Option<Feed>,
-    /// Any other number it has.
-    value: f64,
-}
-
-/// Writes nothing down but the events themselves.
-struct Recorder {
-    format: Format,
-    asked: Vec<Asked>,
-}
-
-impl DialectSession for Recorder {
-    fn format(&self) -> &Format {
-        &self.format
-    }
-
-    fn write_batch(
-        &mut self,
-        batch: &Batch,
-        out: &mut Vec<u8>,
-        ends: &mut Vec<usize>,
-    ) -> Result<(), WriteFault> {
-        for (index, event) in batch.iter().enumerate() {
-            let (words, feed, value) = match event {
-                Event::Position { words, feed } => (words, feed, 0.0),
-                Event::Rapid { words } => (words, None, 0.0),
-                Event::Linear { words, feed } => (words, Some(feed), 0.0),
-                Event::Dwell { seconds } => (&[][..], None, seconds),
-                Event::ToolChange { number, .. } => (&[][..], None, f64::from(number)),
-                _ => (&[][..], None, 0.0),
-            };
-            for word in words {
-                assert!(
-                    word.is_finite() && (*word != 0.0 || word.is_sign_positive()),
-                    "a word is {word}"
-                );
-            }
-            if let Some(
-                Feed::PerMinute(feed) | Feed::InverseTime(feed) | Feed::PerRevolution(feed),
-            ) = feed
-            {
-                assert!(feed.is_finite() && feed > 0.0, "a feed is {feed}");
-            }
-            self.asked.push(Asked {
-                line: batch.line(index),
-                kind: event.name(),
-                words: words.to_vec(),
-                feed,
-                value,
-            });
-            out.extend_from_slice(b"block\n");
-            ends.push(out.len());
-        }
-        Ok(())
-    }
-}
-
-/// An error model that looks at 33 places and has no opinion.
-struct Samples;
-
-impl ModelSession for Samples {
-    fn fit(
-        &mut self,
-        _: &Tolerance,
-        deviation: &mut dyn FnMut(&[f64], &mut [Deviation]),
-    ) -> Result<Curve, String> {
-        let places: [f64; 33] = std::array::from_fn(|step| step as f64 / 32.0);
-        let mut out = [Deviation::default(); 33];
-        deviation(&places, &mut out);
-        let length = |vector: [f64; 3]| Vector3::from(vector).norm();
-        let peak = |part: fn(&Deviation) -> [f64; 3]| {
-            out.iter()
-                .map(|place| length(part(place)))
-                .fold(0.0, f64::max)
-        };
-        Ok(Curve {
-            tip_peak: peak(|place| place.tip),
-            tip_at: 0.5,
-            axis_peak: peak(|place| place.axis),
-            axis_at: 0.5,
-            terms: [0.0; 60],
-        })
-    }
-
-    fn value(&self, _: &Curve, _: f64) -> Deviation {
-        Deviation::default()
-    }
-}
-
-struct Nowhere;
-
-impl Output for Nowhere {
-    fn write(&mut self, _: &[u8]) -> Result<(), String> {
-        Ok(())
-    }
-}
-
-/// What came of a run.
-struct Run {
-    asked: Vec<Asked>,
-    report: Option<Report>,
-    findings: Vec<Diagnostic>,
-}
-
-impl Run {
-    /// The words of all motions, in order.
-    fn motions(&self) -> Vec<(&'static str, Vec<f64>)> {
-        let motion = |asked: &&Asked| !asked.words.is_empty();
-        self.asked
-            .iter()
-            .filter(motion)
-            .map(|asked| (asked.kind, asked.words.clone()))
-            .collect()
-    }
-
-    fn good(self) -> Self {
-        assert!(self.report.is_some(), "{:#?}", self.findings);
-        self
-    }
-}
-
 fn run(machine: &Machine, cl: &str, job: Job) -> Run {
-    let mut dialect = Recorder {
-        format: Format {
-            words: machine.axes.iter().map(|_| 3).collect(),
-            feed: 1,
-            inverse_time: Some(4),
-            feed_per_revolution: 4,
-            extension: "nc".to_owned(),
-        },
-        asked: Vec::new(),
-    };
-    let (mut model, mut output) = (Samples, Nowhere);
-    let mut post = Post::new(machine, job, &mut dialect, &mut model, &mut output)
-        .expect("machine and dialect agree");
-    let mut reader = Reader::new(cl.as_bytes());
-    while !post.gave_up() {
-        match reader.next_record() {
-            Ok(Some(record)) => post.record(&record),
-            Ok(None) => break,
-            Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
-            Err(other) => panic!("{other}"),
-        }
-    }
-    let (report, mut findings) = post.finish();
+    let mut run = post(machine, 3, cl, job, &mut Samples);
     // Programs this short do not care for the spindle.
-    findings.retain(|finding| finding.code != "spindle");
-    Run {
-        asked: dialect.asked,
-        report,
-        findings,
-    }
+    run.findings.retain(|finding| finding.code != "spindle");
+    run
 }
 
 /// A machine file, and the same numbers once more for the isometries.
@@ -394,45 +235,9 @@ impl Model {
     }
 }
 
-/// One point of a CL file, its numbers as they are written.
-#[derive(Clone, Copy, Debug)]
-struct Point {
-    tip: Vector3<f64>,
-    axis: Vector3<f64>,
-    rapid: bool,
-}
-
-/// A point whose numbers are those that a CL file with so many decimals holds.
+/// A point whose axis has seven decimals.
 fn point(tip: Vector3<f64>, axis: Vector3<f64>, rapid: bool) -> Point {
-    let rounded =
-        |vector: Vector3<f64>, scale: f64| vector.map(|value| libm::rint(value * scale) / scale);
-    Point {
-        tip: rounded(tip, 1e4),
-        axis: rounded(axis, 1e7),
-        rapid,
-    }
-}
-
-/// A CL file with two lines a point, its pace and its numbers.
-fn cl(points: &[Point], feed: f64) -> String {
-    let mut text = "UNITS/MM\nMULTAX/ON\nSPINDL/3000,RPM,CLW\n".to_owned();
-    for Point { tip, axis, rapid } in points {
-        text += &if *rapid {
-            "RAPID\n".to_owned()
-        } else {
-            format!("FEDRAT/{feed},MMPM\n")
-        };
-        text += &format!(
-            "GOTO/{:.4},{:.4},{:.4},{:.7},{:.7},{:.7}\n",
-            tip.x, tip.y, tip.z, axis.x, axis.y, axis.z
-        );
-    }
-    text + "FINI\n"
-}
-
-/// Line of the CL file of point `index`.
-fn line(index: usize) -> u64 {
-    3 + 2 * (index as u64 + 1)
+    posted::point(tip, axis.map(|value| libm::rint(value * 1e7) / 1e7), rapid)
 }
 
 /// Largest deviations of a run: tip and tool axis (degrees) in cuts, tip in rapids.
@@ -634,7 +439,7 @@ fn a_held_axis_leaves_a_four_axis_machine() {
             let worst = check(&format!("held {held}, {tcp}"), &model, &points);
             assert!(worst.blocks >= 59, "{worst:?}");
             let run = model.run(&cl(&points, 1000.0));
-            assert!(run.motions().iter().all(|(_, words)| words[4] == held));
+            assert!(run.motions().iter().all(|asked| asked.words[4] == held));
         }
     }
 }
@@ -715,13 +520,9 @@ fn a_hair_beside_the_pole_is_not_over_travel() {
 
 /// The words of all motions of a CL text.
 fn words(model: &Model, cl: &str) -> Vec<Vec<f64>> {
-    model
-        .run(cl)
-        .good()
-        .motions()
-        .into_iter()
-        .map(|(_, words)| words)
-        .collect()
+    let run = model.run(cl).good("a path");
+    let motions = run.motions().into_iter();
+    motions.map(|asked| asked.words.clone()).collect()
 }
 
 fn near(words: &[f64], expected: &[f64]) -> bool {
@@ -814,7 +615,7 @@ Z = { linear = [0, 0, 1], travel = [-500, 500] }
     };
     let run = run(&machine, "UNITS/MM\nGOTO/1,2,3,0,0,1\n", Job::default());
     if run.report.is_some() {
-        let mut linear = run.motions()[0].1[..3].to_vec();
+        let mut linear = run.motions()[0].words[..3].to_vec();
         linear.sort_by(f64::total_cmp);
         assert_eq!(linear, [1.0, 2.0, 3.0]);
     }
@@ -858,7 +659,7 @@ fn fastest(tcp: bool) -> f64 {
                 .collect();
             for feed in [300.0, 6000.0] {
                 let points = walk(&mut Rng(7), 80, 1.0);
-                let run = model.run(&cl(&points, feed)).good();
+                let run = model.run(&cl(&points, feed)).good("a path");
                 let (mut at_feed, mut limited) = (0, 0);
                 let mut last: Option<&Asked> = None;
                 for (index, point) in points.iter().enumerate() {
@@ -931,7 +732,7 @@ fn inches_in_and_inches_out() {
     let mm = model("head", false, WIDE, &[]);
     let run = mm
         .run("UNITS/INCHES\nFEDRAT/10,IPM\nGOTO/0,0,0\nGOTO/1,-2,0\n")
-        .good();
+        .good("a path");
     let last = run
         .asked
         .iter()
@@ -975,8 +776,8 @@ fn frames_are_applied_as_asked() {
                 ..Job::default()
             },
         )
-        .good();
-        let (_, words) = &run.motions()[0];
+        .good("a path");
+        let words = &run.motions()[0].words;
         let reached = model.at(words, words, 0.0);
         assert!((reached.0 - Vector3::from(tip)).norm() < 1e-3, "{words:?}");
         assert!(angle(reached.1, Vector3::from(axis)) < 2e-5, "{words:?}");
@@ -1003,10 +804,12 @@ fn trace(model: &Model, run: &Run) -> Vec<Vector3<f64>> {
     let motions = run.motions();
     let mut points = Vec::new();
     for pair in motions.windows(2) {
-        if pair[1].0 == "Linear" {
-            points.extend(
-                (0..=16).map(|step| model.at(&pair[0].1, &pair[1].1, f64::from(step) / 16.0).0),
-            );
+        if pair[1].kind == "Linear" {
+            points.extend((0..=16).map(|step| {
+                model
+                    .at(&pair[0].words, &pair[1].words, f64::from(step) / 16.0)
+                    .0
+            }));
         }
     }
     points
@@ -1024,7 +827,7 @@ fn arcs_are_within_tolerance() {
                 let text = format!(
                     "UNITS/MM\nFEDRAT/500,MMPM\nGOTO/60,0,5,0,0,1\nCIRCLE/0,0,5,0,0,{sense},60\nGOTO/0,60,5{end_axis}\n"
                 );
-                let points = trace(&model, &model.run(&text).good());
+                let points = trace(&model, &model.run(&text).good("a path"));
                 let mut turned = 0.0;
                 for pair in points.windows(2) {
                     let at = |point: &Vector3<f64>| libm::atan2(point.y, point.x);
@@ -1086,7 +889,7 @@ fn splines_are_within_tolerance() {
     }
     text += "END-OF-PATH\n";
     let model = model("head", false, WIDE, &[]);
-    let traced = trace(&model, &model.run(&text).good());
+    let traced = trace(&model, &model.run(&text).good("a path"));
     let curve: Vec<Vector3<f64>> = (0..4000)
         .map(|step| spline(&knots, &points, f64::from(step) / 4000.0))
         .chain([points[5]])
@@ -1125,7 +928,7 @@ fn cycles_are_drilled_in_order() {
             .collect()
     };
     let text = "UNITS/MM\nRAPID\nGOTO/0,0,50\nCYCLE/DEEP,DEPTH,3.5,STEP,2.0,MMPM,50,CLEAR,1\nGOTO/10,20,0\nGOTO/30,20,0\nCYCLE/OFF\nRAPID\nGOTO/30,20,50\n";
-    let run_deep = model.run(text).good();
+    let run_deep = model.run(text).good("a path");
     let hole = [
         ("Rapid", 1.0),
         ("Linear", -2.0),
@@ -1145,7 +948,7 @@ fn cycles_are_drilled_in_order() {
     assert_eq!(feeds, [Feed::PerMinute(50.0); 4]);
 
     let text = "UNITS/MM\nRAPID\nGOTO/0,0,50\nCYCLE/DRILL,RAPTO,3,FEDTO,-10,RTRCTO,25,MMPM,250,DWELL,0.5\nGOTO/10,20,0\nCYCLE/OFF\n";
-    let run_drill = model.run(text).good();
+    let run_drill = model.run(text).good("a path");
     assert_eq!(
         heights(&run_drill),
         [
@@ -1160,13 +963,7 @@ fn cycles_are_drilled_in_order() {
 
     // Along a tilted tool.
     let text = "UNITS/MM\nMULTAX/ON\nRAPID\nGOTO/0,30,40,0,0.6,0.8\nCYCLE/DRILL,RAPTO,5,FEDTO,-10,MMPM,250\nGOTO/0,0,0\nCYCLE/OFF\n";
-    let tips: Vec<_> = model
-        .run(text)
-        .good()
-        .motions()
-        .into_iter()
-        .map(|(_, words)| words)
-        .collect();
+    let tips = words(&model, text);
     for (words, height) in tips[1..].iter().zip([5.0, -10.0, 5.0]) {
         assert!(
             near(&words[..3], &[0.0, 0.6 * height, 0.8 * height]),

@@ -6,8 +6,6 @@
     reason = "clippy lets tests unwrap, but not the helpers beside them"
 )]
 
-pub mod read_back;
-
 use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -34,7 +32,7 @@ const fn case(machine: &'static str, sample: &'static str, with: &'static [&'sta
 const LENGTH: &[&str] = &["--tool-length", "120"];
 
 /// The first machines, each with every sample that it can make, and both ways of keeping the tip for every
-/// dialect. `tests/library.rs` has a program for every machine.
+/// dialect. `tests/it/library.rs` has a program for every machine.
 pub const CASES: &[Case] = &[
     case("ac-trunnion", "blade.cls", &[]),
     case("ac-trunnion", "blade.cls", &["--tcp", "control"]),

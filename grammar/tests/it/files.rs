@@ -1,9 +1,10 @@
 //! Cutter-location files as CAM systems wrote them, read without a fault.
 
 use post_grammar::{Cycle, Reader, Statement, parse_record, vocabulary};
+use post_testkit::shared;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// File, records, three-number GOTOs, six-number GOTOs, CIRCLEs: counted by another program.
 const COUNTS: [(&str, usize, usize, usize, usize); 18] = [
@@ -26,21 +27,6 @@ const COUNTS: [(&str, usize, usize, usize, usize); 18] = [
     ("swcam_aamorim_Teste-Metrologia.apt", 780, 128, 326, 65),
     ("swcam_aamorim_basemach.apt", 3351, 2090, 0, 369),
 ];
-
-/// The folder of files; `None` where the machine has none, which in CI is a failure.
-fn folder() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/cl");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    assert!(
-        std::env::var_os("CI").is_none(),
-        "{} is missing",
-        folder.display()
-    );
-    eprintln!("skipped: {} is missing", folder.display());
-    None
-}
 
 /// How often each word comes, and how many numbers the GOTOs have.
 fn count(path: &Path) -> BTreeMap<String, usize> {
@@ -71,7 +57,9 @@ fn count(path: &Path) -> BTreeMap<String, usize> {
 
 #[test]
 fn every_file_reads_with_the_counts_that_are_known() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = shared("data/cl") else {
+        return;
+    };
     for (name, records, three, six, circles) in COUNTS {
         let counts = count(&folder.join(name));
         let of = |word: &str| counts.get(word).copied().unwrap_or(0);
@@ -94,7 +82,9 @@ fn every_file_reads_with_the_counts_that_are_known() {
 
 #[test]
 fn words_that_are_counted_in_the_description() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = shared("data/cl") else {
+        return;
+    };
     for (name, word, expected) in [
         ("nx_HumMan_ust_a2.cls", "PAINT", 1718),
         ("nx_HumMan_ust_a2.cls", "RAPID", 459),
@@ -114,7 +104,9 @@ fn words_that_are_counted_in_the_description() {
 
 #[test]
 fn every_cycle_has_its_depth_feed_and_clearance() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = shared("data/cl") else {
+        return;
+    };
     let mut cycles = 0;
     for (name, ..) in COUNTS {
         let mut reader = Reader::new(File::open(folder.join(name)).unwrap());

@@ -3,14 +3,15 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use common::read_back::{Model, Point, V, angle, blocks, points, table};
 use common::{check_numbers, post, read_json, root};
+use post_testkit::read_back::{Model, Point, V, angle, blocks, points, table};
+use post_testkit::shared;
 
 /// A machine with its program, `tests/machines/<machine>.<ending>`, and the one that it must refuse,
 /// `tests/machines/<machine>.refused.<ending>`.
@@ -220,7 +221,7 @@ fn read_back(row: &Row, points: &[Point], program: &str) -> Vec<String> {
 }
 
 /// The leading edge must point along one of the pieces that meet in a CL point, or between them.
-fn edge_faults(points: &[Point], poses: &[common::read_back::Pose]) -> Vec<String> {
+fn edge_faults(points: &[Point], poses: &[post_testkit::read_back::Pose]) -> Vec<String> {
     let mut faults = Vec::new();
     let cuts: Vec<&[Point]> = points
         .chunk_by(|_, point| !point.rapid)
@@ -354,12 +355,9 @@ const LINUXCNC: &[Poses] = &[
 /// The machines that claim the law of a LinuxCNC module stand where it says.
 #[test]
 fn the_machines_of_linuxcnc_are_its_own() {
-    let data = root().join("../shared/data/kinematics");
-    if !data.is_dir() {
-        assert!(std::env::var_os("CI").is_none());
-        eprintln!("skipped: {} is not there", data.display());
+    let Some(data) = shared("data/kinematics") else {
         return;
-    }
+    };
     for (file, machine, parameters, length) in LINUXCNC {
         let mut table = table(machine);
         for (name, value) in *parameters {

@@ -6,13 +6,13 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use std::fmt::Write as _;
 use std::fs;
 
-use common::read_back::{Block, Model, Pose, V, angle, blocks, overlay, table};
 use common::{Run, check_numbers, post, root};
+use post_testkit::read_back::{Block, Model, Pose, V, angle, blocks, overlay, table};
 use toml::{Table, Value};
 
 /// Words that are rounded move the tip by so much, mm.
@@ -683,7 +683,7 @@ fn an_index_table_turns_at_the_reference_let_go_and_is_clamped_in_cuts() {
         assert_eq!(stood, [0.0, 90.0, 35.0, 270.0, 271.0], "{dialect}");
         // The tip is where the CL file has it: on each side, both ends of the cut.
         let poses = made.poses();
-        for point in common::read_back::points(&cl) {
+        for point in post_testkit::read_back::points(&cl) {
             let met = poses.iter().any(|pose| {
                 (pose.tip - point.tip).norm() < ROUNDING && angle(pose.axis, point.axis) < 0.002
             });
@@ -781,7 +781,7 @@ fn two_indexed_axes_make_facets_and_refuse_simultaneous_cuts() {
         assert!(!stood.is_empty());
     }
     let poses = made.poses();
-    for point in common::read_back::points(&cl) {
+    for point in post_testkit::read_back::points(&cl) {
         let met = poses.iter().any(|pose| {
             (pose.tip - point.tip).norm() < ROUNDING && angle(pose.axis, point.axis) < 0.002
         });
@@ -863,7 +863,7 @@ fn an_index_move_of_the_file_sets_the_sixth_axis() {
         .position(|line| line.starts_with("ROTABL"))
         .unwrap();
     let mut at = 0;
-    for point in common::read_back::points(&cl) {
+    for point in post_testkit::read_back::points(&cl) {
         let met = (at..poses.len()).find(|at| {
             (poses[*at].tip - point.tip).norm() < 4e-4 && angle(poses[*at].axis, point.axis) < 2e-4
         });
@@ -936,7 +936,7 @@ fn the_sixth_axis_is_set_so_that_the_others_stay_in_travel() {
         }
     }
     let poses = made.poses();
-    for point in common::read_back::points(&cl) {
+    for point in post_testkit::read_back::points(&cl) {
         let met = poses.iter().any(|pose| {
             (pose.tip - point.tip).norm() < 4e-4 && angle(pose.axis, point.axis) < 2e-4
         });
@@ -1207,7 +1207,7 @@ fn a_knife_that_goes_round_and_round_is_drawn_out_where_an_axis_ends() {
         assert!(over.is_none(), "line {}: {over:?}", block.line);
     }
     let mut at = 0;
-    let points = common::read_back::points(&text);
+    let points = post_testkit::read_back::points(&text);
     for point in &points[2..points.len() - 2] {
         let tangent = V::z()
             .cross(&V::new(point.tip.x, point.tip.y, 0.0))
@@ -1392,7 +1392,7 @@ fn a_head_is_swapped_between_retract_and_next_position() {
     let blocks = blocks(&made.text, &names, &swaps);
     let models = [None, Some("ANGLE"), Some("STRAIGHT")].map(|head| setup.model(head));
     let mut at = 0;
-    for point in common::read_back::points(&text) {
+    for point in post_testkit::read_back::points(&text) {
         let model = match point.head.as_deref() {
             None => 0,
             Some("ANGLE") => 1,

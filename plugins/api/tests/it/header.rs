@@ -73,7 +73,7 @@ fn the_numbers_in_the_header_are_ours() {
     }
     assert!(
         found == wanted,
-        "post_plugin.h is stale: run UPDATE_HEADER=1 cargo test -p post-plugin --test header"
+        "post_plugin.h is stale: run UPDATE_HEADER=1 cargo test -p post-plugin --test it header"
     );
 }
 

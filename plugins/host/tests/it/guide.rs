@@ -3,11 +3,11 @@
 use post_host::Plugin;
 use post_plugin::{Linked, OptionKind, Value};
 
-const GUIDE: &str = include_str!("../../README.md");
+const GUIDE: &str = include_str!("../../../README.md");
 
 #[test]
 fn the_guide_shows_the_example() {
-    let example = include_str!("../examples/post_tiny.rs");
+    let example = include_str!("../../examples/post_tiny.rs");
     assert!(
         GUIDE.contains(example),
         "plugins/README.md must show examples/post_tiny.rs as it is"

@@ -38,14 +38,14 @@ impl DialectSession for Recorder {
     fn write_batch(
         &mut self,
         batch: &Batch,
-        out: &mut Vec<u8>,
+        out: &mut String,
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
             let (words, feed) = match event {
-                Event::Position { words, feed } => (words, feed),
-                Event::Rapid { words } => (words, None),
-                Event::Linear { words, feed } => (words, Some(feed)),
+                Event::Position { words, feed, .. } => (words, feed),
+                Event::Rapid { words, .. } => (words, None),
+                Event::Linear { words, feed, .. } => (words, Some(feed)),
                 _ => (&[][..], None),
             };
             self.asked.push(Asked {
@@ -54,7 +54,7 @@ impl DialectSession for Recorder {
                 words: words.to_vec(),
                 feed,
             });
-            out.extend_from_slice(b"block\n");
+            out.push_str("block\n");
             ends.push(out.len());
         }
         Ok(())

@@ -75,6 +75,8 @@ pub struct Path<'a> {
     told_length: Option<f64>,
     /// Length of the tool in use.
     length: f64,
+    /// The same, if anybody gave it.
+    length_known: Option<f64>,
     /// The tool's length matters and nobody gave it.
     length_unknown: bool,
     /// Where the tool stands; none before the first position.
@@ -102,7 +104,7 @@ pub struct Path<'a> {
     /// That compensation cannot be, likewise.
     told_compensation: bool,
     batch: Batch,
-    text: Vec<u8>,
+    text: String,
     ends: Vec<usize>,
     tally: Tally,
     /// Where the largest deviations stand in the present batch: event index.
@@ -159,6 +161,7 @@ impl<'a> Path<'a> {
             due: Vec::new(),
             told_length: tool_length,
             length,
+            length_known: tool_length,
             length_unknown: tool_length.is_none(),
             last: None,
             spare: None,
@@ -174,7 +177,7 @@ impl<'a> Path<'a> {
             told_spindle: false,
             told_compensation: false,
             batch: Batch::default(),
-            text: Vec::new(),
+            text: String::new(),
             ends: Vec::new(),
             tally: Tally::new(),
             marks: [None; 3],
@@ -420,6 +423,9 @@ impl<'a> Path<'a> {
             Event::ToolChange {
                 number: tool.number,
                 register: tool.register,
+                length: self.length_known,
+                diameter: None,
+                corner_radius: None,
                 name: &tool.name,
             },
         );
@@ -439,6 +445,7 @@ impl<'a> Path<'a> {
         if length.is_some() && self.tally.moves == 0 {
             self.length_unknown = false;
         }
+        self.length_known = length;
         self.length = length.unwrap_or(0.0);
     }
 
@@ -588,13 +595,13 @@ impl<'a> Path<'a> {
         for (slot, mark) in self.marks.iter_mut().enumerate() {
             if let Some(index) = mark.take() {
                 let end = ends.get(index).copied().unwrap_or(text.len());
-                tally.deviations[slot].block = tally.lines + newlines(&text[..end]);
+                tally.deviations[slot].block = tally.lines + newlines(&text.as_bytes()[..end]);
             }
         }
-        tally.lines += newlines(text);
+        tally.lines += newlines(text.as_bytes());
         if fault.is_none()
             && !self.failed
-            && let Err(message) = self.output.write(text)
+            && let Err(message) = self.output.write(text.as_bytes())
         {
             self.findings.push(Diagnostic::error("output", message));
             self.failed = true;

@@ -1,7 +1,7 @@
 //! Moves whose axis values are chosen: points put in, feeds, and the events that say them.
 
 use nalgebra::Vector3;
-use post_plugin::Event;
+use post_plugin::{Event, ToolPose};
 
 use super::Path;
 use super::tally::{AXIS, RAPID, TIP};
@@ -11,7 +11,7 @@ use crate::program::{Motion, Pace};
 use crate::refusal;
 use crate::report::Deviation;
 use crate::route::{Chosen, planned, pose};
-use post_machine::description::Tcp;
+use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::orientation::angle;
 use post_machine::kinematics::{Joints, Pose};
@@ -61,6 +61,17 @@ fn due_between(due: &[Due], (first, from): (usize, f64), (last, to): (usize, f64
     Due {
         minutes: due[first].minutes * (1.0 - from) + whole + due[last].minutes * to,
         moves: true,
+    }
+}
+
+/// Where the printed words bring the tool: a node's tip is the control point.
+#[inline]
+fn tool_pose(machine: &Machine, node: &Node) -> ToolPose {
+    let axis = node.trace.pose.axis;
+    let tip = node.tip - axis * machine.control_point.along;
+    ToolPose {
+        tip: tip.into(),
+        axis: axis.into(),
     }
 }
 
@@ -174,8 +185,9 @@ impl Path<'_> {
         self.push(
             line,
             Event::Position {
-                words: &node.words[..count],
+                tool: Some(tool_pose(self.machine, node)),
                 feed,
+                words: &node.words[..count],
             },
         );
         self.positioned = true;
@@ -546,10 +558,11 @@ impl Path<'_> {
         self.tally.reach(last, self.machine.axes.len());
         self.tally.go(first, last);
         let words = &to.words[..self.format.words.len()];
+        let tool = Some(tool_pose(self.machine, to));
         let rapid = leg.motion.pace == Pace::Rapid;
         let event = if rapid {
             self.tally.other += self.feeds.least_time(first, last);
-            Event::Rapid { words }
+            Event::Rapid { tool, words }
         } else {
             // Between the printed tips: that is the way that the control will time.
             let along = self.machine.control_point.along;
@@ -560,8 +573,9 @@ impl Path<'_> {
             self.tally.limited += u64::from(paced.limited);
             self.tally.cutting += paced.minutes;
             Event::Linear {
-                words,
+                tool,
                 feed: paced.feed,
+                words,
             }
         };
         self.tally.blocks += 1;

@@ -192,7 +192,7 @@ impl Plugin {
                 let library = setup
                     .with(&options, |setup| Library::open(table, setup))
                     .map_err(refused)?;
-                let (format, capabilities) = library.ask_format().map_err(nonsense)?;
+                let (format, capabilities) = library.ask_format(words).map_err(nonsense)?;
                 (Way::Library(library), format, capabilities)
             }
         };
@@ -263,7 +263,7 @@ impl Library {
         })
     }
 
-    fn ask_format(&self) -> Result<(Format, Capabilities), String> {
+    fn ask_format(&self, words: usize) -> Result<(Format, Capabilities), String> {
         let mut raw = PostFormat::EMPTY;
         // SAFETY: the context is open and `raw` lives for the call.
         let failed = self
@@ -273,18 +273,17 @@ impl Library {
         if failed {
             return Err(self.last_error());
         }
-        let words = raw.words.get(..raw.words_len as usize).ok_or_else(|| {
+        let decimals_of = raw.words.get(..raw.words_len as usize).ok_or_else(|| {
             format!(
-                "its format has {} axis words, at most {} are possible",
-                raw.words_len,
-                raw::MAX_WORDS
+                "its format has {} axis words, the program has {words}",
+                raw.words_len
             )
         })?;
         // More than a byte holds is more than is allowed.
         let decimals = |count: u32| u8::try_from(count).unwrap_or(u8::MAX);
         let extension = raw.extension.split(|byte| *byte == 0).next().unwrap_or(&[]);
         let format = Format {
-            words: words.to_vec(),
+            words: decimals_of.to_vec(),
             feed: decimals(raw.feed),
             inverse_time: match raw.inverse_time {
                 -1 => None,

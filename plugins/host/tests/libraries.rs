@@ -274,7 +274,7 @@ fn a_library_that_is_no_plugin_is_refused() {
     assert_eq!(refusal("MAGIC"), "what it exports is not a plugin of post");
     assert_eq!(
         refusal("ABI"),
-        "it was built for version 9 of the plugin contract, this is version 2"
+        "it was built for version 10 of the plugin contract, this is version 2"
     );
     assert!(refusal("LAYOUT").starts_with("it was built against other structs"));
     assert_eq!(

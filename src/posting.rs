@@ -22,7 +22,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {
     let machine = arguments.job.machine(&[])?;
     let finder = plugins::finder(&arguments.job.plugins)?;
     let program = program_name(input_path, arguments.output.as_deref());
-    let (mut dialect, dialect_use) = plugins::dialect(&finder, &machine, &program)?;
+    let (mut dialect, dialect_use) =
+        plugins::dialect(&finder, &machine, &program, Some(input_path))?;
     let (mut model, model_use) = plugins::model(&finder, &machine)?;
     let path = target(input_path, arguments, &dialect.format().extension)?;
     let summary_file = summary_file(input_path, arguments, &path)?;

@@ -42,7 +42,7 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Vec<Di
         .map_or("COMMISSION".to_owned(), |stem| {
             stem.to_string_lossy().into_owned()
         });
-    let (mut dialect, _) = plugins::dialect(&finder, &plain, &name)?;
+    let (mut dialect, _) = plugins::dialect(&finder, &plain, &name, None)?;
     let path = program_path(arguments, &dialect.format().extension)?;
     let mut writer = Writer {
         machine: &plain,
@@ -52,12 +52,12 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Vec<Di
         batch: Batch::default(),
     };
     writer.program(&plan);
-    let (mut text, mut ends) = (Vec::new(), Vec::new());
+    let (mut text, mut ends) = (String::new(), Vec::new());
     dialect
         .write_batch(&writer.batch, &mut text, &mut ends)
         .map_err(|fault| one("dialect", fault.message))?;
     let mut file = posting::create(&path)?;
-    file.write(&text)
+    file.write(text.as_bytes())
         .map_err(std::io::Error::other)
         .and_then(|()| file.finish())
         .map_err(|error| posting::fault_at(&path, &error))?;
@@ -92,13 +92,7 @@ impl Writer<'_> {
             // Whoever has set it up as told sees no move here; else it is a slow one.
             let feed = self.feed(first);
             let words = self.words(&plan.start);
-            self.batch.push(
-                0,
-                Event::Linear {
-                    words: &words,
-                    feed,
-                },
-            );
+            self.batch.push(0, Event::linear(&words, feed));
         }
         while let Some(trial) = trials.next() {
             let following = trials.peek().copied();
@@ -165,24 +159,12 @@ impl Writer<'_> {
         there[trial.place] += trial.by;
         let feed = self.feed(trial);
         let words = self.words(&there);
-        self.batch.push(
-            0,
-            Event::Linear {
-                words: &words,
-                feed,
-            },
-        );
+        self.batch.push(0, Event::linear(&words, feed));
         let shown = self.told(&there, true);
         self.say(&format!("The display shows {shown}"));
         self.batch.push(0, Event::Stop);
         let words = self.words(&self.start);
-        self.batch.push(
-            0,
-            Event::Linear {
-                words: &words,
-                feed,
-            },
-        );
+        self.batch.push(0, Event::linear(&words, feed));
         if let Some(clamp) = &axis.clamp {
             self.batch.push(0, Event::Word { text: &clamp.on });
         }

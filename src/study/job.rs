@@ -53,7 +53,7 @@ impl<'a> Job<'a> {
     ) -> Result<(Report, Vec<Diagnostic>), Vec<Diagnostic>> {
         let path = self.arguments.input();
         let program = posting::program_name(path, None);
-        let (dialect, _) = plugins::dialect(&self.finder, machine, &program)?;
+        let (dialect, _) = plugins::dialect(&self.finder, machine, &program, Some(path))?;
         let (mut model, _) = plugins::model(&self.finder, machine)?;
         let input = Input::open(path)?;
         let job = posting::job(self.arguments, &input.name);
@@ -109,7 +109,7 @@ impl DialectSession for Rounding {
     fn write_batch(
         &mut self,
         batch: &Batch,
-        out: &mut Vec<u8>,
+        out: &mut String,
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         self.dialect.write_batch(batch, out, ends)

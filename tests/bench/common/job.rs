@@ -57,11 +57,11 @@ pub fn watched(
             .map(|place| ProgramWord {
                 name: machine.axes[place].name.clone(),
                 rotary: machine.axes[place].joint.rotary,
-                wrapped: false,
                 depth: Some(place) == depth,
+                ..ProgramWord::default()
             })
             .collect(),
-        options: Vec::new(),
+        ..ProgramSetup::default()
     };
     let dialect = match machine.control.dialect.as_str() {
         "linuxcnc" => post_linuxcnc::plugin(),

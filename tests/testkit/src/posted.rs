@@ -58,14 +58,14 @@ impl DialectSession for Recorder {
     fn write_batch(
         &mut self,
         batch: &Batch,
-        out: &mut Vec<u8>,
+        out: &mut String,
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
             let (words, feed, value) = match event {
-                Event::Position { words, feed } => (words, feed, 0.0),
-                Event::Rapid { words } => (words, None, 0.0),
-                Event::Linear { words, feed } => (words, Some(feed), 0.0),
+                Event::Position { words, feed, .. } => (words, feed, 0.0),
+                Event::Rapid { words, .. } => (words, None, 0.0),
+                Event::Linear { words, feed, .. } => (words, Some(feed), 0.0),
                 Event::Dwell { seconds } => (&[][..], None, seconds),
                 Event::ToolChange { number, .. } => (&[][..], None, f64::from(number)),
                 _ => (&[][..], None, 0.0),
@@ -89,7 +89,7 @@ impl DialectSession for Recorder {
                 feed,
                 value,
             });
-            out.extend_from_slice(b"block\n");
+            out.push_str("block\n");
             ends.push(out.len());
         }
         Ok(())

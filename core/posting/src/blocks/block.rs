@@ -28,7 +28,7 @@ pub struct Block {
     pub words: WordValues,
     /// Axis values at its end, as printed: mm, radians.
     pub joints: Joints,
-    /// Where the control point comes to stand, mm, part frame.
+    /// Where the tip comes to stand, mm, part frame.
     pub tip: Vector3<f64>,
     /// The tool axis there, unit vector, part frame.
     pub axis: Vector3<f64>,

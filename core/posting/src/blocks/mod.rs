@@ -493,7 +493,7 @@ impl<'a> Blocks<'a> {
             pace: leg.motion.pace,
             words: node.words,
             joints: node.trace.joints,
-            tip: node.tip,
+            tip: node.tip - node.trace.pose.axis * self.machine.control_point.along,
             axis: node.trace.pose.axis,
             deviation: Bound {
                 tip: bound.tip + leg.motion.chord,

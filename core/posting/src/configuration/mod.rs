@@ -71,8 +71,8 @@ pub(crate) struct Configuration<'a> {
     chosen: Vec<Chosen>,
     /// What the user says of every tool.
     told_length: Option<f64>,
-    /// Length of the tool in use.
-    length: f64,
+    /// Length of the tool in use, if anybody gave it.
+    length: Option<f64>,
     /// The tool's length matters and nobody gave it.
     length_unknown: bool,
     /// The tool in use.
@@ -91,17 +91,16 @@ impl<'a> Configuration<'a> {
         format: &Format,
         told_length: Option<f64>,
     ) -> Result<Self, Box<Diagnostic>> {
-        let length = told_length.unwrap_or(0.0);
         Ok(Self {
             machine,
             base: machine,
-            route: Route::new(machine, format, length)?,
+            route: Route::new(machine, format, told_length.unwrap_or(0.0))?,
             setting: None,
             waiting: VecDeque::new(),
             commands: 0,
             chosen: Vec::new(),
             told_length,
-            length,
+            length: told_length,
             length_unknown: told_length.is_none(),
             tool: None,
             moves: 0,
@@ -248,7 +247,7 @@ impl<'a> Configuration<'a> {
                 self.route.leave();
                 self.measure(tool);
                 self.tool = Some(tool.clone());
-                tool.length = Some(self.length);
+                tool.length = self.length;
                 self.equip(line, findings);
             }
             Command::Index { axis, angle } => self.index(line, *axis, *angle, findings),
@@ -302,13 +301,13 @@ impl<'a> Configuration<'a> {
         if length.is_some() && self.moves == 0 {
             self.length_unknown = false;
         }
-        self.length = length.unwrap_or(0.0);
+        self.length = length;
     }
 
     /// Takes machine and tool length into the route.
     fn equip(&mut self, line: u64, findings: &Findings) {
         self.setting = None;
-        if let Err(fault) = self.route.equip(self.machine, self.length) {
+        if let Err(fault) = self.route.equip(self.machine, self.length.unwrap_or(0.0)) {
             findings.at(line, *fault);
         }
     }

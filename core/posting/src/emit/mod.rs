@@ -6,7 +6,7 @@ mod writer;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
-use post_plugin::{Coolant, DialectSession, Event, Spindle};
+use post_plugin::{Coolant, DialectSession, Event, Spindle, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
 use crate::findings::Findings;
@@ -123,12 +123,12 @@ impl<'a> Emit<'a> {
                 if self.machine.clamps {
                     self.clamp(block);
                 }
-                let words = &block.words[..self.writer.words()];
+                let (tool, words) = (stands(block), &block.words[..self.writer.words()]);
                 self.writer.push(
                     line,
                     match block.time.feed {
-                        Some(feed) => Event::Linear { words, feed },
-                        None => Event::Rapid { words },
+                        Some(feed) => Event::Linear { tool, feed, words },
+                        None => Event::Rapid { tool, words },
                     },
                 );
             }
@@ -183,6 +183,9 @@ impl<'a> Emit<'a> {
             Event::ToolChange {
                 number: tool.number,
                 register: tool.register,
+                length: tool.length,
+                diameter: None,
+                corner_radius: None,
                 name: &tool.name,
             },
         );
@@ -260,8 +263,9 @@ impl<'a> Emit<'a> {
         self.writer.push(
             line,
             Event::Position {
-                words: &block.words[..self.writer.words()],
+                tool: stands(block),
                 feed: block.time.feed,
+                words: &block.words[..self.writer.words()],
             },
         );
         self.positioned = true;
@@ -294,4 +298,13 @@ impl<'a> Emit<'a> {
             self.writer.push(line, Event::Word { text });
         }
     }
+}
+
+/// Where the tool stands at the end of a block.
+#[inline]
+fn stands(block: &Block) -> Option<ToolPose> {
+    Some(ToolPose {
+        tip: block.tip.into(),
+        axis: block.axis.into(),
+    })
 }

@@ -15,7 +15,7 @@ pub(super) struct Writer<'a> {
     /// Words of a block.
     words: usize,
     batch: Batch,
-    text: Vec<u8>,
+    text: String,
     ends: Vec<usize>,
     lines: u64,
     /// The CL file has loaded a tool.
@@ -31,7 +31,7 @@ impl<'a> Writer<'a> {
             dialect,
             output,
             batch: Batch::default(),
-            text: Vec::new(),
+            text: String::new(),
             ends: Vec::new(),
             lines: 0,
             tool_known: false,
@@ -89,9 +89,9 @@ impl<'a> Writer<'a> {
         let written = self.dialect.write_batch(batch, text, ends);
         extremes.written(|index| {
             let end = ends.get(index).copied().unwrap_or(text.len());
-            self.lines + newlines(&text[..end])
+            self.lines + newlines(&text.as_bytes()[..end])
         });
-        self.lines += newlines(text);
+        self.lines += newlines(text.as_bytes());
         match written {
             Err(refused) => {
                 self.broken = true;
@@ -103,7 +103,7 @@ impl<'a> Writer<'a> {
                 findings.at(line, fault);
             }
             Ok(()) if !findings.failed() => {
-                if let Err(message) = self.output.write(text) {
+                if let Err(message) = self.output.write(text.as_bytes()) {
                     self.broken = true;
                     findings.add(Diagnostic::error("output", message));
                 }

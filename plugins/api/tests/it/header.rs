@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use post_plugin::raw::{self, LAYOUTS, TABLES};
+use post_plugin::{CAPABILITIES, CODES, EVENTS, Shape};
 
 const BEGIN: &str = "/* generated: begin */\n";
 const END: &str = "/* generated: end */\n";
@@ -29,15 +30,18 @@ fn generated() -> String {
     define! {
         ABI KIND_DIALECT KIND_MODEL MAX_WORDS
         OPTION_FLAG OPTION_INTEGER OPTION_NUMBER OPTION_TEXT OPTION_CHOICE
-        UNITS_MILLIMETRE UNITS_INCH
-        EVENT_START EVENT_COMMENT EVENT_LITERAL EVENT_TOOL_CHANGE EVENT_PRESELECT EVENT_SPINDLE
-        EVENT_COOLANT EVENT_COMPENSATE EVENT_POSITION EVENT_RELEASE EVENT_RAPID EVENT_LINEAR
-        EVENT_DWELL EVENT_STOP EVENT_OPTIONAL_STOP EVENT_HOME EVENT_END EVENT_WORD
-        FEED_NONE FEED_PER_MINUTE FEED_INVERSE_TIME FEED_PER_REVOLUTION
-        SPINDLE_OFF SPINDLE_CLOCKWISE SPINDLE_COUNTER_CLOCKWISE SPINDLE_ORIENT
-        COOLANT_OFF COOLANT_FLOOD COOLANT_MIST COOLANT_THROUGH COOLANT_AIR
-        COMPENSATE_OFF COMPENSATE_LEFT COMPENSATE_RIGHT
     }
+    for codes in CODES {
+        for (name, code) in codes.codes {
+            writeln!(text, "#define POST_{}_{name} {code}u", codes.name).unwrap();
+        }
+    }
+    for capability in CAPABILITIES {
+        comment(&mut text, capability.doc);
+        let (name, bits) = (capability.name, capability.set.bits());
+        writeln!(text, "#define POST_WRITES_{name} 0x{bits:016x}u").unwrap();
+    }
+    events(&mut text);
     for layout in LAYOUTS.iter().chain(TABLES) {
         let name = layout.name;
         writeln!(
@@ -47,10 +51,6 @@ fn generated() -> String {
         )
         .unwrap();
         for (field, offset) in layout.fields {
-            let field = match *field {
-                "register" => "register_",
-                other => other,
-            };
             writeln!(
                 text,
                 "POST_ASSERT(offsetof({name}, {field}) == {offset}, \"{name}.{field}\");"
@@ -59,6 +59,76 @@ fn generated() -> String {
         }
     }
     text
+}
+
+/// The kinds, and where the numbers of each stand.
+fn events(text: &mut String) {
+    for event in EVENTS {
+        comment(text, event.doc);
+        writeln!(text, "#define POST_EVENT_{} {}u", event.c_name, event.kind).unwrap();
+        // Behind a list nobody knows where the next number stands.
+        let mut numbers = Some(0);
+        let mut texts = 0;
+        for field in event.fields {
+            let name = format!("{}_{}", event.c_name, field.name.to_uppercase());
+            let doc = field.doc.trim();
+            match field.shape {
+                Shape::Text => {
+                    comment(text, &format!("texts[{texts}], {}: {doc}", field.name));
+                    texts += 1;
+                }
+                Shape::Numbers(count) => {
+                    let at = numbers.expect("numbers stand before lists");
+                    let count_of = match count {
+                        1 => String::new(),
+                        _ => format!("{count} numbers: "),
+                    };
+                    comment(text, &format!("{count_of}{doc}"));
+                    writeln!(text, "#define POST_{name} {at}u").unwrap();
+                    numbers = Some(at + count);
+                }
+                Shape::List => {
+                    let list = "how many there are, and behind it as many";
+                    match numbers {
+                        Some(at) => {
+                            comment(text, &format!("{list}: {doc}"));
+                            writeln!(text, "#define POST_{name} {at}u").unwrap();
+                        }
+                        None => comment(text, &format!("then {}, {list}: {doc}", field.name)),
+                    }
+                    numbers = None;
+                }
+            }
+        }
+    }
+}
+
+/// Documentation as a C comment, without the links of rustdoc.
+fn comment(text: &mut String, doc: &str) {
+    let mut plain = String::new();
+    let mut rest = doc.trim();
+    while let Some((before, link)) = rest.split_once("[`") {
+        let (name, after) = link.split_once("`]").unwrap();
+        plain.push_str(before);
+        plain.push_str(name);
+        rest = match after.strip_prefix('(') {
+            Some(target) => target.split_once(')').unwrap().1,
+            None => after,
+        };
+    }
+    plain.push_str(rest);
+    let mut line = String::from("/*");
+    for word in plain.replace('`', "").split_whitespace() {
+        if line.len() + word.len() > 112 {
+            text.push_str(line.trim_end());
+            text.push('\n');
+            line = String::from(" *");
+        }
+        line.push(' ');
+        line.push_str(word);
+    }
+    text.push_str(&line);
+    text.push_str(" */\n");
 }
 
 #[test]

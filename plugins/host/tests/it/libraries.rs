@@ -9,7 +9,7 @@ use std::process::Command;
 use post_host::{Finder, GivenValue, Kind, Plugin, PluginFault, ProgramSetup, ProgramWord, Reason};
 use post_plugin::{
     Batch, Coolant, Deviation, DialectSession, Event, Feed, ModelSession, Spindle, SpindleSense,
-    Tolerance, Units,
+    Tolerance,
 };
 
 /// The folder of this test's executable, where cargo also puts the libraries of its dependencies.
@@ -56,18 +56,16 @@ fn setup(words: &[&str]) -> ProgramSetup {
     ProgramSetup {
         program: "bracket".to_owned(),
         machine: "test".to_owned(),
-        units: Units::Millimetre,
-        tcp: false,
         words: words
             .iter()
             .map(|name| ProgramWord {
                 name: (*name).to_owned(),
                 rotary: matches!(*name, "A" | "B" | "C"),
-                wrapped: false,
                 depth: *name == "Z",
+                ..ProgramWord::default()
             })
             .collect(),
-        options: Vec::new(),
+        ..ProgramSetup::default()
     }
 }
 
@@ -86,26 +84,19 @@ fn job() -> Batch {
     push(Event::Comment {
         text: "naïve (µ)"
     });
-    push(Event::ToolChange {
-        number: 1,
-        register: 2,
-        name: "ball",
-    });
+    push(Event::tool_change(1, 2, "ball"));
     push(Event::Spindle(Spindle::On {
         rpm: 3000.0,
         sense: SpindleSense::CounterClockwise,
     }));
     push(Event::Coolant(Coolant::Flood));
-    push(Event::Position {
-        words: &[0.0, 0.0, 100.0, 0.0, 0.0],
-        feed: None,
-    });
+    push(Event::position(&[0.0, 0.0, 100.0, 0.0, 0.0], None));
     for step in 0..200 {
         let x = f64::from(step) / 8.0;
-        push(Event::Linear {
-            words: &[x, -x, 3.0, x / 2.0, 10.0],
-            feed: Feed::PerMinute(500.0),
-        });
+        push(Event::linear(
+            &[x, -x, 3.0, x / 2.0, 10.0],
+            Feed::PerMinute(500.0),
+        ));
     }
     push(Event::Dwell { seconds: 0.25 });
     push(Event::Release);
@@ -116,9 +107,9 @@ fn job() -> Batch {
 
 fn write(plugin: &Plugin, batch: &Batch) -> (String, Vec<usize>) {
     let mut session = plugin.dialect(&five_axes()).unwrap();
-    let (mut out, mut ends) = (Vec::new(), Vec::new());
+    let (mut out, mut ends) = (String::new(), Vec::new());
     session.write_batch(batch, &mut out, &mut ends).unwrap();
-    (String::from_utf8(out).unwrap(), ends)
+    (out, ends)
 }
 
 #[test]
@@ -148,7 +139,7 @@ fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
         assert!(text.lines().count() > 200);
         // Cut into single events it is the same program.
         let mut session = opened.dialect(&five_axes()).unwrap();
-        let mut out = Vec::new();
+        let mut out = String::new();
         for event in batch.iter() {
             let mut single = Batch::default();
             single.push(1, event);
@@ -156,7 +147,7 @@ fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
                 .write_batch(&single, &mut out, &mut Vec::new())
                 .unwrap();
         }
-        assert_eq!(out, text.as_bytes());
+        assert_eq!(out, text);
     }
 }
 
@@ -212,32 +203,21 @@ fn a_dialect_in_thirty_lines_of_rust() {
     let mut session = plugin.dialect(&setup(&["X", "C"])).unwrap();
     let mut batch = Batch::default();
     batch.push(1, Event::Start);
-    batch.push(
-        2,
-        Event::Rapid {
-            words: &[1.5, 90.0],
-        },
-    );
-    batch.push(
-        3,
-        Event::Linear {
-            words: &[-2.0, 90.0],
-            feed: Feed::PerMinute(250.0),
-        },
-    );
+    batch.push(2, Event::rapid(&[1.5, 90.0]));
+    batch.push(3, Event::linear(&[-2.0, 90.0], Feed::PerMinute(250.0)));
     batch.push(4, Event::Stop);
-    let (mut out, mut ends) = (Vec::new(), Vec::new());
+    let (mut out, mut ends) = (String::new(), Vec::new());
     let fault = session
         .write_batch(&batch, &mut out, &mut ends)
         .unwrap_err();
     assert_eq!(
-        String::from_utf8(out).unwrap(),
+        out,
         "G21 G90 G94\nG0 X1.500 C90.000\nG1 X-2.000 C90.000 F250.0\n"
     );
     assert_eq!((ends.len(), fault.index), (3, 3));
     assert_eq!(
         fault.message,
-        "dialect `tiny`, event Stop: it has no words for Stop"
+        "dialect `tiny`, event Stop: this dialect has no words for a stop"
     );
 }
 
@@ -255,19 +235,14 @@ fn a_dialect_in_c() {
     assert_eq!(session.format().extension, "tap");
     let mut batch = Batch::default();
     batch.push(1, Event::Start);
-    batch.push(
-        2,
-        Event::Rapid {
-            words: &[1.5, 90.0],
-        },
-    );
+    batch.push(2, Event::rapid(&[1.5, 90.0]));
     batch.push(3, Event::Unknown { kind: 4711 });
-    let mut out = b"before\n".to_vec();
+    let mut out = "before\n".to_owned();
     let mut ends = Vec::new();
     let fault = session
         .write_batch(&batch, &mut out, &mut ends)
         .unwrap_err();
-    assert_eq!(out, b"before\nG21 G90 G94\nG0 X1.50 C90.00\n");
+    assert_eq!(out, "before\nG21 G90 G94\nG0 X1.50 C90.00\n");
     assert_eq!(ends, [19, 35]);
     assert_eq!(
         fault.message,
@@ -299,7 +274,7 @@ fn a_library_that_is_no_plugin_is_refused() {
     assert_eq!(refusal("MAGIC"), "what it exports is not a plugin of post");
     assert_eq!(
         refusal("ABI"),
-        "it was built for version 9 of the plugin contract, this is version 1"
+        "it was built for version 10 of the plugin contract, this is version 2"
     );
     assert!(refusal("LAYOUT").starts_with("it was built against other structs"));
     assert_eq!(
@@ -355,9 +330,9 @@ fn what_a_plugin_says_is_not_believed() {
         ("COUNT", "it wrote 3 events of 2"),
     ] {
         let mut batch = Batch::default();
-        batch.push(1, Event::Rapid { words: &[1.0] });
-        batch.push(2, Event::Rapid { words: &[1.0] });
-        let mut out = b"x".to_vec();
+        batch.push(1, Event::rapid(&[1.0]));
+        batch.push(2, Event::rapid(&[1.0]));
+        let mut out = "x".to_owned();
         let written = open(flag)
             .unwrap()
             .write_batch(&batch, &mut out, &mut Vec::new());
@@ -378,7 +353,7 @@ fn a_plugin_that_panics_does_not_take_the_host_with_it() {
     let mut batch = Batch::default();
     batch.push(1, Event::Start);
     batch.push(2, Event::Home);
-    let (mut out, mut ends) = (Vec::new(), Vec::new());
+    let (mut out, mut ends) = (String::new(), Vec::new());
     let fault = session
         .write_batch(&batch, &mut out, &mut ends)
         .unwrap_err();
@@ -390,7 +365,7 @@ fn a_plugin_that_panics_does_not_take_the_host_with_it() {
         ) && message.contains("post_panics.rs:"),
         "{message}"
     );
-    assert_eq!(out, b"half a line\n");
+    assert_eq!(out, "half a line\n");
     // It is not asked again, and says why.
     let again = session
         .write_batch(&batch, &mut out, &mut ends)
@@ -484,26 +459,15 @@ fn a_name_is_looked_for_in_the_folders_and_then_among_the_linked_in() {
 fn promises_to_plugins_are_kept() {
     let plugin = Plugin::linked(post_heidenhain::plugin()).unwrap();
     let bad: &[(Event<'_>, &str)] = &[
-        (
-            Event::Rapid {
-                words: &[f64::NAN, 0.0],
-            },
-            "an axis word is NaN",
-        ),
-        (Event::Rapid { words: &[0.0] }, "1 axis words instead of 2"),
+        (Event::rapid(&[f64::NAN, 0.0]), "an axis word is NaN"),
+        (Event::rapid(&[0.0]), "1 axis words instead of 2"),
         (Event::Dwell { seconds: -1.0 }, "its number is -1"),
         (
-            Event::Linear {
-                words: &[0.0, 0.0],
-                feed: Feed::PerMinute(0.0),
-            },
+            Event::linear(&[0.0, 0.0], Feed::PerMinute(0.0)),
             "the feed is 0",
         ),
         (
-            Event::Linear {
-                words: &[0.0, 0.0],
-                feed: Feed::InverseTime(1.0),
-            },
+            Event::linear(&[0.0, 0.0], Feed::InverseTime(1.0)),
             "no inverse-time feed",
         ),
     ];
@@ -512,11 +476,11 @@ fn promises_to_plugins_are_kept() {
         let mut batch = Batch::default();
         batch.push(1, Event::Stop);
         batch.push(2, *event);
-        let (mut out, mut ends) = (Vec::new(), Vec::new());
+        let (mut out, mut ends) = (String::new(), Vec::new());
         let fault = session
             .write_batch(&batch, &mut out, &mut ends)
             .unwrap_err();
-        assert_eq!((fault.index, out.as_slice()), (1, b"0 M0\n".as_slice()));
+        assert_eq!((fault.index, out.as_str()), (1, "0 M0\n"));
         assert!(fault.message.contains(message), "{}", fault.message);
     }
 }

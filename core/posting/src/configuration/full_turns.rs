@@ -6,6 +6,9 @@ use super::solution::{Axes, Stand};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::choose::OverTravel;
 
+/// Values that differ by less are the same, mm or radians.
+const SAME: f64 = 1e-9;
+
 impl Axes {
     /// Puts the pointing joints of `stand` on the turns nearest to `last`.
     ///
@@ -43,6 +46,21 @@ impl Axes {
             }
         }
         Ok(joints)
+    }
+
+    /// Are two sets of joints the same, or, on one branch, the same but for full turns of endless axes?
+    pub(crate) fn alike(&self, (a_branch, a): (u8, &Joints), (b_branch, b): (u8, &Joints)) -> bool {
+        let endless = if a_branch == b_branch {
+            self.endless
+        } else {
+            0
+        };
+        a.iter().zip(b).enumerate().all(|(joint, (a, b))| {
+            let apart = (a - b).abs();
+            apart < SAME
+                || (endless & (1 << joint) != 0
+                    && (apart - TAU * f64::round(apart / TAU)).abs() < SAME)
+        })
     }
 
     /// Is an axis that tilts closer to an end of its travel than `way`, at one of two points?

@@ -24,6 +24,9 @@ pub(crate) struct Stand {
 #[derive(Clone, Debug)]
 pub(crate) struct Axes {
     pub(super) turning: Vec<Turning>,
+    /// Those of them whose full turns are nothing to the machine, one bit each: they have no travel, and no side of
+    /// zero counts.
+    pub(super) endless: u8,
     linear: Vec<Limit>,
     /// Joints that move off the part alone.
     pub(super) indexed: Vec<usize>,
@@ -132,11 +135,19 @@ impl Axes {
                 })
             })
             .collect();
+        let sides = machine.solution.prefer.iter();
+        let sides = sides.chain(&machine.solution.require);
+        let sided = sides.fold(0, |sided: u8, (joint, _)| sided | 1 << joint);
+        let endless = pointing
+            .iter()
+            .filter(|joint| machine.axes[**joint].travel.is_none())
+            .fold(0, |endless: u8, joint| endless | 1 << joint);
         let indexed = (0..machine.axes.len())
             .filter(|joint| machine.axes[*joint].indexed.is_some())
             .collect();
         Self {
             turning,
+            endless: endless & !sided,
             linear,
             indexed,
             axis_tolerance: machine.accuracy.axis_tolerance,

@@ -282,16 +282,22 @@ impl Lattice {
         ways
     }
 
-    /// A state, unless there is one like it that is no dearer.
+    /// A state, unless there is one like it that is no dearer: see [`Axes::alike`].
+    ///
+    /// Of two like states the dearer can never win. The ways on from a state depend on its joints and its branch
+    /// alone. Stands are carried to the turn nearest to it, what a move costs is made of differences, and an endless
+    /// axis has neither an end of travel nor a side of zero that counts. So each way on from the dearer state, put
+    /// back by the turns between the two, is a way on from the cheaper one, each of its moves costs the same, and
+    /// the whole stays cheaper by what the states differ by here.
+    ///
+    /// If only states with the same turns were held against each other, a path that comes and goes at a pole would
+    /// add a turn to either side each time, until there are [`MOST_STATES`] at every point.
     fn keep(&mut self, first: usize, state: State) {
-        let same = |known: &State| {
-            known
-                .joints
-                .iter()
-                .zip(&state.joints)
-                .all(|(a, b)| (a - b).abs() < 1e-9)
+        let axes = &self.axes;
+        let like = |known: &&mut State| {
+            axes.alike((known.branch, &known.joints), (state.branch, &state.joints))
         };
-        match self.states[first..].iter_mut().find(|known| same(known)) {
+        match self.states[first..].iter_mut().find(like) {
             Some(known) if state.cost.less(&known.cost) => *known = state,
             Some(_) => {}
             None => self.states.push(state),

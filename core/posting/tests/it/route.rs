@@ -1632,6 +1632,48 @@ fn walks_close_to_the_pole_keep_to_travel() {
     told(&faults.travel, faults.runs);
 }
 
+/// In and out of the pole's cone an endless C is chosen as one is that has room for every turn: of the ways that
+/// differ by full turns alone one is kept, and it is the cheapest.
+#[test]
+fn full_turns_of_an_endless_axis_are_one_way() {
+    let mut rng = Rng(43);
+    let (mut exits, mut posted) = (0, 0);
+    for round in 0..200 {
+        let class = &CLASSES[round % 4];
+        let points: Vec<Point> = (0..8)
+            .map(|index| {
+                let tilt = [0.02, 0.06, 2.0][rng.pick(3)] * rng.range(0.0, 1.0);
+                exits += u32::from(tilt > 0.05);
+                let axis = leaning(tilt, rng.range(-180.0, 180.0));
+                point(rng.point(20.0), axis, index == 0)
+            })
+            .collect();
+        let rule = ["time", "travel", "largest-axis"][rng.pick(3)];
+        let run = |c: &str| {
+            let given = Given {
+                tcp: "control",
+                c: c.to_owned(),
+                more: format!("[solution]\nrule = \"{rule}\""),
+                ..Given::default()
+            };
+            bench(class, &given).run(&cl(&points, 1000.0))
+        };
+        let (endless, wide) = (run(""), run("[-2160, 2160]"));
+        assert!(
+            endless.asked == wide.asked,
+            "round {round}, {}: {} {}",
+            class.name,
+            endless.told(),
+            wide.told()
+        );
+        posted += u32::from(endless.report.is_some());
+    }
+    assert!(
+        exits > 500 && posted > 150,
+        "{exits} exits, {posted} posted"
+    );
+}
+
 /// A spiral of twenty thousand points turns an endless C on and on. How far is looked ahead makes no difference where
 /// nothing is eased, and next to none where a window ends in the middle of a stretch that is.
 #[test]

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use post_machine::kinematics::POLE;
 use post_machine::kinematics::{Freedom, Joints, Pose, Second, Solver, Unreachable};
-use post_testkit::{Kind, Random, Rng, SIZE, across, angle, nearest, turned};
+use post_testkit::{Kind, Random, Rng, SIZE, across, angle, nearest, randomised, turned};
 
 /// The largest difference between two sets of values: mm, and radians as an arm of a metre.
 fn apart(machine: &Random, a: &Joints, b: &Joints) -> f64 {
@@ -52,10 +52,10 @@ fn three(rng: &mut Rng, held: usize) -> Random {
 /// was made with are one of them.
 #[test]
 fn three_rotary_axes_follow_a_tool_frame() {
-    let mut rng = Rng(11);
+    let (rounds, mut rng) = randomised(4_000_u32, 11);
     let (mut tip, mut axis, mut edge, mut own): (f64, f64, f64, f64) = (0.0, 0.0, 0.0, 0.0);
     let (mut poses, mut regular, mut counts) = (0, 0, [0; 3]);
-    for round in 0..4_000_u32 {
+    for round in rounds {
         let machine = three(&mut rng, usize::from(round.is_multiple_of(3)));
         let reference = &machine.reference;
         let leading = across(&mut rng, reference.axis);
@@ -122,9 +122,9 @@ fn three_rotary_axes_follow_a_tool_frame() {
 /// refused by the angle that they miss it by.
 #[test]
 fn frames_out_of_reach_are_refused_by_what_the_third_axis_misses() {
-    let mut rng = Rng(12);
+    let (rounds, mut rng) = randomised(400_u32, 12);
     let (mut reached, mut refused, mut worst) = (0, 0, 0.0f64);
-    for round in 0..400_u32 {
+    for round in rounds {
         let machine = three(&mut rng, usize::from(round.is_multiple_of(3)));
         let reference = &machine.reference;
         let leading = across(&mut rng, reference.axis);
@@ -260,9 +260,9 @@ fn solutions(solver: &Solver, machine: &Random, q: &Joints) -> (Vec<Joints>, f64
 
 #[test]
 fn a_fourth_linear_axis_that_is_held_stands_still() {
-    let mut rng = Rng(13);
+    let (rounds, mut rng) = randomised(3_000, 13);
     let (mut tip, mut poses) = (0.0f64, 0);
-    for round in 0..3_000 {
+    for round in rounds {
         let (machine, quill, beside) = four(&mut rng, round);
         let mut held = machine.held;
         held[quill] = rng.range(-SIZE, SIZE);
@@ -296,9 +296,9 @@ fn a_fourth_linear_axis_that_is_held_stands_still() {
 
 #[test]
 fn a_quill_takes_its_share() {
-    let mut rng = Rng(14);
+    let (rounds, mut rng) = randomised(3_000, 14);
     let (mut tip, mut poses, mut shares) = (0.0f64, 0, 0.0f64);
-    for round in 0..3_000 {
+    for round in rounds {
         let (machine, quill, beside) = four(&mut rng, round);
         // Both ends of the range as well.
         let share = [0.0, 1.0, rng.range(0.0, 1.0), 0.5][rng.pick(4)];
@@ -345,9 +345,9 @@ fn a_quill_takes_its_share() {
 
 #[test]
 fn a_quill_in_reserve_moves_where_the_other_ends() {
-    let mut rng = Rng(15);
+    let (rounds, mut rng) = randomised(4_000, 15);
     let (mut tip, mut inside, mut beyond) = (0.0f64, 0, 0);
-    for round in 0..4_000 {
+    for round in rounds {
         let (machine, quill, beside) = four(&mut rng, round);
         let middle = rng.range(-200.0, 200.0);
         let travel = [
@@ -430,14 +430,14 @@ const NUMERIC: [(usize, usize, bool); 9] = [
 /// nothing, finds one nearly always, and never a wrong one.
 #[test]
 fn chains_without_a_closed_form_are_solved_and_verified() {
-    let mut rng = Rng(16);
+    let (rounds, mut rng) = randomised(60, 16);
     for (linear, rotary, edged) in NUMERIC {
         let mut kinds = vec![Kind::Linear; linear];
         kinds.extend(vec![Kind::Free; rotary]);
         let (mut near, mut far, mut found, mut own, mut poses) = (0, 0, 0, 0, 0);
         let mut tip = 0.0f64;
         let mut least = Vec::new();
-        for _ in 0..60 {
+        for _ in rounds.clone() {
             let machine = Random::of(&mut rng, &kinds);
             let reference = &machine.reference;
             let leading = edged.then(|| across(&mut rng, reference.axis));
@@ -510,11 +510,11 @@ fn chains_without_a_closed_form_are_solved_and_verified() {
 /// What no values reach is refused, and by about as much as it is missed.
 #[test]
 fn a_numeric_chain_refuses_what_it_cannot_reach() {
-    let mut rng = Rng(17);
+    let (rounds, mut rng) = randomised(20, 17);
     for (linear, rotary) in [(0, 5), (0, 6)] {
         let mut kinds = vec![Kind::Linear; linear];
         kinds.extend(vec![Kind::Free; rotary]);
-        for _ in 0..20 {
+        for _ in rounds.clone() {
             let machine = Random::of(&mut rng, &kinds);
             let solver = Solver::new(machine.reference.chain(), &machine.free, machine.held)
                 .expect("a numeric form");
@@ -685,9 +685,9 @@ fn let_through(machine: &Random, wanted: Vector3<f64>, tolerance: f64, what: &st
 /// microradians: it is let through within the tolerance, missed by no more than it must be, and refused beyond.
 #[test]
 fn as_measured_the_upright_tool_is_let_through() {
-    let mut rng = Rng(18);
+    let (rounds, mut rng) = randomised(1_200, 18);
     let (mut worst, mut out, mut most) = (0.0f64, 0, 0.0f64);
-    for round in 0..1_200 {
+    for round in rounds {
         let class = round % 4;
         let incline = rng.range(1e-5, 1e-4);
         let second = if round % 8 < 4 {
@@ -724,9 +724,9 @@ fn as_measured_the_upright_tool_is_let_through() {
 /// The edge of reach of a nutating head, from inside to outside: as far as the tolerance goes, no farther.
 #[test]
 fn the_edge_of_reach_is_let_through_by_the_tolerance() {
-    let mut rng = Rng(19);
+    let (rounds, mut rng) = randomised(1_200, 19);
     let (mut worst, mut passed, mut refused) = (0.0f64, 0, 0);
-    for round in 0..1_200 {
+    for round in rounds {
         let (incline, second) = (rng.range(0.0, 1e-4), rng.range(0.0, 1e-4));
         let machine = measured(&mut rng, 3, incline, second);
         // The tool lies flat at B 180: beyond that no angles point it.
@@ -755,9 +755,9 @@ fn the_edge_of_reach_is_let_through_by_the_tolerance() {
 /// within it too.
 #[test]
 fn a_tool_frame_at_the_edge_of_reach_is_let_through() {
-    let mut rng = Rng(20);
+    let (rounds, mut rng) = randomised(2_000, 20);
     let (mut passed, mut refused) = (0, 0);
-    for round in 0..2_000 {
+    for round in rounds {
         // An AC table under a knife that turns about its own axis; the knife stands upright over a C inclined by
         // some microradians, so that its own axis cannot be brought upright.
         let incline = rng.range(1e-5, 1e-4);

@@ -12,7 +12,7 @@ use post_machine::kinematics::Joints;
 use post_plugin::Feed;
 use post_testkit::posted::{Bench, Run};
 use post_testkit::walk::{Shape, Stop, Walk, blocks, from_program, leaned, stop, text, wanted};
-use post_testkit::{Rng, across, angle, between, slerp};
+use post_testkit::{Rng, across, angle, between, randomised, slerp};
 
 type V = Vector3<f64>;
 
@@ -506,17 +506,15 @@ fn edges_go_straight(
     Ok(())
 }
 
-/// Random machines, random paths, every way of error control. `ROUNDS` and `SEED` make it longer, or other.
+/// Random machines, random paths, every way of error control.
 #[test]
 fn every_block_stays_within_what_is_certified() {
-    let rounds: usize = std::env::var("ROUNDS").map_or(160, |rounds| rounds.parse().unwrap());
-    let seed: u64 = std::env::var("SEED").map_or(1, |seed| seed.parse().unwrap());
-    let mut rng = Rng(seed);
+    let (rounds, mut rng) = randomised(160, 1);
     let mut faults: Vec<String> = Vec::new();
     let (mut programs, mut skipped) = (0, 0);
     let mut sums = [0usize; CONFIGS.len()];
     let mut missed = 0.0f64;
-    for round in 0..rounds {
+    for round in rounds.clone() {
         let profile = PROFILES[round % PROFILES.len()];
         let given = given(&mut rng);
         let given = Given {
@@ -574,7 +572,7 @@ fn every_block_stays_within_what_is_certified() {
         faults.len(),
         faults.join("\n")
     );
-    assert!(skipped * 5 < rounds, "{skipped}");
+    assert!(skipped * 5 < rounds.end, "{skipped}");
 }
 
 /// The largest deviation of the control point (mm) and the tool axis (radians) from a single leg at the same share.
@@ -593,10 +591,10 @@ fn strays(bench: &Bench, block: &post_testkit::walk::Block, path: &[(V, V)]) -> 
 /// On small moves what is certified is hardly more than what is sampled.
 #[test]
 fn the_certificate_is_close() {
-    let mut rng = Rng(41);
+    let (rounds, mut rng) = randomised(150, 41);
     let mut worst = [0.0f64; 2];
     let mut counted = 0;
-    for round in 0..150 {
+    for round in rounds {
         let given = Given {
             radius: 0.0,
             tcp: "post",
@@ -648,10 +646,10 @@ fn the_certificate_is_close() {
 /// where that falls with the square of the length.
 #[test]
 fn fewest_needs_no_more_blocks_than_bisect() {
-    let mut rng = Rng(43);
+    let (rounds, mut rng) = randomised(150, 43);
     let mut sums = [0usize; 3];
     let mut exact = [0usize; 2];
-    for round in 0..150 {
+    for round in rounds {
         let given = Given {
             radius: 0.0,
             along: 0.0,
@@ -1115,9 +1113,9 @@ fn a_turn_in_tiny_steps_keeps_its_pace() {
 /// direction across it that the cutting edge has.
 #[test]
 fn a_point_above_a_tip_that_the_control_keeps_is_bounded() {
-    let mut rng = Rng(47);
+    let (rounds, mut rng) = randomised(200, 47);
     let mut most = 0.0f64;
-    for _ in 0..200 {
+    for _ in rounds {
         let along = rng.range(50.0, 100.0);
         let text_of = usual(
             true,
@@ -1336,7 +1334,7 @@ fn commands_stay_between_their_points() {
 /// A move that has a time of its own takes it, in however many blocks, and is put together with none.
 #[test]
 fn moves_with_a_time_of_their_own_keep_it() {
-    let mut rng = Rng(53);
+    let (rounds, mut rng) = randomised(20, 53);
     let given = Given {
         tables: 2,
         usual: true,
@@ -1349,7 +1347,7 @@ fn moves_with_a_time_of_their_own_keep_it() {
         pole: "exact",
         corner: 10.0,
     };
-    for _ in 0..20 {
+    for _ in rounds {
         let machine = machine(&mut rng, &given);
         let stops = path(
             &mut rng,
@@ -1421,8 +1419,8 @@ fn axes_that_exclude_one_another_never_move_together() {
 /// Runs longer than what waits at a time are held like short ones.
 #[test]
 fn long_runs_are_held() {
-    let mut rng = Rng(59);
-    for round in 0..6 {
+    let (rounds, mut rng) = randomised(6, 59);
+    for round in rounds {
         let given = Given {
             decimals: 4,
             tolerance: 0.01,

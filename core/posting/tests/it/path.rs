@@ -9,7 +9,7 @@ use post_plugin::Feed;
 use post_posting::program::Reading;
 use post_posting::{Job, MOST_FAULTS};
 use post_testkit::posted::{self, Asked, Point, Run, Samples, cl, line, post};
-use post_testkit::{Reference, Rng, angle, between, distance, slerp};
+use post_testkit::{Reference, Rng, angle, between, distance, randomised, rounds, seeded, slerp};
 
 fn run(machine: &Machine, cl: &str, job: Job) -> Run {
     let mut run = post(machine, 3, cl, job, &mut Samples);
@@ -405,8 +405,8 @@ fn every_block_of_random_paths_is_within_tolerance() {
         for tcp in [false, true] {
             let model = model(kind, tcp, WIDE, &[]);
             let mut worst = Worst::default();
-            for seed in 0..8 {
-                let points = walk(&mut Rng(100 + seed), 60, 1.0);
+            for seed in 0..8 * u64::from(rounds()) {
+                let points = walk(&mut seeded(100 + seed), 60, 1.0);
                 let one = check(&format!("{kind} {tcp} {seed}"), &model, &points);
                 worst.tip = worst.tip.max(one.tip);
                 worst.axis = worst.axis.max(one.axis);
@@ -426,7 +426,7 @@ fn a_held_axis_leaves_a_four_axis_machine() {
         for tcp in [false, true] {
             let model = model("trunnion", tcp, WIDE, &[&format!("axis.C.indexed={held}")]);
             let frame = Rotation3::from_axis_angle(&Vector3::z_axis(), held.to_radians());
-            let points: Vec<Point> = walk(&mut Rng(55), 60, 1.0)
+            let points: Vec<Point> = walk(&mut seeded(55), 60, 1.0)
                 .into_iter()
                 .map(|old| {
                     point(
@@ -658,7 +658,7 @@ fn fastest(tcp: bool) -> f64 {
                 })
                 .collect();
             for feed in [300.0, 6000.0] {
-                let points = walk(&mut Rng(7), 80, 1.0);
+                let points = walk(&mut seeded(7), 80, 1.0);
                 let run = model.run(&cl(&points, feed)).good("a path");
                 let (mut at_feed, mut limited) = (0, 0);
                 let mut last: Option<&Asked> = None;
@@ -1050,7 +1050,7 @@ fn faults_say_where_what_and_how_much() {
 /// (the recorder looks at each).
 #[test]
 fn no_numbers_make_it_stumble() {
-    let mut rng = Rng(9);
+    let (rounds, mut rng) = randomised(150, 9);
     // The further on, the worse.
     let odd = [
         0.0, 1.0, -1.0, 0.5, 1e-7, -0.0, 1e-12, 1e3, 1e9, 1e30, 1e300,
@@ -1059,7 +1059,7 @@ fn no_numbers_make_it_stumble() {
     for kind in ["trunnion", "head", "nutating"] {
         for tcp in [false, true] {
             let model = model(kind, tcp, WIDE, &[]);
-            for _ in 0..150 {
+            for _ in rounds.clone() {
                 let mut text = "UNITS/MM\nMULTAX/ON\n".to_owned();
                 let most = [4, 5, 7, odd.len()][rng.pick(4)];
                 for _ in 0..8 {

@@ -9,7 +9,7 @@ use post_machine::kinematics::{Joints, Pose, Solver};
 use post_plugin::Feed;
 use post_testkit::posted::Asked;
 use post_testkit::posted::{Bench, Point, Run, cl, line, point};
-use post_testkit::{Rng, across, angle, distance, repository, slerp, turned};
+use post_testkit::{Rng, across, angle, distance, randomised, repository, slerp, turned};
 
 /// A machine of a class: chain, rotary axes with their lines, gauge and tool length.
 #[derive(Clone, Copy)]
@@ -389,7 +389,7 @@ fn against(bench: &Bench, joints: &Joints) -> f64 {
 const AGAINST: f64 = 1e6;
 
 fn exhaustive(seed: u64, sides: bool) {
-    let mut rng = Rng(seed);
+    let (rounds, mut rng) = randomised(60, seed);
     let (mut chosen, mut refused, mut careless, mut states) = (0, 0, 0, 0);
     let mut worst = 0.0f64;
     let mut faults: Vec<String> = Vec::new();
@@ -402,7 +402,7 @@ fn exhaustive(seed: u64, sides: bool) {
             "axis:second",
             "axis:X",
         ] {
-            for round in 0..60 {
+            for round in rounds.clone() {
                 let tilt = match rng.pick(3) {
                     0 => [-175.0, 175.0],
                     1 => [-rng.range(20.0, 120.0), rng.range(20.0, 120.0)].map(f64::round),
@@ -1530,10 +1530,10 @@ fn a_tilt_that_ends_at_the_pole_rests_there() {
 /// Random walks close to the pole, cuts and rapids, on machines with all kinds of travel: whatever is posted keeps
 /// tip, axis and travel; what is refused is refused for a jump or for travel.
 fn walks() -> Faults {
-    let mut rng = Rng(41);
+    let (rounds, mut rng) = randomised(1_200, 41);
     let mut refused = 0;
     let mut faults = Faults::default();
-    for round in 0..1_200 {
+    for round in rounds {
         let class = &CLASSES[round % 4];
         let second = [
             [-175.0, 175.0],
@@ -1692,10 +1692,10 @@ fn an_endless_axis_turns_on_and_on() {
 /// far they turn.
 #[test]
 fn long_cuts_arrive_where_the_axes_come_to() {
-    let mut rng = Rng(51);
+    let (rounds, mut rng) = randomised(800, 51);
     let mut faults = Faults::default();
     let mut far = 0;
-    for round in 0..800 {
+    for round in rounds {
         let class = &CLASSES[round % 4];
         let given = Given {
             tcp: ["post", "control"][rng.pick(2)],
@@ -1818,10 +1818,10 @@ fn a_side_whose_travel_ends_between_two_points_is_not_taken() {
 /// shorter way is the one that is meant.
 #[test]
 fn an_axis_shown_over_one_turn_goes_the_way_that_is_meant() {
-    let mut rng = Rng(61);
+    let (rounds, mut rng) = randomised(200, 61);
     let mut stages = 0;
     let mut refused = Vec::new();
-    for round in 0..200 {
+    for round in rounds {
         let class = &CLASSES[round % 4];
         let range = [[0.0, 360.0], [-180.0, 180.0]][rng.pick(2)];
         let given = Given {
@@ -1931,10 +1931,10 @@ fn cheapest(bench: &Bench, solver: &Solver, points: &[Point]) -> f64 {
 /// costs what the cheapest way costs, and looking less far costs more at most.
 #[test]
 fn a_window_of_any_length_gives_a_path_that_hangs_together() {
-    let mut rng = Rng(71);
+    let (rounds, mut rng) = randomised(80, 71);
     let (mut posted, mut refused, mut lost) = (0, 0, 0);
     let mut dearer: std::collections::BTreeMap<u32, f64> = std::collections::BTreeMap::new();
-    for round in 0..80 {
+    for round in rounds {
         let class = &CLASSES[round % 4];
         let c = turns(&mut rng);
         let tilt = [[-175.0, 175.0], [-100.0, 40.0], [-30.0, 120.0]][rng.pick(3)];
@@ -2062,10 +2062,10 @@ rapid_tolerance = 0.5
 "#;
     let bench = Bench::new(text, 4, 0.0);
     assert!(!bench.machine.solver(0.0).expect("a form").closed_form());
-    let mut rng = Rng(81);
+    let (rounds, mut rng) = randomised(30, 81);
     let (mut posted, mut refused) = (0, 0);
     let mut faults = Faults::default();
-    for round in 0..30 {
+    for round in rounds {
         // A walk of the axes, so that every point can be reached.
         let mut q = Joints::default();
         let slope: Joints = std::array::from_fn(|_| rng.range(-1.0, 1.0));

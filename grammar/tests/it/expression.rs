@@ -162,6 +162,8 @@ fn expressions_without_a_value() {
 }
 
 proptest! {
+    #![proptest_config(crate::cases())]
+
     #[test]
     fn any_text_is_read_or_refused(text in "([0-9.]{1,4}|[a-z]{1,3}|[-+*/^(), ]|sin|atan2\\(|é){0,40}") {
         match parse_expression(&text) {

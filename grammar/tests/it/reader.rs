@@ -245,6 +245,8 @@ const SAMPLE: &str = "\u{FEFF}PARTNO blade\r\nUNITS / MM\r\n\r\n$$-> CSYS / 1, 0
     GOTO / 1, 2, 3, $\n0, 0, 1\nGOTO/1,2\rRAPID\rGOTO/4.5,-.5,1.E-3\n\rCIRCLE/0,0,0,0,0,1 $$ c $\nFINI";
 
 proptest! {
+    #![proptest_config(crate::cases())]
+
     #[test]
     fn chunks_do_not_matter(sizes in prop::collection::vec(1..40usize, 1..6)) {
         let trickle = Trickle { bytes: SAMPLE.as_bytes(), sizes: sizes.into_iter().cycle() };

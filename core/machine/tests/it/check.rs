@@ -7,7 +7,7 @@
 use nalgebra::{Matrix3, Vector3};
 use post_machine::check::{Check, compare};
 use post_machine::description::{Machine, Source, load};
-use post_testkit::{Reference, Rng, angle};
+use post_testkit::{Reference, Rng, angle, randomised};
 
 /// Tool length, mm.
 const LENGTH: f64 = 90.0;
@@ -86,9 +86,9 @@ fn zero(reference: &Reference) -> Vec<f64> {
 
 #[test]
 fn no_setting_of_the_axes_is_worse_than_the_one_told() {
-    let mut rng = Rng(3);
+    let (rounds, mut rng) = randomised(3, 3);
     for (chain, _) in CHAINS {
-        for _ in 0..3 {
+        for _ in rounds.clone() {
             let drawn = machine(chain, &mut rng, 0.0, 0.0);
             let real = machine(chain, &mut rng, 2e-4, 0.05);
             let told = compare(&real, &drawn, LENGTH).unwrap();
@@ -144,8 +144,8 @@ fn no_setting_of_the_axes_is_worse_than_the_one_told() {
 /// Errors are small, so what each makes alone adds up as vectors, but for products of two of them.
 #[test]
 fn the_parts_add_up_to_the_whole() {
-    let mut rng = Rng(5);
-    for (chain, _) in CHAINS {
+    let (rounds, mut rng) = randomised(1, 5);
+    for (chain, _) in rounds.flat_map(|_| CHAINS) {
         let drawn = machine(chain, &mut rng, 0.0, 0.0);
         let real = machine(chain, &mut rng, 1e-4, 0.02);
         let told = compare(&real, &drawn, LENGTH).unwrap();
@@ -164,8 +164,8 @@ fn the_parts_add_up_to_the_whole() {
 /// The same file gives the same check, and forward and inverse agree for lines in any place.
 #[test]
 fn measured_machines_of_every_chain_pass_the_round_trip() {
-    let mut rng = Rng(7);
-    for (chain, _) in CHAINS {
+    let (rounds, mut rng) = randomised(1, 7);
+    for (chain, _) in rounds.flat_map(|_| CHAINS) {
         let real = machine(chain, &mut rng, 2e-3, 0.5);
         let check = Check::of(&real, LENGTH).unwrap();
         assert_eq!(check.round_trip.not_found, 0, "{chain}");

@@ -8,7 +8,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use post_machine::kinematics::POLE;
 use post_machine::kinematics::orientation::RotarySet;
 use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
-use post_testkit::{Random, Rng, angle, turned};
+use post_testkit::{Random, Rng, angle, randomised, turned};
 
 /// A pose of which the tool axis alone matters.
 fn towards(axis: Vector3<f64>) -> Pose {
@@ -46,10 +46,10 @@ fn sets(
 /// pose, and where the axes are not near singular the values that the pose was made with are among them.
 #[test]
 fn every_solution_leads_back_to_the_pose() {
-    let mut rng = Rng(1);
+    let (rounds, mut rng) = randomised(12_000, 1);
     let (mut forward, mut tip, mut axis, mut own): (f64, f64, f64, f64) = (0.0, 0.0, 0.0, 0.0);
     let (mut poses, mut regular) = (0, 0);
-    for round in 0..12_000 {
+    for round in rounds {
         let machine = Random::new(&mut rng, round % 3, usize::from(round % 7 < 2));
         let reference = &machine.reference;
         let solver = solver(&machine);
@@ -160,9 +160,9 @@ fn scan(machine: &Random, wanted: Vector3<f64>) -> f64 {
 /// A wanted axis is refused exactly when no angles of the scan reach it, and the miss is the scan's.
 #[test]
 fn axes_out_of_reach_are_refused_by_the_angle_that_a_scan_finds() {
-    let mut rng = Rng(2);
+    let (rounds, mut rng) = randomised(240_u32, 2);
     let (mut refused, mut reached, mut worst): (u32, u32, f64) = (0, 0, 0.0);
-    for round in 0..240_u32 {
+    for round in rounds {
         let machine = Random::new(&mut rng, 2, usize::from(round.is_multiple_of(3)));
         let wanted = rng.direction();
         let least = scan(&machine, wanted);
@@ -193,8 +193,8 @@ fn axes_out_of_reach_are_refused_by_the_angle_that_a_scan_finds() {
 /// One axis or none: the nearest orientation is taken within the tolerance, and refused beyond it.
 #[test]
 fn one_axis_or_none_takes_the_nearest_orientation() {
-    let mut rng = Rng(3);
-    for round in 0..2_000 {
+    let (rounds, mut rng) = randomised(2_000, 3);
+    for round in rounds {
         let machine = Random::new(&mut rng, round % 2, 1);
         let reference = &machine.reference;
         let solver = solver(&machine);
@@ -256,9 +256,9 @@ fn pole(rng: &mut Rng, round: usize) -> (Random, Joints, Vector3<f64>) {
 /// linear axes put the tip on its place all the same.
 #[test]
 fn on_the_pole_the_first_axis_is_free() {
-    let mut rng = Rng(4);
+    let (rounds, mut rng) = randomised(2_000, 4);
     let (mut axis_error, mut tip_error): (f64, f64) = (0.0, 0.0);
-    for round in 0..2_000 {
+    for round in rounds {
         let (machine, q, wanted) = pole(&mut rng, round);
         let reference = &machine.reference;
         let solver = solver(&machine);
@@ -298,9 +298,9 @@ fn on_the_pole_the_first_axis_is_free() {
 /// over the distance from the pole (and over the tilt between the two axes); nearer than `POLE` the first is free.
 #[test]
 fn beside_the_pole_the_tool_points_where_it_is_wanted() {
-    let mut rng = Rng(5);
+    let (rounds, mut rng) = randomised(4_000, 5);
     let (mut outside, mut inside): (f64, f64) = (0.0, 0.0);
-    for round in 0..4_000 {
+    for round in rounds {
         let (machine, mut q, on_pole) = pole(&mut rng, round);
         q[machine.free[1]] += rng.order(-9.0, -1.0);
         let wanted = machine.reference.forward(&q).1;
@@ -322,9 +322,9 @@ fn beside_the_pole_the_tool_points_where_it_is_wanted() {
 /// A pose beside the pole is reachable, so the inverse must find it, however near.
 #[test]
 fn the_inverse_finds_every_pose_beside_the_pole() {
-    let mut rng = Rng(7);
+    let (rounds, mut rng) = randomised(4_000, 7);
     let mut refused = Vec::new();
-    for round in 0..4_000 {
+    for round in rounds {
         let (machine, mut q, on_pole) = pole(&mut rng, round);
         q[machine.free[1]] += rng.order(-7.0, -3.0);
         if machine.reference.volume(&q) < 0.1 {
@@ -354,8 +354,8 @@ fn the_inverse_finds_every_pose_beside_the_pole() {
 /// An axis that turns the tool about itself is free: its last value is kept, as `RotarySet::free` promises.
 #[test]
 fn an_axis_along_the_tool_keeps_its_value() {
-    let mut rng = Rng(6);
-    for round in 0..200 {
+    let (rounds, mut rng) = randomised(200, 6);
+    for round in rounds {
         let mut machine = Random::new(&mut rng, 2, 0);
         let second = machine.free[1];
         machine.reference.axis = machine.reference.joints[second].direction;

@@ -11,7 +11,9 @@ use post_machine::kinematics::{Chain, Joint, Joints, Pose, Solver, Trace};
 use post_posting::accuracy::certificate::{
     Bend, Course, chord_angle, deviation, quick, rim, tight,
 };
-use post_testkit::{Random, Reference, Rng, angle, between, blade, distance, repository, slerp};
+use post_testkit::{
+    Random, Reference, Rng, angle, between, blade, distance, randomised, repository, slerp,
+};
 
 /// The chain at the ends of a block.
 fn traces(chain: &Chain, from: &Joints, to: &Joints) -> [Trace; 2] {
@@ -91,9 +93,9 @@ fn block(rng: &mut Rng, turn: f64, slide: f64) -> (Random, Joints, Joints) {
 /// Blocks of every size, half of them with ends that rounding puts beside their targets: no sample exceeds a bound.
 #[test]
 fn no_sample_exceeds_the_bounds() {
-    let mut rng = Rng(11);
+    let (rounds, mut rng) = randomised(4_200, 11);
     let mut least = [f64::INFINITY; 2];
-    for round in 0..4_200 {
+    for round in rounds {
         let count = if round < 200 { 10_000 } else { 500 };
         let (turn, slide) = (rng.order(-2.0, 2.5), rng.order(-2.0, 2.8));
         let (machine, from, to) = block(&mut rng, turn, slide);
@@ -147,10 +149,10 @@ fn no_sample_exceeds_the_bounds() {
 /// On small moves `tight` is the sampled maximum to 5 %, wherever second-order terms do not cancel.
 #[test]
 fn tight_is_tight_on_small_moves() {
-    let mut rng = Rng(12);
+    let (rounds, mut rng) = randomised(6_000, 12);
     let mut worst = [0.0f64; 2];
     let mut counted = [0; 2];
-    for round in 0..6_000 {
+    for round in rounds {
         // Both angles together turn by less than two degrees.
         let (turn, slide) = (rng.range(0.05, 0.99), rng.order(-1.0, 1.0));
         let (machine, from, to) = block(&mut rng, turn, slide);
@@ -184,10 +186,10 @@ fn tight_is_tight_on_small_moves() {
 /// they balance a small move the bound is hardly more than the largest sample.
 #[test]
 fn ends_off_the_path_count_against_the_bow() {
-    let mut rng = Rng(17);
+    let (rounds, mut rng) = randomised(3_000, 17);
     let mut worst = 0.0f64;
     let mut counted = 0;
-    for round in 0..3_000 {
+    for round in rounds {
         let count = if round < 100 { 10_000 } else { 500 };
         let small = round % 2 == 0;
         let (machine, from, to) = if small {
@@ -241,9 +243,9 @@ fn ends_off_the_path_count_against_the_bow() {
 /// turns that is eq. 10 of Sha et al. 2022, `R·Δ²/8`, and the height of it is eq. 9.
 #[test]
 fn the_cutting_edge_bows_as_the_parabolic_paper_says() {
-    let mut rng = Rng(19);
+    let (rounds, mut rng) = randomised(1_000, 19);
     let mut closest = f64::INFINITY;
-    for round in 0..1_000 {
+    for round in rounds {
         let (turn, slide) = (rng.order(-2.0, 2.2), 1.0);
         let (machine, from, to) = block(&mut rng, turn, slide);
         let reference = &machine.reference;
@@ -305,9 +307,9 @@ fn the_cutting_edge_bows_as_the_parabolic_paper_says() {
 /// forward product give too.
 #[test]
 fn tight_tends_to_the_second_derivative() {
-    let mut rng = Rng(13);
+    let (rounds, mut rng) = randomised(3_000, 13);
     let mut worst = [0.0f64; 2];
-    for round in 0..3_000 {
+    for round in rounds {
         let (machine, at, to) = block(&mut rng, 40.0, 200.0);
         let reference = &machine.reference;
         let step: Joints = std::array::from_fn(|index| to[index] - at[index]);
@@ -483,8 +485,8 @@ fn the_blade_of_the_harmonic_paper() {
 /// A block that turns nothing bends nothing.
 #[test]
 fn straight_blocks_have_no_deviation() {
-    let mut rng = Rng(14);
-    for _ in 0..100 {
+    let (rounds, mut rng) = randomised(100, 14);
+    for _ in rounds {
         let (machine, from, mut to) = block(&mut rng, 1.0, 500.0);
         for (index, joint) in machine.reference.joints.iter().enumerate() {
             if joint.rotary {

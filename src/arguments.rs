@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use post_machine::description::Machine;
+use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 
 use crate::check::CheckArguments;
@@ -12,7 +12,7 @@ use crate::machines;
 use crate::new::NewArguments;
 use crate::plugins::kit::PluginArguments;
 use crate::study::StudyArguments;
-use crate::values::{Point, TcpArgument, UnitsArgument, not_negative, point, positive};
+use crate::values::{Point, TcpArgument, UnitsArgument, not_negative, point, positive, setting};
 
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
 ///
@@ -157,8 +157,8 @@ pub struct JobArguments {
     pub tool_length: Option<f64>,
 
     /// Sets a parameter of the machine (`Lm=312`) or any key (`accuracy.tolerance=0.001`).
-    #[arg(long, value_name = "NAME=VALUE", help_heading = "Machine")]
-    pub set: Vec<String>,
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "Machine")]
+    pub set: Vec<Setting>,
 
     /// Largest deviation of the tip in a cut, mm; short for --set accuracy.tolerance=…
     #[arg(long, value_name = "MM", value_parser = positive, help_heading = "Machine")]
@@ -200,7 +200,7 @@ impl JobArguments {
     }
 
     /// The machine with all settings, and `more` after them.
-    pub fn machine(&self, more: &[String]) -> Result<Machine, Vec<Diagnostic>> {
+    pub fn machine(&self, more: &[Setting]) -> Result<Machine, Vec<Diagnostic>> {
         let mut settings = self.settings();
         settings.extend_from_slice(more);
         let name = self.machine.as_deref().unwrap_or_default();
@@ -208,21 +208,11 @@ impl JobArguments {
     }
 
     /// What the short flags set, after what `--set` sets.
-    fn settings(&self) -> Vec<String> {
+    fn settings(&self) -> Vec<Setting> {
         let mut settings = self.set.clone();
-        if let Some(mount) = &self.mount {
-            settings.push(mount.setting());
-        }
-        if let Some(tolerance) = self.tolerance {
-            settings.push(format!("accuracy.tolerance={tolerance:?}"));
-        }
-        if let Some(tcp) = self.tcp {
-            let who = match tcp {
-                TcpArgument::Control => "control",
-                TcpArgument::Post => "post",
-            };
-            settings.push(format!("control.tcp=\"{who}\""));
-        }
+        settings.extend(self.mount.map(Setting::Mount));
+        settings.extend(self.tolerance.map(Setting::Tolerance));
+        settings.extend(self.tcp.map(|tcp| Setting::Tcp(tcp.into())));
         settings
     }
 }

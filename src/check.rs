@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use post_machine::check::{Check, Comparison, Differing, compare};
-use post_machine::description::Machine;
+use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_posting::Output as _;
 
@@ -71,8 +71,8 @@ pub struct CheckArguments {
     mount: Option<Point>,
 
     /// Sets a parameter of the machine (`Lm=312`) or any key; in MACHINE alone, not in the other of --nominal.
-    #[arg(long, value_name = "NAME=VALUE")]
-    set: Vec<String>,
+    #[arg(long, value_name = "NAME=VALUE", value_parser = values::setting)]
+    set: Vec<Setting>,
 
     /// A further folder of machine files; the environment variable POST_MACHINES adds more.
     #[arg(long, value_name = "FOLDER")]
@@ -91,7 +91,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
             "picture and JSON cannot go to one place".to_owned(),
         ));
     }
-    let mount = arguments.mount.map(|mount| mount.setting());
+    let mount = arguments.mount.map(Setting::Mount);
     let mut settings = arguments.set.clone();
     settings.extend(mount.clone());
     let machine = machines::load(&arguments.machine, &arguments.machines, &settings)?;
@@ -103,7 +103,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
         return commission::write(arguments, &machine);
     }
     if let Some(nominal) = &arguments.nominal {
-        let mount: Vec<String> = mount.into_iter().collect();
+        let mount: Vec<Setting> = mount.into_iter().collect();
         let nominal = machines::load(nominal, &arguments.machines, &mount)?;
         let compared = compare(&machine, &nominal, arguments.tool_length)
             .map_err(|fault| differing(&fault))?;

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use post_machine::description::{self, Machine, Source};
+use post_machine::description::{self, Machine, Setting, Source};
 use post_machine::diagnostic::Diagnostic;
 
 use crate::values;
@@ -17,7 +17,7 @@ const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.r
 pub fn load(
     name: &str,
     named: &[PathBuf],
-    settings: &[String],
+    settings: &[Setting],
 ) -> Result<Machine, Vec<Diagnostic>> {
     let folders = folders(named);
     let fault = |message| vec![Diagnostic::error("machine", message)];

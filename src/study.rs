@@ -16,7 +16,7 @@ use std::{fs, io};
 
 use clap::Args;
 use post_host::OpenedModel;
-use post_machine::description::{Machine, Placement};
+use post_machine::description::{Machine, Method, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::ModelSession;
 use post_posting::Output as _;
@@ -243,7 +243,7 @@ fn survey(
     for ((index, placement), pieces) in Survey::PLACEMENTS.iter().enumerate().zip(&survey.pieces) {
         let placed = rows.iter().filter_map(|row| row.placed[index]);
         let points = placed.map(|placed| u64::from(placed.points)).sum();
-        let name = placement_name(*placement).to_owned();
+        let name = placement.name().to_owned();
         spread(name, pieces.clone(), Some(points));
     }
     Ok((
@@ -254,15 +254,6 @@ fn survey(
         },
         findings,
     ))
-}
-
-/// As the machine file writes it.
-pub fn placement_name(placement: Placement) -> &'static str {
-    match placement {
-        Placement::Bisect => "bisect",
-        Placement::Even => "even",
-        Placement::Fewest => "fewest",
-    }
 }
 
 /// Which move is looked at.
@@ -301,7 +292,7 @@ fn keep(
 /// Posts the whole file by each placement, with and without leaving out CL points, and compensated with each model.
 fn programs(job: &Job<'_>, models: &[String]) -> Result<Vec<Program>, Vec<Diagnostic>> {
     let mut programs = Vec::new();
-    let mut post = |name: String, reduce: bool, settings: &[String]| {
+    let mut post = |name: String, reduce: bool, settings: &[Setting]| {
         let machine = job.machine(settings)?;
         let report = match job.pass(&machine, None) {
             Ok((report, _)) => Ok(report),
@@ -318,20 +309,19 @@ fn programs(job: &Job<'_>, models: &[String]) -> Result<Vec<Program>, Vec<Diagno
         Ok::<(), Vec<Diagnostic>>(())
     };
     for placement in Survey::PLACEMENTS {
-        let name = placement_name(placement);
         for reduce in [false, true] {
             let settings = [
-                "accuracy.method=\"linearise\"".to_owned(),
-                format!("accuracy.placement=\"{name}\""),
-                format!("accuracy.reduce={reduce}"),
+                Setting::Method(Method::Linearise),
+                Setting::Placement(placement),
+                Setting::Reduce(reduce),
             ];
-            post(name.to_owned(), reduce, &settings)?;
+            post(placement.name().to_owned(), reduce, &settings)?;
         }
     }
     for model in models {
         let settings = [
-            "accuracy.method=\"compensate\"".to_owned(),
-            format!("accuracy.model=\"{model}\""),
+            Setting::Method(Method::Compensate),
+            Setting::Model(model.clone()),
         ];
         post(format!("compensate, {model}"), false, &settings)?;
     }

@@ -1,9 +1,11 @@
 //! Values on the command line: points, lengths, folders.
 
+use std::convert::Infallible;
 use std::env;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use post_machine::description::{Setting, Tcp};
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum UnitsArgument {
@@ -26,22 +28,35 @@ pub fn folders(named: &[PathBuf], variable: &str) -> Vec<PathBuf> {
     folders
 }
 
-/// `X,Y,Z`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point([f64; 3]);
+impl From<TcpArgument> for Tcp {
+    fn from(who: TcpArgument) -> Self {
+        match who {
+            TcpArgument::Control => Self::Control,
+            TcpArgument::Post => Self::Post,
+        }
+    }
+}
 
+/// `NAME=VALUE`; what it means to the machine file is the loader's business.
+pub fn setting(text: &str) -> Result<Setting, Infallible> {
+    Ok(Setting::Written(text.to_owned()))
+}
+
+/// Three coordinates.
+pub type Point = [f64; 3];
+
+/// `X,Y,Z`.
 pub fn point(text: &str) -> Result<Point, String> {
     let numbers = text
         .split(',')
         .map(|number| finite(number.trim()))
         .collect::<Result<Vec<f64>, String>>()?;
-    match numbers.try_into() {
-        Ok(numbers) => Ok(Point(numbers)),
-        Err(numbers) => Err(format!(
+    numbers.try_into().map_err(|numbers: Vec<f64>| {
+        format!(
             "three numbers are needed, X,Y,Z; there are {}",
             numbers.len()
-        )),
-    }
+        )
+    })
 }
 
 pub fn finite(text: &str) -> Result<f64, String> {
@@ -62,13 +77,5 @@ pub fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {
         number if number > 0.0 => Ok(number),
         number => Err(format!("{number} is not above zero")),
-    }
-}
-
-impl Point {
-    /// As the mount of the part, for `--set`.
-    pub fn setting(&self) -> String {
-        let [x, y, z] = &self.0;
-        format!("workpiece.mount=[{x:?}, {y:?}, {z:?}]")
     }
 }

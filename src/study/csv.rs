@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use post_study::{Placed, Row, Survey};
 
 use super::pictures::MICRO;
-use super::{File, Study, placement_name};
+use super::{File, Study};
 
 /// The files that there can be.
 pub const NAMES: [&str; 4] = ["moves.csv", "summary.csv", "blocks.csv", "sweep.csv"];
@@ -40,7 +40,7 @@ fn moves(study: &Study) -> String {
         }
     }
     for placement in Survey::PLACEMENTS {
-        let name = placement_name(placement);
+        let name = placement.name();
         let _ = write!(text, ",{name}_points,{name}_certified_um,{name}_peak_um");
     }
     text.push('\n');

@@ -1,7 +1,7 @@
 //! One CL file on one machine, gone over as often as it takes, its text thrown away.
 
 use post_host::{Finder, OpenedDialect};
-use post_machine::description::Machine;
+use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Batch, DialectSession, Format, WriteFault};
 use post_posting::report::Report;
@@ -39,8 +39,8 @@ impl<'a> Job<'a> {
     }
 
     /// The machine with `more` set, every CL point of its cuts kept.
-    pub fn machine(&self, more: &[String]) -> Result<Machine, Vec<Diagnostic>> {
-        let mut settings = vec!["accuracy.reduce=false".to_owned()];
+    pub fn machine(&self, more: &[Setting]) -> Result<Machine, Vec<Diagnostic>> {
+        let mut settings = vec![Setting::Reduce(false)];
         settings.extend_from_slice(more);
         self.arguments.machine(&settings)
     }

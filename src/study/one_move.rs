@@ -6,7 +6,7 @@ use post_study::{Kept, Rim, Stretch};
 
 use super::chart::{Chart, DASHED, GREY, LOOKS, Marker, Series};
 use super::pictures::{FINE, HUGE, MICRO, digits, focus, sampled, tolerance};
-use super::{Models, Study, placement_name};
+use super::{Models, Study};
 
 /// More points than this would run into one another.
 const MOST_POINTS: usize = 60;
@@ -120,7 +120,7 @@ pub fn neighbours(study: &Study, models: &mut Models) -> Chart {
     }
     let largest = before.iter().map(|point| point[1]).fold(0.0, f64::max);
     let ends = [before.first(), before.last()].map(|point| point.map_or(0.0, |point| point[0]));
-    let name = placement_name(placement);
+    let name = placement.name();
     let every = points.len().div_ceil(MOST_POINTS).max(1);
     let points = points.into_iter().step_by(every).collect();
     let told = match every {

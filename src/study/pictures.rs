@@ -4,7 +4,7 @@
 use post_study::{Survey, histogram};
 
 use super::chart::{Chart, DASHED, Draw, GREY, LIMIT, LOOKS, Series};
-use super::{File, Models, Study, one_move, path, placement_name};
+use super::{File, Models, Study, one_move, path};
 
 /// Micrometres in a mm.
 pub const MICRO: f64 = 1e3;
@@ -133,7 +133,7 @@ fn before_after(study: &Study) -> Chart {
     for (index, placement) in Survey::PLACEMENTS.iter().enumerate() {
         let peak = |row: usize| rows[row].placed[index].map_or(0.0, |placed| placed.peak);
         if let Some(look) = looks.next() {
-            let name = format!("after {}", placement_name(*placement));
+            let name = format!("after {}", placement.name());
             series.push(Series::line(name, largest(&peak), look));
         }
     }
@@ -188,7 +188,7 @@ fn spread(study: &Study) -> Chart {
             })
             .collect()
     };
-    let name = placement_name(study.machine.accuracy.placement);
+    let name = study.machine.accuracy.placement.name();
     Chart {
         title: "How the largest deviations are spread, before and after".to_owned(),
         note: match beyond {

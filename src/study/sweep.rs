@@ -1,5 +1,6 @@
 //! `--sweep NAME=FROM:TO:STEP`: the same file on the same machine, one number of it changed step by step.
 
+use post_machine::description::Setting;
 use post_machine::diagnostic::Diagnostic;
 use post_study::{Distribution, Keeper, Kept};
 
@@ -65,7 +66,10 @@ fn short(value: f64) -> f64 {
 pub fn run(job: &Job<'_>, sweep: &Sweep, number: usize) -> Result<Vec<Swept>, Vec<Diagnostic>> {
     let mut swept = Vec::new();
     for value in &sweep.values {
-        let setting = format!("{}={value:?}", sweep.name);
+        let setting = Setting::Number {
+            name: sweep.name.clone(),
+            value: *value,
+        };
         let machine = job.machine(&[setting])?;
         let mut keeper = Keeper::new(number..number + 1);
         job.pass(&machine, Some(&mut keeper))

@@ -7,7 +7,7 @@ use post_machine::description::Tcp;
 use post_study::{Row, Survey};
 
 use super::pictures::{self, MICRO, digits};
-use super::{File, Study, placement_name};
+use super::{File, Study};
 
 /// Moves that are printed.
 const MOST: usize = 10;
@@ -163,7 +163,7 @@ fn moves(text: &mut String, study: &Study) {
     }
     text.push_str(" |");
     for placement in Survey::PLACEMENTS {
-        let _ = write!(text, " {:>12}", placement_name(placement));
+        let _ = write!(text, " {:>12}", placement.name());
     }
     text.push('\n');
     for index in order {

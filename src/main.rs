@@ -1,26 +1,19 @@
 //! `post`: turns a cutter-location file into the NC program of one machine.
 
 mod arguments;
-mod check;
-mod input;
-mod machines;
-mod new;
-mod output;
-mod plugins;
-mod posting;
-mod progress;
-mod render;
-mod study;
-mod summary;
-mod svg;
-mod values;
-mod words;
+mod files;
+mod job;
+mod terminal;
+mod verbs;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
 use arguments::{Arguments, Command};
+use job::machine_files as machines;
+use terminal::findings as render;
+use verbs::{check, list_words as words, new, post as posting, study, test_plugin};
 
 /// All is good.
 const GOOD: u8 = 0;
@@ -39,7 +32,7 @@ fn main() -> ExitCode {
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::New(arguments)) => new::run(arguments),
         Some(Command::Study(arguments)) => study::run(arguments),
-        Some(Command::Plugin(arguments)) => plugins::kit::run(arguments),
+        Some(Command::Plugin(arguments)) => test_plugin::run(arguments),
         None => posting::run(&arguments.post),
     };
     match done {

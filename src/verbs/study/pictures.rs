@@ -4,7 +4,7 @@
 use post_study::{Survey, histogram};
 
 use super::chart::{Chart, DASHED, Draw, GREY, LIMIT, LOOKS, Series};
-use super::{File, Models, Study, one_move, path};
+use super::{File, Models, Study, move_pictures, path_picture};
 
 /// Micrometres in a mm.
 pub const MICRO: f64 = 1e3;
@@ -44,14 +44,17 @@ pub fn files(study: &Study, models: &mut Models) -> Vec<File> {
     ];
     let focus = study.kept.iter().find(|kept| kept.number == study.focus);
     if let Some(kept) = focus {
-        let fits = one_move::fits(kept, study, models);
-        files.push(("move.svg", one_move::along(study, kept, &fits).svg()));
-        files.push(("left.svg", one_move::left(study, kept, &fits).svg()));
-        files.push(("neighbours.svg", one_move::neighbours(study, models).svg()));
-        if let Some(chart) = path::chart(study, kept, models) {
+        let fits = move_pictures::fits(kept, study, models);
+        files.push(("move.svg", move_pictures::along(study, kept, &fits).svg()));
+        files.push(("left.svg", move_pictures::left(study, kept, &fits).svg()));
+        files.push((
+            "neighbours.svg",
+            move_pictures::neighbours(study, models).svg(),
+        ));
+        if let Some(chart) = path_picture::chart(study, kept, models) {
             files.push(("path.svg", chart.svg()));
         }
-        if let Some(chart) = one_move::edge(study, kept) {
+        if let Some(chart) = move_pictures::edge(study, kept) {
             files.push(("edge.svg", chart.svg()));
         }
     }

@@ -8,7 +8,7 @@ use post_grammar::{ReadError, Reader};
 use post_machine::diagnostic::{Diagnostic, unreadable};
 use post_posting::program::{Usage, usage};
 
-use crate::input::{Input, one};
+use crate::files::cl_input::{Input, one};
 
 /// Prints the table.
 pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {

@@ -1,8 +1,8 @@
 //! `post check`: what a machine file means, to be compared with the machine.
 
-mod commission;
-mod picture;
-mod text;
+mod check_text;
+mod commission_program;
+mod reach_picture;
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -13,10 +13,12 @@ use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_posting::Output as _;
 
-use crate::input::{one, standard};
-use crate::output::Target;
-use crate::values::{self, Point};
-use crate::{machines, posting, render};
+use crate::arguments::flag_values::{self as values, Point};
+use crate::files::atomic_file::Target;
+use crate::files::cl_input::{one, standard};
+use crate::job::machine_files as machines;
+use crate::terminal::findings as render;
+use crate::verbs::post as posting;
 
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
 ///
@@ -100,7 +102,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
         None => machine,
     };
     if arguments.commission {
-        return commission::write(arguments, &machine);
+        return commission_program::write(arguments, &machine);
     }
     if let Some(nominal) = &arguments.nominal {
         let mount: Vec<Setting> = mount.into_iter().collect();
@@ -111,7 +113,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
     }
     let check = derive(&machine, arguments.tool_length)?;
     if let Some(path) = &arguments.svg {
-        write(arguments, path, &picture::draw(&check))?;
+        write(arguments, path, &reach_picture::draw(&check))?;
     }
     render::findings(&check.findings());
     if let Some(path) = &arguments.json {
@@ -120,7 +122,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
     if taken(arguments) {
         return Ok(());
     }
-    print(&text::check(&check));
+    print(&check_text::check(&check));
     if !machine.heads.is_empty() {
         let heads = machine.heads.iter().map(|head| head.name.as_str());
         let heads: Vec<&str> = heads.collect();
@@ -169,7 +171,7 @@ fn print_comparison(
     if taken(arguments) {
         return Ok(());
     }
-    print(&text::comparison(compared));
+    print(&check_text::comparison(compared));
     Ok(())
 }
 

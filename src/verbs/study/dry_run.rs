@@ -8,8 +8,9 @@ use post_posting::report::Report;
 use post_posting::{Output, Post, Watch};
 
 use crate::arguments::JobArguments;
-use crate::input::{Input, one, standard};
-use crate::{plugins, posting};
+use crate::files::cl_input::{Input, one, standard};
+use crate::job::plugin_finder as plugins;
+use crate::verbs::post as posting;
 
 /// Decimals that leave axis values as they are solved: a millionth of a micrometre.
 const EXACT: u8 = 9;

@@ -15,8 +15,9 @@ use post_plugin::{Batch, DialectSession, Event, Feed, Format};
 use post_posting::Output as _;
 
 use super::{CheckArguments, print, program_path};
-use crate::input::{one, standard};
-use crate::{plugins, posting};
+use crate::files::cl_input::{one, standard};
+use crate::job::plugin_finder as plugins;
+use crate::verbs::post as posting;
 
 /// A remark longer than this is no longer read whole on a control's screen.
 const REMARK: usize = 58;

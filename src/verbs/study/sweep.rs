@@ -5,7 +5,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_study::{Distribution, Keeper, Kept};
 
 use super::Job;
-use crate::input::one;
+use crate::files::cl_input::one;
 
 /// More values than this are a slip.
 const MOST: f64 = 200.0;
@@ -34,7 +34,7 @@ pub fn parse(text: &str) -> Result<Sweep, String> {
     let (name, range) = text.split_once('=').ok_or_else(form)?;
     let numbers: Vec<f64> = range
         .split(':')
-        .map(|number| crate::values::finite(number.trim()))
+        .map(|number| crate::arguments::flag_values::finite(number.trim()))
         .collect::<Result<_, _>>()?;
     let [from, to, step] = numbers[..] else {
         return Err(form());

@@ -7,8 +7,8 @@ use post_machine::diagnostic::Diagnostic;
 
 use super::template::Class;
 use super::{Given, NewArguments, Wishes, dialect, range};
-use crate::input::one;
-use crate::values::finite;
+use crate::arguments::flag_values::finite;
+use crate::files::cl_input::one;
 
 /// How often a wrong answer is asked again.
 const PATIENCE: usize = 3;

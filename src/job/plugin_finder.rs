@@ -1,7 +1,5 @@
 //! The plugins that are part of the command, and those that the user's folders hold.
 
-pub mod kit;
-
 use std::path::PathBuf;
 
 use post_host::{
@@ -14,7 +12,7 @@ use post_machine::diagnostic::{Diagnostic, Place};
 use post_plugin::Units;
 use post_posting::report::PluginUse;
 
-use crate::values;
+use crate::arguments::flag_values as values;
 
 /// The finder for a run, with the folders that the user `named`.
 pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
@@ -145,7 +143,11 @@ fn used(plugin: &Plugin) -> PluginUse {
 }
 
 /// A plugin's fault at the line of the machine file that asked for it.
-fn diagnostic(fault: &PluginFault, options: &[GivenOption], place: Option<Place>) -> Diagnostic {
+pub fn diagnostic(
+    fault: &PluginFault,
+    options: &[GivenOption],
+    place: Option<Place>,
+) -> Diagnostic {
     let place = match &fault.reason {
         Reason::Option(option) => options
             .iter()

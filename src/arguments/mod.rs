@@ -1,18 +1,22 @@
 //! The command line.
 
+pub mod flag_values;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 
-use crate::check::CheckArguments;
-use crate::input::standard;
-use crate::machines;
-use crate::new::NewArguments;
-use crate::plugins::kit::PluginArguments;
-use crate::study::StudyArguments;
-use crate::values::{Point, TcpArgument, UnitsArgument, not_negative, point, positive, setting};
+use crate::arguments::flag_values::{
+    Point, TcpArgument, UnitsArgument, not_negative, point, positive, setting,
+};
+use crate::files::cl_input::standard;
+use crate::job::machine_files as machines;
+use crate::verbs::check::CheckArguments;
+use crate::verbs::new::NewArguments;
+use crate::verbs::study::StudyArguments;
+use crate::verbs::test_plugin::PluginArguments;
 
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
 ///

@@ -1,14 +1,14 @@
 //! `post study`: how far the tool strays on a CL file, and what each model and each placement makes of it.
 
 mod chart;
-mod csv;
-mod job;
-mod one_move;
-mod path;
+mod dry_run;
+mod move_pictures;
+mod path_picture;
 mod pictures;
 mod scale;
+mod study_csv;
+mod study_text;
 mod sweep;
-mod table;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -24,9 +24,11 @@ use post_posting::report::Report;
 use post_study::{Distribution, Keeper, Kept, Row, Survey};
 
 use crate::arguments::JobArguments;
-use crate::input::one;
-use crate::{check, plugins, posting, render};
-use job::Job;
+use crate::files::cl_input::one;
+use crate::job::plugin_finder as plugins;
+use crate::terminal::findings as render;
+use crate::verbs::{check, post as posting};
+use dry_run::Job;
 use sweep::{Sweep, Swept};
 
 /// The models that are compared; the machine's own comes to them.
@@ -155,10 +157,10 @@ pub fn run(arguments: &StudyArguments) -> Result<(), Vec<Diagnostic>> {
         focus,
     };
     render::findings(&findings);
-    let mut files = csv::files(&study);
+    let mut files = study_csv::files(&study);
     files.extend(pictures::files(&study, &mut models));
     write(&folder, &files)?;
-    check::print(&table::text(&study, &folder, &files));
+    check::print(&study_text::text(&study, &folder, &files));
     Ok(())
 }
 
@@ -335,7 +337,7 @@ fn write(folder: &Path, files: &[File]) -> Result<(), Vec<Diagnostic>> {
     fs::create_dir_all(folder)
         .map_err(|error| one("output", format!("{}: {error}", folder.display())))?;
     // What an earlier study left here, and this one does not write, would be taken for its result.
-    let names = csv::NAMES.iter().chain(&pictures::NAMES);
+    let names = study_csv::NAMES.iter().chain(&pictures::NAMES);
     for name in names.filter(|name| files.iter().all(|(written, _)| written != *name)) {
         let path = folder.join(name);
         if path.exists() {

@@ -11,9 +11,10 @@ use post_machine::description;
 use post_machine::diagnostic::Diagnostic;
 use post_posting::Output as _;
 
-use crate::input::one;
-use crate::values::{TcpArgument, finite};
-use crate::{check, posting, render};
+use crate::arguments::flag_values::{TcpArgument, finite};
+use crate::files::cl_input::one;
+use crate::terminal::findings as render;
+use crate::verbs::{check, post as posting};
 use template::Class;
 
 /// Writes a machine file that `post check` accepts, with a remark on each value that says what to measure.
@@ -46,7 +47,7 @@ pub struct NewArguments {
 
     /// Units of the NC program. [default: mm]
     #[arg(long, value_enum, value_name = "UNITS")]
-    units: Option<crate::values::UnitsArgument>,
+    units: Option<crate::arguments::flag_values::UnitsArgument>,
 
     /// What the machine is called in the file. [default: NAME]
     #[arg(long, value_name = "TEXT")]
@@ -197,7 +198,10 @@ fn wishes(arguments: &NewArguments, path: &Path) -> Result<Wishes, Vec<Diagnosti
             Some(TcpArgument::Control) => "control",
             Some(TcpArgument::Post) | None => "post",
         },
-        inch: matches!(arguments.units, Some(crate::values::UnitsArgument::Inch)),
+        inch: matches!(
+            arguments.units,
+            Some(crate::arguments::flag_values::UnitsArgument::Inch)
+        ),
         travel: arguments.travel.clone(),
         cyclic: arguments.cyclic.clone(),
         reversed: arguments.reversed.clone(),

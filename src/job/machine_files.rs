@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use post_machine::description::{self, Machine, Setting, Source};
 use post_machine::diagnostic::Diagnostic;
 
-use crate::values;
+use crate::arguments::flag_values as values;
 
 /// Names and texts of the machines built in.
 const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.rs"));

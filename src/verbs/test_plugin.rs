@@ -7,8 +7,8 @@ use clap::{Args, Subcommand};
 use post_host::{GivenValue, Plugin, conformance};
 use post_machine::diagnostic::Diagnostic;
 
-use super::{diagnostic, finder};
-use crate::check::print;
+use crate::job::plugin_finder::{diagnostic, finder};
+use crate::verbs::check::print;
 
 /// Works with plugins.
 #[derive(Debug, Args)]

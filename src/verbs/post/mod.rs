@@ -1,5 +1,7 @@
 //! The main job: one CL file, one machine, one program.
 
+mod summary;
+
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -9,12 +11,13 @@ use post_plugin::DialectSession;
 use post_posting::program::{Reading, Unknown};
 use post_posting::{Job, Output, Post};
 
+use crate::arguments::flag_values::UnitsArgument;
 use crate::arguments::{JobArguments, Msys, PostArguments, UnknownArgument};
-use crate::input::{Input, one, standard};
-use crate::output::{Target, Whole};
-use crate::progress::Progress;
-use crate::values::UnitsArgument;
-use crate::{plugins, render, summary};
+use crate::files::atomic_file::{Target, Whole};
+use crate::files::cl_input::{Input, one, standard};
+use crate::job::plugin_finder as plugins;
+use crate::terminal::findings as render;
+use crate::terminal::progress::Progress;
 
 /// Posts as the arguments say.
 pub fn run(arguments: &PostArguments) -> Result<(), Vec<Diagnostic>> {

@@ -1,0 +1,5 @@
+//! Files: read, and written whole or not at all.
+
+pub mod atomic_file;
+pub mod cl_input;
+pub mod svg;

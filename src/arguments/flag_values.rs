@@ -1,38 +1,85 @@
-//! Values on the command line: points, lengths, folders.
+//! Values of flags: words that stand for one of a few things, numbers, points.
 
 use std::convert::Infallible;
-use std::env;
-use std::path::PathBuf;
 
 use clap::ValueEnum;
-use post_machine::description::{Setting, Tcp};
+use clap::builder::{EnumValueParser, TypedValueParser};
+use post_grammar::Units;
+use post_machine::description::{OutputUnits, Setting, Tcp};
+use post_posting::program::Unknown;
 
+/// `--units`.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum UnitsArgument {
+pub enum UnitsWord {
     Mm,
     Inch,
 }
 
+/// `--tcp`.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum TcpArgument {
+pub enum TcpWord {
     Control,
     Post,
 }
 
-/// Folders that the user names: on the command line, then in an environment variable.
-pub fn folders(named: &[PathBuf], variable: &str) -> Vec<PathBuf> {
-    let mut folders = named.to_owned();
-    if let Some(more) = env::var_os(variable) {
-        folders.extend(env::split_paths(&more).filter(|path| !path.as_os_str().is_empty()));
-    }
-    folders
+/// `--unknown`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum UnknownWord {
+    Error,
+    Warn,
+    Pass,
 }
 
-impl From<TcpArgument> for Tcp {
-    fn from(who: TcpArgument) -> Self {
-        match who {
-            TcpArgument::Control => Self::Control,
-            TcpArgument::Post => Self::Post,
+/// `--msys`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Msys {
+    #[default]
+    Keep,
+    Apply,
+}
+
+/// Reads one of the words `W`, and takes it for what it means.
+pub fn word<W, T>() -> impl TypedValueParser<Value = T>
+where
+    W: ValueEnum + Clone + Send + Sync + 'static,
+    T: From<W> + Clone + Send + Sync + 'static,
+{
+    EnumValueParser::<W>::new().map(T::from)
+}
+
+impl From<UnitsWord> for Units {
+    fn from(word: UnitsWord) -> Self {
+        match word {
+            UnitsWord::Mm => Self::Millimetre,
+            UnitsWord::Inch => Self::Inch,
+        }
+    }
+}
+
+impl From<UnitsWord> for OutputUnits {
+    fn from(word: UnitsWord) -> Self {
+        match word {
+            UnitsWord::Mm => Self::Mm,
+            UnitsWord::Inch => Self::Inch,
+        }
+    }
+}
+
+impl From<TcpWord> for Tcp {
+    fn from(word: TcpWord) -> Self {
+        match word {
+            TcpWord::Control => Self::Control,
+            TcpWord::Post => Self::Post,
+        }
+    }
+}
+
+impl From<UnknownWord> for Unknown {
+    fn from(word: UnknownWord) -> Self {
+        match word {
+            UnknownWord::Error => Self::Error,
+            UnknownWord::Warn => Self::Warn,
+            UnknownWord::Pass => Self::Pass,
         }
     }
 }
@@ -42,11 +89,8 @@ pub fn setting(text: &str) -> Result<Setting, Infallible> {
     Ok(Setting::Written(text.to_owned()))
 }
 
-/// Three coordinates.
-pub type Point = [f64; 3];
-
 /// `X,Y,Z`.
-pub fn point(text: &str) -> Result<Point, String> {
+pub fn point(text: &str) -> Result<[f64; 3], String> {
     let numbers = text
         .split(',')
         .map(|number| finite(number.trim()))
@@ -59,6 +103,7 @@ pub fn point(text: &str) -> Result<Point, String> {
     })
 }
 
+/// A number that is neither infinite nor no number.
 pub fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
@@ -66,6 +111,7 @@ pub fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number from zero up.
 pub fn not_negative(text: &str) -> Result<f64, String> {
     match finite(text)? {
         number if number >= 0.0 => Ok(number),
@@ -73,6 +119,7 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number above zero.
 pub fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {
         number if number > 0.0 => Ok(number),

@@ -1,104 +1,20 @@
-//! The command line.
+//! What several verbs take on the command line, and how its values are read.
+//!
+//! A flag becomes what it means to the core as it is parsed, and is not turned into text again.
 
 pub mod flag_values;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use post_machine::description::{Machine, Setting};
-use post_machine::diagnostic::Diagnostic;
+use clap::Args;
+use post_grammar::Units;
+use post_machine::description::{Setting, Tcp};
+use post_posting::program::Unknown;
 
-use crate::arguments::flag_values::{
-    Point, TcpArgument, UnitsArgument, not_negative, point, positive, setting,
+use crate::files::PathArg;
+use flag_values::{
+    Msys, TcpWord, UnitsWord, UnknownWord, not_negative, point, positive, setting, word,
 };
-use crate::files::cl_input::standard;
-use crate::job::machine_files as machines;
-use crate::verbs::check::CheckArguments;
-use crate::verbs::new::NewArguments;
-use crate::verbs::study::StudyArguments;
-use crate::verbs::test_plugin::PluginArguments;
-
-/// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
-///
-/// The machine is a TOML file: its kinematic chain, its control and the tolerance that the program must
-/// keep. Points are put in where the axes would stray from the path, and the deviation of every block of the
-/// program is certified. Nothing is written unless the whole program is good.
-#[derive(Debug, Parser)]
-#[command(
-    name = "post",
-    version,
-    args_conflicts_with_subcommands = true,
-    subcommand_negates_reqs = true,
-    after_help = "Examples:
-  post --machine ac-trunnion part.cls
-  post --machine dmu50.toml part.ncl -o part.h --mount 0,0,120 --summary part.json
-  post --machine disc-cutter --set Lm=250 blade.cls -o -
-  post words part.cls
-  post new my-mill --class table-table-ac --dialect linuxcnc
-  post check my-mill.toml --svg reach.svg
-  post study part.cls --machine ac-trunnion
-  post plugin test target/release/libpost_mine.so
-
-Exit codes: 0 the program is written; 1 refused, the messages say why; 2 the command line is wrong.",
-    max_term_width = 100
-)]
-pub struct Arguments {
-    #[command(subcommand)]
-    pub command: Option<Command>,
-    #[command(flatten)]
-    pub post: PostArguments,
-}
-
-#[derive(Debug, Subcommand)]
-pub enum Command {
-    /// Prints every word of a CL file: how often, and what becomes of it.
-    ///
-    /// used: it has its effect on the program; passed on: its text goes into the program; ignored: it says
-    /// nothing to a machine; refused: it changes where the tool goes, and post does not know how; unknown:
-    /// left out with a warning, unless --unknown says otherwise.
-    Words {
-        /// The CL file, `-` for standard input.
-        file: PathBuf,
-        /// Only words that are refused or unknown.
-        #[arg(long)]
-        unknown_only: bool,
-    },
-    /// Lists the machines that a bare name finds.
-    Machines {
-        /// A further folder of machine files.
-        #[arg(long, value_name = "FOLDER")]
-        machines: Vec<PathBuf>,
-    },
-    /// Prints the JSON Schema of machine files, by which an editor completes and checks them.
-    Schema,
-    Check(CheckArguments),
-    New(NewArguments),
-    Study(Box<StudyArguments>),
-    Plugin(PluginArguments),
-}
-
-#[derive(Debug, Args)]
-pub struct PostArguments {
-    #[command(flatten)]
-    pub job: JobArguments,
-
-    /// The NC program, `-` for standard output. [default: beside the CL file, with the dialect's ending]
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-
-    /// Writes the summary as JSON for programs to read; `-` is standard output.
-    #[arg(long, value_name = "FILE")]
-    pub summary: Option<PathBuf>,
-
-    /// No summary, warnings and errors alone.
-    #[arg(short, long)]
-    pub quiet: bool,
-
-    /// Takes the error model's word where the certificate finds more, and only reports it. (The placement `fewest` asks
-    /// no model.)
-    #[arg(long, help_heading = "Plugins")]
-    pub trust_model: bool,
-}
 
 /// A CL file, how it is read, and the machine.
 #[derive(Debug, Args)]
@@ -108,12 +24,17 @@ pub struct JobArguments {
     pub machine: Option<String>,
 
     /// The CL file, `-` for standard input.
-    #[arg(value_name = "CL-FILE", required = true)]
-    pub input: Option<PathBuf>,
+    #[arg(value_name = "CL-FILE", required = true, value_parser = PathArg::parser())]
+    pub input: Option<PathArg>,
 
     /// Units of the CL file's numbers, whatever it says.
-    #[arg(long, value_enum, value_name = "UNITS", help_heading = "Reading")]
-    pub units: Option<UnitsArgument>,
+    #[arg(
+        long,
+        value_parser = word::<UnitsWord, Units>(),
+        value_name = "UNITS",
+        help_heading = "Reading"
+    )]
+    pub units: Option<Units>,
 
     /// MSYS of NX: `keep` takes points and axes as written, `apply` takes them into its frame.
     #[arg(
@@ -129,12 +50,12 @@ pub struct JobArguments {
     /// them as comments.
     #[arg(
         long,
-        value_enum,
-        default_value_t,
+        value_parser = word::<UnknownWord, Unknown>(),
+        default_value = "warn",
         value_name = "WHAT",
         help_heading = "Reading"
     )]
-    pub unknown: UnknownArgument,
+    pub unknown: Unknown,
 
     /// Number of the tool, for a CL file that loads none.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Reading")]
@@ -148,7 +69,7 @@ pub struct JobArguments {
         value_parser = point,
         help_heading = "Machine"
     )]
-    pub mount: Option<Point>,
+    pub mount: Option<[f64; 3]>,
 
     /// Length of every tool from the gauge point to the tip, mm, over what machine and CL file say.
     #[arg(
@@ -169,8 +90,8 @@ pub struct JobArguments {
     pub tolerance: Option<f64>,
 
     /// Who keeps the tip on its path; short for --set control.tcp=…
-    #[arg(long, value_enum, value_name = "WHO", help_heading = "Machine")]
-    pub tcp: Option<TcpArgument>,
+    #[arg(long, value_parser = word::<TcpWord, Tcp>(), value_name = "WHO", help_heading = "Machine")]
+    pub tcp: Option<Tcp>,
 
     /// A further folder of machine files; the environment variable POST_MACHINES adds more.
     #[arg(long, value_name = "FOLDER", help_heading = "Machine")]
@@ -182,41 +103,24 @@ pub struct JobArguments {
     pub plugins: Vec<PathBuf>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, ValueEnum)]
-pub enum Msys {
-    #[default]
-    Keep,
-    Apply,
-}
-
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub enum UnknownArgument {
-    Error,
-    #[default]
-    Warn,
-    Pass,
-}
-
 impl JobArguments {
-    /// The CL file.
-    pub fn input(&self) -> &Path {
-        self.input.as_deref().unwrap_or(standard())
+    /// The machine's name or file. Clap has seen to it that there is one: it is no `String`, since a further verb on
+    /// the same command line takes its place.
+    pub fn machine(&self) -> &str {
+        self.machine.as_deref().unwrap_or_default()
     }
 
-    /// The machine with all settings, and `more` after them.
-    pub fn machine(&self, more: &[Setting]) -> Result<Machine, Vec<Diagnostic>> {
-        let mut settings = self.settings();
-        settings.extend_from_slice(more);
-        let name = self.machine.as_deref().unwrap_or_default();
-        machines::load(name, &self.machines, &settings)
+    /// The CL file; see [`JobArguments::machine`].
+    pub fn input(&self) -> &PathArg {
+        self.input.as_ref().unwrap_or(&PathArg::Standard)
     }
 
-    /// What the short flags set, after what `--set` sets.
-    fn settings(&self) -> Vec<Setting> {
+    /// What the flags set over the machine file: `--set` first, then the short ones, which win.
+    pub fn settings(&self) -> Vec<Setting> {
         let mut settings = self.set.clone();
         settings.extend(self.mount.map(Setting::Mount));
         settings.extend(self.tolerance.map(Setting::Tolerance));
-        settings.extend(self.tcp.map(|tcp| Setting::Tcp(tcp.into())));
+        settings.extend(self.tcp.map(Setting::Tcp));
         settings
     }
 }

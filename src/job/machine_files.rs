@@ -1,27 +1,21 @@
 //! Where machines come from: a file, a machine folder, or built in.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use post_machine::description::{self, Machine, Setting, Source};
 use post_machine::diagnostic::Diagnostic;
 
-use crate::arguments::flag_values as values;
+use crate::failure::Failure;
 
 /// Names and texts of the machines built in.
 const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.rs"));
 
 /// Loads the machine `name` from the folders that the user `named`, the usual ones, or those built in, with
 /// `settings` over it.
-pub fn load(
-    name: &str,
-    named: &[PathBuf],
-    settings: &[Setting],
-) -> Result<Machine, Vec<Diagnostic>> {
+pub fn load(name: &str, named: &[PathBuf], settings: &[Setting]) -> Result<Machine, Failure> {
     let folders = folders(named);
-    let fault = |message| vec![Diagnostic::error("machine", message)];
-    let source = find(name, &folders).map_err(fault)?;
+    let source = find(name, &folders).map_err(|message| Diagnostic::error("machine", message))?;
     // A machine extends its neighbours first.
     let mut near: Vec<PathBuf> = Path::new(&source.name)
         .parent()
@@ -30,12 +24,13 @@ pub fn load(
         .into_iter()
         .collect();
     near.extend(folders);
-    description::load(source, settings, &mut |parent| find(parent, &near))
+    let machine = description::load(source, settings, &mut |parent| find(parent, &near))?;
+    Ok(machine)
 }
 
 /// The folders of machines: those of the command line, of the environment, and `machines` here.
 fn folders(named: &[PathBuf]) -> Vec<PathBuf> {
-    let mut folders = values::folders(named, "POST_MACHINES");
+    let mut folders = super::folders(named, "POST_MACHINES");
     folders.push(PathBuf::from("machines"));
     folders
 }
@@ -91,8 +86,8 @@ fn read(path: &Path) -> Result<Source, String> {
     })
 }
 
-/// Lists the machines that a bare name finds.
-pub fn print(named: &[PathBuf]) -> Result<(), Vec<Diagnostic>> {
+/// The machines that a bare name finds: their names, and where each is found.
+pub fn list(named: &[PathBuf]) -> Vec<(String, String)> {
     let mut rows = Vec::new();
     for folder in folders(named) {
         let Ok(entries) = fs::read_dir(&folder) else {
@@ -111,18 +106,5 @@ pub fn print(named: &[PathBuf]) -> Result<(), Vec<Diagnostic>> {
             rows.push(((*name).to_owned(), "built in".to_owned()));
         }
     }
-    let mut stdout = std::io::stdout().lock();
-    for (name, origin) in rows {
-        // A reader that has seen enough closes the pipe.
-        if writeln!(stdout, "{name:<20} {origin}").is_err() {
-            break;
-        }
-    }
-    Ok(())
-}
-
-/// Prints the JSON Schema of machine files.
-pub fn print_schema() {
-    // A reader that has seen enough closes the pipe.
-    let _ = writeln!(std::io::stdout().lock(), "{:#}", description::schema());
+    rows
 }

@@ -12,11 +12,11 @@ use post_machine::diagnostic::{Diagnostic, Place};
 use post_plugin::Units;
 use post_posting::report::PluginUse;
 
-use crate::arguments::flag_values as values;
+use super::folders;
 
 /// The finder for a run, with the folders that the user `named`.
 pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
-    let folders = values::folders(named, "POST_PLUGINS");
+    let folders = folders(named, "POST_PLUGINS");
     missing(named)?;
     let linked = [
         post_fanuc::plugin(),

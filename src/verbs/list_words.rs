@@ -2,17 +2,34 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
-use std::path::Path;
 
+use clap::Args;
 use post_grammar::{ReadError, Reader};
-use post_machine::diagnostic::{Diagnostic, unreadable};
+use post_machine::diagnostic::unreadable;
 use post_posting::program::{Usage, usage};
 
-use crate::files::cl_input::{Input, one};
+use crate::failure::Failure;
+use crate::files::{ClInput, FileFault, PathArg};
+
+/// Prints every word of a CL file: how often, and what becomes of it.
+///
+/// used: it has its effect on the program; passed on: its text goes into the program; ignored: it says
+/// nothing to a machine; refused: it changes where the tool goes, and post does not know how; unknown:
+/// left out with a warning, unless --unknown says otherwise.
+#[derive(Debug, Args)]
+pub struct WordsArguments {
+    /// The CL file, `-` for standard input.
+    #[arg(value_parser = PathArg::parser())]
+    file: PathArg,
+
+    /// Only words that are refused or unknown.
+    #[arg(long)]
+    unknown_only: bool,
+}
 
 /// Prints the table.
-pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
-    let input = Input::open(path)?;
+pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
+    let input = ClInput::open(&arguments.file)?;
     let name = input.name;
     let mut reader = Reader::new(input.bytes);
     let mut words: BTreeMap<String, (u64, u64, Usage)> = BTreeMap::new();
@@ -33,7 +50,7 @@ pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
                     words.insert(word.to_owned(), (1, record.line, usage));
                 }
             }
-            Err(ReadError::Io(error)) => return Err(one("input", format!("{name}: {error}"))),
+            Err(ReadError::Io(error)) => return Err(FileFault::Read { name, error }.into()),
             Err(ReadError::Syntax(fault)) => faults.push(unreadable(&name, &fault)),
         }
     }
@@ -49,7 +66,7 @@ pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
         "word", "times", "becomes", "first on line"
     ));
     for (word, (count, first, usage)) in rows {
-        if unknown_only && !matches!(usage, Usage::Unknown | Usage::Refused) {
+        if arguments.unknown_only && !matches!(usage, Usage::Unknown | Usage::Refused) {
             continue;
         }
         let becomes = match usage {
@@ -64,6 +81,6 @@ pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
     if faults.is_empty() {
         Ok(())
     } else {
-        Err(faults)
+        Err(faults.into())
     }
 }

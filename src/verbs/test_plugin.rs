@@ -7,8 +7,9 @@ use clap::{Args, Subcommand};
 use post_host::{GivenValue, Plugin, conformance};
 use post_machine::diagnostic::Diagnostic;
 
+use crate::failure::Failure;
 use crate::job::plugin_finder::{diagnostic, finder};
-use crate::verbs::check::print;
+use crate::terminal::print;
 
 /// Works with plugins.
 #[derive(Debug, Args)]
@@ -50,11 +51,11 @@ struct TestArguments {
 }
 
 /// Does as the arguments say.
-pub fn run(arguments: &PluginArguments) -> Result<(), Vec<Diagnostic>> {
+pub fn run(arguments: &PluginArguments) -> Result<(), Failure> {
     let PluginCommand::Test(arguments) = &arguments.command;
     let plugin = find(arguments)?;
     let report = conformance::test(&plugin, &arguments.option)
-        .map_err(|fault| vec![diagnostic(&fault, &[], None)])?;
+        .map_err(|fault| diagnostic(&fault, &[], None))?;
     let from = match plugin.path() {
         Some(path) => path.display().to_string(),
         None => "built in".to_owned(),
@@ -71,12 +72,13 @@ pub fn run(arguments: &PluginArguments) -> Result<(), Vec<Diagnostic>> {
         return Ok(());
     }
     let wrong = report.wrong();
-    Err(wrong
+    let findings: Vec<Diagnostic> = wrong
         .map(|sentence| Diagnostic::error("plugin-test", sentence))
-        .collect())
+        .collect();
+    Err(findings.into())
 }
 
-fn find(arguments: &TestArguments) -> Result<Plugin, Vec<Diagnostic>> {
+fn find(arguments: &TestArguments) -> Result<Plugin, Failure> {
     let path: &Path = &arguments.plugin;
     let text = path.to_string_lossy();
     let file = path.components().count() > 1 || text.ends_with(DLL_SUFFIX);
@@ -85,7 +87,7 @@ fn find(arguments: &TestArguments) -> Result<Plugin, Vec<Diagnostic>> {
     } else {
         finder(&arguments.plugins)?.find(&text)
     };
-    found.map_err(|fault| vec![diagnostic(&fault, &[], None)])
+    Ok(found.map_err(|fault| diagnostic(&fault, &[], None))?)
 }
 
 /// `order=3`; text may stand in quotes, as in a machine file.

@@ -6,45 +6,39 @@
 //! the axes stand at the start, which the operator sets to zero there, so the program cannot go anywhere that he
 //! has not seen.
 
+use std::path::Path;
+
 use post_machine::axis_words;
 use post_machine::check::{Commission, Probe, Sign, Trial, number};
 use post_machine::description::{Axis, Machine, OutputUnits, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{Batch, DialectSession, Event, Feed, Format};
-use post_posting::Output as _;
 
-use super::{CheckArguments, print, program_path};
-use crate::files::cl_input::{one, standard};
-use crate::job::plugin_finder as plugins;
-use crate::verbs::post as posting;
+use super::{CheckArguments, spare};
+use crate::failure::Failure;
+use crate::files::{self, PathArg};
+use crate::job::plugin_finder;
+use crate::terminal::print;
 
 /// A remark longer than this is no longer read whole on a control's screen.
 const REMARK: usize = 58;
 
 /// Writes the program.
-pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Vec<Diagnostic>> {
+pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
     let mut plain = machine.clone();
     plain.control.tcp = Tcp::Post;
-    let probe = Probe::new(&plain, arguments.tool_length).map_err(|lack| {
-        one(
-            "check",
-            format!("{} cannot be solved: {lack:?}", machine.name),
-        )
+    let probe = Probe::new(&plain, arguments.tool_length).map_err(|lack| Failure::Unsolvable {
+        machine: machine.name.clone(),
+        lack,
     })?;
     let order = axis_words::order(&plain);
     let plan = Commission::of(&probe, &order);
-    let finder = plugins::finder(&arguments.plugins)?;
-    let name = arguments
-        .output
-        .as_deref()
-        .filter(|path| *path != standard())
-        .and_then(|path| path.file_stem())
-        .map_or("COMMISSION".to_owned(), |stem| {
-            stem.to_string_lossy().into_owned()
-        });
-    let (mut dialect, _) = plugins::dialect(&finder, &plain, &name)?;
-    let path = program_path(arguments, &dialect.format().extension)?;
+    let finder = plugin_finder::finder(&arguments.plugins)?;
+    let name = arguments.output.as_ref().and_then(PathArg::stem);
+    let name = name.unwrap_or_else(|| "COMMISSION".to_owned());
+    let (mut dialect, _) = plugin_finder::dialect(&finder, &plain, &name)?;
+    let target = target(arguments, &dialect.format().extension)?;
     let mut writer = Writer {
         machine: &plain,
         order: &order,
@@ -56,13 +50,9 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Vec<Di
     let (mut text, mut ends) = (Vec::new(), Vec::new());
     dialect
         .write_batch(&writer.batch, &mut text, &mut ends)
-        .map_err(|fault| one("dialect", fault.message))?;
-    let mut file = posting::create(&path)?;
-    file.write(&text)
-        .map_err(std::io::Error::other)
-        .and_then(|()| file.finish())
-        .map_err(|error| posting::fault_at(&path, &error))?;
-    if path != standard() {
+        .map_err(|fault| Diagnostic::error("dialect", fault.message))?;
+    files::write(&target, &text)?;
+    if let Some(path) = target.path() {
         print(&format!(
             "{}: {} moves, one axis each. Run it without a part, with a hand on the feed override.\n",
             path.display(),
@@ -70,6 +60,16 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Vec<Di
         ));
     }
     Ok(())
+}
+
+/// Where the program goes.
+fn target(arguments: &CheckArguments, extension: &str) -> Result<PathArg, Failure> {
+    let target = match &arguments.output {
+        Some(target) => target.clone(),
+        None => Path::new("commission").with_extension(extension).into(),
+    };
+    spare(arguments, &target)?;
+    Ok(target)
 }
 
 /// A blank that a line is not broken at.

@@ -4,21 +4,18 @@ mod check_text;
 mod commission_program;
 mod reach_picture;
 
-use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use post_machine::check::{Check, Comparison, Differing, compare};
+use post_machine::check::{Differing, compare};
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
-use post_posting::Output as _;
 
-use crate::arguments::flag_values::{self as values, Point};
-use crate::files::atomic_file::Target;
-use crate::files::cl_input::{one, standard};
-use crate::job::machine_files as machines;
-use crate::terminal::findings as render;
-use crate::verbs::post as posting;
+use crate::arguments::flag_values;
+use crate::failure::Failure;
+use crate::files::{self, PathArg};
+use crate::job::{self, machine_files};
+use crate::terminal::{self, print};
 
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
 ///
@@ -49,31 +46,31 @@ pub struct CheckArguments {
 
     /// Where the program of --commission goes, `-` for standard output. [default: `commission`, with the
     /// dialect's ending]
-    #[arg(short, long, value_name = "FILE", requires = "commission")]
-    output: Option<PathBuf>,
+    #[arg(short, long, value_name = "FILE", requires = "commission", value_parser = PathArg::parser())]
+    output: Option<PathArg>,
 
     /// Draws the reachable directions of the tool: tilt and azimuth, seen from the part.
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    svg: Option<PathArg>,
 
     /// Writes what is printed as JSON, with all digits; `-` is standard output, alone there.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    json: Option<PathArg>,
 
     /// Checks the machine with this head, one of those that the program can swap in (`[head.NAME]`).
     #[arg(long, value_name = "NAME")]
     head: Option<String>,
 
     /// Length of the tool from the gauge point to the tip, mm.
-    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true, value_parser = values::not_negative)]
+    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true, value_parser = flag_values::not_negative)]
     tool_length: f64,
 
     /// Where the part origin sits, all axes at zero, machine frame, mm; in both machines of --nominal.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::point)]
-    mount: Option<Point>,
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = flag_values::point)]
+    mount: Option<[f64; 3]>,
 
     /// Sets a parameter of the machine (`Lm=312`) or any key; in MACHINE alone, not in the other of --nominal.
-    #[arg(long, value_name = "NAME=VALUE", value_parser = values::setting)]
+    #[arg(long, value_name = "NAME=VALUE", value_parser = flag_values::setting)]
     set: Vec<Setting>,
 
     /// A further folder of machine files; the environment variable POST_MACHINES adds more.
@@ -86,38 +83,30 @@ pub struct CheckArguments {
 }
 
 /// Checks as the arguments say.
-pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
+pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     if arguments.svg.is_some() && arguments.svg == arguments.json {
-        return Err(one(
-            "output",
-            "picture and JSON cannot go to one place".to_owned(),
-        ));
+        let message = "picture and JSON cannot go to one place";
+        return Err(Diagnostic::error("output", message).into());
     }
-    let mount = arguments.mount.map(Setting::Mount);
-    let mut settings = arguments.set.clone();
-    settings.extend(mount.clone());
-    let machine = machines::load(&arguments.machine, &arguments.machines, &settings)?;
-    let machine = match &arguments.head {
-        Some(name) => with_head(machine, name)?,
-        None => machine,
-    };
+    let machine = machine(arguments)?;
     if arguments.commission {
         return commission_program::write(arguments, &machine);
     }
-    if let Some(nominal) = &arguments.nominal {
-        let mount: Vec<Setting> = mount.into_iter().collect();
-        let nominal = machines::load(nominal, &arguments.machines, &mount)?;
-        let compared = compare(&machine, &nominal, arguments.tool_length)
-            .map_err(|fault| differing(&fault))?;
-        return print_comparison(arguments, &compared);
+    match &arguments.nominal {
+        Some(nominal) => with_nominal(arguments, &machine, nominal),
+        None => alone(arguments, &machine),
     }
-    let check = derive(&machine, arguments.tool_length)?;
-    if let Some(path) = &arguments.svg {
-        write(arguments, path, &reach_picture::draw(&check))?;
+}
+
+/// What one machine file means.
+fn alone(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
+    let check = job::derive(machine, arguments.tool_length)?;
+    if let Some(target) = &arguments.svg {
+        write(arguments, target, &reach_picture::draw(&check))?;
     }
-    render::findings(&check.findings());
-    if let Some(path) = &arguments.json {
-        write(arguments, path, &json(&check))?;
+    terminal::findings(&check.findings());
+    if let Some(target) = &arguments.json {
+        write(arguments, target, &files::json(&check))?;
     }
     if taken(arguments) {
         return Ok(());
@@ -134,49 +123,53 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Vec<Diagnostic>> {
     Ok(())
 }
 
+/// How far two machine files are apart.
+fn with_nominal(
+    arguments: &CheckArguments,
+    machine: &Machine,
+    nominal: &str,
+) -> Result<(), Failure> {
+    let mount: Vec<Setting> = arguments.mount.map(Setting::Mount).into_iter().collect();
+    let nominal = machine_files::load(nominal, &arguments.machines, &mount)?;
+    let compared =
+        compare(machine, &nominal, arguments.tool_length).map_err(|fault| differing(&fault))?;
+    if let Some(target) = &arguments.json {
+        write(arguments, target, &files::json(&compared))?;
+    }
+    if !taken(arguments) {
+        print(&check_text::comparison(&compared));
+    }
+    Ok(())
+}
+
+/// The machine that is checked, with its settings and the head that is asked for.
+fn machine(arguments: &CheckArguments) -> Result<Machine, Failure> {
+    let mut settings = arguments.set.clone();
+    settings.extend(arguments.mount.map(Setting::Mount));
+    let machine = machine_files::load(&arguments.machine, &arguments.machines, &settings)?;
+    match &arguments.head {
+        Some(name) => with_head(machine, name),
+        None => Ok(machine),
+    }
+}
+
 /// The machine with a head that the program can swap in.
-fn with_head(machine: Machine, name: &str) -> Result<Machine, Vec<Diagnostic>> {
+fn with_head(machine: Machine, name: &str) -> Result<Machine, Failure> {
     let heads = &machine.heads;
     if let Some(head) = heads.iter().find(|head| head.name == name) {
         return Ok(head.machine.clone());
     }
     let known: Vec<&str> = heads.iter().map(|head| head.name.as_str()).collect();
-    Err(vec![
-        Diagnostic::error("check", format!("{} has no head {name}", machine.name)).help(
-            match known.as_slice() {
-                [] => "its file has no [head.NAME]".to_owned(),
-                known => format!("its heads are {}", known.join(", ")),
-            },
-        ),
-    ])
+    let help = match known.as_slice() {
+        [] => "its file has no [head.NAME]".to_owned(),
+        known => format!("its heads are {}", known.join(", ")),
+    };
+    let message = format!("{} has no head {name}", machine.name);
+    Err(Diagnostic::error("check", message).help(help).into())
 }
 
-/// What can be derived; a chain that cannot be solved was refused when the file was loaded.
-pub fn derive(machine: &Machine, length: f64) -> Result<Check, Vec<Diagnostic>> {
-    Check::of(machine, length).map_err(|lack| {
-        vec![Diagnostic::error(
-            "check",
-            format!("{} cannot be solved: {lack:?}", machine.name),
-        )]
-    })
-}
-
-fn print_comparison(
-    arguments: &CheckArguments,
-    compared: &Comparison,
-) -> Result<(), Vec<Diagnostic>> {
-    if let Some(path) = &arguments.json {
-        write(arguments, path, &json(compared))?;
-    }
-    if taken(arguments) {
-        return Ok(());
-    }
-    print(&check_text::comparison(compared));
-    Ok(())
-}
-
-fn differing(fault: &Differing) -> Vec<Diagnostic> {
-    vec![match fault {
+fn differing(fault: &Differing) -> Diagnostic {
+    match fault {
         Differing::Axes { machine, nominal } => Diagnostic::error(
             "check-nominal",
             format!(
@@ -190,59 +183,31 @@ fn differing(fault: &Differing) -> Vec<Diagnostic> {
             "check-nominal",
             format!("{machine} cannot be brought to the part origin with its rotary axes at zero"),
         ),
-    }]
-}
-
-fn json(value: &impl serde::Serialize) -> String {
-    let mut text = serde_json::to_string_pretty(value).unwrap_or_default();
-    text.push('\n');
-    text
+    }
 }
 
 /// Standard output is for a picture or for JSON, so nothing else is printed there.
 fn taken(arguments: &CheckArguments) -> bool {
-    let to = |path: &Option<PathBuf>| path.as_deref() == Some(standard());
+    let to = |target: &Option<PathArg>| target == &Some(PathArg::Standard);
     to(&arguments.svg) || to(&arguments.json)
 }
 
 /// Writes a text whole, or not at all; never over the machine file.
-fn write(arguments: &CheckArguments, path: &Path, text: &str) -> Result<(), Vec<Diagnostic>> {
-    spare(arguments, path)?;
-    let mut file = posting::create(path)?;
-    file.write(text.as_bytes())
-        .map_err(io::Error::other)
-        .and_then(|()| file.finish())
-        .map_err(|error| posting::fault_at(path, &error))
-}
-
-/// Prints to standard output; a reader that has seen enough closes the pipe.
-pub fn print(text: &str) {
-    let _ = io::stdout().lock().write_all(text.as_bytes());
-}
-
-/// Where the program of `--commission` goes.
-fn program_path(arguments: &CheckArguments, extension: &str) -> Result<PathBuf, Vec<Diagnostic>> {
-    let path = match &arguments.output {
-        Some(path) => path.clone(),
-        None => Path::new("commission").with_extension(extension),
-    };
-    spare(arguments, &path)?;
-    Ok(path)
+fn write(arguments: &CheckArguments, target: &PathArg, text: &str) -> Result<(), Failure> {
+    spare(arguments, target)?;
+    Ok(files::write(target, text.as_bytes())?)
 }
 
 /// Refuses to write over a machine file that is read.
-fn spare(arguments: &CheckArguments, path: &Path) -> Result<(), Vec<Diagnostic>> {
+fn spare(arguments: &CheckArguments, target: &PathArg) -> Result<(), Failure> {
+    let Some(path) = target.path() else {
+        return Ok(());
+    };
     let read = [Some(&arguments.machine), arguments.nominal.as_ref()];
-    let target = Target::of(path);
-    if read
-        .into_iter()
-        .flatten()
-        .any(|name| target.is(Path::new(name)))
-    {
-        return Err(one(
-            "output",
-            format!("{} is the machine file that is checked", path.display()),
-        ));
+    let mut read = read.into_iter().flatten();
+    if read.any(|name| files::would_replace(target, Path::new(name))) {
+        let message = format!("{} is the machine file that is checked", path.display());
+        return Err(Diagnostic::error("output", message).into());
     }
     Ok(())
 }

@@ -3,18 +3,16 @@
 mod questions;
 mod template;
 
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 use clap::{Args, ValueEnum};
-use post_machine::description;
+use post_machine::description::{self, OutputUnits, Tcp};
 use post_machine::diagnostic::Diagnostic;
-use post_posting::Output as _;
 
-use crate::arguments::flag_values::{TcpArgument, finite};
-use crate::files::cl_input::one;
-use crate::terminal::findings as render;
-use crate::verbs::{check, post as posting};
+use crate::arguments::flag_values::{self, TcpWord, UnitsWord, finite, word};
+use crate::failure::Failure;
+use crate::{files, job, terminal};
 use template::Class;
 
 /// Writes a machine file that `post check` accepts, with a remark on each value that says what to measure.
@@ -42,12 +40,12 @@ pub struct NewArguments {
     dialect: Option<String>,
 
     /// Who keeps the tip on its path while rotary axes turn. [default: post]
-    #[arg(long, value_enum, value_name = "WHO")]
-    tcp: Option<TcpArgument>,
+    #[arg(long, value_parser = word::<TcpWord, Tcp>(), value_name = "WHO")]
+    tcp: Option<Tcp>,
 
     /// Units of the NC program. [default: mm]
-    #[arg(long, value_enum, value_name = "UNITS")]
-    units: Option<crate::arguments::flag_values::UnitsArgument>,
+    #[arg(long, value_parser = word::<UnitsWord, OutputUnits>(), value_name = "UNITS")]
+    units: Option<OutputUnits>,
 
     /// What the machine is called in the file. [default: NAME]
     #[arg(long, value_name = "TEXT")]
@@ -110,9 +108,8 @@ pub struct Wishes {
     pub title: String,
     pub class: Class,
     pub dialect: String,
-    /// `control` or `post`.
-    pub tcp: &'static str,
-    pub inch: bool,
+    pub tcp: Tcp,
+    pub units: OutputUnits,
     pub travel: Vec<Given<[f64; 2]>>,
     pub cyclic: Vec<String>,
     pub reversed: Vec<String>,
@@ -126,13 +123,13 @@ pub struct Wishes {
 }
 
 /// Writes the file.
-pub fn run(arguments: &NewArguments) -> Result<(), Vec<Diagnostic>> {
+pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
     let path = file(&arguments.name)?;
     if path.exists() && !arguments.force {
-        return Err(vec![
-            Diagnostic::error("new", format!("{} is there already", path.display()))
-                .help("--force replaces it"),
-        ]);
+        let message = format!("{} is there already", path.display());
+        return Err(Diagnostic::error("new", message)
+            .help("--force replaces it")
+            .into());
     }
     let wishes = wishes(arguments, &path)?;
     strangers(&wishes)?;
@@ -145,14 +142,10 @@ pub fn run(arguments: &NewArguments) -> Result<(), Vec<Diagnostic>> {
     let machine = description::load(source, &[], &mut |parent| {
         Err(format!("there is no machine {parent}"))
     })?;
-    let checked = check::derive(&machine, 0.0)?;
-    let mut file = posting::create(&path)?;
-    file.write(text.as_bytes())
-        .map_err(io::Error::other)
-        .and_then(|()| file.finish())
-        .map_err(|error| posting::fault_at(&path, &error))?;
-    render::findings(&checked.findings());
-    check::print(&format!(
+    let checked = job::derive(&machine, 0.0)?;
+    files::write(&path.clone().into(), text.as_bytes())?;
+    terminal::findings(&checked.findings());
+    terminal::print(&format!(
         "{}: {}\nMeasure what its remarks ask for, then: post check {}\n",
         path.display(),
         checked.class.name,
@@ -162,7 +155,7 @@ pub fn run(arguments: &NewArguments) -> Result<(), Vec<Diagnostic>> {
 }
 
 /// `NAME.toml`.
-fn file(name: &Path) -> Result<PathBuf, Vec<Diagnostic>> {
+fn file(name: &Path) -> Result<PathBuf, Failure> {
     let path = match name.extension() {
         Some(ending) if ending == "toml" => name.to_owned(),
         _ => {
@@ -173,35 +166,30 @@ fn file(name: &Path) -> Result<PathBuf, Vec<Diagnostic>> {
     };
     match path.file_stem() {
         Some(stem) if !stem.is_empty() && stem != ".toml" => {}
-        _ => return Err(one("new", format!("{} is no name", name.display()))),
+        _ => {
+            let message = format!("{} is no name", name.display());
+            return Err(Diagnostic::error("new", message).into());
+        }
     }
     if let Some(folder) = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())
         && !fs::metadata(folder).is_ok_and(|folder| folder.is_dir())
     {
-        return Err(one(
-            "new",
-            format!("there is no folder {}", folder.display()),
-        ));
+        let message = format!("there is no folder {}", folder.display());
+        return Err(Diagnostic::error("new", message).into());
     }
     Ok(path)
 }
 
-fn wishes(arguments: &NewArguments, path: &Path) -> Result<Wishes, Vec<Diagnostic>> {
+fn wishes(arguments: &NewArguments, path: &Path) -> Result<Wishes, Failure> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let mut wishes = Wishes {
         title: arguments.title.clone().unwrap_or(stem.into_owned()),
         class: arguments.class.unwrap_or(Class::ThreeAxis),
         dialect: arguments.dialect.clone().unwrap_or("fanuc".to_owned()),
-        tcp: match arguments.tcp {
-            Some(TcpArgument::Control) => "control",
-            Some(TcpArgument::Post) | None => "post",
-        },
-        inch: matches!(
-            arguments.units,
-            Some(crate::arguments::flag_values::UnitsArgument::Inch)
-        ),
+        tcp: arguments.tcp.unwrap_or_default(),
+        units: arguments.units.unwrap_or_default(),
         travel: arguments.travel.clone(),
         cyclic: arguments.cyclic.clone(),
         reversed: arguments.reversed.clone(),
@@ -219,7 +207,7 @@ fn wishes(arguments: &NewArguments, path: &Path) -> Result<Wishes, Vec<Diagnosti
 }
 
 /// Flags for axes that the class does not have.
-fn strangers(wishes: &Wishes) -> Result<(), Vec<Diagnostic>> {
+fn strangers(wishes: &Wishes) -> Result<(), Failure> {
     let known = wishes.class.axes();
     let all = [
         (
@@ -256,7 +244,7 @@ fn strangers(wishes: &Wishes) -> Result<(), Vec<Diagnostic>> {
     if faults.is_empty() {
         Ok(())
     } else {
-        Err(faults)
+        Err(faults.into())
     }
 }
 
@@ -301,10 +289,10 @@ pub fn dialect(text: &str) -> Result<String, String> {
 
 fn feed(text: &str) -> Result<Given<f64>, String> {
     let (axis, value) = split(text)?;
-    match finite(value.trim())? {
-        value if value > 0.0 => Ok(Given { axis, value }),
-        value => Err(format!("{value} is not above zero")),
-    }
+    Ok(Given {
+        axis,
+        value: flag_values::positive(value.trim())?,
+    })
 }
 
 fn point(text: &str) -> Result<Given<[f64; 3]>, String> {

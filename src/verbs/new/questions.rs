@@ -1,21 +1,23 @@
 //! The few questions of `post new`: on a terminal, or answered through a pipe.
 
-use std::io::{self, BufRead, Write as _};
+use std::io::{self, BufRead};
 
 use clap::ValueEnum;
+use post_machine::description::Tcp;
 use post_machine::diagnostic::Diagnostic;
 
 use super::template::Class;
 use super::{Given, NewArguments, Wishes, dialect, range};
-use crate::arguments::flag_values::finite;
-use crate::files::cl_input::one;
+use crate::arguments::flag_values::{TcpWord, finite};
+use crate::failure::Failure;
+use crate::terminal::tell;
 
 /// How often a wrong answer is asked again.
 const PATIENCE: usize = 3;
 
 /// Asks for what no flag says. An empty answer, or the end of the input, takes what stands in brackets; only the
 /// class must be said.
-pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Vec<Diagnostic>> {
+pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Failure> {
     let classes: Vec<String> = Class::value_variants()
         .iter()
         .map(|class| class.name())
@@ -34,10 +36,8 @@ pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Vec<Diag
         Class::from_str(answer, true)
     })?
     .ok_or_else(|| {
-        vec![
-            Diagnostic::error("new", "nobody says what class the machine is of")
-                .help(format!("--class {}", classes.join("|"))),
-        ]
+        Diagnostic::error("new", "nobody says what class the machine is of")
+            .help(format!("--class {}", classes.join("|")))
     })?;
     if arguments.dialect.is_none() {
         let usual = wishes.dialect.clone();
@@ -51,11 +51,11 @@ pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Vec<Diag
     if wishes.class.turns() && arguments.tcp.is_none() {
         let said = question(
             "who keeps the tip on its path: post or control",
-            wishes.tcp,
-            |answer| match answer.to_ascii_lowercase().as_str() {
-                "post" => Ok("post"),
-                "control" => Ok("control"),
-                _ => Err("post or control".to_owned()),
+            wishes.tcp.name(),
+            |answer| {
+                TcpWord::from_str(answer, true)
+                    .map(Tcp::from)
+                    .map_err(|_| "post or control".to_owned())
             },
         )?;
         wishes.tcp = said.unwrap_or(wishes.tcp);
@@ -108,7 +108,7 @@ pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Vec<Diag
     Ok(())
 }
 
-fn length(what: &str, usual: f64) -> Result<f64, Vec<Diagnostic>> {
+fn length(what: &str, usual: f64) -> Result<f64, Failure> {
     Ok(question(what, &usual.to_string(), finite)?.unwrap_or(usual))
 }
 
@@ -117,7 +117,7 @@ fn question<T>(
     what: &str,
     usual: &str,
     read: impl Fn(&str) -> Result<T, String>,
-) -> Result<Option<T>, Vec<Diagnostic>> {
+) -> Result<Option<T>, Failure> {
     let mut fault = String::new();
     for _ in 0..PATIENCE {
         tell(&match usual {
@@ -128,7 +128,7 @@ fn question<T>(
         let length = io::stdin()
             .lock()
             .read_line(&mut answer)
-            .map_err(|error| one("new", format!("standard input: {error}")))?;
+            .map_err(|error| Diagnostic::error("new", format!("standard input: {error}")))?;
         let ended = length == 0;
         let answer = match answer.trim() {
             "" => usual,
@@ -145,12 +145,5 @@ fn question<T>(
             }
         }
     }
-    Err(one("new", format!("{what}: {fault}")))
-}
-
-/// Questions go to standard error: standard output is for results.
-fn tell(text: &str) {
-    let mut stderr = io::stderr().lock();
-    let _ = stderr.write_all(text.as_bytes());
-    let _ = stderr.flush();
+    Err(Diagnostic::error("new", format!("{what}: {fault}")).into())
 }

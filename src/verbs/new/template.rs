@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use clap::ValueEnum;
+use post_machine::description::OutputUnits;
 
 use super::{Given, Wishes};
 
@@ -275,11 +276,11 @@ pub fn write(wishes: &Wishes) -> String {
     line(&format!("dialect = \"{}\"", wishes.dialect), "");
     if class.turns() {
         line(
-            &format!("tcp     = \"{}\"", wishes.tcp),
+            &format!("tcp     = \"{}\"", wishes.tcp.name()),
             "\"post\": axis positions; \"control\": the tip (G43.4, M128, …)",
         );
     }
-    if wishes.inch {
+    if wishes.units == OutputUnits::Inch {
         line(
             "units   = \"inch\"",
             "of the NC program; this file stays in mm",

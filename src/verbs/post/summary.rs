@@ -1,39 +1,21 @@
-//! The summary of a program.
+//! The summary of a program, for people.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::Path;
 
 use post_posting::report::{Deviation, Report};
 
-/// The summary as JSON.
-pub fn json(report: &Report) -> String {
-    let mut text = serde_json::to_string_pretty(report).unwrap_or_default();
-    text.push('\n');
-    text
-}
+use crate::files::PathArg;
 
-/// Prints the summary: to standard output, or to standard error where something else goes there.
-pub fn print(report: &Report, input: &str, target: &Path, to_stderr: bool) {
-    let text = text(report, input, target);
-    // A reader that has seen enough closes the pipe.
-    let _ = if to_stderr {
-        std::io::stderr().lock().write_all(text.as_bytes())
-    } else {
-        std::io::stdout().lock().write_all(text.as_bytes())
-    };
-}
-
-fn text(report: &Report, input: &str, target: &Path) -> String {
+/// The summary of a program at `target` that was made from the CL file named `input`.
+pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
     let mut text = String::new();
     let mut row = |name: &str, value: String| {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{name:<16} {value}");
     };
-    let target = if target == Path::new("-") {
-        "standard output".to_owned()
-    } else {
-        target.display().to_string()
+    let target = match target.path() {
+        Some(path) => path.display().to_string(),
+        None => "standard output".to_owned(),
     };
     row("program", format!("{target}, from {input}"));
     row(

@@ -10,25 +10,24 @@ mod study_csv;
 mod study_text;
 mod sweep;
 
+use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 use clap::Args;
 use post_host::OpenedModel;
 use post_machine::description::{Machine, Method, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::ModelSession;
-use post_posting::Output as _;
 use post_posting::report::Report;
 use post_study::{Distribution, Keeper, Kept, Row, Survey};
 
 use crate::arguments::JobArguments;
-use crate::files::cl_input::one;
-use crate::job::plugin_finder as plugins;
-use crate::terminal::findings as render;
-use crate::verbs::{check, post as posting};
-use dry_run::Job;
+use crate::failure::Failure;
+use crate::files::{self, FileFault};
+use crate::job::plugin_finder;
+use crate::terminal;
+use dry_run::DryRun;
 use sweep::{Sweep, Swept};
 
 /// The models that are compared; the machine's own comes to them.
@@ -127,12 +126,12 @@ pub struct Models {
 }
 
 /// Studies as the arguments say.
-pub fn run(arguments: &StudyArguments) -> Result<(), Vec<Diagnostic>> {
-    let job = Job::new(&arguments.job, arguments.exact)?;
-    let machine = job.machine(&[])?;
+pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
+    let dry_run = DryRun::new(&arguments.job, arguments.exact)?;
+    let machine = dry_run.machine(&[])?;
     let folder = folder(arguments);
-    let (names, mut models) = models(&job, &machine)?;
-    let (surveyed, findings) = survey(&job, &machine, &names, &mut models)?;
+    let (names, mut models) = models(&dry_run, &machine)?;
+    let (surveyed, findings) = survey(&dry_run, &machine, &names, &mut models)?;
     let Surveyed {
         rows,
         pieces,
@@ -141,13 +140,13 @@ pub fn run(arguments: &StudyArguments) -> Result<(), Vec<Diagnostic>> {
     let focus = focus(arguments, &rows)?;
     let around = focus.saturating_sub(AROUND)..(focus + AROUND + 1).min(rows.len());
     let study = Study {
-        kept: keep(&job, &machine, around)?,
-        programs: programs(&job, &names)?,
+        kept: keep(&dry_run, &machine, around)?,
+        programs: programs(&dry_run, &names)?,
         sweep: match &arguments.sweep {
-            Some(sweep) => Some((sweep.name.clone(), sweep::run(&job, sweep, focus)?)),
+            Some(sweep) => Some((sweep.name.clone(), sweep::run(&dry_run, sweep, focus)?)),
             None => None,
         },
-        file: job.name(),
+        file: dry_run.name.clone(),
         exact: arguments.exact,
         models: names,
         machine,
@@ -156,24 +155,25 @@ pub fn run(arguments: &StudyArguments) -> Result<(), Vec<Diagnostic>> {
         spreads,
         focus,
     };
-    render::findings(&findings);
+    terminal::findings(&findings);
     let mut files = study_csv::files(&study);
     files.extend(pictures::files(&study, &mut models));
     write(&folder, &files)?;
-    check::print(&study_text::text(&study, &folder, &files));
+    terminal::print(&study_text::text(&study, &folder, &files));
     Ok(())
 }
 
 fn folder(arguments: &StudyArguments) -> PathBuf {
     arguments.output.clone().unwrap_or_else(|| {
-        let input = arguments.job.input();
-        let stem = input.file_stem().unwrap_or_default().to_string_lossy();
-        input.with_file_name(format!("{stem}-study"))
+        let source = arguments.job.input();
+        let stem = source.stem().unwrap_or_default();
+        let beside = source.path().unwrap_or(Path::new(""));
+        beside.with_file_name(format!("{stem}-study"))
     })
 }
 
 /// Opens the models that are compared.
-fn models(job: &Job<'_>, machine: &Machine) -> Result<(Vec<String>, Models), Vec<Diagnostic>> {
+fn models(dry_run: &DryRun<'_>, machine: &Machine) -> Result<(Vec<String>, Models), Failure> {
     let own = &machine.accuracy.model;
     let mut names: Vec<String> = MODELS.map(str::to_owned).to_vec();
     if !names.contains(own) {
@@ -181,9 +181,9 @@ fn models(job: &Job<'_>, machine: &Machine) -> Result<(Vec<String>, Models), Vec
     }
     let open = |name: &String| {
         if name == own {
-            return plugins::model(&job.finder, machine).map(|(model, _)| model);
+            return plugin_finder::model(&dry_run.finder, machine).map(|(model, _)| model);
         }
-        plugins::plain_model(&job.finder, name)
+        plugin_finder::plain_model(&dry_run.finder, name)
     };
     Ok((
         names.clone(),
@@ -203,20 +203,21 @@ struct Surveyed {
 
 /// Looks at every move.
 fn survey(
-    job: &Job<'_>,
+    dry_run: &DryRun<'_>,
     machine: &Machine,
     names: &[String],
     models: &mut Models,
-) -> Result<(Surveyed, Vec<Diagnostic>), Vec<Diagnostic>> {
+) -> Result<(Surveyed, Vec<Diagnostic>), Failure> {
     let sessions = models.opened.iter_mut();
     let sessions = sessions.map(|model| model as &mut dyn ModelSession);
     let mut survey = Survey::new(machine, &mut models.own, sessions.collect());
-    let (_, findings) = job.pass(machine, Some(&mut survey))?;
+    let (_, findings) = dry_run.pass(machine, Some(&mut survey))?;
     if let Some(fault) = survey.fault {
-        return Err(one("model", fault));
+        return Err(Diagnostic::error("model", fault).into());
     }
     if survey.rows.is_empty() {
-        return Err(job.nothing());
+        let message = format!("{} has no cut between two positions", dry_run.name);
+        return Err(Diagnostic::error("study", message).into());
     }
     let rows = survey.rows;
     let mut spreads = Vec::new();
@@ -259,16 +260,14 @@ fn survey(
 }
 
 /// Which move is looked at.
-fn focus(arguments: &StudyArguments, rows: &[Row]) -> Result<usize, Vec<Diagnostic>> {
+fn focus(arguments: &StudyArguments, rows: &[Row]) -> Result<usize, Failure> {
     if let Some(number) = arguments.number {
         let focus = number as usize - 1;
         return if focus < rows.len() {
             Ok(focus)
         } else {
-            Err(one(
-                "study",
-                format!("--move {number}: the file has {} cuts", rows.len()),
-            ))
+            let message = format!("--move {number}: the file has {} cuts", rows.len());
+            Err(Diagnostic::error("study", message).into())
         };
     }
     // Of moves that are equal, the first.
@@ -282,23 +281,24 @@ fn focus(arguments: &StudyArguments, rows: &[Row]) -> Result<usize, Vec<Diagnost
 }
 
 fn keep(
-    job: &Job<'_>,
+    dry_run: &DryRun<'_>,
     machine: &Machine,
     wanted: Range<usize>,
-) -> Result<Vec<Kept>, Vec<Diagnostic>> {
+) -> Result<Vec<Kept>, Failure> {
     let mut keeper = Keeper::new(wanted);
-    job.pass(machine, Some(&mut keeper))?;
+    dry_run.pass(machine, Some(&mut keeper))?;
     Ok(keeper.kept)
 }
 
 /// Posts the whole file by each placement, with and without leaving out CL points, and compensated with each model.
-fn programs(job: &Job<'_>, models: &[String]) -> Result<Vec<Program>, Vec<Diagnostic>> {
+fn programs(dry_run: &DryRun<'_>, models: &[String]) -> Result<Vec<Program>, Failure> {
     let mut programs = Vec::new();
     let mut post = |name: String, reduce: bool, settings: &[Setting]| {
-        let machine = job.machine(settings)?;
-        let report = match job.pass(&machine, None) {
+        let machine = dry_run.machine(settings)?;
+        let report = match dry_run.pass(&machine, None) {
             Ok((report, _)) => Ok(report),
-            Err(findings) => Err(findings
+            Err(failure) => Err(failure
+                .findings()
                 .into_iter()
                 .next()
                 .map_or_else(|| "refused".to_owned(), |finding| finding.message)),
@@ -308,7 +308,7 @@ fn programs(job: &Job<'_>, models: &[String]) -> Result<Vec<Program>, Vec<Diagno
             reduce,
             report,
         });
-        Ok::<(), Vec<Diagnostic>>(())
+        Ok::<(), Failure>(())
     };
     for placement in Survey::PLACEMENTS {
         for reduce in [false, true] {
@@ -333,24 +333,18 @@ fn programs(job: &Job<'_>, models: &[String]) -> Result<Vec<Program>, Vec<Diagno
 /// A file of the study: its name and its text.
 pub type File = (&'static str, String);
 
-fn write(folder: &Path, files: &[File]) -> Result<(), Vec<Diagnostic>> {
-    fs::create_dir_all(folder)
-        .map_err(|error| one("output", format!("{}: {error}", folder.display())))?;
+fn write(folder: &Path, files: &[File]) -> Result<(), Failure> {
+    fs::create_dir_all(folder).map_err(|error| FileFault::write_at(folder, error))?;
     // What an earlier study left here, and this one does not write, would be taken for its result.
     let names = study_csv::NAMES.iter().chain(&pictures::NAMES);
     for name in names.filter(|name| files.iter().all(|(written, _)| written != *name)) {
         let path = folder.join(name);
         if path.exists() {
-            fs::remove_file(&path).map_err(|error| posting::fault_at(&path, &error))?;
+            fs::remove_file(&path).map_err(|error| FileFault::write(&path.into(), error))?;
         }
     }
     for (name, text) in files {
-        let path = folder.join(name);
-        let mut file = posting::create(&path)?;
-        file.write(text.as_bytes())
-            .map_err(io::Error::other)
-            .and_then(|()| file.finish())
-            .map_err(|error| posting::fault_at(&path, &error))?;
+        files::write(&folder.join(name).into(), text.as_bytes())?;
     }
     Ok(())
 }

@@ -4,8 +4,9 @@ use post_machine::description::Setting;
 use post_machine::diagnostic::Diagnostic;
 use post_study::{Distribution, Keeper, Kept};
 
-use super::Job;
-use crate::files::cl_input::one;
+use super::DryRun;
+use crate::arguments::flag_values::finite;
+use crate::failure::Failure;
 
 /// More values than this are a slip.
 const MOST: f64 = 200.0;
@@ -34,7 +35,7 @@ pub fn parse(text: &str) -> Result<Sweep, String> {
     let (name, range) = text.split_once('=').ok_or_else(form)?;
     let numbers: Vec<f64> = range
         .split(':')
-        .map(|number| crate::arguments::flag_values::finite(number.trim()))
+        .map(|number| finite(number.trim()))
         .collect::<Result<_, _>>()?;
     let [from, to, step] = numbers[..] else {
         return Err(form());
@@ -63,21 +64,21 @@ fn short(value: f64) -> f64 {
 }
 
 /// Goes over the file once for each value, and keeps move `number`.
-pub fn run(job: &Job<'_>, sweep: &Sweep, number: usize) -> Result<Vec<Swept>, Vec<Diagnostic>> {
+pub fn run(dry_run: &DryRun<'_>, sweep: &Sweep, number: usize) -> Result<Vec<Swept>, Failure> {
     let mut swept = Vec::new();
     for value in &sweep.values {
         let setting = Setting::Number {
             name: sweep.name.clone(),
             value: *value,
         };
-        let machine = job.machine(&[setting])?;
+        let machine = dry_run.machine(&[setting])?;
         let mut keeper = Keeper::new(number..number + 1);
-        job.pass(&machine, Some(&mut keeper))
-            .map_err(|mut findings| {
-                findings.extend(one(
-                    "study",
-                    format!("this is with --sweep {} = {value}", sweep.name),
-                ));
+        dry_run
+            .pass(&machine, Some(&mut keeper))
+            .map_err(|failure| {
+                let mut findings = failure.findings();
+                let message = format!("this is with --sweep {} = {value}", sweep.name);
+                findings.push(Diagnostic::error("study", message));
                 findings
             })?;
         swept.push(Swept {

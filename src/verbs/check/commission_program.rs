@@ -15,7 +15,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{Batch, DialectSession, Event, Feed, Format};
 
-use super::{CheckArguments, spare};
+use super::{CheckArguments, refuse_to_overwrite_machine};
 use crate::failure::Failure;
 use crate::files::{self, PathArg};
 use crate::job::plugin_finder;
@@ -68,7 +68,7 @@ fn target(arguments: &CheckArguments, extension: &str) -> Result<PathArg, Failur
         Some(target) => target.clone(),
         None => Path::new("commission").with_extension(extension).into(),
     };
-    spare(arguments, &target)?;
+    refuse_to_overwrite_machine(arguments, &target)?;
     Ok(target)
 }
 

@@ -108,7 +108,7 @@ fn alone(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
     if let Some(target) = &arguments.json {
         write(arguments, target, &files::json(&check))?;
     }
-    if taken(arguments) {
+    if standard_output_is_taken(arguments) {
         return Ok(());
     }
     print(&check_text::check(&check));
@@ -136,7 +136,7 @@ fn with_nominal(
     if let Some(target) = &arguments.json {
         write(arguments, target, &files::json(&compared))?;
     }
-    if !taken(arguments) {
+    if !standard_output_is_taken(arguments) {
         print(&check_text::comparison(&compared));
     }
     Ok(())
@@ -187,19 +187,22 @@ fn differing(fault: &Differing) -> Diagnostic {
 }
 
 /// Standard output is for a picture or for JSON, so nothing else is printed there.
-fn taken(arguments: &CheckArguments) -> bool {
+fn standard_output_is_taken(arguments: &CheckArguments) -> bool {
     let to = |target: &Option<PathArg>| target == &Some(PathArg::Standard);
     to(&arguments.svg) || to(&arguments.json)
 }
 
 /// Writes a text whole, or not at all; never over the machine file.
 fn write(arguments: &CheckArguments, target: &PathArg, text: &str) -> Result<(), Failure> {
-    spare(arguments, target)?;
+    refuse_to_overwrite_machine(arguments, target)?;
     Ok(files::write(target, text.as_bytes())?)
 }
 
 /// Refuses to write over a machine file that is read.
-fn spare(arguments: &CheckArguments, target: &PathArg) -> Result<(), Failure> {
+fn refuse_to_overwrite_machine(
+    arguments: &CheckArguments,
+    target: &PathArg,
+) -> Result<(), Failure> {
     let Some(path) = target.path() else {
         return Ok(());
     };

@@ -103,7 +103,7 @@ pub struct Given<T> {
 
 /// What a machine file is made from.
 #[derive(Debug)]
-pub struct Wishes {
+pub struct Choices {
     /// What the machine is called.
     pub title: String,
     pub class: Class,
@@ -131,9 +131,9 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
             .help("--force replaces it")
             .into());
     }
-    let wishes = wishes(arguments, &path)?;
-    strangers(&wishes)?;
-    let text = template::write(&wishes);
+    let choices = choices(arguments, &path)?;
+    refuse_unknown_axes(&choices)?;
+    let text = template::write(&choices);
     // Nothing is written that the loader would refuse.
     let source = description::Source {
         name: path.display().to_string(),
@@ -182,9 +182,9 @@ fn file(name: &Path) -> Result<PathBuf, Failure> {
     Ok(path)
 }
 
-fn wishes(arguments: &NewArguments, path: &Path) -> Result<Wishes, Failure> {
+fn choices(arguments: &NewArguments, path: &Path) -> Result<Choices, Failure> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let mut wishes = Wishes {
+    let mut choices = Choices {
         title: arguments.title.clone().unwrap_or(stem.into_owned()),
         class: arguments.class.unwrap_or(Class::ThreeAxis),
         dialect: arguments.dialect.clone().unwrap_or("fanuc".to_owned()),
@@ -201,32 +201,32 @@ fn wishes(arguments: &NewArguments, path: &Path) -> Result<Wishes, Failure> {
         tolerance: arguments.tolerance.unwrap_or(0.005),
     };
     if arguments.class.is_none() {
-        questions::ask(arguments, &mut wishes)?;
+        questions::ask(arguments, &mut choices)?;
     }
-    Ok(wishes)
+    Ok(choices)
 }
 
 /// Flags for axes that the class does not have.
-fn strangers(wishes: &Wishes) -> Result<(), Failure> {
-    let known = wishes.class.axes();
+fn refuse_unknown_axes(choices: &Choices) -> Result<(), Failure> {
+    let known = choices.class.axes();
     let all = [
         (
             "--travel",
-            wishes
+            choices
                 .travel
                 .iter()
                 .map(|given| &given.axis)
                 .collect::<Vec<_>>(),
         ),
-        ("--cyclic", wishes.cyclic.iter().collect()),
-        ("--reversed", wishes.reversed.iter().collect()),
+        ("--cyclic", choices.cyclic.iter().collect()),
+        ("--reversed", choices.reversed.iter().collect()),
         (
             "--max-feed",
-            wishes.max_feed.iter().map(|given| &given.axis).collect(),
+            choices.max_feed.iter().map(|given| &given.axis).collect(),
         ),
         (
             "--point",
-            wishes.point.iter().map(|given| &given.axis).collect(),
+            choices.point.iter().map(|given| &given.axis).collect(),
         ),
     ];
     let faults: Vec<Diagnostic> = all
@@ -236,7 +236,7 @@ fn strangers(wishes: &Wishes) -> Result<(), Failure> {
         .map(|(flag, axis)| {
             Diagnostic::error(
                 "new",
-                format!("{flag} {axis}: {} has no such axis", wishes.class.name()),
+                format!("{flag} {axis}: {} has no such axis", choices.class.name()),
             )
             .help(format!("its axes are {}", known.join(", ")))
         })

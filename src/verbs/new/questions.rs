@@ -7,7 +7,7 @@ use post_machine::description::Tcp;
 use post_machine::diagnostic::Diagnostic;
 
 use super::template::Class;
-use super::{Given, NewArguments, Wishes, dialect, range};
+use super::{Choices, Given, NewArguments, dialect, range};
 use crate::arguments::flag_values::{TcpWord, finite};
 use crate::failure::Failure;
 use crate::terminal::tell;
@@ -17,7 +17,7 @@ const PATIENCE: usize = 3;
 
 /// Asks for what no flag says. An empty answer, or the end of the input, takes what stands in brackets; only the
 /// class must be said.
-pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Failure> {
+pub fn ask(arguments: &NewArguments, choices: &mut Choices) -> Result<(), Failure> {
     let classes: Vec<String> = Class::value_variants()
         .iter()
         .map(|class| class.name())
@@ -29,7 +29,7 @@ pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Failure>
         let help = help.map_or_else(String::new, ToString::to_string);
         tell(&format!("  {:<22}{help}\n", class.name()));
     }
-    wishes.class = question("class", "", |answer| {
+    choices.class = question("class", "", |answer| {
         if answer.is_empty() {
             return Err(format!("one of {}", classes.join(", ")));
         }
@@ -40,51 +40,51 @@ pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Failure>
             .help(format!("--class {}", classes.join("|")))
     })?;
     if arguments.dialect.is_none() {
-        let usual = wishes.dialect.clone();
+        let usual = choices.dialect.clone();
         let said = question(
             "dialect of the control: fanuc, heidenhain, linuxcnc",
             &usual,
             dialect,
         )?;
-        wishes.dialect = said.unwrap_or(usual);
+        choices.dialect = said.unwrap_or(usual);
     }
-    if wishes.class.turns() && arguments.tcp.is_none() {
+    if choices.class.turns() && arguments.tcp.is_none() {
         let said = question(
             "who keeps the tip on its path: post or control",
-            wishes.tcp.name(),
+            choices.tcp.name(),
             |answer| {
                 TcpWord::from_str(answer, true)
                     .map(Tcp::from)
                     .map_err(|_| "post or control".to_owned())
             },
         )?;
-        wishes.tcp = said.unwrap_or(wishes.tcp);
+        choices.tcp = said.unwrap_or(choices.tcp);
     }
     if arguments.gauge.is_none() {
-        wishes.gauge = length(
+        choices.gauge = length(
             "gauge line over the table's face, all axes at zero, mm",
-            wishes.gauge,
+            choices.gauge,
         )?;
     }
-    if wishes.class.has_pivot() && arguments.pivot.is_none() {
-        wishes.pivot = length(
+    if choices.class.has_pivot() && arguments.pivot.is_none() {
+        choices.pivot = length(
             "swivel axis of the head to the gauge line, mm",
-            wishes.pivot,
+            choices.pivot,
         )?;
     }
-    if wishes.class.has_tilt() && arguments.tilt.is_none() {
-        wishes.tilt = length(
+    if choices.class.has_tilt() && arguments.tilt.is_none() {
+        choices.tilt = length(
             "tilting axis over the table's face (below is negative), mm",
-            wishes.tilt,
+            choices.tilt,
         )?;
     }
-    for axis in wishes.class.axes() {
+    for axis in choices.class.axes() {
         let said = |given: &Given<[f64; 2]>| given.axis == axis;
-        if wishes.travel.iter().any(said) || wishes.cyclic.iter().any(|name| name == axis) {
+        if choices.travel.iter().any(said) || choices.cyclic.iter().any(|name| name == axis) {
             continue;
         }
         let rotary = !matches!(axis, "X" | "Y" | "Z");
-        let usual = match wishes.class.usual_travel(axis, wishes.gauge) {
+        let usual = match choices.class.usual_travel(axis, choices.gauge) {
             Some([least, most]) => format!("{least}:{most}"),
             None => "endless".to_owned(),
         };
@@ -97,11 +97,11 @@ pub fn ask(arguments: &NewArguments, wishes: &mut Wishes) -> Result<(), Failure>
             travel => range(travel).map(Some),
         })?;
         match travel.flatten() {
-            Some(value) => wishes.travel.push(Given {
+            Some(value) => choices.travel.push(Given {
                 axis: axis.to_owned(),
                 value,
             }),
-            None if rotary => wishes.cyclic.push(axis.to_owned()),
+            None if rotary => choices.cyclic.push(axis.to_owned()),
             None => {}
         }
     }

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use clap::ValueEnum;
 use post_machine::description::OutputUnits;
 
-use super::{Given, Wishes};
+use super::{Choices, Given};
 
 /// How the rotary axes stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -167,10 +167,10 @@ impl Class {
 }
 
 /// The whole file.
-pub fn write(wishes: &Wishes) -> String {
-    let class = wishes.class;
+pub fn write(choices: &Choices) -> String {
+    let class = choices.class;
     let mut text = String::new();
-    let title = wishes.title.replace('\\', "\\\\").replace('"', "\\\"");
+    let title = choices.title.replace('\\', "\\\\").replace('"', "\\\"");
     let title: String = title
         .chars()
         .filter(|letter| !letter.is_control())
@@ -208,18 +208,18 @@ pub fn write(wishes: &Wishes) -> String {
     line("", "");
     line("[parameters]", "");
     line(
-        &format!("gauge = {}", wishes.gauge),
+        &format!("gauge = {}", choices.gauge),
         "gauge line over the table's face, all axes at zero",
     );
     if class.has_pivot() {
         line(
-            &format!("pivot = {}", wishes.pivot),
+            &format!("pivot = {}", choices.pivot),
             "swivel axis to gauge line: swing to 90° and compare with 0°",
         );
     }
     if class.has_tilt() {
         line(
-            &format!("tilt  = {}", wishes.tilt),
+            &format!("tilt  = {}", choices.tilt),
             "tilting axis over the table's face; below it is negative",
         );
     }
@@ -244,10 +244,10 @@ pub fn write(wishes: &Wishes) -> String {
             &format!("linear   = {direction}"),
             &format!("as measured; a lean of {lean}"),
         );
-        travel(&mut line, wishes, name);
-        reversed(&mut line, wishes, name);
+        travel(&mut line, choices, name);
+        reversed(&mut line, choices, name);
         line(
-            &format!("max_feed = {}", feed(wishes, name, 20_000.0)),
+            &format!("max_feed = {}", feed(choices, name, 20_000.0)),
             "mm/min",
         );
     }
@@ -259,28 +259,28 @@ pub fn write(wishes: &Wishes) -> String {
             &format!("rotary   = {}", rotary.direction),
             "any length; as measured",
         );
-        let point = match given(&wishes.point, name) {
+        let point = match given(&choices.point, name) {
             Some([x, y, z]) => format!("[{x}, {y}, {z}]"),
             None => rotary.point.to_owned(),
         };
         line(&format!("point    = {point}"), rotary.measure);
-        travel(&mut line, wishes, name);
-        reversed(&mut line, wishes, name);
+        travel(&mut line, choices, name);
+        reversed(&mut line, choices, name);
         line(
-            &format!("max_feed = {}", feed(wishes, name, 3600.0)),
+            &format!("max_feed = {}", feed(choices, name, 3600.0)),
             "deg/min",
         );
     }
     line("", "");
     line("[control]", "");
-    line(&format!("dialect = \"{}\"", wishes.dialect), "");
+    line(&format!("dialect = \"{}\"", choices.dialect), "");
     if class.turns() {
         line(
-            &format!("tcp     = \"{}\"", wishes.tcp.name()),
+            &format!("tcp     = \"{}\"", choices.tcp.name()),
             "\"post\": axis positions; \"control\": the tip (G43.4, M128, …)",
         );
     }
-    if wishes.units == OutputUnits::Inch {
+    if choices.units == OutputUnits::Inch {
         line(
             "units   = \"inch\"",
             "of the NC program; this file stays in mm",
@@ -289,18 +289,18 @@ pub fn write(wishes: &Wishes) -> String {
     line("", "");
     line("[accuracy]", "");
     line(
-        &format!("tolerance = {}", wishes.tolerance),
+        &format!("tolerance = {}", choices.tolerance),
         "mm, the tip in cuts",
     );
     text
 }
 
-fn travel(line: &mut impl FnMut(&str, &str), wishes: &Wishes, axis: &str) {
-    let endless = wishes.cyclic.iter().any(|name| name == axis);
-    let travel = match given(&wishes.travel, axis) {
+fn travel(line: &mut impl FnMut(&str, &str), choices: &Choices, axis: &str) {
+    let endless = choices.cyclic.iter().any(|name| name == axis);
+    let travel = match given(&choices.travel, axis) {
         Some(travel) => Some(travel),
         None if endless => None,
-        None => wishes.class.usual_travel(axis, wishes.gauge),
+        None => choices.class.usual_travel(axis, choices.gauge),
     };
     if let Some([least, most]) = travel {
         line(
@@ -316,14 +316,14 @@ fn travel(line: &mut impl FnMut(&str, &str), wishes: &Wishes, axis: &str) {
     }
 }
 
-fn reversed(line: &mut impl FnMut(&str, &str), wishes: &Wishes, axis: &str) {
-    if wishes.reversed.iter().any(|name| name == axis) {
+fn reversed(line: &mut impl FnMut(&str, &str), choices: &Choices, axis: &str) {
+    if choices.reversed.iter().any(|name| name == axis) {
         line("reversed = true", "counts against ISO 841");
     }
 }
 
-fn feed(wishes: &Wishes, axis: &str, usual: f64) -> f64 {
-    given(&wishes.max_feed, axis).unwrap_or(usual)
+fn feed(choices: &Choices, axis: &str, usual: f64) -> f64 {
+    given(&choices.max_feed, axis).unwrap_or(usual)
 }
 
 /// The last that was given.

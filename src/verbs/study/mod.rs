@@ -3,6 +3,7 @@
 mod chart;
 mod dry_run;
 mod move_pictures;
+mod notation;
 mod path_picture;
 mod pictures;
 mod scale;
@@ -105,7 +106,7 @@ impl Study {
 /// How deviations are spread.
 pub struct Spread {
     pub name: String,
-    pub told: Distribution,
+    pub distribution: Distribution,
     /// Points put in; none where the question does not arise.
     pub points: Option<u64>,
 }
@@ -224,7 +225,7 @@ fn survey(
     let mut spread = |name: String, mut values: Vec<f64>, points: Option<u64>| {
         spreads.push(Spread {
             name,
-            told: Distribution::of(&mut values),
+            distribution: Distribution::of(&mut values),
             points,
         });
     };

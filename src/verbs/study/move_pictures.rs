@@ -5,7 +5,7 @@ use post_plugin::{ModelSession, length};
 use post_study::{Kept, Rim, Stretch};
 
 use super::chart::{Chart, DASHED, GREY, LOOKS, Marker, Series};
-use super::pictures::{FINE, HUGE, MICRO, digits, focus, sampled, tolerance};
+use super::notation::{FINE, HUGE, MICRO, digits, focus, sampled, tolerance};
 use super::{Models, Study};
 
 /// More points than this would run into one another.

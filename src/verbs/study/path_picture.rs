@@ -4,7 +4,7 @@ use post_plugin::ModelSession;
 use post_study::Kept;
 
 use super::chart::{Chart, GREY, LOOKS, Marker, Series};
-use super::pictures::{FINE, focus};
+use super::notation::{FINE, focus};
 use super::{Models, Study};
 
 /// Moves to each side of the one that is looked at.

@@ -3,22 +3,14 @@
 
 use post_study::{Survey, histogram};
 
-use super::chart::{Chart, DASHED, Draw, GREY, LIMIT, LOOKS, Series};
+use super::chart::{Chart, DASHED, Draw, GREY, LOOKS, Series};
+use super::notation::{HUGE, MICRO, count_of_moves, focus, sampled, tolerance};
 use super::{File, Models, Study, move_pictures, path_picture};
-
-/// Micrometres in a mm.
-pub const MICRO: f64 = 1e3;
-
-/// Even pieces that a curve is drawn in.
-pub const FINE: u32 = 120;
 
 /// More moves than this are drawn as the largest of every few.
 const MOST_MOVES: usize = 300;
 
 const BINS: usize = 24;
-
-/// Where the largest deviation is more than this times the tolerance, what is left could not be seen.
-pub const HUGE: f64 = 20.0;
 
 /// Curves of a sweep in one picture.
 const MOST_CURVES: usize = 7;
@@ -65,51 +57,6 @@ pub fn files(study: &Study, models: &mut Models) -> Vec<File> {
     files
 }
 
-/// A length over a move, in µm.
-pub fn sampled(length: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
-    (0..=FINE)
-        .map(|step| {
-            let t = f64::from(step) / f64::from(FINE);
-            [t, length(t) * MICRO]
-        })
-        .collect()
-}
-
-/// Which move is looked at.
-pub fn focus(study: &Study) -> String {
-    let row = &study.rows[study.focus];
-    format!(
-        "move {}, CL line {}: {:.3} mm, {:.4}° of rotary axes",
-        study.focus + 1,
-        row.line,
-        row.length,
-        row.turn.to_degrees()
-    )
-}
-
-/// A line at the tolerance from `from` to `to`, if it does not dwarf the rest.
-pub fn tolerance(study: &Study, [from, to]: [f64; 2], largest: f64) -> Option<Series> {
-    let tolerance = study.machine.accuracy.tolerance * MICRO;
-    (tolerance < 3.0 * largest).then(|| {
-        Series::line(
-            format!("tolerance, {tolerance} µm"),
-            vec![[from, tolerance], [to, tolerance]],
-            LIMIT,
-        )
-    })
-}
-
-/// R² with so many digits that it is not 1.
-pub fn digits(share: f64) -> String {
-    if share > 0.999_999_5 {
-        "> 0.999999".to_owned()
-    } else if share > 0.9999 {
-        format!("{share:.6}")
-    } else {
-        format!("{share:.4}")
-    }
-}
-
 /// The largest deviation of every move, before and after (parabolic figs. 9 and 10b; harmonic fig. 3.3b).
 fn before_after(study: &Study) -> Chart {
     let rows = &study.rows;
@@ -153,7 +100,7 @@ fn before_after(study: &Study) -> Chart {
     Chart {
         title: "Largest deviation of every move, before and after".to_owned(),
         note: match every {
-            1 => format!("{}, {}", study.part(), moves(rows.len())),
+            1 => format!("{}, {}", study.part(), count_of_moves(rows.len())),
             every => format!(
                 "{}, {} moves; the largest of every {every} is drawn",
                 study.part(),
@@ -176,7 +123,7 @@ fn spread(study: &Study) -> Chart {
     let before: Vec<f64> = study.rows.iter().map(|row| row.raw.size).collect();
     let after = &study.pieces[index];
     // A few moves far off would leave all others in one bin.
-    let [.., most] = study.spreads[0].told.percentiles;
+    let [.., most] = study.spreads[0].distribution.percentiles;
     let end = after.iter().copied().fold(most.max(1e-6), f64::max) * 1.02;
     let beyond = before.iter().filter(|size| **size > end).count();
     let width = end * MICRO / BINS as f64;
@@ -206,7 +153,7 @@ fn spread(study: &Study) -> Chart {
         logarithmic: false,
         series: vec![
             Series {
-                name: format!("before, {}", moves(before.len())),
+                name: format!("before, {}", count_of_moves(before.len())),
                 draw: Draw::Bars(bars(&before, 0.05), "#707070"),
             },
             Series {
@@ -231,13 +178,21 @@ fn swept(study: &Study) -> Chart {
     };
     Chart {
         title: format!("Deviation over {name}"),
-        note: format!("{}, {}", study.part(), moves(study.rows.len())),
+        note: format!("{}, {}", study.part(), count_of_moves(study.rows.len())),
         x: format!("{name} (unit of the machine file)"),
         y: "deviation from the CL path, µm".to_owned(),
         logarithmic: false,
         series: vec![
-            Series::line("largest of all moves", of(&|step| step.told.max), LOOKS[0]),
-            Series::line("mean of all moves", of(&|step| step.told.mean), DASHED),
+            Series::line(
+                "largest of all moves",
+                of(&|step| step.distribution.max),
+                LOOKS[0],
+            ),
+            Series::line(
+                "mean of all moves",
+                of(&|step| step.distribution.mean),
+                DASHED,
+            ),
             Series::line(
                 format!("move {}", study.focus + 1),
                 of(&|step| step.kept.as_ref().map_or(0.0, |kept| kept.peak().size)),
@@ -270,13 +225,5 @@ fn swept_curves(study: &Study) -> Chart {
         y: "deviation from the CL path, µm".to_owned(),
         logarithmic: false,
         series: series.collect(),
-    }
-}
-
-/// So many moves, in words.
-pub fn moves(count: usize) -> String {
-    match count {
-        1 => "1 move".to_owned(),
-        count => format!("{count} moves"),
     }
 }

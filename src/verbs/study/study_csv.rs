@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use post_study::{Placed, Row, Survey};
 
-use super::pictures::MICRO;
+use super::notation::MICRO;
 use super::{File, Study};
 
 /// The files that there can be.
@@ -109,23 +109,23 @@ fn summary(study: &Study) -> String {
         "what,count,mean_um,deviation_um,p50_um,p90_um,p95_um,p99_um,max_um,points_put_in\n"
             .to_owned();
     for spread in &study.spreads {
-        let told = &spread.told;
+        let distribution = &spread.distribution;
         let _ = write!(
             text,
             "\"{}\",{},{:.6},{:.6}",
             spread.name,
-            told.count,
-            told.mean * MICRO,
-            told.deviation * MICRO
+            distribution.count,
+            distribution.mean * MICRO,
+            distribution.deviation * MICRO
         );
-        for value in told.percentiles {
+        for value in distribution.percentiles {
             let _ = write!(text, ",{:.6}", value * MICRO);
         }
         let points = spread.points.map(|points| points.to_string());
         let _ = writeln!(
             text,
             ",{:.6},{}",
-            told.max * MICRO,
+            distribution.max * MICRO,
             points.unwrap_or_default()
         );
     }
@@ -164,9 +164,9 @@ fn sweep(study: &Study) -> Option<String> {
             text,
             "{:?},{:.6},{:.6},{:.6},{}",
             step.value,
-            step.told.mean * MICRO,
-            step.told.deviation * MICRO,
-            step.told.max * MICRO,
+            step.distribution.mean * MICRO,
+            step.distribution.deviation * MICRO,
+            step.distribution.max * MICRO,
             kept.map(|size| format!("{size:.6}")).unwrap_or_default()
         );
     }

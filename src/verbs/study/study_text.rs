@@ -6,7 +6,7 @@ use std::path::Path;
 use post_machine::description::Tcp;
 use post_study::{Row, Survey};
 
-use super::pictures::{self, MICRO, digits};
+use super::notation::{MICRO, count_of_moves, digits};
 use super::{File, Study};
 
 /// Moves that are printed.
@@ -36,7 +36,7 @@ fn head(text: &mut String, study: &Study) {
         "{} on {}: {}, tolerance {} µm, words {}",
         study.file,
         machine.name,
-        pictures::moves(study.rows.len()),
+        count_of_moves(study.rows.len()),
         machine.accuracy.tolerance * MICRO,
         if study.exact {
             "not rounded"
@@ -75,23 +75,23 @@ fn spreads(text: &mut String, study: &Study) {
         "points in"
     );
     for spread in &study.spreads {
-        let told = &spread.told;
+        let distribution = &spread.distribution;
         let _ = write!(
             text,
             "{:<24} {:>7} {:>9.3} {:>9.3}",
             spread.name,
-            told.count,
-            told.mean * MICRO,
-            told.deviation * MICRO
+            distribution.count,
+            distribution.mean * MICRO,
+            distribution.deviation * MICRO
         );
-        for value in told.percentiles {
+        for value in distribution.percentiles {
             let _ = write!(text, " {:>9.3}", value * MICRO);
         }
         let points = spread.points.map(|points| points.to_string());
         let _ = writeln!(
             text,
             " {:>9.3} {:>9}",
-            told.max * MICRO,
+            distribution.max * MICRO,
             points.as_deref().unwrap_or("-")
         );
     }
@@ -241,9 +241,9 @@ fn sweep(text: &mut String, study: &Study) {
             text,
             "{:<24} {:>9.3} {:>9.3} {:>9.3} {:>9}",
             step.value,
-            step.told.mean * MICRO,
-            step.told.deviation * MICRO,
-            step.told.max * MICRO,
+            step.distribution.mean * MICRO,
+            step.distribution.deviation * MICRO,
+            step.distribution.max * MICRO,
             kept.map_or("-".to_owned(), |size| format!("{size:.3}"))
         );
     }

@@ -24,7 +24,7 @@ pub struct Sweep {
 pub struct Swept {
     pub value: f64,
     /// Over all moves, mm.
-    pub told: Distribution,
+    pub distribution: Distribution,
     /// The move that is looked at.
     pub kept: Option<Kept>,
 }
@@ -83,7 +83,7 @@ pub fn run(dry_run: &DryRun<'_>, sweep: &Sweep, number: usize) -> Result<Vec<Swe
             })?;
         swept.push(Swept {
             value: *value,
-            told: Distribution::of(&mut keeper.peaks),
+            distribution: Distribution::of(&mut keeper.peaks),
             kept: keeper.kept.pop(),
         });
     }

@@ -60,7 +60,10 @@ impl Sources {
             all.files += 1;
         }
         for setting in settings {
-            all.push(setting.layer().map_err(|fault| vec![*fault])?);
+            all.push(Source {
+                name: "--set".to_owned(),
+                text: setting.line().map_err(|fault| vec![*fault])?,
+            });
         }
         Ok(all)
     }

@@ -3,7 +3,6 @@
 use toml::de::DeTable;
 
 use super::file::{Method, Placement, Tcp};
-use super::layers::Source;
 use crate::diagnostic::Diagnostic;
 
 /// One value over what a machine file says; of several for one key the last wins.
@@ -37,19 +36,16 @@ pub enum Setting {
     Model(String),
 }
 
-/// The name that settings go by where a fault is shown.
-const ORIGIN: &str = "--set";
-
 /// Keys without a table: they are set by their bare names, all other bare names are parameters.
 const TOP_LEVEL: [&str; 2] = ["name", "chain"];
 
 impl Setting {
-    /// The setting as a layer of the machine file.
+    /// The setting as a line of a machine file.
     ///
     /// # Errors
     /// A setting without a value.
-    pub(super) fn layer(&self) -> Result<Source, Box<Diagnostic>> {
-        let text = match self {
+    pub(super) fn line(&self) -> Result<String, Box<Diagnostic>> {
+        Ok(match self {
             Self::Written(setting) => match setting.split_once('=') {
                 Some((name, value)) => written(name.trim(), value.trim()),
                 None => {
@@ -68,10 +64,6 @@ impl Setting {
             Self::Placement(placement) => format!("accuracy.placement = {:?}", placement.name()),
             Self::Method(method) => format!("accuracy.method = {:?}", method.name()),
             Self::Model(model) => format!("accuracy.model = {model:?}"),
-        };
-        Ok(Source {
-            name: ORIGIN.to_owned(),
-            text,
         })
     }
 }

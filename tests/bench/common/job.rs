@@ -7,7 +7,7 @@ use std::path::Path;
 use post_grammar::Reader;
 use post_host::{Plugin, ProgramSetup, ProgramWord};
 use post_machine::axis_words;
-use post_machine::description::{self, Machine, Source};
+use post_machine::description::{self, Machine, Setting, Source};
 use post_plugin::Units;
 use post_posting::report::Report;
 use post_posting::{Job, Observer, Output, Post};
@@ -24,7 +24,8 @@ pub fn machine(name: &str, settings: &[String]) -> Result<Machine, Box<dyn Error
         .map_err(|error| error.to_string())
     };
     let source = find(name)?;
-    description::load(source, settings, &mut find).map_err(|faults| format!("{faults:?}").into())
+    let settings: Vec<Setting> = settings.iter().cloned().map(Setting::Written).collect();
+    description::load(source, &settings, &mut find).map_err(|faults| format!("{faults:?}").into())
 }
 
 /// Posts a CL file through the plugin boundary.

@@ -11,17 +11,19 @@ use toml::de::{DeTable, DeValue, Deserializer};
 use super::file::{MachineFile, Quantity, Tcp};
 use super::layers::{Source, Sources, overlay};
 use super::options::take_options;
+use super::setting::Setting;
 use super::{Axis, Control, GivenOption, Head, Machine};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::kinematics::NoClosedForm;
 
-/// Loads a machine: `source`, what it extends (found by `find`), and `settings` (`key=value`, the last wins).
+/// Loads a machine: `source`, what it extends (found by `find`), and `settings`, the last of
+/// which wins.
 ///
 /// # Errors
 /// Everything that is wrong with it, each with its place and a remedy.
 pub fn load(
     source: Source,
-    settings: &[String],
+    settings: &[Setting],
     find: &mut dyn FnMut(&str) -> Result<Source, String>,
 ) -> Result<Machine, Vec<Diagnostic>> {
     let sources = Sources::collect(source, settings, find)?;

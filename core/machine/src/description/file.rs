@@ -262,6 +262,16 @@ pub enum Tcp {
     Post,
 }
 
+impl Tcp {
+    /// As a machine file writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Control => "control",
+            Self::Post => "post",
+        }
+    }
+}
+
 /// How a cutting feed is written.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -360,6 +370,17 @@ pub enum Placement {
     Fewest,
 }
 
+impl Placement {
+    /// As a machine file writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bisect => "bisect",
+            Self::Even => "even",
+            Self::Fewest => "fewest",
+        }
+    }
+}
+
 /// What is done about a move that strays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -369,6 +390,16 @@ pub enum Method {
     Linearise,
     /// Points on the straight line of the axes, moved by minus the model's curve.
     Compensate,
+}
+
+impl Method {
+    /// As a machine file writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linearise => "linearise",
+            Self::Compensate => "compensate",
+        }
+    }
 }
 
 /// The point of the tool that must stay within tolerance.

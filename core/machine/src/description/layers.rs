@@ -8,6 +8,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
+use super::setting::Setting;
 use crate::diagnostic::{Diagnostic, Place};
 
 /// A text and the name that the user knows it by.
@@ -31,13 +32,13 @@ pub(crate) struct Sources {
 }
 
 impl Sources {
-    /// Collects the file, what it extends (found by `find`), and `settings` (`key=value`).
+    /// Collects the file, what it extends (found by `find`), and `settings`.
     ///
     /// # Errors
     /// A file that is not found or extends itself, a setting without a value.
     pub(crate) fn collect(
         source: Source,
-        settings: &[String],
+        settings: &[Setting],
         find: &mut dyn FnMut(&str) -> Result<Source, String>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let mut all = Self {
@@ -59,10 +60,9 @@ impl Sources {
             all.files += 1;
         }
         for setting in settings {
-            let text = setting_text(setting)?;
             all.push(Source {
                 name: "--set".to_owned(),
-                text,
+                text: setting.line().map_err(|fault| vec![*fault])?,
             });
         }
         Ok(all)
@@ -95,7 +95,8 @@ impl Sources {
         let mut merged = DeTable::new();
         let files = self.sources[..self.files].iter().rev();
         let settings = &self.sources[self.files..];
-        for (start, source) in files.chain(settings) {
+        let layers = files.map(|file| (file, false));
+        for ((start, source), is_setting) in layers.chain(settings.iter().map(|set| (set, true))) {
             let (table, faults) = DeTable::parse_recoverable(&source.text);
             // What follows the first fault of a text is mostly its echo.
             errors.extend(faults.iter().take(1).map(|fault| {
@@ -105,9 +106,7 @@ impl Sources {
                 Diagnostic::error("machine-syntax", fault.message()).at(place)
             }));
             let layer = moved_table(table.into_inner(), *start);
-            if source.name == "--set"
-                && let Err(error) = check_parameters(&layer, &merged)
-            {
+            if is_setting && let Err(error) = check_parameters(&layer, &merged) {
                 errors.push(*error);
             }
             overlay(&mut merged, layer);
@@ -145,31 +144,6 @@ impl Sources {
             text: line.to_owned(),
             span: from..to,
         })
-    }
-}
-
-/// Keys without a table: they are set by their bare names, all other bare names are parameters.
-const TOP_LEVEL: [&str; 2] = ["name", "chain"];
-
-/// `Lm=312` sets a parameter, `accuracy.tolerance=0.001` any key; a value that is no TOML is text.
-fn setting_text(setting: &str) -> Result<String, Vec<Diagnostic>> {
-    let Some((key, value)) = setting.split_once('=') else {
-        return Err(vec![
-            Diagnostic::error("setting", format!("--set {setting}: no value"))
-                .help("write --set NAME=VALUE"),
-        ]);
-    };
-    let (key, value) = (key.trim(), value.trim());
-    let key = if key.contains('.') || TOP_LEVEL.contains(&key) {
-        key.to_owned()
-    } else {
-        format!("parameters.{key}")
-    };
-    let plain = format!("{key} = {value}");
-    if DeTable::parse(&plain).is_ok() {
-        Ok(plain)
-    } else {
-        Ok(format!("{key} = {value:?}"))
     }
 }
 

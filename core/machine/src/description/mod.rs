@@ -9,6 +9,7 @@ mod layers;
 mod numbers;
 mod options;
 mod schema;
+mod setting;
 
 use std::f64::consts::TAU;
 
@@ -23,6 +24,7 @@ pub use file::{
 };
 pub use layers::Source;
 pub use schema::schema;
+pub use setting::Setting;
 
 use crate::diagnostic::Place;
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};

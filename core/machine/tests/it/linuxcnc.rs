@@ -4,7 +4,7 @@
 use std::fs;
 
 use nalgebra::Vector3;
-use post_machine::description::{Machine, Source, load};
+use post_machine::description::{Machine, Setting, Source, load};
 use post_machine::kinematics::{Joints, Pose};
 use post_testkit::{angle, shared, turned};
 
@@ -88,7 +88,7 @@ fn read(name: &str, rotary: &str) -> Option<Table> {
             }
             other => panic!("{name} has a pin {other}"),
         };
-        settings.push(format!("{parameter}={value}"));
+        settings.push(Setting::Written(format!("{parameter}={value}")));
     }
     let source = Source {
         name: name.to_owned(),

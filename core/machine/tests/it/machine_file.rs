@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use post_machine::description::{Machine, Source, Tcp, load};
+use post_machine::description::{Machine, Setting, Source, Tcp, load};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_testkit::repository;
 
@@ -68,7 +68,10 @@ fn source(name: &str, text: &str) -> Source {
 
 /// Loads `text` with `settings`; the machine `good` can be extended, and `circle` extends itself.
 fn try_load(text: &str, settings: &[&str]) -> Result<Machine, Vec<Diagnostic>> {
-    let settings: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
+    let settings: Vec<Setting> = settings
+        .iter()
+        .map(|&setting| Setting::Written(setting.to_owned()))
+        .collect();
     load(source("m.toml", text), &settings, &mut |name| match name {
         "good" => Ok(source("good.toml", GOOD)),
         "circle" => Ok(source("circle.toml", "extends = \"circle\"\n")),

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
 
 use nalgebra::Vector3;
-use post_machine::description::{Source, load};
+use post_machine::description::{Setting, Source, load};
 use post_machine::kinematics::{Chain, Joint, Joints, Pose, Solver, Trace};
 use post_posting::accuracy::certificate::{
     Bend, Course, chord_angle, deviation, quick, rim, tight,
@@ -352,7 +352,7 @@ fn tight_tends_to_the_second_derivative() {
 }
 
 /// A machine of the workspace.
-fn machine_file(name: &str, settings: &[String]) -> post_machine::description::Machine {
+fn machine_file(name: &str, settings: &[Setting]) -> post_machine::description::Machine {
     let path = repository().join("machines").join(name);
     let source = Source {
         name: name.to_owned(),
@@ -372,7 +372,10 @@ fn the_swing_head_move_of_the_parabolic_paper() {
         (400.0, 22.031),
         (312.0, 17.184),
     ] {
-        let machine = machine_file("disc-cutter.toml", &[format!("Lm={swing}")]);
+        let machine = machine_file(
+            "disc-cutter.toml",
+            &[Setting::Written(format!("Lm={swing}"))],
+        );
         let solver = machine.solver(0.0).unwrap();
         let [from, to] = [
             ([33.3881, 0.0, 8.1205], -3.3528f64),

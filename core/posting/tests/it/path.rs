@@ -8,7 +8,7 @@ mod tolerance;
 mod words;
 
 use nalgebra::{Rotation3, Vector3};
-use post_machine::description::{Machine, Source, load};
+use post_machine::description::{Machine, Setting, Source, load};
 use post_machine::diagnostic::Severity;
 use post_machine::kinematics::{Joint, Joints};
 use post_plugin::Feed;
@@ -155,7 +155,10 @@ tcp = "{}"
 {LINEAR}"#,
         if tcp { "control" } else { "post" }
     );
-    let settings: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
+    let settings: Vec<Setting> = settings
+        .iter()
+        .map(|&setting| Setting::Written(setting.to_owned()))
+        .collect();
     let machine = load(
         Source {
             name: kind.to_owned(),

@@ -411,4 +411,3 @@ fn full_turns_of_an_endless_axis_are_one_way() {
         "{exits} exits, {posted} posted"
     );
 }
-

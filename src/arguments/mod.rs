@@ -1,0 +1,126 @@
+//! What several verbs take on the command line, and how its values are read.
+//!
+//! A flag becomes what it means to the core as it is parsed, and is not turned into text again.
+
+pub mod flag_values;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use post_grammar::Units;
+use post_machine::description::{Setting, Tcp};
+use post_posting::program::Unknown;
+
+use crate::files::PathArg;
+use flag_values::{
+    Msys, TcpWord, UnitsWord, UnknownWord, not_negative, point, positive, setting, word,
+};
+
+/// A CL file, how it is read, and the machine.
+#[derive(Debug, Args)]
+pub struct JobArguments {
+    /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
+    #[arg(short, long, value_name = "MACHINE", required = true)]
+    pub machine: Option<String>,
+
+    /// The CL file, `-` for standard input.
+    #[arg(value_name = "CL-FILE", required = true, value_parser = PathArg::parser())]
+    pub input: Option<PathArg>,
+
+    /// Units of the CL file's numbers, whatever it says.
+    #[arg(
+        long,
+        value_parser = word::<UnitsWord, Units>(),
+        value_name = "UNITS",
+        help_heading = "Reading"
+    )]
+    pub units: Option<Units>,
+
+    /// MSYS of NX: `keep` takes points and axes as written, `apply` takes them into its frame.
+    #[arg(
+        long,
+        value_enum,
+        default_value_t,
+        value_name = "WHAT",
+        help_heading = "Reading"
+    )]
+    pub msys: Msys,
+
+    /// What to do with words that post does not know: refuse the file, leave them out and say so, or write
+    /// them as comments.
+    #[arg(
+        long,
+        value_parser = word::<UnknownWord, Unknown>(),
+        default_value = "warn",
+        value_name = "WHAT",
+        help_heading = "Reading"
+    )]
+    pub unknown: Unknown,
+
+    /// Number of the tool, for a CL file that loads none.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Reading")]
+    pub tool: Option<u32>,
+
+    /// Where the part origin sits for this job, all axes at zero, machine frame, mm.
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        allow_hyphen_values = true,
+        value_parser = point,
+        help_heading = "Machine"
+    )]
+    pub mount: Option<[f64; 3]>,
+
+    /// Length of every tool from the gauge point to the tip, mm, over what machine and CL file say.
+    #[arg(
+        long,
+        value_name = "MM",
+        allow_hyphen_values = true,
+        value_parser = not_negative,
+        help_heading = "Machine"
+    )]
+    pub tool_length: Option<f64>,
+
+    /// Sets a parameter of the machine (`Lm=312`) or any key (`accuracy.tolerance=0.001`).
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "Machine")]
+    pub set: Vec<Setting>,
+
+    /// Largest deviation of the tip in a cut, mm; short for --set accuracy.tolerance=…
+    #[arg(long, value_name = "MM", value_parser = positive, help_heading = "Machine")]
+    pub tolerance: Option<f64>,
+
+    /// Who keeps the tip on its path; short for --set control.tcp=…
+    #[arg(long, value_parser = word::<TcpWord, Tcp>(), value_name = "WHO", help_heading = "Machine")]
+    pub tcp: Option<Tcp>,
+
+    /// A further folder of machine files; the environment variable POST_MACHINES adds more.
+    #[arg(long, value_name = "FOLDER", help_heading = "Machine")]
+    pub machines: Vec<PathBuf>,
+
+    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs
+    /// its code, so no folder is looked into that is not named here.
+    #[arg(long, value_name = "FOLDER", help_heading = "Plugins")]
+    pub plugins: Vec<PathBuf>,
+}
+
+impl JobArguments {
+    /// The machine's name or file. Clap has seen to it that there is one: it is no `String`, since a further verb on
+    /// the same command line takes its place.
+    pub fn machine(&self) -> &str {
+        self.machine.as_deref().unwrap_or_default()
+    }
+
+    /// The CL file; see [`JobArguments::machine`].
+    pub fn input(&self) -> &PathArg {
+        self.input.as_ref().unwrap_or(&PathArg::Standard)
+    }
+
+    /// What the flags set over the machine file: `--set` first, then the short ones, which win.
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut settings = self.set.clone();
+        settings.extend(self.mount.map(Setting::Mount));
+        settings.extend(self.tolerance.map(Setting::Tolerance));
+        settings.extend(self.tcp.map(Setting::Tcp));
+        settings
+    }
+}

@@ -1,0 +1,68 @@
+//! What a verb can fail with, and the exit code of each way to fail.
+
+use std::process::ExitCode;
+
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::NoClosedForm;
+
+use crate::files::FileFault;
+
+/// Why a verb did not do what it was asked to.
+#[derive(Debug)]
+pub enum Failure {
+    /// The command line is wrong. Help and version, which end the program too, come this way and are no fault.
+    Usage(clap::Error),
+    /// A file cannot be read or written.
+    File(FileFault),
+    /// The chain of a machine has no inverse solution.
+    Unsolvable {
+        /// Name of the machine.
+        machine: String,
+        /// What the chain lacks.
+        lack: NoClosedForm,
+    },
+    /// Something that was read is refused: findings, each with its file and line, an error among them.
+    Refused(Vec<Diagnostic>),
+}
+
+impl Failure {
+    /// What the program ends with, as `--help` documents it: 1 refused, 2 the command line is wrong.
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Usage(error) if error.use_stderr() => 2.into(),
+            Self::Usage(_) => ExitCode::SUCCESS,
+            Self::File(_) | Self::Unsolvable { .. } | Self::Refused(_) => 1.into(),
+        }
+    }
+
+    /// What is said to the user; a wrong command line is clap's to explain.
+    pub fn findings(self) -> Vec<Diagnostic> {
+        match self {
+            Self::Usage(_) => Vec::new(),
+            Self::File(fault) => vec![fault.into()],
+            Self::Unsolvable { machine, lack } => {
+                let message = format!("{machine} cannot be solved: {lack:?}");
+                vec![Diagnostic::error("check", message)]
+            }
+            Self::Refused(findings) => findings,
+        }
+    }
+}
+
+impl From<FileFault> for Failure {
+    fn from(fault: FileFault) -> Self {
+        Self::File(fault)
+    }
+}
+
+impl From<Diagnostic> for Failure {
+    fn from(finding: Diagnostic) -> Self {
+        Self::Refused(vec![finding])
+    }
+}
+
+impl From<Vec<Diagnostic>> for Failure {
+    fn from(findings: Vec<Diagnostic>) -> Self {
+        Self::Refused(findings)
+    }
+}

@@ -1,0 +1,90 @@
+//! A job as the flags mean it: a CL file, a machine with its settings, and the plugins that the machine asks for.
+
+pub mod machine_files;
+pub mod plugin_finder;
+
+use std::env;
+use std::path::PathBuf;
+
+use post_grammar::{ReadError, Reader};
+use post_machine::check::Check;
+use post_machine::description::{Machine, Setting};
+use post_posting::program::Reading;
+use post_posting::{Job, Post};
+
+use crate::arguments::JobArguments;
+use crate::arguments::flag_values::Msys;
+use crate::failure::Failure;
+use crate::files::{ClInput, FileFault, PathArg};
+use crate::terminal::Progress;
+
+/// The machine with all settings of the command line, and `more` after them.
+pub fn machine(arguments: &JobArguments, more: &[Setting]) -> Result<Machine, Failure> {
+    let mut settings = arguments.settings();
+    settings.extend_from_slice(more);
+    machine_files::load(arguments.machine(), &arguments.machines, &settings)
+}
+
+/// What can be derived from a machine with a tool of `length` mm. A chain that cannot be solved is mostly refused as
+/// its file is loaded.
+pub fn derive(machine: &Machine, length: f64) -> Result<Check, Failure> {
+    Check::of(machine, length).map_err(|lack| Failure::Unsolvable {
+        machine: machine.name.clone(),
+        lack,
+    })
+}
+
+/// How the CL file that is called `file` in messages is posted.
+pub fn posting(arguments: &JobArguments, file: &str) -> Job {
+    Job {
+        reading: Reading {
+            file: file.to_owned(),
+            units: arguments.units,
+            tool: arguments.tool,
+            apply_msys: arguments.msys == Msys::Apply,
+            unknown: arguments.unknown,
+            ..Reading::default()
+        },
+        tool_length: arguments.tool_length,
+        trust_model: false,
+    }
+}
+
+/// The program is called after its file, or after the CL file.
+pub fn program_name(source: &PathArg, target: Option<&PathArg>) -> String {
+    target
+        .and_then(PathArg::stem)
+        .or_else(|| source.stem())
+        .unwrap_or_else(|| "PROGRAM".to_owned())
+}
+
+/// Reads a CL file to its end, or until there are so many faults that it is given up.
+pub fn read(input: ClInput, post: &mut Post<'_>) -> Result<(), FileFault> {
+    let mut progress = Progress::new(input.length);
+    let mut reader = Reader::new(input.bytes);
+    while !post.gave_up() {
+        match reader.next_record() {
+            Ok(Some(record)) => post.record(&record),
+            Ok(None) => break,
+            Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
+            Err(ReadError::Io(error)) => {
+                return Err(FileFault::Read {
+                    name: input.name,
+                    error,
+                });
+            }
+        }
+        progress.record(|| reader.bytes_read());
+    }
+    progress.finish();
+    Ok(())
+}
+
+/// Folders that the user names: on the command line, then in an environment variable.
+fn folders(named: &[PathBuf], variable: &str) -> Vec<PathBuf> {
+    let mut folders = named.to_owned();
+    if let Some(more) = env::var_os(variable) {
+        folders.extend(env::split_paths(&more).filter(|path| !path.as_os_str().is_empty()));
+    }
+    folders
+}

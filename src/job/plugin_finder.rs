@@ -1,0 +1,189 @@
+//! The plugins that are part of the command, and those that the user's folders hold.
+
+use std::path::{Path, PathBuf};
+
+use post_host::{
+    Finder, GivenValue, OpenedDialect, OpenedModel, Plugin, PluginFault, ProgramSetup, ProgramWord,
+    Reason,
+};
+use post_machine::axis_words;
+use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
+use post_machine::diagnostic::{Diagnostic, Place};
+use post_plugin::{Accuracy, Tolerance, Units};
+use post_posting::report::PluginUse;
+
+use super::folders;
+use crate::files::PathArg;
+
+/// The finder for a run, with the folders that the user `named`.
+pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
+    let folders = folders(named, "POST_PLUGINS");
+    missing(named)?;
+    let linked = [
+        post_fanuc::plugin(),
+        post_harmonic::plugin(),
+        post_heidenhain::plugin(),
+        post_linuxcnc::plugin(),
+        post_parabolic::plugin(),
+        post_sampled::plugin(),
+    ]
+    .into_iter()
+    .map(Plugin::linked)
+    .collect::<Result<_, _>>()
+    .map_err(|fault| vec![diagnostic(&fault, &[], None)])?;
+    Ok(Finder { folders, linked })
+}
+
+/// A folder that the user names must be there: a slip would take the built-in plugin in silence.
+fn missing(folders: &[PathBuf]) -> Result<(), Vec<Diagnostic>> {
+    let missing: Vec<Diagnostic> = folders
+        .iter()
+        .filter(|folder| !folder.is_dir())
+        .map(|folder| {
+            Diagnostic::error(
+                "plugin",
+                format!("--plugins {}: no such folder", folder.display()),
+            )
+        })
+        .collect();
+    if missing.is_empty() {
+        Ok(())
+    } else {
+        Err(missing)
+    }
+}
+
+/// Opens the dialect of a machine for the program `program`, made from the CL file `cl_file`.
+pub fn dialect(
+    finder: &Finder,
+    machine: &Machine,
+    program: &str,
+    cl_file: Option<&PathArg>,
+) -> Result<(OpenedDialect, PluginUse), Vec<Diagnostic>> {
+    let control = &machine.control;
+    let fault = |fault: PluginFault| {
+        vec![diagnostic(
+            &fault,
+            &control.options,
+            control.dialect_place.clone(),
+        )]
+    };
+    let plugin = finder.find(&control.dialect).map_err(fault)?;
+    let setup = ProgramSetup {
+        program: program.to_owned(),
+        machine: machine.name.clone(),
+        units: match control.units {
+            OutputUnits::Mm => Units::Millimetre,
+            OutputUnits::Inch => Units::Inch,
+        },
+        tcp: control.tcp == Tcp::Control,
+        words: axis_words::order(machine)
+            .into_iter()
+            .map(|place| {
+                let axis = &machine.axes[place];
+                ProgramWord {
+                    name: axis.name.clone(),
+                    rotary: axis.joint.rotary,
+                    wrapped: axis.range.is_some(),
+                    depth: axis_words::is_depth(machine, place),
+                    carries_part: axis.carries_part,
+                    travel: axis
+                        .travel
+                        .map(|travel| travel.map(|end| axis.reading(end))),
+                }
+            })
+            .collect(),
+        options: given(&control.options),
+        cl_file: cl_file
+            .and_then(PathArg::path)
+            .and_then(Path::file_name)
+            .map(|name| name.to_string_lossy().into_owned())
+            .unwrap_or_default(),
+        accuracy: Some(Accuracy {
+            cut: Tolerance {
+                tip: machine.accuracy.tolerance,
+                axis: machine.accuracy.axis_tolerance.to_degrees(),
+            },
+            rapid: machine.accuracy.rapid_tolerance,
+        }),
+        // The input is read once, as it may be a pipe.
+        ahead: None,
+    };
+    let opened = plugin.dialect(&setup).map_err(fault)?;
+    Ok((opened, used(&plugin)))
+}
+
+/// Opens the error model of a machine.
+pub fn model(
+    finder: &Finder,
+    machine: &Machine,
+) -> Result<(OpenedModel, PluginUse), Vec<Diagnostic>> {
+    let accuracy = &machine.accuracy;
+    let fault = |fault: PluginFault| {
+        vec![diagnostic(
+            &fault,
+            &accuracy.options,
+            accuracy.model_place.clone(),
+        )]
+    };
+    let plugin = finder.find(&accuracy.model).map_err(fault)?;
+    let opened = plugin
+        .error_model(&given(&accuracy.options))
+        .map_err(fault)?;
+    Ok((opened, used(&plugin)))
+}
+
+/// Opens the error model `name` with its options as they are by default.
+pub fn plain_model(finder: &Finder, name: &str) -> Result<OpenedModel, Vec<Diagnostic>> {
+    finder
+        .find(name)
+        .and_then(|plugin| plugin.error_model(&[]))
+        .map_err(|fault| vec![diagnostic(&fault, &[], None)])
+}
+
+fn given(options: &[GivenOption]) -> Vec<(String, GivenValue)> {
+    options
+        .iter()
+        .map(|option| {
+            let value = match &option.value {
+                OptionValue::Flag(flag) => GivenValue::Flag(*flag),
+                OptionValue::Integer(number) => GivenValue::Integer(*number),
+                OptionValue::Number(number) => GivenValue::Number(*number),
+                OptionValue::Text(text) => GivenValue::Text(text.clone()),
+            };
+            (option.key.clone(), value)
+        })
+        .collect()
+}
+
+fn used(plugin: &Plugin) -> PluginUse {
+    PluginUse {
+        name: plugin.name().to_owned(),
+        version: plugin.version().to_owned(),
+        path: plugin.path().map(|path| path.display().to_string()),
+        hash: plugin.hash().map(str::to_owned),
+    }
+}
+
+/// A plugin's fault at the line of the machine file that asked for it.
+pub fn diagnostic(
+    fault: &PluginFault,
+    options: &[GivenOption],
+    place: Option<Place>,
+) -> Diagnostic {
+    let place = match &fault.reason {
+        Reason::Option(option) => options
+            .iter()
+            .find(|given| given.key == option.key)
+            .and_then(|given| given.place.clone())
+            .or(place),
+        _ => place,
+    };
+    let help = fault.help();
+    let diagnostic = Diagnostic::error("plugin", fault.to_string()).at(place);
+    if help.is_empty() {
+        diagnostic
+    } else {
+        diagnostic.help(help)
+    }
+}

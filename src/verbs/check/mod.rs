@@ -1,0 +1,216 @@
+//! `post check`: what a machine file means, to be compared with the machine.
+
+mod check_text;
+mod commission_program;
+mod reach_picture;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use post_machine::check::{Differing, compare};
+use post_machine::description::{Machine, Setting};
+use post_machine::diagnostic::Diagnostic;
+
+use crate::arguments::flag_values;
+use crate::failure::Failure;
+use crate::files::{self, PathArg};
+use crate::job::{self, machine_files};
+use crate::terminal::{self, print};
+
+/// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
+///
+/// Go through the sign table beside the machine, axis by axis, before the file moves it: a wrong sign breaks a
+/// spindle. --commission writes a short program for that, --nominal compares the file with another one.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  post check ac-trunnion
+  post check my-mill.toml --svg reach.svg --json check.json
+  post check measured.toml --nominal ac-trunnion --tool-length 100
+  post check my-mill.toml --commission -o commission.nc
+
+Exit codes: 0 checked (warnings are on standard error); 1 the file is refused; 2 the command line is wrong.")]
+pub struct CheckArguments {
+    /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
+    #[arg(value_name = "MACHINE")]
+    machine: String,
+
+    /// Compares it with this machine at equal words of a program: the largest deviation of tip and tool axis
+    /// over the travels, where, and what each difference between the files contributes.
+    #[arg(long, value_name = "OTHER", conflicts_with_all = ["svg", "commission"])]
+    nominal: Option<String>,
+
+    /// Writes a short program in the machine's own dialect instead, which moves one axis after the other and
+    /// says what must be seen. It is run without a part and with a hand on the feed override.
+    #[arg(long, conflicts_with_all = ["svg", "json"])]
+    commission: bool,
+
+    /// Where the program of --commission goes, `-` for standard output. [default: `commission`, with the
+    /// dialect's ending]
+    #[arg(short, long, value_name = "FILE", requires = "commission", value_parser = PathArg::parser())]
+    output: Option<PathArg>,
+
+    /// Draws the reachable directions of the tool: tilt and azimuth, seen from the part.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    svg: Option<PathArg>,
+
+    /// Writes what is printed as JSON, with all digits; `-` is standard output, alone there.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    json: Option<PathArg>,
+
+    /// Checks the machine with this head, one of those that the program can swap in (`[head.NAME]`).
+    #[arg(long, value_name = "NAME")]
+    head: Option<String>,
+
+    /// Length of the tool from the gauge point to the tip, mm.
+    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true, value_parser = flag_values::not_negative)]
+    tool_length: f64,
+
+    /// Where the part origin sits, all axes at zero, machine frame, mm; in both machines of --nominal.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = flag_values::point)]
+    mount: Option<[f64; 3]>,
+
+    /// Sets a parameter of the machine (`Lm=312`) or any key; in MACHINE alone, not in the other of --nominal.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = flag_values::setting)]
+    set: Vec<Setting>,
+
+    /// A further folder of machine files; the environment variable POST_MACHINES adds more.
+    #[arg(long, value_name = "FOLDER")]
+    machines: Vec<PathBuf>,
+
+    /// A folder of plugin libraries, for the dialect of --commission; POST_PLUGINS adds more.
+    #[arg(long, value_name = "FOLDER")]
+    plugins: Vec<PathBuf>,
+}
+
+/// Checks as the arguments say.
+pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
+    if arguments.svg.is_some() && arguments.svg == arguments.json {
+        let message = "picture and JSON cannot go to one place";
+        return Err(Diagnostic::error("output", message).into());
+    }
+    let machine = machine(arguments)?;
+    if arguments.commission {
+        return commission_program::write(arguments, &machine);
+    }
+    match &arguments.nominal {
+        Some(nominal) => with_nominal(arguments, &machine, nominal),
+        None => alone(arguments, &machine),
+    }
+}
+
+/// What one machine file means.
+fn alone(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
+    let check = job::derive(machine, arguments.tool_length)?;
+    if let Some(target) = &arguments.svg {
+        write(arguments, target, &reach_picture::draw(&check))?;
+    }
+    terminal::findings(&check.findings());
+    if let Some(target) = &arguments.json {
+        write(arguments, target, &files::json(&check))?;
+    }
+    if standard_output_is_taken(arguments) {
+        return Ok(());
+    }
+    print(&check_text::check(&check));
+    if !machine.heads.is_empty() {
+        let heads = machine.heads.iter().map(|head| head.name.as_str());
+        let heads: Vec<&str> = heads.collect();
+        print(&format!(
+            "further heads, see --head: {}\n",
+            heads.join(", ")
+        ));
+    }
+    Ok(())
+}
+
+/// How far two machine files are apart.
+fn with_nominal(
+    arguments: &CheckArguments,
+    machine: &Machine,
+    nominal: &str,
+) -> Result<(), Failure> {
+    let mount: Vec<Setting> = arguments.mount.map(Setting::Mount).into_iter().collect();
+    let nominal = machine_files::load(nominal, &arguments.machines, &mount)?;
+    let compared =
+        compare(machine, &nominal, arguments.tool_length).map_err(|fault| differing(&fault))?;
+    if let Some(target) = &arguments.json {
+        write(arguments, target, &files::json(&compared))?;
+    }
+    if !standard_output_is_taken(arguments) {
+        print(&check_text::comparison(&compared));
+    }
+    Ok(())
+}
+
+/// The machine that is checked, with its settings and the head that is asked for.
+fn machine(arguments: &CheckArguments) -> Result<Machine, Failure> {
+    let mut settings = arguments.set.clone();
+    settings.extend(arguments.mount.map(Setting::Mount));
+    let machine = machine_files::load(&arguments.machine, &arguments.machines, &settings)?;
+    match &arguments.head {
+        Some(name) => with_head(machine, name),
+        None => Ok(machine),
+    }
+}
+
+/// The machine with a head that the program can swap in.
+fn with_head(machine: Machine, name: &str) -> Result<Machine, Failure> {
+    let heads = &machine.heads;
+    if let Some(head) = heads.iter().find(|head| head.name == name) {
+        return Ok(head.machine.clone());
+    }
+    let known: Vec<&str> = heads.iter().map(|head| head.name.as_str()).collect();
+    let help = match known.as_slice() {
+        [] => "its file has no [head.NAME]".to_owned(),
+        known => format!("its heads are {}", known.join(", ")),
+    };
+    let message = format!("{} has no head {name}", machine.name);
+    Err(Diagnostic::error("check", message).help(help).into())
+}
+
+fn differing(fault: &Differing) -> Diagnostic {
+    match fault {
+        Differing::Axes { machine, nominal } => Diagnostic::error(
+            "check-nominal",
+            format!(
+                "the two machines have different axes: {}; the other {}",
+                machine.join(", "),
+                nominal.join(", ")
+            ),
+        )
+        .help("machines are compared at equal words, so both must have the same axes in the same order"),
+        Differing::NoZero { machine } => Diagnostic::error(
+            "check-nominal",
+            format!("{machine} cannot be brought to the part origin with its rotary axes at zero"),
+        ),
+    }
+}
+
+/// Standard output is for a picture or for JSON, so nothing else is printed there.
+fn standard_output_is_taken(arguments: &CheckArguments) -> bool {
+    let to = |target: &Option<PathArg>| target == &Some(PathArg::Standard);
+    to(&arguments.svg) || to(&arguments.json)
+}
+
+/// Writes a text whole, or not at all; never over the machine file.
+fn write(arguments: &CheckArguments, target: &PathArg, text: &str) -> Result<(), Failure> {
+    refuse_to_overwrite_machine(arguments, target)?;
+    Ok(files::write(target, text.as_bytes())?)
+}
+
+/// Refuses to write over a machine file that is read.
+fn refuse_to_overwrite_machine(
+    arguments: &CheckArguments,
+    target: &PathArg,
+) -> Result<(), Failure> {
+    let Some(path) = target.path() else {
+        return Ok(());
+    };
+    let read = [Some(&arguments.machine), arguments.nominal.as_ref()];
+    let mut read = read.into_iter().flatten();
+    if read.any(|name| files::would_replace(target, Path::new(name))) {
+        let message = format!("{} is the machine file that is checked", path.display());
+        return Err(Diagnostic::error("output", message).into());
+    }
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! The verbs of the command, a file or a folder each. No verb uses another: what two of them need lies in the rooms
+//! below, `job`, `files`, `terminal` and `arguments`.
+
+mod check;
+mod list_machines;
+mod list_words;
+mod new;
+mod post;
+mod print_schema;
+mod study;
+mod test_plugin;
+
+use clap::{Parser, Subcommand};
+
+use crate::failure::Failure;
+use check::CheckArguments;
+use list_machines::MachinesArguments;
+use list_words::WordsArguments;
+use new::NewArguments;
+use post::PostArguments;
+use print_schema::SchemaArguments;
+use study::StudyArguments;
+use test_plugin::PluginArguments;
+
+/// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
+///
+/// The machine is a TOML file: its kinematic chain, its control and the tolerance that the program must
+/// keep. Points are put in where the axes would stray from the path, and the deviation of every block of the
+/// program is certified. Nothing is written unless the whole program is good.
+#[derive(Debug, Parser)]
+#[command(
+    name = "post",
+    version,
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
+    after_help = "Examples:
+  post --machine ac-trunnion part.cls
+  post --machine dmu50.toml part.ncl -o part.h --mount 0,0,120 --summary part.json
+  post --machine disc-cutter --set Lm=250 blade.cls -o -
+  post words part.cls
+  post new my-mill --class table-table-ac --dialect linuxcnc
+  post check my-mill.toml --svg reach.svg
+  post study part.cls --machine ac-trunnion
+  post plugin test target/release/libpost_mine.so
+
+Exit codes: 0 the program is written; 1 refused, the messages say why; 2 the command line is wrong.",
+    max_term_width = 100
+)]
+pub struct CommandLine {
+    #[command(subcommand)]
+    verb: Option<Verb>,
+    #[command(flatten)]
+    post: PostArguments,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    Words(WordsArguments),
+    Machines(MachinesArguments),
+    Schema(SchemaArguments),
+    Check(CheckArguments),
+    New(NewArguments),
+    Study(Box<StudyArguments>),
+    Plugin(PluginArguments),
+}
+
+impl CommandLine {
+    /// Does what the command line says.
+    pub fn run(self) -> Result<(), Failure> {
+        match self.verb {
+            None => post::run(&self.post),
+            Some(Verb::Words(arguments)) => list_words::run(&arguments),
+            Some(Verb::Machines(arguments)) => list_machines::run(&arguments),
+            Some(Verb::Schema(arguments)) => print_schema::run(&arguments),
+            Some(Verb::Check(arguments)) => check::run(&arguments),
+            Some(Verb::New(arguments)) => new::run(&arguments),
+            Some(Verb::Study(arguments)) => study::run(&arguments),
+            Some(Verb::Plugin(arguments)) => test_plugin::run(&arguments),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::{Path, PathBuf};
+
+    use clap::CommandFactory;
+
+    use super::*;
+
+    fn sources(folder: &Path) -> Vec<PathBuf> {
+        let entries = fs::read_dir(folder).unwrap();
+        entries
+            .map(|entry| entry.unwrap().path())
+            .flat_map(|path| {
+                if path.is_dir() {
+                    sources(&path)
+                } else {
+                    vec![path]
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn no_verb_names_another_and_nothing_below_names_a_verb() {
+        let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+        let entries = fs::read_dir(src.join("verbs")).unwrap();
+        let mut ways = vec!["crate::verbs".to_owned(), "super::super".to_owned()];
+        for entry in entries {
+            let path = entry.unwrap().path();
+            let verb = path.file_stem().unwrap().to_str().unwrap();
+            ways.extend([format!("super::{verb}::"), format!("super::{verb};")]);
+        }
+        for path in sources(&src) {
+            let text = fs::read_to_string(&path).unwrap();
+            let named = ways.iter().find(|way| text.contains(*way));
+            assert!(
+                named.is_none() || path.ends_with("verbs/mod.rs"),
+                "{} names a verb by {named:?}: what two of them need belongs into a room below",
+                path.display()
+            );
+        }
+    }
+
+    #[test]
+    fn the_command_line_holds_together() {
+        CommandLine::command().debug_assert();
+    }
+}

@@ -1,0 +1,316 @@
+//! `post new`: writes a machine file to start from.
+
+mod questions;
+mod template;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use post_machine::description::{self, OutputUnits, Tcp};
+use post_machine::diagnostic::Diagnostic;
+
+use crate::arguments::flag_values::{self, TcpWord, UnitsWord, finite, word};
+use crate::failure::Failure;
+use crate::{files, job, terminal};
+use template::Class;
+
+/// Writes a machine file that `post check` accepts, with a remark on each value that says what to measure.
+///
+/// With --class all else has a default or a flag; without it a few questions are asked, on a terminal or
+/// answered through a pipe.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  post new my-mill
+  post new my-mill --class table-table-ac --dialect linuxcnc --travel X=-200:200 --travel A=-100:20 --tilt -35
+  post new gantry --class head-head-ac --pivot 312.4 --max-feed A=3600
+
+Exit codes: 0 the file is written; 1 refused, the messages say why; 2 the command line is wrong.")]
+pub struct NewArguments {
+    /// Name of the machine, with a folder in front if it shall not stand here: writes NAME.toml.
+    #[arg(value_name = "NAME")]
+    name: PathBuf,
+
+    /// How its rotary axes stand; no question is asked then.
+    #[arg(long, value_enum, value_name = "CLASS")]
+    class: Option<Class>,
+
+    /// The dialect of its control: fanuc, heidenhain, linuxcnc, or a plugin's name. [default: fanuc]
+    #[arg(long, value_name = "NAME", value_parser = dialect)]
+    dialect: Option<String>,
+
+    /// Who keeps the tip on its path while rotary axes turn. [default: post]
+    #[arg(long, value_parser = word::<TcpWord, Tcp>(), value_name = "WHO")]
+    tcp: Option<Tcp>,
+
+    /// Units of the NC program. [default: mm]
+    #[arg(long, value_parser = word::<UnitsWord, OutputUnits>(), value_name = "UNITS")]
+    units: Option<OutputUnits>,
+
+    /// What the machine is called in the file. [default: NAME]
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+
+    /// Travel of an axis, mm or degrees: X=-300:300.
+    #[arg(long, value_name = "AXIS=LEAST:MOST", allow_hyphen_values = true, value_parser = travel)]
+    travel: Vec<Given<[f64; 2]>>,
+
+    /// A rotary axis that turns without end.
+    #[arg(long, value_name = "AXIS")]
+    cyclic: Vec<String>,
+
+    /// An axis that counts against ISO 841.
+    #[arg(long, value_name = "AXIS")]
+    reversed: Vec<String>,
+
+    /// Largest feed of an axis, mm/min or deg/min: C=7200.
+    #[arg(long, value_name = "AXIS=FEED", value_parser = feed)]
+    max_feed: Vec<Given<f64>>,
+
+    /// A point of a rotary axis' line, machine frame, all axes at zero, mm: A=0,0.012,50.
+    #[arg(long, value_name = "AXIS=X,Y,Z", value_parser = point)]
+    point: Vec<Given<[f64; 3]>>,
+
+    /// Height of the gauge line over the table's face with all axes at zero, mm. [default: 500]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = finite)]
+    gauge: Option<f64>,
+
+    /// From the swivel axis of the head to the gauge line, mm. [default: 250]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = finite)]
+    pivot: Option<f64>,
+
+    /// Height of the tilting axis of the table over its face, below is negative, mm. [default: 50]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = finite)]
+    tilt: Option<f64>,
+
+    /// Largest deviation of the tip in a cut, mm. [default: 0.005]
+    #[arg(long, value_name = "MM", value_parser = finite)]
+    tolerance: Option<f64>,
+
+    /// Replaces a file that is there.
+    #[arg(long)]
+    force: bool,
+}
+
+/// A value for one axis.
+#[derive(Clone, Debug)]
+pub struct Given<T> {
+    /// Address of the axis.
+    pub axis: String,
+    /// Its value.
+    pub value: T,
+}
+
+/// What a machine file is made from.
+#[derive(Debug)]
+pub struct Choices {
+    /// What the machine is called.
+    pub title: String,
+    pub class: Class,
+    pub dialect: String,
+    pub tcp: Tcp,
+    pub units: OutputUnits,
+    pub travel: Vec<Given<[f64; 2]>>,
+    pub cyclic: Vec<String>,
+    pub reversed: Vec<String>,
+    pub max_feed: Vec<Given<f64>>,
+    pub point: Vec<Given<[f64; 3]>>,
+    /// mm; see [`NewArguments`].
+    pub gauge: f64,
+    pub pivot: f64,
+    pub tilt: f64,
+    pub tolerance: f64,
+}
+
+/// Writes the file.
+pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
+    let path = file(&arguments.name)?;
+    if path.exists() && !arguments.force {
+        let message = format!("{} is there already", path.display());
+        return Err(Diagnostic::error("new", message)
+            .help("--force replaces it")
+            .into());
+    }
+    let choices = choices(arguments, &path)?;
+    refuse_unknown_axes(&choices)?;
+    let text = template::write(&choices);
+    // Nothing is written that the loader would refuse.
+    let source = description::Source {
+        name: path.display().to_string(),
+        text: text.clone(),
+    };
+    let machine = description::load(source, &[], &mut |parent| {
+        Err(format!("there is no machine {parent}"))
+    })?;
+    let checked = job::derive(&machine, 0.0)?;
+    files::write(&path.clone().into(), text.as_bytes())?;
+    terminal::findings(&checked.findings());
+    terminal::print(&format!(
+        "{}: {}\nMeasure what its remarks ask for, then: post check {}\n",
+        path.display(),
+        checked.class.name,
+        path.display()
+    ));
+    Ok(())
+}
+
+/// `NAME.toml`.
+fn file(name: &Path) -> Result<PathBuf, Failure> {
+    let path = match name.extension() {
+        Some(ending) if ending == "toml" => name.to_owned(),
+        _ => {
+            let mut whole = name.as_os_str().to_owned();
+            whole.push(".toml");
+            PathBuf::from(whole)
+        }
+    };
+    match path.file_stem() {
+        Some(stem) if !stem.is_empty() && stem != ".toml" => {}
+        _ => {
+            let message = format!("{} is no name", name.display());
+            return Err(Diagnostic::error("new", message).into());
+        }
+    }
+    if let Some(folder) = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        && !fs::metadata(folder).is_ok_and(|folder| folder.is_dir())
+    {
+        let message = format!("there is no folder {}", folder.display());
+        return Err(Diagnostic::error("new", message).into());
+    }
+    Ok(path)
+}
+
+fn choices(arguments: &NewArguments, path: &Path) -> Result<Choices, Failure> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let mut choices = Choices {
+        title: arguments.title.clone().unwrap_or(stem.into_owned()),
+        class: arguments.class.unwrap_or(Class::ThreeAxis),
+        dialect: arguments.dialect.clone().unwrap_or("fanuc".to_owned()),
+        tcp: arguments.tcp.unwrap_or_default(),
+        units: arguments.units.unwrap_or_default(),
+        travel: arguments.travel.clone(),
+        cyclic: arguments.cyclic.clone(),
+        reversed: arguments.reversed.clone(),
+        max_feed: arguments.max_feed.clone(),
+        point: arguments.point.clone(),
+        gauge: arguments.gauge.unwrap_or(500.0),
+        pivot: arguments.pivot.unwrap_or(250.0),
+        tilt: arguments.tilt.unwrap_or(50.0),
+        tolerance: arguments.tolerance.unwrap_or(0.005),
+    };
+    if arguments.class.is_none() {
+        questions::ask(arguments, &mut choices)?;
+    }
+    Ok(choices)
+}
+
+/// Flags for axes that the class does not have.
+fn refuse_unknown_axes(choices: &Choices) -> Result<(), Failure> {
+    let known = choices.class.axes();
+    let all = [
+        (
+            "--travel",
+            choices
+                .travel
+                .iter()
+                .map(|given| &given.axis)
+                .collect::<Vec<_>>(),
+        ),
+        ("--cyclic", choices.cyclic.iter().collect()),
+        ("--reversed", choices.reversed.iter().collect()),
+        (
+            "--max-feed",
+            choices.max_feed.iter().map(|given| &given.axis).collect(),
+        ),
+        (
+            "--point",
+            choices.point.iter().map(|given| &given.axis).collect(),
+        ),
+    ];
+    let faults: Vec<Diagnostic> = all
+        .iter()
+        .flat_map(|(flag, axes)| axes.iter().map(move |axis| (flag, axis)))
+        .filter(|(_, axis)| !known.contains(&axis.as_str()))
+        .map(|(flag, axis)| {
+            Diagnostic::error(
+                "new",
+                format!("{flag} {axis}: {} has no such axis", choices.class.name()),
+            )
+            .help(format!("its axes are {}", known.join(", ")))
+        })
+        .collect();
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(faults.into())
+    }
+}
+
+/// `X=…`, the axis in capitals.
+fn split(text: &str) -> Result<(String, &str), String> {
+    match text.split_once('=') {
+        Some((axis, value)) if !axis.trim().is_empty() => {
+            Ok((axis.trim().to_ascii_uppercase(), value))
+        }
+        _ => Err("AXIS=… is needed".to_owned()),
+    }
+}
+
+fn travel(text: &str) -> Result<Given<[f64; 2]>, String> {
+    let (axis, value) = split(text)?;
+    Ok(Given {
+        axis,
+        value: range(value)?,
+    })
+}
+
+/// `-300:300`.
+pub fn range(text: &str) -> Result<[f64; 2], String> {
+    let (least, most) = text
+        .split_once(':')
+        .ok_or_else(|| format!("`{text}` is no travel: -300:300"))?;
+    let range = [finite(least.trim())?, finite(most.trim())?];
+    if range[0] >= range[1] {
+        return Err(format!("`{text}`: the first must be the smaller"));
+    }
+    Ok(range)
+}
+
+/// The name of a dialect, which stands in the file as it is.
+pub fn dialect(text: &str) -> Result<String, String> {
+    let allowed = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
+    if text.is_empty() || !text.chars().all(allowed) {
+        return Err("the name of a dialect has letters and digits alone".to_owned());
+    }
+    Ok(text.to_ascii_lowercase())
+}
+
+fn feed(text: &str) -> Result<Given<f64>, String> {
+    let (axis, value) = split(text)?;
+    Ok(Given {
+        axis,
+        value: flag_values::positive(value.trim())?,
+    })
+}
+
+fn point(text: &str) -> Result<Given<[f64; 3]>, String> {
+    let (axis, value) = split(text)?;
+    let numbers = value
+        .split(',')
+        .map(|number| finite(number.trim()))
+        .collect::<Result<Vec<f64>, String>>()?;
+    let value = numbers
+        .try_into()
+        .map_err(|_| "three numbers are needed, X,Y,Z".to_owned())?;
+    Ok(Given { axis, value })
+}
+
+impl Class {
+    /// As it is written on the command line.
+    pub fn name(self) -> String {
+        self.to_possible_value()
+            .map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}

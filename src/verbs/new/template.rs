@@ -1,0 +1,335 @@
+//! The machine files that `post new` writes: for each class its chain and its rotary axes, and one way to write
+//! them down. What they mean is the loader's business.
+
+use std::fmt::Write as _;
+
+use clap::ValueEnum;
+use post_machine::description::OutputUnits;
+
+use super::{Choices, Given};
+
+/// How the rotary axes stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Class {
+    /// No rotary axis.
+    ThreeAxis,
+    /// A rotary table or dividing head along X.
+    FourAxisA,
+    /// A rotary table (pallet) along Y.
+    FourAxisB,
+    /// C on an A trunnion or swivel.
+    TableTableAc,
+    /// C on a B swivel.
+    TableTableBc,
+    /// C on a B that lies 45° between Y and Z.
+    TableTableNutating,
+    /// A fork head: C carries A.
+    HeadHeadAc,
+    /// A fork head: C carries B.
+    HeadHeadBc,
+    /// A B head over a C table.
+    HeadTableBc,
+    /// A B head over an A table.
+    HeadTableBa,
+    /// A 45° nutating B head over a C table.
+    NutatingHead,
+}
+
+/// A rotary axis of a class.
+struct Rotary {
+    name: &'static str,
+    direction: &'static str,
+    /// Parameters may stand in it.
+    point: &'static str,
+    /// Degrees; none turns without end.
+    travel: Option<[f64; 2]>,
+    measure: &'static str,
+}
+
+const TABLE_C: Rotary = Rotary {
+    name: "C",
+    direction: "[0, 0, 1]",
+    point: "[0, 0, 0]",
+    travel: None,
+    measure: "middle of the table: indicate its bore; X and Y of the axis line",
+};
+
+const fn tilting(name: &'static str, direction: &'static str, travel: [f64; 2]) -> Rotary {
+    Rotary {
+        name,
+        direction,
+        point: "[0, 0, \"tilt\"]",
+        travel: Some(travel),
+        measure: "any point on its line; where it misses the line of C, say by how much",
+    }
+}
+
+const fn swivel(name: &'static str, direction: &'static str, travel: [f64; 2]) -> Rotary {
+    Rotary {
+        name,
+        direction,
+        point: "[0, 0, \"gauge + pivot\"]",
+        travel: Some(travel),
+        measure: "any point on its line; where it misses the spindle, say by how much",
+    }
+}
+
+const fn table(name: &'static str, direction: &'static str) -> Rotary {
+    Rotary {
+        name,
+        direction,
+        point: "[0, 0, 0]",
+        travel: None,
+        measure: "any point on its line; the part origin sits on it here",
+    }
+}
+
+const FORK_C: Rotary = Rotary {
+    name: "C",
+    direction: "[0, 0, 1]",
+    point: "[0, 0, 0]",
+    travel: Some([-360.0, 360.0]),
+    measure: "any point on its line, X and Y: where it misses the spindle, say by how much",
+};
+
+impl Class {
+    fn chain(self) -> &'static str {
+        match self {
+            Self::ThreeAxis => "[w Y' X' b Z (S) t]",
+            Self::FourAxisA => "[w A' X' Y' b Z (S) t]",
+            Self::FourAxisB => "[w B' b X Y Z (S) t]",
+            Self::TableTableAc => "[w C' A' b Y X Z (S) t]",
+            Self::TableTableBc | Self::TableTableNutating => "[w C' B' b Y X Z (S) t]",
+            Self::HeadHeadAc => "[w b X Y Z C A (S) t]",
+            Self::HeadHeadBc => "[w b X Y Z C B (S) t]",
+            Self::HeadTableBc | Self::NutatingHead => "[w C' b X Y Z B (S) t]",
+            Self::HeadTableBa => "[w A' b X Y Z B (S) t]",
+        }
+    }
+
+    fn rotary(self) -> Vec<Rotary> {
+        match self {
+            Self::ThreeAxis => vec![],
+            Self::FourAxisA => vec![table("A", "[1, 0, 0]")],
+            Self::FourAxisB => vec![table("B", "[0, 1, 0]")],
+            Self::TableTableAc => vec![TABLE_C, tilting("A", "[1, 0, 0]", [-120.0, 30.0])],
+            Self::TableTableBc => vec![TABLE_C, tilting("B", "[0, 1, 0]", [-30.0, 110.0])],
+            Self::TableTableNutating => vec![TABLE_C, tilting("B", "[0, 1, 1]", [0.0, 180.0])],
+            Self::HeadHeadAc => vec![FORK_C, swivel("A", "[1, 0, 0]", [-110.0, 110.0])],
+            Self::HeadHeadBc => vec![FORK_C, swivel("B", "[0, 1, 0]", [-110.0, 110.0])],
+            Self::HeadTableBc => vec![TABLE_C, swivel("B", "[0, 1, 0]", [-100.0, 100.0])],
+            Self::HeadTableBa => vec![
+                table("A", "[1, 0, 0]"),
+                swivel("B", "[0, 1, 0]", [-100.0, 100.0]),
+            ],
+            Self::NutatingHead => vec![TABLE_C, swivel("B", "[0, 1, 1]", [0.0, 180.0])],
+        }
+    }
+
+    /// The addresses of its axes, linear ones first.
+    pub fn axes(self) -> Vec<&'static str> {
+        let rotary = self.rotary();
+        let mut axes = vec!["X", "Y", "Z"];
+        axes.extend(rotary.iter().map(|axis| axis.name));
+        axes
+    }
+
+    /// It has any rotary axis.
+    pub fn turns(self) -> bool {
+        self != Self::ThreeAxis
+    }
+
+    /// The distance `gauge + pivot` stands in its file.
+    pub fn has_pivot(self) -> bool {
+        self.rotary()
+            .iter()
+            .any(|axis| axis.point.contains("pivot"))
+    }
+
+    /// The height `tilt` stands in its file.
+    pub fn has_tilt(self) -> bool {
+        self.rotary().iter().any(|axis| axis.point.contains("tilt"))
+    }
+
+    /// Travel of an axis if nobody says another: mm or degrees; none turns without end.
+    pub fn usual_travel(self, axis: &str, gauge: f64) -> Option<[f64; 2]> {
+        match axis {
+            "X" | "Y" => Some([-300.0, 300.0]),
+            // From the upper end down to the table's face.
+            "Z" => Some([-gauge.abs().max(1.0), 0.0]),
+            _ => self
+                .rotary()
+                .iter()
+                .find(|rotary| rotary.name == axis)
+                .and_then(|rotary| rotary.travel),
+        }
+    }
+}
+
+/// The whole file.
+pub fn write(choices: &Choices) -> String {
+    let class = choices.class;
+    let mut text = String::new();
+    let title = choices.title.replace('\\', "\\\\").replace('"', "\\\"");
+    let title: String = title
+        .chars()
+        .filter(|letter| !letter.is_control())
+        .collect();
+    // Writing to a String cannot fail.
+    let mut line = |said: &str, remark: &str| {
+        let _ = match remark {
+            "" => writeln!(text, "{said}"),
+            remark => writeln!(text, "{said:<40}# {remark}"),
+        };
+    };
+    line(
+        "# Written by `post new`: every number is an example until it was measured on the machine.",
+        "",
+    );
+    line("#", "");
+    line(
+        "# Positions are in mm in the machine frame, with every axis at zero; here its origin is the middle of the",
+        "",
+    );
+    line(
+        "# table's face. Directions are those of the tool as seen from the part (ISO 841): where the table moves,",
+        "",
+    );
+    line(
+        "# it moves the other way. `post check` prints what each sign means, `post check --commission` tries them.",
+        "",
+    );
+    line("", "");
+    line(&format!("name  = \"{title}\""), "");
+    line(
+        &format!("chain = \"{}\"", class.chain()),
+        "from the workpiece w over the bed b to the tool t; ' carries the part",
+    );
+    line("", "");
+    line("[parameters]", "");
+    line(
+        &format!("gauge = {}", choices.gauge),
+        "gauge line over the table's face, all axes at zero",
+    );
+    if class.has_pivot() {
+        line(
+            &format!("pivot = {}", choices.pivot),
+            "swivel axis to gauge line: swing to 90° and compare with 0°",
+        );
+    }
+    if class.has_tilt() {
+        line(
+            &format!("tilt  = {}", choices.tilt),
+            "tilting axis over the table's face; below it is negative",
+        );
+    }
+    line("", "");
+    line("[workpiece]", "");
+    line(
+        "mount = [0, 0, 0]",
+        "part origin: here the middle of the table; --mount for one job",
+    );
+    line("", "");
+    line("[tool]", "");
+    line("gauge = [0, 0, \"gauge\"]", "");
+    line("axis  = [0, 0, 1]", "from the tip to the holder");
+    for (name, direction, lean) in [
+        ("X", "[1, 0, 0]", "20 µm/m towards Y: [1, 20e-6, 0]"),
+        ("Y", "[0, 1, 0]", "20 µm/m towards X: [20e-6, 1, 0]"),
+        ("Z", "[0, 0, 1]", "20 µm/m towards X: [20e-6, 0, 1]"),
+    ] {
+        line("", "");
+        line(&format!("[axis.{name}]"), "");
+        line(
+            &format!("linear   = {direction}"),
+            &format!("as measured; a lean of {lean}"),
+        );
+        travel(&mut line, choices, name);
+        reversed(&mut line, choices, name);
+        line(
+            &format!("max_feed = {}", feed(choices, name, 20_000.0)),
+            "mm/min",
+        );
+    }
+    for rotary in class.rotary() {
+        let name = rotary.name;
+        line("", "");
+        line(&format!("[axis.{name}]"), "");
+        line(
+            &format!("rotary   = {}", rotary.direction),
+            "any length; as measured",
+        );
+        let point = match given(&choices.point, name) {
+            Some([x, y, z]) => format!("[{x}, {y}, {z}]"),
+            None => rotary.point.to_owned(),
+        };
+        line(&format!("point    = {point}"), rotary.measure);
+        travel(&mut line, choices, name);
+        reversed(&mut line, choices, name);
+        line(
+            &format!("max_feed = {}", feed(choices, name, 3600.0)),
+            "deg/min",
+        );
+    }
+    line("", "");
+    line("[control]", "");
+    line(&format!("dialect = \"{}\"", choices.dialect), "");
+    if class.turns() {
+        line(
+            &format!("tcp     = \"{}\"", choices.tcp.name()),
+            "\"post\": axis positions; \"control\": the tip (G43.4, M128, …)",
+        );
+    }
+    if choices.units == OutputUnits::Inch {
+        line(
+            "units   = \"inch\"",
+            "of the NC program; this file stays in mm",
+        );
+    }
+    line("", "");
+    line("[accuracy]", "");
+    line(
+        &format!("tolerance = {}", choices.tolerance),
+        "mm, the tip in cuts",
+    );
+    text
+}
+
+fn travel(line: &mut impl FnMut(&str, &str), choices: &Choices, axis: &str) {
+    let endless = choices.cyclic.iter().any(|name| name == axis);
+    let travel = match given(&choices.travel, axis) {
+        Some(travel) => Some(travel),
+        None if endless => None,
+        None => choices.class.usual_travel(axis, choices.gauge),
+    };
+    if let Some([least, most]) = travel {
+        line(
+            &format!("travel   = [{least}, {most}]"),
+            "between the limit switches, as the control shows it",
+        );
+    }
+    if travel.is_none() || endless {
+        line(
+            "cyclic   = true",
+            "turns without end; else travel = [-360, 360]",
+        );
+    }
+}
+
+fn reversed(line: &mut impl FnMut(&str, &str), choices: &Choices, axis: &str) {
+    if choices.reversed.iter().any(|name| name == axis) {
+        line("reversed = true", "counts against ISO 841");
+    }
+}
+
+fn feed(choices: &Choices, axis: &str, usual: f64) -> f64 {
+    given(&choices.max_feed, axis).unwrap_or(usual)
+}
+
+/// The last that was given.
+fn given<T: Copy>(all: &[Given<T>], axis: &str) -> Option<T> {
+    all.iter()
+        .rev()
+        .find(|given| given.axis == axis)
+        .map(|given| given.value)
+}

@@ -1,0 +1,160 @@
+//! The summary of a program, for people.
+
+use std::fmt::Write as _;
+
+use post_posting::report::{Deviation, Report};
+
+use crate::files::PathArg;
+
+/// The summary of a program at `target` that was made from the CL file named `input`.
+pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
+    let mut text = String::new();
+    let mut row = |name: &str, value: String| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{name:<16} {value}");
+    };
+    let target = match target.path() {
+        Some(path) => path.display().to_string(),
+        None => "standard output".to_owned(),
+    };
+    row("program", format!("{target}, from {input}"));
+    row(
+        "machine",
+        format!("{}, the {} keeps the tip", report.machine, report.tcp),
+    );
+    for (plugin, kind) in report.plugins.iter().zip(["dialect", "error model"]) {
+        let origin = match (&plugin.path, &plugin.hash) {
+            (Some(path), Some(hash)) => format!("{path}, {hash}"),
+            (Some(path), None) => path.clone(),
+            _ => "built in".to_owned(),
+        };
+        row(
+            kind,
+            format!("{} {} ({origin})", plugin.name, plugin.version),
+        );
+    }
+    row("records read", report.records.to_string());
+    row("moves", report.moves.to_string());
+    row(
+        "blocks",
+        format!(
+            "{} in {} lines, {} points put in{}{}",
+            report.blocks,
+            report.nc_lines,
+            report.points_added,
+            match report.points_dropped {
+                0 => String::new(),
+                count => format!(", {count} CL points left out"),
+            },
+            match report.model_overruled {
+                0 => String::new(),
+                count => format!(" (the certificate overruled the model {count} times)"),
+            }
+        ),
+    );
+    let point = report.control_point;
+    if point != Default::default() {
+        row(
+            "control point",
+            format!(
+                "{} mm above the point of the CL file, cutting edge at a radius of {} mm",
+                point.along, point.radius
+            ),
+        );
+    }
+    row(
+        "tip deviation",
+        format!(
+            "{}, tolerance {} mm",
+            certified(report.tip_deviation_mm, "mm", 6),
+            report.tolerance_mm
+        ),
+    );
+    row(
+        "axis deviation",
+        format!(
+            "{}, tolerance {:.4}°",
+            certified(report.axis_deviation_deg, "°", 5),
+            report.axis_tolerance_deg
+        ),
+    );
+    for axis in &report.axes {
+        if axis.min > axis.max {
+            continue;
+        }
+        let travel = match axis.travel {
+            Some([min, max]) => format!("of {min:.3} to {max:.3}"),
+            None => "endless".to_owned(),
+        };
+        row(
+            &format!("axis {}", axis.name),
+            format!(
+                "{:.3} to {:.3} {travel}, {:.1} in all",
+                axis.min, axis.max, axis.way
+            ),
+        );
+    }
+    let mut choices = Vec::new();
+    for (count, what) in [
+        (report.branch_changes, "changes of solution off the part"),
+        (report.rewinds, "rewinds"),
+        (report.points_eased, "points eased close to a pole"),
+    ] {
+        if count > 0 {
+            choices.push(format!("{count} {what}"));
+        }
+    }
+    if !choices.is_empty() {
+        row("solutions", choices.join(", "));
+    }
+    row(
+        "time",
+        format!(
+            "{} of it {} cutting, without tool changes{}",
+            clock(report.time_s),
+            clock(report.cutting_time_s),
+            match report.blocks_limited {
+                0 => String::new(),
+                count => format!("; {count} blocks slowed down by an axis' largest feed"),
+            }
+        ),
+    );
+    if !report.ignored_words.is_empty() {
+        let words: Vec<String> = report
+            .ignored_words
+            .iter()
+            .map(|(word, count)| format!("{word} {count}"))
+            .collect();
+        row("words ignored", words.join(", "));
+    }
+    row(
+        "warnings",
+        match report.warnings.len() {
+            0 => "none".to_owned(),
+            count => format!("{count}, see above"),
+        },
+    );
+    text
+}
+
+fn certified(deviation: Deviation, unit: &str, decimals: usize) -> String {
+    if deviation.line == 0 {
+        return format!("{:.decimals$} {unit}", deviation.value);
+    }
+    format!(
+        "certified at most {:.decimals$} {unit}, in line {} of the program, CL line {}",
+        deviation.value, deviation.block, deviation.line
+    )
+}
+
+fn clock(seconds: f64) -> String {
+    let whole = seconds as u64;
+    let (hours, minutes) = (whole / 3600, whole / 60 % 60);
+    if hours > 0 {
+        format!("{hours} h {minutes:02} min")
+    } else if minutes > 0 {
+        format!("{minutes} min {:02} s", whole % 60)
+    } else {
+        format!("{seconds:.1} s")
+    }
+}

@@ -1,0 +1,108 @@
+//! One CL file on one machine, posted as often as it takes, its text thrown away.
+
+use post_host::{Finder, OpenedDialect};
+use post_machine::description::{Machine, Setting};
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{Batch, DialectSession, Format, WriteFault};
+use post_posting::report::Report;
+use post_posting::{Observer, Post};
+
+use crate::arguments::JobArguments;
+use crate::failure::Failure;
+use crate::files::{ClInput, NullSink};
+use crate::job::{self, plugin_finder};
+
+/// Decimals that leave axis values as they are solved: a millionth of a micrometre.
+const EXACT: u8 = 9;
+
+/// A CL file and how it is looked at.
+pub struct DryRun<'a> {
+    arguments: &'a JobArguments,
+    /// The CL file, as the user named it.
+    pub name: String,
+    pub finder: Finder,
+    /// Words are not rounded.
+    exact: bool,
+}
+
+impl<'a> DryRun<'a> {
+    /// Of the CL file and the machine of the command line.
+    pub fn new(arguments: &'a JobArguments, exact: bool) -> Result<Self, Failure> {
+        let Some(path) = arguments.input().path() else {
+            let message = "a study goes over the CL file several times";
+            return Err(Diagnostic::error("study", message)
+                .help("give a file, not standard input")
+                .into());
+        };
+        Ok(Self {
+            arguments,
+            name: path.display().to_string(),
+            finder: plugin_finder::finder(&arguments.plugins)?,
+            exact,
+        })
+    }
+
+    /// The machine with `more` set, every CL point of its cuts kept.
+    pub fn machine(&self, more: &[Setting]) -> Result<Machine, Failure> {
+        let mut settings = vec![Setting::Reduce(false)];
+        settings.extend_from_slice(more);
+        job::machine(self.arguments, &settings)
+    }
+
+    /// Posts the file, and throws the text away.
+    pub fn pass(
+        &self,
+        machine: &Machine,
+        watch: Option<&mut dyn Observer>,
+    ) -> Result<(Report, Vec<Diagnostic>), Failure> {
+        let source = self.arguments.input();
+        let program = job::program_name(source, None);
+        let (dialect, _) = plugin_finder::dialect(&self.finder, machine, &program, Some(source))?;
+        let (mut model, _) = plugin_finder::model(&self.finder, machine)?;
+        let input = ClInput::open(source)?;
+        let posting = job::posting(self.arguments, &input.name);
+        let mut dialect = Rounding::new(dialect, self.exact);
+        let mut sink = NullSink;
+        let mut post = Post::new(machine, posting, &mut dialect, &mut model, &mut sink)
+            .map_err(|finding| *finding)?;
+        if let Some(watch) = watch {
+            post.watch(watch);
+        }
+        job::read(input, &mut post)?;
+        match post.finish() {
+            (Some(report), findings) => Ok((report, findings)),
+            (None, findings) => Err(findings.into()),
+        }
+    }
+}
+
+/// A dialect, and the decimals that the words are rounded to.
+struct Rounding {
+    dialect: OpenedDialect,
+    format: Format,
+}
+
+impl Rounding {
+    fn new(dialect: OpenedDialect, exact: bool) -> Self {
+        let mut format = dialect.format().clone();
+        if exact {
+            format.words.fill(EXACT);
+        }
+        Self { dialect, format }
+    }
+}
+
+impl DialectSession for Rounding {
+    fn format(&self) -> &Format {
+        &self.format
+    }
+
+    fn write_batch(
+        &mut self,
+        batch: &Batch,
+        out: &mut String,
+        ends: &mut Vec<usize>,
+    ) -> Result<(), WriteFault> {
+        self.dialect.write_batch(batch, out, ends)
+    }
+}

@@ -1,0 +1,109 @@
+//! `post plugin test`: the conformance kit on a plugin.
+
+use std::env::consts::DLL_SUFFIX;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use post_host::{GivenValue, Plugin, conformance};
+use post_machine::diagnostic::Diagnostic;
+
+use crate::failure::Failure;
+use crate::job::plugin_finder::{diagnostic, finder};
+use crate::terminal::print;
+
+/// Works with plugins.
+#[derive(Debug, Args)]
+pub struct PluginArguments {
+    #[command(subcommand)]
+    command: PluginCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum PluginCommand {
+    Test(TestArguments),
+}
+
+/// Runs a plugin on cases whose answer is known, and says what it gets wrong.
+///
+/// An error model is fitted to deviations of known peak (bows, waves, skewed ones, jumps, tiny and huge, no
+/// numbers), and its answers must hold together: peaks and curve, one move after another, in a turned frame.
+/// What a model may miss is said and not held against it: the certificate finds it. A dialect writes a short
+/// five-axis program, whole and in batches of every size.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  post plugin test target/release/libpost_mine.so
+  post plugin test harmonic --option order=3
+
+Exit codes: 0 nothing is wrong; 1 something is, the messages say what; 2 the command line is wrong.")]
+struct TestArguments {
+    /// The library, or the name of a plugin in a folder of --plugins or built in. Opening a library runs its
+    /// code.
+    #[arg(value_name = "PLUGIN")]
+    plugin: PathBuf,
+
+    /// Sets an option of the plugin, as its table in a machine file would.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = option)]
+    option: Vec<(String, GivenValue)>,
+
+    /// A folder of plugin libraries; POST_PLUGINS adds more.
+    #[arg(long, value_name = "FOLDER")]
+    plugins: Vec<PathBuf>,
+}
+
+/// Does as the arguments say.
+pub fn run(arguments: &PluginArguments) -> Result<(), Failure> {
+    let PluginCommand::Test(arguments) = &arguments.command;
+    let plugin = find(arguments)?;
+    let report = conformance::test(&plugin, &arguments.option)
+        .map_err(|fault| diagnostic(&fault, &[], None))?;
+    let from = match plugin.path() {
+        Some(path) => path.display().to_string(),
+        None => "built in".to_owned(),
+    };
+    let (name, version) = (plugin.name(), plugin.version());
+    let kind = plugin.kind().name();
+    print(&format!(
+        "{name} {version} ({from}), {kind}\n\n{}",
+        report.table()
+    ));
+    if report.is_good() {
+        let cases = report.cases.len();
+        print(&format!("\nNothing is wrong in {cases} cases.\n"));
+        return Ok(());
+    }
+    let wrong = report.wrong();
+    let findings: Vec<Diagnostic> = wrong
+        .map(|sentence| Diagnostic::error("plugin-test", sentence))
+        .collect();
+    Err(findings.into())
+}
+
+fn find(arguments: &TestArguments) -> Result<Plugin, Failure> {
+    let path: &Path = &arguments.plugin;
+    let text = path.to_string_lossy();
+    let file = path.components().count() > 1 || text.ends_with(DLL_SUFFIX);
+    let found = if file {
+        Plugin::open(path)
+    } else {
+        finder(&arguments.plugins)?.find(&text)
+    };
+    Ok(found.map_err(|fault| diagnostic(&fault, &[], None))?)
+}
+
+/// `order=3`; text may stand in quotes, as in a machine file.
+fn option(text: &str) -> Result<(String, GivenValue), String> {
+    let Some((key, value)) = text.split_once('=') else {
+        return Err("an option is KEY=VALUE".to_owned());
+    };
+    let (key, value) = (key.trim(), value.trim());
+    let value = if let Ok(flag) = value.parse() {
+        GivenValue::Flag(flag)
+    } else if let Ok(integer) = value.parse() {
+        GivenValue::Integer(integer)
+    } else if let Ok(number) = value.parse() {
+        GivenValue::Number(number)
+    } else {
+        GivenValue::Text(value.trim_matches('"').to_owned())
+    };
+    Ok((key.to_owned(), value))
+}

@@ -1,8 +1,8 @@
 //! One logical line of a cutter-location file to a [`Statement`], by pest.
 
+use super::record::{Argument, Statement};
+use super::statements;
 use crate::fault::SyntaxFault;
-use crate::record::{Argument, Statement};
-use crate::words;
 use pest::Parser;
 use pest::error::InputLocation;
 use pest::iterators::Pair;
@@ -10,7 +10,7 @@ use pest_derive::Parser;
 use std::ops::Range;
 
 #[derive(Parser)]
-#[grammar = "cl.pest"]
+#[grammar = "cl/line.pest"]
 struct Grammar;
 
 /// Whether a line's text is free: then a `$` at its end is text, not a continuation, and `$$` in it is no comment.
@@ -115,10 +115,10 @@ pub fn parse_record(text: &str) -> Result<Statement, SyntaxFault> {
                 .into_inner()
                 .next()
                 .expect("a directive holds a statement");
-            let read = line(text, statement).and_then(|line| words::directive(&line));
+            let read = line(text, statement).and_then(|line| statements::directive(&line));
             Ok(read.unwrap_or_else(|_| Statement::Remark(remark.trim().to_owned())))
         }
-        _ => words::statement(&line(text, inner)?),
+        _ => statements::statement(&line(text, inner)?),
     }
 }
 

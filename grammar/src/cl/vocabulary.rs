@@ -1,6 +1,6 @@
 //! The major words that are known by name.
 
-use crate::record::Statement;
+use super::record::Statement;
 
 /// The words that have a statement of their own, those of ISO 4343 and PostWorks that have none, and those that
 /// CAM systems add; in alphabetical order. A word that is not among them may be misspelt.

@@ -8,10 +8,10 @@
 //! - in a free text (`PPRINT`, `INSERT`, a comment, …) both are text: a remark that happens to end in `$`
 //!   must not swallow the move after it.
 
-use crate::cl::{is_free_text, parse_record};
+use super::line::{is_free_text, parse_record};
+use super::record::{Record, Statement};
+use super::scan;
 use crate::fault::{ReadError, SyntaxFault};
-use crate::record::{Record, Statement};
-use crate::scan;
 use memchr::{memchr2, memmem};
 use std::borrow::Cow;
 use std::io::{self, ErrorKind, Read};

@@ -2,7 +2,7 @@
 //!
 //! It takes only what it is sure of. All else is left to pest, which reads it or says what is wrong.
 
-use crate::record::{Direction, Point};
+use super::record::{Direction, Point};
 
 /// A `GOTO` with three or six numbers; `None` if the line is anything else or in any way unusual.
 pub(crate) fn goto(line: &[u8]) -> Option<(Point, Option<Direction>)> {

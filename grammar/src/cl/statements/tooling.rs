@@ -1,0 +1,125 @@
+//! Tools, cutters and their compensation.
+
+use super::Read;
+use super::items::{Items, word};
+use crate::cl::record::{Cutcom, LoadTool, Side, Statement};
+
+pub(super) fn load_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
+    const FORM: &str =
+        "LOADTL/number or LOAD/TOOL,number, then LENGTH,length or ADJUST,register as needed";
+    let mut tool = LoadTool {
+        number: items.whole(&items.line.word, FORM)?,
+        ..LoadTool::default()
+    };
+    while let Some(item) = items.take() {
+        match word(item).as_str() {
+            name @ ("ADJUST" | "OSETNO" | "OFSTNO") if tool.register.is_none() => {
+                tool.register = Some(items.whole(name, FORM)?)
+            }
+            "LENGTH" if tool.length.is_none() => tool.length = Some(items.number("LENGTH", FORM)?),
+            _ => tool.rest.push(item.argument()),
+        }
+    }
+    Ok(Statement::LoadTool(tool))
+}
+
+/// Whether the first item is `TOOL`, which is then taken. Anything else is loaded or selected on other machines.
+pub(super) fn tool_word(items: &mut Items<'_, '_>) -> bool {
+    let tool = items.peek().is_some_and(|item| word(item) == "TOOL");
+    items.next += usize::from(tool);
+    tool
+}
+
+pub(super) fn load(items: &mut Items<'_, '_>) -> Read<Statement> {
+    if tool_word(items) {
+        load_tool(items)
+    } else {
+        items.other()
+    }
+}
+
+pub(super) fn select(items: &mut Items<'_, '_>) -> Read<Statement> {
+    if tool_word(items) {
+        select_tool(items)
+    } else {
+        items.other()
+    }
+}
+
+pub(super) fn select_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
+    const FORM: &str = "SELECT/TOOL,number or SELCTL/number";
+    let number = items.whole(&items.line.word, FORM)?;
+    match items.peek() {
+        None => Ok(Statement::SelectTool(number)),
+        Some(item) => Err(items.unexpected(item, "one tool number is expected", FORM)),
+    }
+}
+
+pub(super) fn tldata(items: &mut Items<'_, '_>) -> Read<Statement> {
+    let (mut kinds, mut numbers) = (Vec::new(), Vec::new());
+    while let Some(item) = items.take() {
+        match item.value {
+            Some(value) => numbers.push(value),
+            None => kinds.push(word(item)),
+        }
+    }
+    if kinds.is_empty() {
+        return Err(items.fault(
+            items.rest(),
+            "TLDATA needs the kind of tool",
+            "TLDATA/MILL,diameter,...",
+        ));
+    }
+    Ok(Statement::ToolData { kinds, numbers })
+}
+
+pub(super) fn cutter(items: &mut Items<'_, '_>) -> Read<Statement> {
+    match items.peek() {
+        Some(item) if item.value.is_none() && !item.text.is_empty() => items.other(),
+        _ => Ok(Statement::Cutter(
+            items.numbers("CUTTER/diameter,corner radius,...")?,
+        )),
+    }
+}
+
+pub(super) fn cutcom(items: &mut Items<'_, '_>) -> Read<Statement> {
+    const FORM: &str =
+        "CUTCOM/LEFT, RIGHT, ON or OFF, then XYPLAN, YZPLAN or ZXPLAN and a register as needed";
+    let first = items.take().map(word).unwrap_or_default();
+    let mut cutcom = Cutcom {
+        side: match first.as_str() {
+            "LEFT" => Some(Side::Left),
+            "RIGHT" => Some(Side::Right),
+            "OFF" => Some(Side::Off),
+            "ON" => None,
+            "" => {
+                items.next = 0;
+                return Err(items.fault(items.rest(), "CUTCOM needs a side", FORM));
+            }
+            _ => return items.other(),
+        },
+        plane: None,
+        register: None,
+    };
+    while let Some(item) = items.peek() {
+        let name = word(item);
+        let plane = match name.as_str() {
+            "XYPLAN" => Some(2),
+            "YZPLAN" => Some(0),
+            "ZXPLAN" => Some(1),
+            _ => None,
+        };
+        if plane.is_some() && cutcom.plane.is_none() {
+            items.next += 1;
+            cutcom.plane = plane;
+        } else if cutcom.register.is_none()
+            && (item.value.is_some() || matches!(name.as_str(), "ADJUST" | "OSETNO" | "OFSTNO"))
+        {
+            items.next += usize::from(item.value.is_none());
+            cutcom.register = Some(items.whole("the word of a register", FORM)?);
+        } else {
+            return Err(items.unexpected(item, "a plane or a register is expected", FORM));
+        }
+    }
+    Ok(Statement::Cutcom(cutcom))
+}

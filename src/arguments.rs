@@ -47,16 +47,16 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Prints every word of a CL file: how often, and what becomes of it.
+    /// Prints every word of a CL file: how often, and what becomes of it; without a file every word that is known.
     ///
     /// used: it has its effect on the program; passed on: its text goes into the program; ignored: it says
     /// nothing to a machine; refused: it changes where the tool goes, and post does not know how; unknown:
     /// left out with a warning, unless --unknown says otherwise.
     Words {
         /// The CL file, `-` for standard input.
-        file: PathBuf,
+        file: Option<PathBuf>,
         /// Only words that are refused or unknown.
-        #[arg(long)]
+        #[arg(long, requires = "file")]
         unknown_only: bool,
     },
     /// Lists the machines that a bare name finds.

@@ -14,7 +14,7 @@ mod study;
 mod summary;
 mod svg;
 mod values;
-mod words;
+mod word_list;
 
 use std::process::ExitCode;
 
@@ -30,7 +30,14 @@ const REFUSED: u8 = 1;
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let done = match &arguments.command {
-        Some(Command::Words { file, unknown_only }) => words::print(file, *unknown_only),
+        Some(Command::Words { file: None, .. }) => {
+            word_list::print_all();
+            Ok(())
+        }
+        Some(Command::Words {
+            file: Some(file),
+            unknown_only,
+        }) => word_list::print(file, *unknown_only),
         Some(Command::Machines { machines }) => machines::print(machines),
         Some(Command::Schema) => {
             machines::print_schema();

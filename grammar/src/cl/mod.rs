@@ -10,4 +10,4 @@ mod vocabulary;
 pub use line::parse_record;
 pub use reader::Reader;
 pub use record::*;
-pub use vocabulary::vocabulary;
+pub use vocabulary::{MajorWord, Usage};

@@ -5,14 +5,12 @@ mod cycle;
 mod edge;
 mod frame;
 mod interpret;
-mod met;
 mod motion;
 mod spline;
-mod words;
+mod word_census;
 
 pub(crate) use edge::Edges;
 pub(crate) use interpret::record_place;
 pub use interpret::{Interpreter, Reading};
-pub use met::Unknown;
 pub use motion::{Motion, Pace, Step, Tool};
-pub use words::{Usage, usage};
+pub use word_census::Unknown;

@@ -8,7 +8,7 @@ use crate::cl::record::{Argument, Cycle, CycleDefinition, FeedRate, Statement};
 
 /// Labelled numbers (NX, Creo, SolidWorks CAM) go to their field; bare ones to the first free one of depth,
 /// clearance and return level, which is the order of APT (`CYCLE/DRILL,depth,IPM,feed,clearance`) and of CAMWorks.
-pub(super) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str =
         "CYCLE/OFF, CYCLE/ON or CYCLE/DRILL,FEDTO,depth,MMPM,feed,RAPTO,clearance,...";
     if let [item] = items.line.items.as_slice() {

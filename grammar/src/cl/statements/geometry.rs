@@ -6,7 +6,7 @@ use super::technology::sense;
 use crate::cl::record::{Circle, Delta, Rotate, Sense, Statement};
 use crate::fault::SyntaxFault;
 
-pub(super) fn goto(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn goto(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str =
         "GOTO/x,y,z, GOTO/x,y,z,i,j,k or, with the direction of an edge, GOTO/x,y,z,i,j,k,u,v,w";
     if items.line.items.len() == 9 {
@@ -22,24 +22,24 @@ pub(super) fn goto(items: &mut Items<'_, '_>) -> Read<Statement> {
 }
 
 /// A name or a number; anything else is left to those who know it.
-pub(super) fn head(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn head(items: &mut Items<'_, '_>) -> Read<Statement> {
     match items.line.items.as_slice() {
         [name] if !name.text.is_empty() => Ok(Statement::Head(name.text.to_owned())),
         _ => items.other(),
     }
 }
 
-pub(super) fn from(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn from(items: &mut Items<'_, '_>) -> Read<Statement> {
     let (point, axis) = items.point("FROM/x,y,z or FROM/x,y,z,i,j,k")?;
     Ok(Statement::From { point, axis })
 }
 
-pub(super) fn cntrl(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn cntrl(items: &mut Items<'_, '_>) -> Read<Statement> {
     let (point, axis) = items.point("CNTRL/x,y,z or CNTRL/x,y,z,i,j,k")?;
     Ok(Statement::Control { point, axis })
 }
 
-pub(super) fn gohome(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn gohome(items: &mut Items<'_, '_>) -> Read<Statement> {
     if items.peek().is_none() {
         return Ok(Statement::Gohome(None));
     }
@@ -47,7 +47,7 @@ pub(super) fn gohome(items: &mut Items<'_, '_>) -> Read<Statement> {
     Ok(Statement::Gohome(Some(home)))
 }
 
-pub(super) fn godlta(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn godlta(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "GODLTA/dx,dy,dz or GODLTA/d";
     match *items.numbers(FORM)?.as_slice() {
         [d] => Ok(Statement::Godlta(Delta::AlongAxis(d))),
@@ -56,7 +56,7 @@ pub(super) fn godlta(items: &mut Items<'_, '_>) -> Read<Statement> {
     }
 }
 
-pub(super) fn multax(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn multax(items: &mut Items<'_, '_>) -> Read<Statement> {
     match items.line.items.as_slice() {
         [] => Ok(Statement::Multax(true)),
         [item] if word(item) == "ON" => Ok(Statement::Multax(true)),
@@ -69,7 +69,7 @@ pub(super) fn multax(items: &mut Items<'_, '_>) -> Read<Statement> {
     }
 }
 
-pub(super) fn msys(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn msys(items: &mut Items<'_, '_>) -> Read<Statement> {
     let [ox, oy, oz, xi, xj, xk, yi, yj, yk] =
         items.array("MSYS/ origin, X direction, Y direction")?;
     Ok(Statement::Msys {
@@ -79,9 +79,22 @@ pub(super) fn msys(items: &mut Items<'_, '_>) -> Read<Statement> {
     })
 }
 
+pub(crate) fn csys(items: &mut Items<'_, '_>) -> Read<Statement> {
+    let matrix = items.array("CSYS/ and the 3 x 4 matrix, row by row")?;
+    Ok(Statement::Csys(matrix))
+}
+
+pub(crate) fn nurbs(items: &mut Items<'_, '_>) -> Read<Statement> {
+    items.nothing(Statement::Nurbs)
+}
+
+pub(crate) fn knot(items: &mut Items<'_, '_>) -> Read<Statement> {
+    Ok(Statement::Knot(items.numbers("KNOT/u,u,...")?))
+}
+
 /// NX gives eleven numbers: behind the radius two tolerances, the cutter's diameter and its corner radius,
 /// which say nothing about the arc. Creo gives seven, SolidWorks CAM six, without the radius.
-pub(super) fn circle(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn circle(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "CIRCLE/x,y,z,i,j,k[,radius], then CLW, CCLW or TIMES,n as needed";
     let numbers: Vec<f64> = std::iter::from_fn(|| items.take_number()).collect();
     let radius = match numbers.len() {
@@ -122,7 +135,7 @@ pub(super) fn circle(items: &mut Items<'_, '_>) -> Read<Statement> {
 
 /// CAMWorks puts the number first, in radians, and each move is a step that is undone at the operation's end.
 /// APT and NX put the axis or `ATANGL` first and write degrees. A number first without the axis could be either.
-pub(super) fn rotate(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn rotate(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "ROTABL/AAXIS,degrees, ROTABL/ATANGL,degrees,CLW, ROTABL/INCR,degrees,CCLW or, from CAMWorks, ROTABL/radians,AAXIS,TABLE,CCLW";
     let radians = items.peek().is_some_and(|item| item.value.is_some());
     let (mut axis, mut angle, mut turning) = (None, None, None);
@@ -168,7 +181,7 @@ pub(super) fn rotate(items: &mut Items<'_, '_>) -> Read<Statement> {
     }))
 }
 
-pub(super) fn tlaxis(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn tlaxis(items: &mut Items<'_, '_>) -> Read<Statement> {
     match items.peek() {
         Some(item) if item.value.is_none() && !item.text.is_empty() => items.other(),
         _ => Ok(Statement::ToolAxis(items.array("TLAXIS/i,j,k")?)),

@@ -8,7 +8,7 @@ use crate::cl::record::{Direction, Point, Statement};
 use crate::fault::SyntaxFault;
 
 /// The items of a line, taken one by one.
-pub(super) struct Items<'l, 't> {
+pub(crate) struct Items<'l, 't> {
     pub(super) line: &'l Line<'t>,
     pub(super) next: usize,
 }

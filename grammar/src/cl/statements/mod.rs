@@ -1,29 +1,32 @@
-//! What each major word means: items to a typed [`Statement`].
+//! What stands behind a major word: items to a typed [`Statement`].
 //!
 //! A known word with wrong content is a fault. Where the first item is a word without a meaning here
 //! (`COOLNT/SUPER`, `LOAD/WIRE`, `CUTTER/DISPLY`), the record comes through as [`Statement::Other`],
 //! so that it is reported and not guessed at.
 
-mod drilling;
-mod geometry;
+pub(super) mod drilling;
+pub(super) mod geometry;
 mod items;
-mod technology;
-mod tooling;
+pub(super) mod technology;
+pub(super) mod tooling;
 
-use crate::cl::line::{Item, Line};
-use crate::cl::record::Statement;
+use super::line::{Item, Line};
+use super::record::Statement;
+use super::vocabulary::Behind;
 use crate::fault::SyntaxFault;
-use drilling::cycle;
-use geometry::{circle, cntrl, from, godlta, gohome, goto, head, msys, multax, rotate, tlaxis};
 use items::Items;
-use technology::{coolnt, delay, fedrat, spindl, units};
-use tooling::{cutcom, cutter, load, load_tool, select, select_tool, tldata};
 
 type Read<T> = Result<T, SyntaxFault>;
 
+/// Reads the items of one word.
+pub(super) type ReadItems = fn(&mut Items<'_, '_>) -> Read<Statement>;
+
+/// Takes the text behind one word: its spelling in capitals, the text without blanks around it.
+pub(super) type ReadText = fn(&'static str, String) -> Statement;
+
 /// A directive. Only the two that carry facts are typed; the rest is meant for one program and comes as it stands.
-pub(crate) fn directive(line: &Line<'_>) -> Read<Statement> {
-    match line.word.as_str() {
+pub(super) fn directive(line: &Line<'_>) -> Read<Statement> {
+    match line.word.as_ref() {
         "CUTTER" | "CSYS" => match statement(line)? {
             Statement::Other { .. } => Ok(other(line, true)),
             statement => Ok(statement),
@@ -33,8 +36,8 @@ pub(crate) fn directive(line: &Line<'_>) -> Read<Statement> {
 }
 
 /// A statement of its own.
-pub(crate) fn statement(line: &Line<'_>) -> Read<Statement> {
-    let Some(read) = reader(&line.word) else {
+pub(super) fn statement(line: &Line<'_>) -> Read<Statement> {
+    let Some(Behind::Items(read)) = line.known.map(|word| word.behind) else {
         return Ok(other(line, false));
     };
     if let Some(first) = line.items.first().filter(|_| !line.slash) {
@@ -58,48 +61,4 @@ fn other(line: &Line<'_>, directive: bool) -> Statement {
         arguments: line.items.iter().map(Item::argument).collect(),
         directive,
     }
-}
-
-type Reader = fn(&mut Items<'_, '_>) -> Read<Statement>;
-
-fn reader(word: &str) -> Option<Reader> {
-    Some(match word {
-        "GOTO" => goto,
-        "GODLTA" => godlta,
-        "FROM" => from,
-        "HEAD" => head,
-        "GOHOME" => gohome,
-        "RAPID" => |items| items.nothing(Statement::Rapid),
-        "FEDRAT" => fedrat,
-        "SPINDL" => spindl,
-        "COOLNT" => coolnt,
-        "LOADTL" | "TURRET" | "TOOLNO" => load_tool,
-        "LOAD" => load,
-        "SELECT" => select,
-        "SELCTL" => select_tool,
-        "TLDATA" => tldata,
-        "CUTTER" => cutter,
-        "UNITS" | "UNIT" => units,
-        "MULTAX" => multax,
-        "MSYS" => msys,
-        "CSYS" => |items| {
-            Ok(Statement::Csys(
-                items.array("CSYS/ and the 3 x 4 matrix, row by row")?,
-            ))
-        },
-        "CIRCLE" => circle,
-        "NURBS" => |items| items.nothing(Statement::Nurbs),
-        "KNOT" => |items| Ok(Statement::Knot(items.numbers("KNOT/u,u,...")?)),
-        "CNTRL" => cntrl,
-        "CYCLE" => cycle,
-        "CUTCOM" => cutcom,
-        "ROTABL" | "ROTATE" => rotate,
-        "TLAXIS" => tlaxis,
-        "DELAY" | "DWELL" => delay,
-        "STOP" => |items| items.nothing(Statement::Stop),
-        "OPSTOP" => |items| items.nothing(Statement::OptionalStop),
-        "END-OF-PATH" => |items| items.nothing(Statement::EndOfPath),
-        "FINI" | "END" => |items| items.nothing(Statement::Fini),
-        _ => return None,
-    })
 }

@@ -1,4 +1,4 @@
-//! Feeds, speeds, coolant, waiting and units.
+//! Feeds, speeds, coolant, units, and what the program does between moves.
 
 use super::Read;
 use super::items::{Items, word};
@@ -20,7 +20,7 @@ pub(super) fn feed_unit(word: &str) -> Option<FeedUnit> {
     })
 }
 
-pub(super) fn fedrat(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn fedrat(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "FEDRAT/value, FEDRAT/unit,value or FEDRAT/value,unit with MMPM, MMPR, IPM, IPR, PERMIN, PERREV or INVERS; or FEDRAT/RAPID";
     let mut feed = FeedRate {
         value: None,
@@ -53,7 +53,7 @@ pub(super) fn sense(word: &str) -> Option<Sense> {
     }
 }
 
-pub(super) fn spindl(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn spindl(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "SPINDL/RPM,speed,CLW, SPINDL/speed,RPM,CLW, SPINDL/ON or SPINDL/OFF; units RPM, SFM, SMM, senses CLW, CCLW";
     if let [item] = items.line.items.as_slice() {
         match word(item).as_str() {
@@ -104,7 +104,7 @@ pub(super) fn spindle_unit(word: &str) -> Option<SpindleUnit> {
     }
 }
 
-pub(super) fn coolnt(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn coolnt(items: &mut Items<'_, '_>) -> Read<Statement> {
     let [item] = items.line.items.as_slice() else {
         return match items.peek() {
             Some(_) => items.other(),
@@ -126,7 +126,7 @@ pub(super) fn coolnt(items: &mut Items<'_, '_>) -> Read<Statement> {
     }))
 }
 
-pub(super) fn units(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn units(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "UNITS/MM, INCH, CM, M or FEET";
     let [item] = items.line.items.as_slice() else {
         return Err(items.fault(items.rest(), "UNITS takes one word", FORM));
@@ -141,7 +141,7 @@ pub(super) fn units(items: &mut Items<'_, '_>) -> Read<Statement> {
     }))
 }
 
-pub(super) fn delay(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn delay(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "DELAY/seconds or DELAY/turns,REV";
     let time = items.number(&items.line.word, FORM)?;
     let delay = match items.take() {
@@ -150,4 +150,24 @@ pub(super) fn delay(items: &mut Items<'_, '_>) -> Read<Statement> {
         Some(item) => return Err(items.unexpected(item, "REV or nothing is expected", FORM)),
     };
     items.nothing(Statement::Delay(delay))
+}
+
+pub(crate) fn rapid(items: &mut Items<'_, '_>) -> Read<Statement> {
+    items.nothing(Statement::Rapid)
+}
+
+pub(crate) fn stop(items: &mut Items<'_, '_>) -> Read<Statement> {
+    items.nothing(Statement::Stop)
+}
+
+pub(crate) fn opstop(items: &mut Items<'_, '_>) -> Read<Statement> {
+    items.nothing(Statement::OptionalStop)
+}
+
+pub(crate) fn end_of_path(items: &mut Items<'_, '_>) -> Read<Statement> {
+    items.nothing(Statement::EndOfPath)
+}
+
+pub(crate) fn fini(items: &mut Items<'_, '_>) -> Read<Statement> {
+    items.nothing(Statement::Fini)
 }

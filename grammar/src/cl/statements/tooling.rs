@@ -4,9 +4,12 @@ use super::Read;
 use super::items::{Items, word};
 use crate::cl::record::{Cutcom, LoadTool, Side, Statement};
 
-pub(super) fn load_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn load_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str =
         "LOADTL/number or LOAD/TOOL,number, then LENGTH,length or ADJUST,register as needed";
+    if !means_tool(items) {
+        return items.other();
+    }
     let mut tool = LoadTool {
         number: items.whole(&items.line.word, FORM)?,
         ..LoadTool::default()
@@ -23,31 +26,21 @@ pub(super) fn load_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
     Ok(Statement::LoadTool(tool))
 }
 
-/// Whether the first item is `TOOL`, which is then taken. Anything else is loaded or selected on other machines.
-pub(super) fn tool_word(items: &mut Items<'_, '_>) -> bool {
+/// Takes the `TOOL` that `LOAD` and `SELECT` need; false if something else is loaded or selected.
+fn means_tool(items: &mut Items<'_, '_>) -> bool {
+    if !matches!(items.line.word.as_ref(), "LOAD" | "SELECT") {
+        return true;
+    }
     let tool = items.peek().is_some_and(|item| word(item) == "TOOL");
     items.next += usize::from(tool);
     tool
 }
 
-pub(super) fn load(items: &mut Items<'_, '_>) -> Read<Statement> {
-    if tool_word(items) {
-        load_tool(items)
-    } else {
-        items.other()
-    }
-}
-
-pub(super) fn select(items: &mut Items<'_, '_>) -> Read<Statement> {
-    if tool_word(items) {
-        select_tool(items)
-    } else {
-        items.other()
-    }
-}
-
-pub(super) fn select_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn select_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "SELECT/TOOL,number or SELCTL/number";
+    if !means_tool(items) {
+        return items.other();
+    }
     let number = items.whole(&items.line.word, FORM)?;
     match items.peek() {
         None => Ok(Statement::SelectTool(number)),
@@ -55,7 +48,7 @@ pub(super) fn select_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
     }
 }
 
-pub(super) fn tldata(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn tldata(items: &mut Items<'_, '_>) -> Read<Statement> {
     let (mut kinds, mut numbers) = (Vec::new(), Vec::new());
     while let Some(item) = items.take() {
         match item.value {
@@ -73,7 +66,7 @@ pub(super) fn tldata(items: &mut Items<'_, '_>) -> Read<Statement> {
     Ok(Statement::ToolData { kinds, numbers })
 }
 
-pub(super) fn cutter(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn cutter(items: &mut Items<'_, '_>) -> Read<Statement> {
     match items.peek() {
         Some(item) if item.value.is_none() && !item.text.is_empty() => items.other(),
         _ => Ok(Statement::Cutter(
@@ -82,7 +75,7 @@ pub(super) fn cutter(items: &mut Items<'_, '_>) -> Read<Statement> {
     }
 }
 
-pub(super) fn cutcom(items: &mut Items<'_, '_>) -> Read<Statement> {
+pub(crate) fn cutcom(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str =
         "CUTCOM/LEFT, RIGHT, ON or OFF, then XYPLAN, YZPLAN or ZXPLAN and a register as needed";
     let first = items.take().map(word).unwrap_or_default();

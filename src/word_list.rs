@@ -1,16 +1,30 @@
-//! `post words`: every word of a CL file, how often, and what becomes of it.
+//! `post words`: every word of a CL file, or every word that is known, and what becomes of it.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
 
-use post_grammar::{ReadError, Reader};
+use post_grammar::{MajorWord, ReadError, Reader, Usage};
 use post_machine::diagnostic::{Diagnostic, unreadable};
-use post_posting::program::{Usage, usage};
 
 use crate::input::{Input, one};
 
-/// Prints the table.
+/// Prints every word that is known, with its spellings.
+pub fn print_all() {
+    line(format!("{:<32} {:<10} {}", "word", "becomes", "meaning"));
+    for word in MajorWord::all() {
+        let spellings = word.spellings.join(" = ");
+        let becomes = word.usage.name();
+        line(format!("{spellings:<32} {becomes:<10} {}", word.meaning));
+    }
+}
+
+fn line(text: String) {
+    // A reader that has seen enough closes the pipe.
+    let _ = writeln!(io::stdout(), "{}", text.trim_end());
+}
+
+/// Prints the words of a file.
 pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
     let input = Input::open(path)?;
     let name = input.name;
@@ -22,7 +36,7 @@ pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
             Ok(None) => break,
             Ok(Some(record)) => {
                 let word = record.statement.word();
-                let usage = usage(&record.statement);
+                let usage = record.statement.usage();
                 if let Some((count, _, known)) = words.get_mut(word) {
                     *count += 1;
                     // Of several forms the one without effect is told.
@@ -39,11 +53,6 @@ pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
     }
     let mut rows: Vec<_> = words.into_iter().collect();
     rows.sort_by(|a, b| b.1.0.cmp(&a.1.0).then_with(|| a.0.cmp(&b.0)));
-    let mut stdout = io::stdout().lock();
-    let mut line = |text: String| {
-        // A reader that has seen enough closes the pipe.
-        let _ = writeln!(stdout, "{}", text.trim_end());
-    };
     line(format!(
         "{:<26} {:>9}  {:<10} {}",
         "word", "times", "becomes", "first on line"
@@ -52,13 +61,7 @@ pub fn print(path: &Path, unknown_only: bool) -> Result<(), Vec<Diagnostic>> {
         if unknown_only && !matches!(usage, Usage::Unknown | Usage::Refused) {
             continue;
         }
-        let becomes = match usage {
-            Usage::Used => "used",
-            Usage::Passed => "passed on",
-            Usage::Ignored => "ignored",
-            Usage::Refused => "refused",
-            Usage::Unknown => "unknown",
-        };
+        let becomes = usage.name();
         line(format!("{word:<26} {count:>9}  {becomes:<10} {first}"));
     }
     if faults.is_empty() {

@@ -1,5 +1,6 @@
 //! The items of a line, one by one, and what is said when one is not what it should be.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::{Read, other};
@@ -140,9 +141,12 @@ impl<'l, 't> Items<'l, 't> {
 }
 
 /// The item as a word in capitals; empty if it is a number.
-pub(super) fn word(item: &Item<'_>) -> String {
+pub(super) fn word<'t>(item: &Item<'t>) -> Cow<'t, str> {
     match item.value {
-        Some(_) => String::new(),
-        None => item.text.to_ascii_uppercase(),
+        Some(_) => Cow::Borrowed(""),
+        None if item.text.bytes().any(|byte| byte.is_ascii_lowercase()) => {
+            Cow::Owned(item.text.to_ascii_uppercase())
+        }
+        None => Cow::Borrowed(item.text),
     }
 }

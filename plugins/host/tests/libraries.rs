@@ -119,9 +119,9 @@ fn write(plugin: &Plugin, batch: &Batch) -> (String, Vec<usize>) {
 
 #[test]
 fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
-    let linked = [stock("fanuc"), stock("linuxcnc"), stock("heidenhain")];
-    for linked in linked {
-        let linked = Plugin::linked(linked).unwrap();
+    let all = post_stock::plugins().iter();
+    let all = all.map(|linked| Plugin::linked(*linked).unwrap());
+    for linked in all.filter(|plugin| plugin.kind() == Kind::Dialect) {
         assert_eq!((linked.path(), linked.hash()), (None, None));
         let opened = Plugin::open(&library(&deps(), linked.name())).unwrap();
         assert_eq!(opened.name(), linked.name());
@@ -138,6 +138,19 @@ fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
         assert_eq!(ends.len(), batch.len());
         assert_eq!(ends.last(), Some(&text.len()));
         assert!(text.lines().count() > 200);
+        // Each kind of event by itself: the same text, or the same refusal.
+        for event in Event::samples() {
+            let mut batch = Batch::default();
+            batch.push(1, Event::Start);
+            batch.push(2, event);
+            let [by_contract, straight] = [&opened, &linked].map(|plugin| {
+                let mut session = plugin.dialect(&five_axes()).unwrap();
+                let (mut out, mut ends) = (String::new(), Vec::new());
+                let written = session.write_batch(&batch, &mut out, &mut ends);
+                (written, out, ends, session.capabilities())
+            });
+            assert_eq!(by_contract, straight, "{}", event.name());
+        }
         // Cut into single events it is the same program.
         let mut session = opened.dialect(&five_axes()).unwrap();
         let mut out = String::new();

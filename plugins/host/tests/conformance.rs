@@ -195,6 +195,9 @@ fn dialects_are_run_too() {
             .contains("program: it refuses Spindle: dialect `tiny`")
     );
 
+    let gcode = conformance::test(&example("gcode"), &[]).unwrap();
+    assert!(gcode.is_good(), "{gcode}");
+
     let panics = conformance::test(&example("panics"), &[]).unwrap();
     let wrong: Vec<String> = panics.wrong().collect();
     assert!(

@@ -6,12 +6,16 @@ use post_plugin::{OptionKind, Value};
 const GUIDE: &str = include_str!("../../README.md");
 
 #[test]
-fn the_guide_shows_the_example() {
-    let example = include_str!("../examples/post_tiny.rs");
-    assert!(
-        GUIDE.contains(example),
-        "plugins/README.md must show examples/post_tiny.rs as it is"
-    );
+fn the_guide_shows_the_examples() {
+    for (name, example) in [
+        ("tiny", include_str!("../examples/post_tiny.rs")),
+        ("gcode", include_str!("../examples/post_gcode.rs")),
+    ] {
+        assert!(
+            GUIDE.contains(example),
+            "plugins/README.md must show examples/post_{name}.rs as it is"
+        );
+    }
 }
 
 #[test]

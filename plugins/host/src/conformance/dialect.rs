@@ -2,7 +2,8 @@
 //! whole lines of finite numbers, the same however the program is cut into batches, is the kit's.
 
 use post_plugin::{
-    Batch, Capabilities, Coolant, DialectSession, Event, Feed, Format, Spindle, SpindleSense, Units, quantise,
+    Batch, Capabilities, Coolant, DialectSession, Event, Feed, Format, Spindle, SpindleSense,
+    Units, quantise,
 };
 
 use super::Case;

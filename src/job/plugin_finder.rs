@@ -19,18 +19,12 @@ use crate::files::PathArg;
 pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
     let folders = folders(named, "POST_PLUGINS");
     missing(named)?;
-    let linked = [
-        post_fanuc::plugin(),
-        post_harmonic::plugin(),
-        post_heidenhain::plugin(),
-        post_linuxcnc::plugin(),
-        post_parabolic::plugin(),
-        post_sampled::plugin(),
-    ]
-    .into_iter()
-    .map(Plugin::linked)
-    .collect::<Result<_, _>>()
-    .map_err(|fault| vec![diagnostic(&fault, &[], None)])?;
+    let linked = post_stock::plugins()
+        .iter()
+        .copied()
+        .map(Plugin::linked)
+        .collect::<Result<_, _>>()
+        .map_err(|fault| vec![diagnostic(&fault, &[], None)])?;
     Ok(Finder { folders, linked })
 }
 

@@ -197,7 +197,8 @@ fn certification(case: &Case) -> Result<(), Box<dyn Error>> {
         nodes: Vec::new(),
         placer: None,
         linearise: Linearise::new(&machine.accuracy, false),
-        model: Plugin::linked(post_sampled::plugin())?.error_model(&[])?,
+        model: Plugin::linked(post_stock::plugin("sampled").ok_or("no such plugin")?)?
+            .error_model(&[])?,
     };
     job::watched(
         &case.path,

@@ -2,7 +2,7 @@
 //!
 //! Nothing here is needed to write a dialect; it saves an author the usual hundred lines.
 
-use crate::number::Look;
+use crate::number::{Front, Look};
 use crate::{Setup, fixed};
 
 /// How numbers look.
@@ -19,21 +19,17 @@ pub struct NumberStyle {
 impl NumberStyle {
     /// Appends `value` with at most `decimals` decimals.
     pub fn write(self, out: &mut String, value: f64, decimals: u8) {
-        self.write_behind(["", ""], out, value, decimals);
+        if !self.look().append(out, Front::NONE, value, decimals) {
+            // A number that no machine reaches: as it is.
+            fixed(out, value, decimals);
+        }
     }
 
-    /// The same behind `front`, in one piece.
-    #[inline]
-    fn write_behind(self, front: [&str; 2], out: &mut String, value: f64, decimals: u8) {
-        let look = Look {
+    const fn look(self) -> Look {
+        Look {
             plus: self.plus,
             trim: self.trim,
             point: self.point,
-        };
-        if !look.append(out, front, value, decimals) {
-            // A number that no machine reaches: as it is.
-            out.extend(front);
-            fixed(out, value, decimals);
         }
     }
 }
@@ -86,8 +82,27 @@ impl Block {
         decimals: u8,
         style: NumberStyle,
     ) -> &mut Self {
-        style.write_behind([" ", address], &mut self.words, value, decimals);
+        self.number_behind(Front::blank(address), address, value, decimals, style);
         self
+    }
+
+    /// The same; `front` is the address with its blank, if that is short enough.
+    #[inline]
+    fn number_behind(
+        &mut self,
+        front: Option<Front>,
+        address: &str,
+        value: f64,
+        decimals: u8,
+        style: NumberStyle,
+    ) {
+        let look = style.look();
+        let written =
+            front.is_some_and(|front| look.append(&mut self.words, front, value, decimals));
+        if !written {
+            self.word(address);
+            style.write(&mut self.words, value, decimals);
+        }
     }
 
     /// Appends the block as a line to `out` and begins the next one. An empty block is not a line.
@@ -154,8 +169,9 @@ pub struct Axes {
 
 #[derive(Clone, Debug)]
 struct Axis {
-    /// A blank and its address.
-    word: String,
+    name: String,
+    /// A blank and the name, if it is short enough.
+    front: Option<Front>,
     group: Group,
     decimals: u8,
     last: Modal<f64>,
@@ -176,7 +192,8 @@ impl Axes {
     /// The words of `setup`, with these decimals for linear and rotary ones.
     pub fn new(setup: &Setup<'_>, linear: u8, rotary: u8, style: NumberStyle) -> Self {
         let axes = setup.words.iter().map(|word| Axis {
-            word: format!(" {}", word.name),
+            name: word.name.to_owned(),
+            front: Front::blank(word.name),
             group: match (word.rotary, word.depth) {
                 (true, _) => Group::Rotary,
                 (false, true) => Group::Depth,
@@ -201,7 +218,7 @@ impl Axes {
         self.axes
             .iter()
             .find(|axis| axis.group == Group::Depth)
-            .map_or("Z", |axis| axis.word.trim_start())
+            .map_or("Z", |axis| axis.name.as_str())
     }
 
     /// Names of all words along the spindle (a quill beside the main axis).
@@ -209,7 +226,7 @@ impl Axes {
         self.axes
             .iter()
             .filter(|axis| axis.group == Group::Depth)
-            .map(|axis| axis.word.trim_start())
+            .map(|axis| axis.name.as_str())
     }
 
     /// Where the axes stand is not known any more: the next move writes all its words.
@@ -255,7 +272,7 @@ impl Axes {
 impl Axis {
     fn write(&mut self, block: &mut Block, value: f64, style: NumberStyle) {
         if self.last.set(value) {
-            style.write_behind([&self.word, ""], &mut block.words, value, self.decimals);
+            block.number_behind(self.front, &self.name, value, self.decimals, style);
         }
     }
 }

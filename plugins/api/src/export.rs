@@ -27,6 +27,8 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 pub struct Linked {
     exported: &'static Exported,
+    name: &'static str,
+    options: fn() -> &'static [OptionSpec],
     open: Option<OpenLinked>,
 }
 
@@ -56,18 +58,22 @@ pub trait LinkedDialect: Send {
 impl Linked {
     /// For the export line of a dialect.
     #[doc(hidden)]
-    pub const fn dialect<D: Dialect>(exported: &'static Exported) -> Self {
+    pub const fn dialect<D: Dialect>(exported: &'static Exported, name: &'static str) -> Self {
         Linked {
             exported,
+            name,
+            options: D::options,
             open: Some(open_linked::<D>),
         }
     }
 
     /// For the export line of an error model.
     #[doc(hidden)]
-    pub const fn model<M: ErrorModel>(exported: &'static Exported) -> Self {
+    pub const fn model<M: ErrorModel>(exported: &'static Exported, name: &'static str) -> Self {
         Linked {
             exported,
+            name,
+            options: M::options,
             open: None,
         }
     }
@@ -75,6 +81,16 @@ impl Linked {
     /// What the library of this plugin would export.
     pub fn raw(self) -> &'static PostPlugin {
         &self.exported.0
+    }
+
+    /// Its name, as in a machine file.
+    pub fn name(self) -> &'static str {
+        self.name
+    }
+
+    /// The options that it declares.
+    pub fn options(self) -> &'static [OptionSpec] {
+        (self.options)()
     }
 
     /// Opens it for a program; none if it is no dialect.
@@ -209,8 +225,8 @@ macro_rules! export_plugin {
             $crate::export::Exported::$kind::<$type>(stringify!($name), env!("CARGO_PKG_VERSION"));
 
         /// This plugin, linked in.
-        pub fn plugin() -> $crate::Linked {
-            $crate::Linked::$kind::<$type>(&POST_PLUGIN)
+        pub const fn plugin() -> $crate::Linked {
+            $crate::Linked::$kind::<$type>(&POST_PLUGIN, stringify!($name))
         }
     };
 }

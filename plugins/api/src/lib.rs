@@ -12,7 +12,6 @@ mod event;
 #[doc(hidden)]
 pub mod export;
 mod field;
-mod iso;
 mod model;
 mod number;
 pub mod raw;
@@ -30,7 +29,6 @@ pub use event::{
 };
 pub use export::{Linked, LinkedDialect};
 pub use field::{Codes, List, Promise, Shape, ToolPose};
-pub use iso::{FeedDecimals, IsoMotion};
 pub use model::{Curve, Deviation, ErrorModel, ModelSession, Tolerance};
 pub use number::{fixed, quantise};
 pub use setup::{

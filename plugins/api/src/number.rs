@@ -31,9 +31,38 @@ const POWERS_F: [f64; 16] = {
 /// Digit for digit what `format!("{value:.decimals$}")` gives (ties of the exact binary value go to the
 /// even digit), except that a number which rounds to nothing has no sign: `0.000`, never `-0.000`.
 pub fn fixed(out: &mut String, value: f64, decimals: u8) {
-    if !Look::default().append(out, ["", ""], value, decimals) {
+    if !Look::default().append(out, Front::NONE, value, decimals) {
         // Writing to a String cannot fail.
         let _ = write!(out, "{value:.*}", usize::from(decimals));
+    }
+}
+
+/// What stands in front of a number: at most eight bytes, so that they are written at once.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Front {
+    /// The first in the lowest byte.
+    bytes: u64,
+    len: usize,
+}
+
+impl Front {
+    pub(crate) const NONE: Front = Front { bytes: 0, len: 0 };
+
+    /// A blank and `text`, all ASCII; none if they are longer.
+    #[inline]
+    pub(crate) const fn blank(text: &str) -> Option<Front> {
+        let text = text.as_bytes();
+        if text.len() > 7 || !text.is_ascii() {
+            return None;
+        }
+        let mut bytes = b' ' as u64;
+        let mut index = 0;
+        while index < text.len() {
+            bytes |= (text[index] as u64) << (8 * (index + 1));
+            index += 1;
+        }
+        let len = text.len() + 1;
+        Some(Front { bytes, len })
     }
 }
 
@@ -55,85 +84,91 @@ impl Look {
     /// the digits do.
     // Always, since five words a block are most of what a dialect does.
     #[inline(always)]
-    pub(crate) fn append(
-        self,
-        out: &mut String,
-        front: [&str; 2],
-        value: f64,
-        decimals: u8,
-    ) -> bool {
-        let Some(mut count) = count(value, decimals) else {
+    pub(crate) fn append(self, out: &mut String, front: Front, value: f64, decimals: u8) -> bool {
+        let Some(count) = count(value, decimals) else {
             return false;
         };
-        let sign = if value < 0.0 && count != 0 {
-            Some(b'-')
-        } else {
-            self.plus.then_some(b'+')
-        };
-        let mut decimals = usize::from(decimals);
+        let negative = value < 0.0 && count != 0;
+        let signed = usize::from(negative | self.plus);
+        let sign = if negative { b'-' } else { b'+' };
+        let places = usize::from(decimals);
+        if count >= 100_000_000 || places > 7 {
+            self.append_long(out, front, (signed, sign), count, places);
+            return true;
+        }
+        let packed = eight_digits(count);
+        // All eight are zeros for a zero.
+        let leading = (packed.trailing_zeros() / 8) as usize;
+        let trailing = (packed.leading_zeros() / 8) as usize;
+        let digits = (8 - leading).max(places + 1);
+        let dropped = if self.trim { trailing.min(places) } else { 0 };
+        let point = usize::from(places > dropped || self.point);
+        let length = front.len + signed + digits - dropped + point;
+        // Eight bytes are written at a time; the last may reach past the end.
+        out.reserve(length + 16);
+        // SAFETY: what is appended is ASCII. There is room for `length` bytes and sixteen more behind the old end;
+        // front and sign come first, then the digits with the point among them. Together they are `length`, and
+        // each write begins within it and has eight bytes at most.
+        unsafe {
+            let bytes = out.as_mut_vec();
+            let start = bytes.len();
+            let mut to = bytes.as_mut_ptr().add(start);
+            to.cast::<u64>().write_unaligned(front.bytes.to_le());
+            to = to.add(front.len);
+            to.write(sign);
+            to = to.add(signed);
+            let text = (packed | 0x3030_3030_3030_3030) >> (8 * (8 - digits));
+            let whole = digits - places;
+            to.cast::<u64>().write_unaligned(text.to_le());
+            to = to.add(whole);
+            to.write(b'.');
+            // A shift by all 64 bits would be none.
+            let rest = (text >> 8) >> (8 * (whole - 1));
+            to.add(1).cast::<u64>().write_unaligned(rest.to_le());
+            bytes.set_len(start + length);
+        }
+        true
+    }
+
+    /// Numbers of more than eight digits.
+    #[cold]
+    fn append_long(
+        self,
+        out: &mut String,
+        front: Front,
+        (signed, sign): (usize, u8),
+        mut count: u64,
+        mut decimals: usize,
+    ) {
         if self.trim {
             while decimals > 0 && count.is_multiple_of(10) {
                 count /= 10;
                 decimals -= 1;
             }
         }
-        let point = decimals > 0 || self.point;
-        let log = match u32::try_from(count.max(1)) {
-            Ok(count) => count.ilog10(),
-            Err(_) => count.ilog10(),
-        };
-        let digits = (log as usize + 1).max(decimals + 1);
-        let [first, second] = front;
-        let length =
-            first.len() + second.len() + usize::from(sign.is_some()) + digits + usize::from(point);
-        // Eight bytes are written at a time below; the last may reach past the end.
-        out.reserve(length + 8);
-        // SAFETY: what is appended is whole strings and ASCII. There is room for `length` bytes and eight more
-        // behind the old end; the front and the sign come first, then the digits with the point among them,
-        // and together they are `length`.
+        let point = usize::from(decimals > 0 || self.point);
+        let digits = (count.max(1).ilog10() as usize + 1).max(decimals + 1);
+        let length = front.len + signed + digits + point;
+        out.reserve(length + 16);
+        // SAFETY: as above; the digits are written from their end, and there are as many as were counted.
         unsafe {
             let bytes = out.as_mut_vec();
             let start = bytes.len();
-            let mut to = bytes.as_mut_ptr().add(start);
-            // Mostly a blank and a letter: loops are shorter than calls.
-            for &byte in first.as_bytes() {
-                to.write(byte);
-                to = to.add(1);
+            let to = bytes.as_mut_ptr().add(start);
+            to.cast::<u64>().write_unaligned(front.bytes.to_le());
+            to.add(front.len).write(sign);
+            let mut end = to.add(length);
+            if point == 1 {
+                end = digits_before(end, &mut count, decimals).sub(1);
+                end.write(b'.');
             }
-            for &byte in second.as_bytes() {
-                to.write(byte);
-                to = to.add(1);
-            }
-            if let Some(sign) = sign {
-                to.write(sign);
-                to = to.add(1);
-            }
-            if digits <= 8 {
-                let text = eight_digits(count) >> (8 * (8 - digits));
-                let whole = digits - decimals;
-                to.cast::<u64>().write_unaligned(text.to_le());
-                if point {
-                    to = to.add(whole);
-                    to.write(b'.');
-                    // A shift by all 64 bits would be none.
-                    let rest = (text >> 8) >> (8 * (whole - 1));
-                    to.add(1).cast::<u64>().write_unaligned(rest.to_le());
-                }
-            } else {
-                let mut end = to.add(digits + usize::from(point));
-                if point {
-                    end = digits_before(end, &mut count, decimals).sub(1);
-                    end.write(b'.');
-                }
-                digits_before(end, &mut count, digits - decimals);
-            }
+            digits_before(end, &mut count, digits - decimals);
             bytes.set_len(start + length);
         }
-        true
     }
 }
 
-/// The eight decimal digits of a number below 10^8 as ASCII, the first in the lowest byte.
+/// The eight decimal digits of a number below 10^8, a byte each, the first in the lowest.
 #[inline]
 fn eight_digits(count: u64) -> u64 {
     // Halves of four digits, quarters of two, digits: each split divides all lanes at once, by a
@@ -142,8 +177,7 @@ fn eight_digits(count: u64) -> u64 {
     let hundreds = ((halves * 10_486) >> 20) & 0x0000_007f_0000_007f;
     let quarters = hundreds | ((halves - hundreds * 100) << 16);
     let tens = ((quarters * 103) >> 10) & 0x000f_000f_000f_000f;
-    let digits = tens | ((quarters - tens * 10) << 8);
-    digits | 0x3030_3030_3030_3030
+    tens | ((quarters - tens * 10) << 8)
 }
 
 /// Writes the last `left` digits of `count` before `end` and takes them off it; where the first stands.
@@ -208,9 +242,9 @@ pub fn quantise(value: f64, decimals: u8) -> f64 {
 /// How many units of the last decimal `|value|` has, rounded exactly; none if that is beyond this way.
 #[inline]
 fn count(value: f64, decimals: u8) -> Option<u64> {
-    let power = *POWERS.get(usize::from(decimals))?;
+    let power = *POWERS_F.get(usize::from(decimals))?;
     // One multiplication is off by less than 2^-13 here, so only near a tie it does not settle the matter.
-    let scaled = value.abs() * POWERS_F[usize::from(decimals)];
+    let scaled = value.abs() * power;
     if scaled < (1_u64 << 40) as f64 {
         // SAFETY: it is not negative, below 2^40 and not NaN, so the cast need not look.
         let whole: i64 = unsafe { scaled.to_int_unchecked() };
@@ -219,6 +253,12 @@ fn count(value: f64, decimals: u8) -> Option<u64> {
             return Some(whole as u64 + u64::from(rest > 0.5));
         }
     }
+    count_exactly(value, POWERS[usize::from(decimals)])
+}
+
+/// The same for any number, by its bits.
+#[cold]
+fn count_exactly(value: f64, power: u64) -> Option<u64> {
     let bits = value.abs().to_bits();
     // |value| = mantissa / 2^shift.
     let (exponent, fraction) = ((bits >> 52) as i32, bits & ((1 << 52) - 1));
@@ -263,7 +303,9 @@ mod tests {
     fn eight_digits_are_those_of_std() {
         for count in (0..100_000_000_u64).step_by(997).chain([99_999_999]) {
             assert_eq!(
-                eight_digits(count).to_le_bytes().as_slice(),
+                (eight_digits(count) | 0x3030_3030_3030_3030)
+                    .to_le_bytes()
+                    .as_slice(),
                 format!("{count:08}").as_bytes()
             );
         }
@@ -330,6 +372,52 @@ mod tests {
             check((state % 2_000_000_000_000) as f64 / 1e6 - 1e6);
             check((state % 20_000_000) as f64 / 1e4 + 0.000_05);
         }
+    }
+
+    /// Signs, points and zeros at the end, against the standard library's text with them put in and taken off.
+    #[test]
+    fn every_look_is_the_plain_number_with_its_changes() {
+        for value in [
+            0.0,
+            0.5,
+            10.0,
+            -12.25,
+            100.0,
+            123_456.7,
+            99_999_999.0,
+            1e8,
+            -1e8,
+            1_234_567_890.5,
+            1e-9,
+        ] {
+            for decimals in 0..=9 {
+                for look in 0..8 {
+                    let look = Look {
+                        plus: look & 1 != 0,
+                        trim: look & 2 != 0,
+                        point: look & 4 != 0,
+                    };
+                    let mut wanted = std(value, decimals);
+                    if look.trim && wanted.contains('.') {
+                        wanted.truncate(wanted.trim_end_matches('0').trim_end_matches('.').len());
+                    }
+                    if look.point && !wanted.contains('.') {
+                        wanted.push('.');
+                    }
+                    if look.plus && !wanted.starts_with('-') {
+                        wanted.insert(0, '+');
+                    }
+                    for front in ["X", "", "CR=", "ABCDEFG"] {
+                        let mut text = String::from("before");
+                        let blank = Front::blank(front).unwrap();
+                        assert!(look.append(&mut text, blank, value, decimals));
+                        assert_eq!(text, format!("before {front}{wanted}"), "{look:?}");
+                    }
+                }
+            }
+        }
+        assert!(Front::blank("ABCDEFGH").is_none());
+        assert!(Front::blank("Ü").is_none());
     }
 
     #[test]

@@ -64,13 +64,10 @@ pub fn watched(
             .collect(),
         ..ProgramSetup::default()
     };
-    let dialect = match machine.control.dialect.as_str() {
-        "linuxcnc" => post_linuxcnc::plugin(),
-        "heidenhain" => post_heidenhain::plugin(),
-        _ => post_fanuc::plugin(),
-    };
+    let stock = |name: &str| post_stock::plugin(name).ok_or("no such plugin");
+    let dialect = stock(&machine.control.dialect)?;
     let mut dialect = Plugin::linked(dialect)?.dialect(&setup)?;
-    let mut model = Plugin::linked(post_sampled::plugin())?.error_model(&[])?;
+    let mut model = Plugin::linked(stock("sampled")?)?.error_model(&[])?;
     let mut nowhere = Nowhere;
     let mut post = Post::new(&machine, job, &mut dialect, &mut model, &mut nowhere)
         .map_err(|finding| finding.message)?;

@@ -2,7 +2,8 @@
 //! whole lines of finite numbers, the same however the program is cut into batches, is the kit's.
 
 use post_plugin::{
-    Batch, Coolant, DialectSession, Event, Feed, Format, Spindle, SpindleSense, Units, quantise,
+    Batch, Capabilities, Coolant, DialectSession, Event, Feed, Format, Spindle, SpindleSense,
+    Units, quantise,
 };
 
 use super::Case;
@@ -10,6 +11,9 @@ use crate::{GivenValue, Plugin, PluginFault, ProgramSetup, ProgramWord};
 
 /// A kind of event that no version of the contract has.
 const UNKNOWN: u32 = 60_000;
+
+/// The last kind that every dialect is sent; those behind it must be declared.
+const LAST: u32 = Event::Word { text: "" }.kind();
 
 /// Cuts in the program.
 const CUTS: usize = 40;
@@ -73,6 +77,8 @@ pub(super) fn test(
     }
     cases.push(case);
 
+    cases.push(every_event(plugin, &setup)?);
+
     for (name, tcp, units) in [
         ("with TCP", true, Units::Millimetre),
         ("in inches", false, Units::Inch),
@@ -91,6 +97,33 @@ pub(super) fn test(
         cases.push(case);
     }
     Ok(cases)
+}
+
+/// Each kind of event by itself, behind the start: written or refused in words, never passed over.
+fn every_event(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFault> {
+    let mut case = Case::named("every event");
+    let declares = plugin.dialect(setup)?.capabilities() != Capabilities::NONE;
+    let start = match write(plugin, setup, &[Event::Start], usize::MAX)? {
+        Ok(text) => text.len(),
+        Err((_, fault)) => {
+            case.wrong(fault);
+            return Ok(case);
+        }
+    };
+    for event in Event::samples() {
+        let name = event.name();
+        match write(plugin, setup, &[Event::Start, event], usize::MAX)? {
+            Err((_, fault)) if fault.contains("the plugin panicked") => case.wrong(fault),
+            Err(_) => {}
+            Ok(text) if !declares && event.kind() > LAST && text.len() == start => {
+                case.wrong(format!(
+                    "it takes {name} and writes nothing, without having declared it: it must refuse it"
+                ));
+            }
+            Ok(_) => {}
+        }
+    }
+    Ok(case)
 }
 
 /// The program's text, if what it cannot do without is written. Other events that are refused are left out

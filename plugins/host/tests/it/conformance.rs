@@ -9,6 +9,11 @@ use post_host::conformance::{self, Report, Verdict};
 use post_host::{GivenValue, Kind, Plugin};
 use post_plugin::Linked;
 
+/// A plugin that is part of the product.
+fn stock(name: &str) -> Linked {
+    post_stock::plugin(name).unwrap()
+}
+
 fn run(linked: Linked, options: &[(&str, GivenValue)]) -> Report {
     let options: Vec<(String, GivenValue)> = options
         .iter()
@@ -32,26 +37,18 @@ fn example(name: &str) -> Plugin {
 #[test]
 fn the_stock_plugins_are_good() {
     let number = GivenValue::Integer;
-    let reports = [
-        run(post_parabolic::plugin(), &[]),
-        run(post_harmonic::plugin(), &[]),
-        run(post_harmonic::plugin(), &[("order", number(2))]),
-        run(post_harmonic::plugin(), &[("order", number(3))]),
+    let plain = post_stock::plugins().iter().map(|plugin| run(*plugin, &[]));
+    let with_options = [
+        run(stock("harmonic"), &[("order", number(2))]),
+        run(stock("harmonic"), &[("order", number(3))]),
         run(
-            post_harmonic::plugin(),
+            stock("harmonic"),
             &[("order", number(8)), ("samples", number(15))],
         ),
-        run(post_sampled::plugin(), &[]),
-        run(
-            post_sampled::plugin(),
-            &[("accuracy", GivenValue::Number(1e-4))],
-        ),
-        run(post_fanuc::plugin(), &[]),
-        run(post_heidenhain::plugin(), &[]),
-        run(post_linuxcnc::plugin(), &[]),
+        run(stock("sampled"), &[("accuracy", GivenValue::Number(1e-4))]),
         faulty("nothing"),
     ];
-    for report in reports {
+    for report in plain.chain(with_options) {
         assert!(report.is_good(), "{report}");
     }
 }
@@ -62,13 +59,13 @@ fn what_a_model_may_miss_is_said_and_not_held_against_it() {
         let case = report.cases.iter().find(|case| case.name == name).unwrap();
         case.verdict()
     };
-    let parabolic = run(post_parabolic::plugin(), &[]);
+    let parabolic = run(stock("parabolic"), &[]);
     assert_eq!(verdict(&parabolic, "two humps"), Verdict::Approximate);
     assert!(parabolic.table().contains(
         "two humps: it says 0.0000 µm for the tip, the deviation reaches 20.0000 µm at t = 0.25; the certificate \
          will overrule it"
     ));
-    let sampled = run(post_sampled::plugin(), &[]);
+    let sampled = run(stock("sampled"), &[]);
     assert_eq!(verdict(&sampled, "two humps"), Verdict::Good);
 
     let figures = |report: &Report, name: &str| {
@@ -76,7 +73,7 @@ fn what_a_model_may_miss_is_said_and_not_held_against_it() {
         case.figures.unwrap()
     };
     // Half a sine leaves 5.6 % of a parabola and the other way round; three places tell.
-    let harmonic = run(post_harmonic::plugin(), &[]);
+    let harmonic = run(stock("harmonic"), &[]);
     for figures in [
         figures(&harmonic, "parabola"),
         figures(&parabolic, "half a sine"),
@@ -87,7 +84,7 @@ fn what_a_model_may_miss_is_said_and_not_held_against_it() {
     }
     // Two half waves meet the two humps that one cannot see.
     let second = run(
-        post_harmonic::plugin(),
+        stock("harmonic"),
         &[
             ("order", GivenValue::Integer(2)),
             ("samples", GivenValue::Integer(3)),
@@ -198,6 +195,9 @@ fn dialects_are_run_too() {
             .contains("program: it refuses Spindle: dialect `tiny`")
     );
 
+    let gcode = conformance::test(&example("gcode"), &[]).unwrap();
+    assert!(gcode.is_good(), "{gcode}");
+
     let panics = conformance::test(&example("panics"), &[]).unwrap();
     let wrong: Vec<String> = panics.wrong().collect();
     assert!(
@@ -210,7 +210,7 @@ fn dialects_are_run_too() {
 
 #[test]
 fn an_option_that_does_not_fit_is_refused() {
-    let plugin = Plugin::linked(post_harmonic::plugin()).unwrap();
+    let plugin = Plugin::linked(stock("harmonic")).unwrap();
     let options = [("order".to_owned(), GivenValue::Integer(9))];
     let fault = conformance::test(&plugin, &options).unwrap_err();
     assert!(fault.to_string().contains("9 is not between 1 and 8"));

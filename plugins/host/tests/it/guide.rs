@@ -1,31 +1,27 @@
 //! The guide shows what is built and tested here, and lists the options that there are.
 
 use post_host::Plugin;
-use post_plugin::{Linked, OptionKind, Value};
+use post_plugin::{OptionKind, Value};
 
 const GUIDE: &str = include_str!("../../../README.md");
 
 #[test]
-fn the_guide_shows_the_example() {
-    let example = include_str!("../../examples/post_tiny.rs");
-    assert!(
-        GUIDE.contains(example),
-        "plugins/README.md must show examples/post_tiny.rs as it is"
-    );
+fn the_guide_shows_the_examples() {
+    for (name, example) in [
+        ("tiny", include_str!("../../examples/post_tiny.rs")),
+        ("gcode", include_str!("../../examples/post_gcode.rs")),
+    ] {
+        assert!(
+            GUIDE.contains(example),
+            "plugins/README.md must show examples/post_{name}.rs as it is"
+        );
+    }
 }
 
 #[test]
 fn the_guide_lists_the_options_of_the_stock_plugins() {
-    let stock: [Linked; 6] = [
-        post_fanuc::plugin(),
-        post_linuxcnc::plugin(),
-        post_heidenhain::plugin(),
-        post_harmonic::plugin(),
-        post_parabolic::plugin(),
-        post_sampled::plugin(),
-    ];
-    for linked in stock {
-        let plugin = Plugin::linked(linked).unwrap();
+    for linked in post_stock::plugins() {
+        let plugin = Plugin::linked(*linked).unwrap();
         if plugin.options().is_empty() {
             continue;
         }

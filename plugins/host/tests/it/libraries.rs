@@ -8,14 +8,19 @@ use std::process::Command;
 
 use post_host::{Finder, GivenValue, Kind, Plugin, PluginFault, ProgramSetup, ProgramWord, Reason};
 use post_plugin::{
-    Batch, Coolant, Deviation, DialectSession, Event, Feed, ModelSession, Spindle, SpindleSense,
-    Tolerance,
+    Batch, Coolant, Deviation, DialectSession, Event, Feed, Linked, ModelSession, Spindle,
+    SpindleSense, Tolerance,
 };
 
 /// The folder of this test's executable, where cargo also puts the libraries of its dependencies.
 fn deps() -> PathBuf {
     let this = std::env::current_exe().unwrap();
     this.parent().unwrap().to_owned()
+}
+
+/// A plugin that is part of the product.
+fn stock(name: &str) -> Linked {
+    post_stock::plugin(name).unwrap()
 }
 
 fn library(folder: &Path, name: &str) -> PathBuf {
@@ -114,13 +119,9 @@ fn write(plugin: &Plugin, batch: &Batch) -> (String, Vec<usize>) {
 
 #[test]
 fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
-    let linked = [
-        post_fanuc::plugin(),
-        post_linuxcnc::plugin(),
-        post_heidenhain::plugin(),
-    ];
-    for linked in linked {
-        let linked = Plugin::linked(linked).unwrap();
+    let all = post_stock::plugins().iter();
+    let all = all.map(|linked| Plugin::linked(*linked).unwrap());
+    for linked in all.filter(|plugin| plugin.kind() == Kind::Dialect) {
         assert_eq!((linked.path(), linked.hash()), (None, None));
         let opened = Plugin::open(&library(&deps(), linked.name())).unwrap();
         assert_eq!(opened.name(), linked.name());
@@ -137,6 +138,19 @@ fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
         assert_eq!(ends.len(), batch.len());
         assert_eq!(ends.last(), Some(&text.len()));
         assert!(text.lines().count() > 200);
+        // Each kind of event by itself: the same text, or the same refusal.
+        for event in Event::samples() {
+            let mut batch = Batch::default();
+            batch.push(1, Event::Start);
+            batch.push(2, event);
+            let [by_contract, straight] = [&opened, &linked].map(|plugin| {
+                let mut session = plugin.dialect(&five_axes()).unwrap();
+                let (mut out, mut ends) = (String::new(), Vec::new());
+                let written = session.write_batch(&batch, &mut out, &mut ends);
+                (written, out, ends, session.capabilities())
+            });
+            assert_eq!(by_contract, straight, "{}", event.name());
+        }
         // Cut into single events it is the same program.
         let mut session = opened.dialect(&five_axes()).unwrap();
         let mut out = String::new();
@@ -153,7 +167,7 @@ fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
 
 #[test]
 fn the_stock_error_model_answers_the_same_from_a_file_and_linked_in() {
-    let linked = Plugin::linked(post_sampled::plugin()).unwrap();
+    let linked = Plugin::linked(stock("sampled")).unwrap();
     let opened = Plugin::open(&library(&deps(), "sampled")).unwrap();
     let answers = [linked, opened].map(|plugin| {
         assert_eq!(plugin.kind(), Kind::ErrorModel);
@@ -431,7 +445,7 @@ fn a_system_library_is_refused() {
 
 #[test]
 fn a_name_is_looked_for_in_the_folders_and_then_among_the_linked_in() {
-    let linked = vec![Plugin::linked(post_fanuc::plugin()).unwrap()];
+    let linked = vec![Plugin::linked(stock("fanuc")).unwrap()];
     let mut finder = Finder {
         folders: Vec::new(),
         linked,
@@ -457,7 +471,7 @@ fn a_name_is_looked_for_in_the_folders_and_then_among_the_linked_in() {
 
 #[test]
 fn promises_to_plugins_are_kept() {
-    let plugin = Plugin::linked(post_heidenhain::plugin()).unwrap();
+    let plugin = Plugin::linked(stock("heidenhain")).unwrap();
     let bad: &[(Event<'_>, &str)] = &[
         (Event::rapid(&[f64::NAN, 0.0]), "an axis word is NaN"),
         (Event::rapid(&[0.0]), "1 axis words instead of 2"),

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 use post_host::{GivenValue, Plugin};
-use post_plugin::{Deviation, Linked, ModelSession, Tolerance, length};
+use post_plugin::{Deviation, ModelSession, Tolerance, length};
 
 type Vector = [f64; 3];
 
@@ -105,12 +105,12 @@ struct Fit {
     explained: f64,
 }
 
-fn fit(model: Linked, options: &[(&str, i64)], deviation: impl Fn(f64) -> Vector) -> Fit {
+fn fit(model: &str, options: &[(&str, i64)], deviation: impl Fn(f64) -> Vector) -> Fit {
     let options: Vec<(String, GivenValue)> = options
         .iter()
         .map(|(key, value)| ((*key).to_owned(), GivenValue::Integer(*value)))
         .collect();
-    let plugin = Plugin::linked(model).unwrap();
+    let plugin = Plugin::linked(post_stock::plugin(model).unwrap()).unwrap();
     let mut session = plugin.error_model(&options).unwrap();
     let tolerance = Tolerance {
         tip: 1e-4,
@@ -148,8 +148,8 @@ fn fit(model: Linked, options: &[(&str, i64)], deviation: impl Fn(f64) -> Vector
 }
 
 /// The largest peak over the moves of the blade, and the largest rest, mm.
-fn over_the_blade(model: fn() -> Linked, options: &[(&str, i64)], below: f64) -> [f64; 3] {
-    let fits = (0..BLADE.len() - 1).map(|index| fit(model(), options, blade(index, below)));
+fn over_the_blade(model: &str, options: &[(&str, i64)], below: f64) -> [f64; 3] {
+    let fits = (0..BLADE.len() - 1).map(|index| fit(model, options, blade(index, below)));
     fits.fold([0.0; 3], |[peak, actual, left], fit| {
         [
             peak.max(fit.peak),
@@ -165,7 +165,7 @@ fn near(value: f64, wanted: f64, by: f64) -> bool {
 
 #[test]
 fn table_3_2_of_the_harmonic_paper() {
-    let [peak, actual, left] = over_the_blade(post_harmonic::plugin, &[], 200.0);
+    let [peak, actual, left] = over_the_blade("harmonic", &[], 200.0);
     assert!(near(actual, 4.62e-3, 5e-6), "{actual}");
     assert!(near(peak, actual, 1e-6), "{peak}");
     assert!(
@@ -173,20 +173,20 @@ fn table_3_2_of_the_harmonic_paper() {
         "{left}"
     );
 
-    let [peak, _, left] = over_the_blade(post_parabolic::plugin, &[], 200.0);
+    let [peak, _, left] = over_the_blade("parabolic", &[], 200.0);
     assert!(near(peak, actual, 1e-6), "{peak}");
     assert!(near(left / actual, 0.0012, 1e-4), "{}", left / actual);
 
-    let [peak, _, left] = over_the_blade(post_sampled::plugin, &[], 200.0);
+    let [peak, _, left] = over_the_blade("sampled", &[], 200.0);
     assert!(near(peak, actual, 0.01 * actual), "{peak}");
     assert!(left < 1e-9, "{left}");
 
     // Three waves fitted to 15 places leave a fifth of what one leaves.
     let third = [("order", 3), ("samples", 15)];
-    let [_, _, left] = over_the_blade(post_harmonic::plugin, &third, 200.0);
+    let [_, _, left] = over_the_blade("harmonic", &third, 200.0);
     assert!(near(left / actual, 0.0118, 5e-4), "{}", left / actual);
 
-    let [peak, ..] = over_the_blade(post_harmonic::plugin, &[], 0.0);
+    let [peak, ..] = over_the_blade("harmonic", &[], 0.0);
     assert!(near(peak, 2.30e-3, 5e-6), "{peak}");
 }
 
@@ -199,14 +199,14 @@ fn the_swing_head_of_the_parabolic_paper() {
         (312.0, 17.184e-3),
         (400.0, 22.031e-3),
     ] {
-        let parabola = fit(post_parabolic::plugin(), &[], swing(lm));
+        let parabola = fit("parabolic", &[], swing(lm));
         assert!(near(parabola.peak, peak, 1e-6), "{lm}: {}", parabola.peak);
         assert!(near(parabola.at, 0.5, 1e-6));
         assert!(parabola.explained > 0.999_999, "{}", parabola.explained);
-        let sine = fit(post_harmonic::plugin(), &[], swing(lm));
+        let sine = fit("harmonic", &[], swing(lm));
         assert!(near(sine.peak, peak, 1e-6), "{lm}: {}", sine.peak);
         assert!(near(sine.explained, 0.9862, 5e-5), "{}", sine.explained);
-        let sampled = fit(post_sampled::plugin(), &[], swing(lm));
+        let sampled = fit("sampled", &[], swing(lm));
         assert!(near(sampled.peak, peak, 0.01 * peak));
     }
 }

@@ -1,13 +1,16 @@
-//! Moves in G-code: what the dialects of the ISO family share.
+//! Moves in G-code.
 //!
-//! `G0`, `G1`, the feed modes `G93` to `G95`, `G40` to `G42` and the way a tool comes to the part. A word
-//! that is in force is not written again, and a move that changes no word is not written at all.
+//! Rapids, cuts, the three feed modes, compensation and the way a tool comes to the part. A word that is in force is
+//! not written again, and a move that changes no word is not written at all.
 
-use crate::{Axes, Block, Compensation, Feed, Format, Group, Modal, NumberStyle};
+use post_plugin::{Axes, Block, Compensation, Feed, Format, Group, Modal, NumberStyle};
+
+use crate::table::Codes;
 
 /// The moving part of a G-code dialect.
 #[derive(Clone, Debug)]
-pub struct IsoMotion {
+pub struct Motion {
+    codes: &'static Codes,
     /// The block under construction.
     pub block: Block,
     /// The axis words.
@@ -22,11 +25,11 @@ pub struct IsoMotion {
 /// Decimals of the three kinds of feed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FeedDecimals {
-    /// `G94`.
+    /// Of a feed a minute.
     pub per_minute: u8,
-    /// `G93`.
+    /// Of an inverse-time feed.
     pub inverse_time: u8,
-    /// `G95`.
+    /// Of a feed a revolution.
     pub per_revolution: u8,
 }
 
@@ -37,10 +40,11 @@ const FEED_STYLE: NumberStyle = NumberStyle {
     trim: true,
 };
 
-impl IsoMotion {
+impl Motion {
     /// Nothing is known to be in force.
-    pub fn new(block: Block, axes: Axes, decimals: FeedDecimals) -> Self {
-        IsoMotion {
+    pub fn new(codes: &'static Codes, block: Block, axes: Axes, decimals: FeedDecimals) -> Self {
+        Motion {
+            codes,
             block,
             axes,
             decimals,
@@ -56,7 +60,7 @@ impl IsoMotion {
         Format {
             words: self.axes.decimals(),
             feed: self.decimals.per_minute,
-            inverse_time: Some(self.decimals.inverse_time),
+            inverse_time: (!self.codes.feed[1].is_empty()).then_some(self.decimals.inverse_time),
             feed_per_revolution: self.decimals.per_revolution,
             extension: extension.to_owned(),
         }
@@ -70,9 +74,9 @@ impl IsoMotion {
         self.axes.forget();
     }
 
-    /// A line of the dialect's own has put `G94` in force.
+    /// A line of the dialect's own has put the feed a minute in force.
     pub fn feeds_per_minute(&mut self) {
-        self.feed_mode.set("G94");
+        self.feed_mode.set(self.codes.feed[0]);
     }
 
     /// A block of its own.
@@ -91,21 +95,21 @@ impl IsoMotion {
         self.block.end(out);
     }
 
-    /// `G0`.
+    /// A rapid.
     pub fn rapid(&mut self, words: &[f64], out: &mut String) {
         if self.axes.moved(words) {
-            self.motion("G0");
+            self.motion(self.codes.motion[0]);
             self.write_pending();
             self.axes.write(&mut self.block, words);
             self.block.end(out);
         }
     }
 
-    /// `G1`.
+    /// A cut.
     pub fn cut(&mut self, words: &[f64], feed: Feed, out: &mut String) {
         if self.axes.moved(words) {
             self.feed_mode(feed);
-            self.motion("G1");
+            self.motion(self.codes.motion[1]);
             self.write_pending();
             self.axes.write(&mut self.block, words);
             self.feed(feed);
@@ -113,26 +117,15 @@ impl IsoMotion {
         }
     }
 
-    /// Rotary axes first, then the plane, then the depth with `length` (`G43 H1`); the last of them at
-    /// `feed`. With `at_once` all linear axes go in the last block, as they must where `length` also
-    /// changes what they mean.
-    pub fn approach(
-        &mut self,
-        words: &[f64],
-        feed: Option<Feed>,
-        length: &str,
-        at_once: bool,
-        out: &mut String,
-    ) {
-        self.turn_first(words, out);
-        if !at_once {
-            self.rapid_group(words, Group::Plane, out);
-        }
+    /// What is left of the way to `words`, with `length` (`G43 H1`), at `feed` or at rapid.
+    pub fn arrive(&mut self, words: &[f64], feed: Option<Feed>, length: &str, out: &mut String) {
         if let Some(feed) = feed {
             self.feed_mode(feed);
         }
-        self.motion(if feed.is_some() { "G1" } else { "G0" });
-        self.block.word(length);
+        self.motion(self.codes.motion[usize::from(feed.is_some())]);
+        if !length.is_empty() {
+            self.block.word(length);
+        }
         self.axes.write(&mut self.block, words);
         if let Some(feed) = feed {
             self.feed(feed);
@@ -140,10 +133,14 @@ impl IsoMotion {
         self.block.end(out);
     }
 
-    /// The rotary axes alone, with `G0`: the beginning of [`IsoMotion::approach`], for a dialect that has
-    /// to switch something once they stand.
+    /// The rotary axes alone, at rapid.
     pub fn turn_first(&mut self, words: &[f64], out: &mut String) {
         self.rapid_group(words, Group::Rotary, out);
+    }
+
+    /// The linear axes but the depth, at rapid.
+    pub fn plane_next(&mut self, words: &[f64], out: &mut String) {
+        self.rapid_group(words, Group::Plane, out);
     }
 
     /// A line of the dialect's own has moved the axes, with a motion word of its own.
@@ -160,7 +157,7 @@ impl IsoMotion {
 
     fn rapid_group(&mut self, words: &[f64], group: Group, out: &mut String) {
         if self.axes.moved_group(words, group) {
-            self.motion("G0");
+            self.motion(self.codes.motion[0]);
             self.axes.write_group(&mut self.block, words, group);
             self.block.end(out);
         }
@@ -173,10 +170,11 @@ impl IsoMotion {
     }
 
     fn feed_mode(&mut self, feed: Feed) {
+        let [per_minute, inverse_time, per_revolution] = self.codes.feed;
         let word = match feed {
-            Feed::InverseTime(_) => "G93",
-            Feed::PerMinute(_) => "G94",
-            Feed::PerRevolution(_) => "G95",
+            Feed::PerMinute(_) => per_minute,
+            Feed::InverseTime(_) => inverse_time,
+            Feed::PerRevolution(_) => per_revolution,
         };
         if self.feed_mode.set(word) {
             self.block.word(word);
@@ -190,22 +188,23 @@ impl IsoMotion {
             Feed::InverseTime(value) => (value, self.decimals.inverse_time),
             Feed::PerRevolution(value) => (value, self.decimals.per_revolution),
         };
-        // Under G93 every block needs its own.
+        // Under inverse time every block needs its own.
         if self.feed.set(value) || matches!(feed, Feed::InverseTime(_)) {
             self.block.number("F", value, decimals, FEED_STYLE);
         }
     }
 
     fn write_pending(&mut self) {
+        let [off, left, right] = self.codes.compensation;
         let (word, register) = match self.pending.take() {
             None => return,
-            Some(Compensation::Off) => ("G40", None),
-            Some(Compensation::Left { register }) => ("G41", Some(register)),
-            Some(Compensation::Right { register }) => ("G42", Some(register)),
+            Some(Compensation::Off) => (off, None),
+            Some(Compensation::Left { register }) => (left, Some(register)),
+            Some(Compensation::Right { register }) => (right, Some(register)),
         };
         self.block.word(word);
         if let Some(register) = register {
-            self.block.integer("D", register);
+            self.block.integer(self.codes.radius, register);
         }
     }
 }

@@ -1,0 +1,187 @@
+//! What differs from control to control.
+
+use post_plugin::{OptionSpec, remark};
+
+/// How a control of the family differs from the others. Begin with [`Table::ISO`] and say what is different.
+///
+/// Where a table names an option, the machine file's value holds if the dialect declares that option among its
+/// `options`, else the table's own.
+#[derive(Clone, Copy, Debug)]
+pub struct Table {
+    /// The options of `[control.<name>]`; [`crate::options`] has those that the engine knows.
+    pub options: &'static [OptionSpec],
+    /// Usual ending of a program's file name.
+    pub extension: &'static str,
+    /// `%` before and after the program. Option `percent`.
+    pub percent: bool,
+    /// A text as a remark of this control.
+    pub remark: fn(&str) -> String,
+    /// Words of motion, feed and compensation.
+    pub codes: Codes,
+    /// Behind the units in the first block: what puts the control into a known state.
+    pub safe: &'static str,
+    /// Largest block number; past it they begin anew.
+    pub largest_number: u32,
+    /// Zeros at the end of axis words are left out. Option `trailing_zeros`.
+    pub trim: bool,
+    /// Decimals of a feed a revolution.
+    pub per_revolution: u8,
+    /// Work offsets.
+    pub offset: Offset,
+    /// Length compensation.
+    pub length: Length,
+    /// Tool centre point control.
+    pub tcp: Tcp,
+    /// The way out.
+    pub retract: Retract,
+    /// A wait.
+    pub dwell: Dwell,
+    /// Behind `T1`: the change of the tool.
+    pub change: &'static str,
+    /// Spindle clockwise, counter-clockwise, off, oriented; empty where the control has none.
+    pub spindle: [&'static str; 4],
+    /// M codes of coolant off, flood, mist, through the tool, air; empty where they are the machine builder's.
+    /// Options `coolant_off`, `coolant_flood`, `coolant_mist`, `coolant_through`, `coolant_air`.
+    pub coolant: [&'static str; 5],
+    /// Ends the program.
+    pub end: &'static str,
+}
+
+/// Words of motion, feed and compensation.
+#[derive(Clone, Copy, Debug)]
+pub struct Codes {
+    /// mm, inch.
+    pub units: [&'static str; 2],
+    /// Rapid, cut.
+    pub motion: [&'static str; 2],
+    /// Feed a minute, inverse time, feed a revolution; empty where the control has none.
+    pub feed: [&'static str; 3],
+    /// Compensation off, left, right.
+    pub compensation: [&'static str; 3],
+    /// Address of the compensation's register.
+    pub radius: &'static str,
+    /// Unconditional and optional stop.
+    pub stop: [&'static str; 2],
+}
+
+/// Work offsets. Option `work_offset`.
+#[derive(Clone, Copy, Debug)]
+pub struct Offset {
+    /// Is it one of the control's?
+    pub known: fn(&str) -> bool,
+    /// Those that are, for a message.
+    pub range: &'static str,
+    /// It stands in the first block; else in one of its own before the first position behind a tool change.
+    pub at_start: bool,
+}
+
+/// Length compensation.
+#[derive(Clone, Copy, Debug)]
+pub struct Length {
+    /// Puts it in force; empty where the control does that by itself.
+    pub on: &'static str,
+    /// Address of its register.
+    pub register: &'static str,
+    /// The control knows the length without a register. Option `length_register` gives one to a program that loads
+    /// no tool.
+    pub by_itself: bool,
+    /// Cancels it.
+    pub off: &'static str,
+}
+
+/// Tool centre point control.
+#[derive(Clone, Copy, Debug)]
+pub enum Tcp {
+    /// The control has none.
+    None,
+    /// A word in the place of [`Length::on`], cancelled as that is: `G43.4`.
+    Length(&'static str),
+    /// Blocks of its own. Options `tcp_on`, `tcp_off`.
+    Blocks {
+        /// Switches it on.
+        on: &'static str,
+        /// Switches it off.
+        off: &'static str,
+        /// The way to the first position, in order. What it does not name of the length comes with the last block.
+        approach: &'static [Step],
+        /// The order in which all is switched off.
+        release: &'static [Step],
+    },
+}
+
+/// A step of the way to a first position, or of a release.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The rotary axes turn at rapid.
+    Turn,
+    /// The length compensation is switched, in a block of its own.
+    Length,
+    /// The tool centre point control is switched.
+    Tcp,
+}
+
+/// The way out, with the names of the depth axes behind it.
+#[derive(Clone, Copy, Debug)]
+pub struct Retract {
+    /// In front of `Z0.`. Option `retract` is the whole block, option `home` one behind it at the end.
+    pub words: &'static str,
+    /// A block behind it, and behind that of option `home`; may be empty.
+    pub after: &'static str,
+}
+
+/// A wait: its address, and the unit of its number.
+#[derive(Clone, Copy, Debug)]
+pub enum Dwell {
+    /// Whole milliseconds, at least one.
+    Milliseconds(&'static str),
+    /// Seconds with decimals.
+    Seconds(&'static str, u8),
+}
+
+impl Codes {
+    /// As most controls have them.
+    pub const ISO: Codes = Codes {
+        units: ["G21", "G20"],
+        motion: ["G0", "G1"],
+        feed: ["G94", "G93", "G95"],
+        compensation: ["G40", "G41", "G42"],
+        radius: "D",
+        stop: ["M0", "M1"],
+    };
+}
+
+impl Table {
+    /// What most controls have in common: a beginning for a table of one's own.
+    pub const ISO: Table = Table {
+        options: &[],
+        extension: "nc",
+        percent: true,
+        remark,
+        codes: Codes::ISO,
+        safe: "G17 G40 G49 G80 G90 G94",
+        largest_number: 99_999,
+        trim: false,
+        per_revolution: 4,
+        offset: Offset {
+            known: |text| matches!(text, "G54" | "G55" | "G56" | "G57" | "G58" | "G59"),
+            range: "G54 to G59",
+            at_start: false,
+        },
+        length: Length {
+            on: "G43",
+            register: "H",
+            by_itself: false,
+            off: "G49",
+        },
+        tcp: Tcp::None,
+        retract: Retract {
+            words: "G91 G28",
+            after: "G90",
+        },
+        dwell: Dwell::Milliseconds("P"),
+        change: "M6",
+        spindle: ["M3", "M4", "M5", "M19"],
+        coolant: ["M9", "M8", "M7", "", ""],
+        end: "M30",
+    };
+}

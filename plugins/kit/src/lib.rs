@@ -1,0 +1,221 @@
+//! A bench for the tests of a dialect: a machine with five axes, and jobs to write.
+//!
+//! ```ignore
+//! let bench = Bench::of(crate::plugin());
+//! insta::assert_snapshot!(bench.write_job().unwrap());
+//! assert!(bench.with("decimals", Value::Integer(2)).write(&[Event::Start, rapid(P1)]).is_ok());
+//! ```
+//!
+//! It writes the way the host does with a dialect that is linked in. What it leaves to `post plugin test` is whether
+//! the text is the same in every cut of the batches, and through the C contract.
+
+use post_plugin::{
+    AxisWord, Batch, Compensation, Coolant, Event, Feed, Linked, LinkedDialect, Promise, Setup,
+    Spindle, SpindleSense, Units, Value,
+};
+
+/// A dialect on the bench, with the axis words X Y Z A C.
+#[derive(Clone, Debug)]
+pub struct Bench {
+    plugin: Linked,
+    units: Units,
+    tcp: bool,
+    given: Vec<(&'static str, Value<'static>)>,
+}
+
+const WORDS: &[AxisWord<'_>] = &[
+    word("X", false, false),
+    word("Y", false, false),
+    word("Z", false, true),
+    word("A", true, false),
+    word("C", true, false),
+];
+
+const fn word(name: &str, rotary: bool, depth: bool) -> AxisWord<'_> {
+    AxisWord {
+        name,
+        rotary,
+        wrapped: false,
+        depth,
+        carries_part: rotary,
+        travel: None,
+    }
+}
+
+impl Bench {
+    /// Millimetres, axis positions, every option at its default.
+    pub fn of(plugin: Linked) -> Self {
+        Self {
+            plugin,
+            units: Units::Millimetre,
+            tcp: false,
+            given: Vec::new(),
+        }
+    }
+
+    /// An inch program.
+    pub fn inch(mut self) -> Self {
+        self.units = Units::Inch;
+        self
+    }
+
+    /// The control keeps the tip.
+    pub fn tcp(mut self) -> Self {
+        self.tcp = true;
+        self
+    }
+
+    /// An option at another value than its default.
+    pub fn with(mut self, key: &'static str, value: Value<'static>) -> Self {
+        self.given.push((key, value));
+        self
+    }
+
+    /// The text of `events`.
+    ///
+    /// # Errors
+    /// The dialect's sentence, if it does not open or refuses one of them.
+    pub fn write(&self, events: &[Event<'_>]) -> Result<String, String> {
+        self.write_with(&mut *self.open()?, events)
+    }
+
+    /// The text of [`job`], without inverse time if the control has none.
+    ///
+    /// # Errors
+    /// As [`Bench::write`].
+    pub fn write_job(&self) -> Result<String, String> {
+        let mut dialect = self.open()?;
+        let timed = dialect.format()?.0.inverse_time.is_some();
+        self.write_with(&mut *dialect, &job(timed))
+    }
+
+    fn open(&self) -> Result<Box<dyn LinkedDialect>, String> {
+        let declared = self.plugin.options();
+        for (key, _) in &self.given {
+            if !declared.iter().any(|spec| spec.key == *key) {
+                return Err(format!("the option `{key}` is not declared"));
+            }
+        }
+        let options = declared.iter().map(|spec| {
+            let given = self.given.iter().find(|(key, _)| *key == spec.key);
+            (spec.key, given.map_or(spec.default, |(_, value)| *value))
+        });
+        let options: Vec<_> = options.collect();
+        let setup = Setup {
+            program: "bracket",
+            machine: "AC trunnion",
+            units: self.units,
+            tcp: self.tcp,
+            words: WORDS,
+            options: &options,
+            cl_file: "bracket.cls",
+            ..Setup::default()
+        };
+        let opened = self.plugin.open(&setup);
+        opened.unwrap_or_else(|| Err("it is no dialect".to_owned()))
+    }
+
+    fn write_with(
+        &self,
+        dialect: &mut dyn LinkedDialect,
+        events: &[Event<'_>],
+    ) -> Result<String, String> {
+        let (format, _) = dialect.format()?;
+        let promise = Promise {
+            words: WORDS.len(),
+            // A dialect without inverse time must be able to refuse it by itself.
+            inverse_time: true,
+        };
+        assert_eq!(format.words.len(), WORDS.len(), "decimals of each word");
+        let mut batch = Batch::default();
+        for (line, event) in (1..).zip(events) {
+            batch.push(line, *event);
+        }
+        let (mut out, mut ends) = (String::new(), Vec::new());
+        let written = dialect.write(&batch, &promise, &mut out, &mut ends);
+        written.map(|()| out).map_err(|fault| fault.message)
+    }
+}
+
+/// Above the part.
+pub const P1: &[f64] = &[10.0, -20.5, 100.0, -30.0, 45.0];
+/// Down to it: the depth alone.
+pub const P2: &[f64] = &[10.0, -20.5, 2.0, -30.0, 45.0];
+/// A linear and a rotary word further.
+pub const P3: &[f64] = &[12.5, -20.5, 2.0, -30.125, 45.0];
+/// Another of each.
+pub const P4: &[f64] = &[15.0, -20.5, 2.0, -30.125, 46.0];
+
+/// A tool with a name that needs care.
+pub const TOOL: Event<'static> = Event::tool_change(1, 1, "Ball Ø10 (R5)");
+
+/// A first position at rapid.
+pub const fn at(words: &[f64]) -> Event<'_> {
+    Event::position(words, None)
+}
+
+/// A rapid.
+pub const fn rapid(words: &[f64]) -> Event<'_> {
+    Event::rapid(words)
+}
+
+/// A cut at a feed a minute.
+pub const fn cut(words: &[f64], feed: f64) -> Event<'_> {
+    Event::linear(words, Feed::PerMinute(feed))
+}
+
+/// A cut in inverse time.
+pub const fn timed(words: &[f64], feed: f64) -> Event<'_> {
+    Event::linear(words, Feed::InverseTime(feed))
+}
+
+/// The spindle on.
+pub const fn turning(rpm: f64) -> Event<'static> {
+    let sense = SpindleSense::Clockwise;
+    Event::Spindle(Spindle::On { rpm, sense })
+}
+
+/// What a five-axis job does: two tools, rapids, cuts in two feed modes (where it is `timed`), compensation, stops,
+/// lines of the user's own.
+pub fn job(timed: bool) -> Vec<Event<'static>> {
+    let mut events = vec![
+        Event::Start,
+        Event::Comment {
+            text: "Schlichten (fein) 100%",
+        },
+        TOOL,
+        turning(3000.0),
+        Event::Coolant(Coolant::Flood),
+        at(P1),
+        rapid(P2),
+        rapid(P2),
+        cut(P3, 850.0),
+        cut(P4, 850.0),
+    ];
+    if timed {
+        events.extend([self::timed(P3, 12.0), self::timed(P4, 12.0), cut(P3, 850.0)]);
+    }
+    events.extend([
+        rapid(P1),
+        Event::Dwell { seconds: 2.5 },
+        Event::OptionalStop,
+        Event::Release,
+        Event::Home,
+        Event::tool_change(2, 12, ""),
+        turning(1200.0),
+        Event::position(P1, Some(Feed::PerMinute(2000.5))),
+        Event::Compensate(Compensation::Left { register: 32 }),
+        cut(P2, 300.0),
+        cut(P3, 300.0),
+        Event::Compensate(Compensation::Off),
+        rapid(P1),
+        Event::Literal { text: "M77" },
+        Event::Word { text: "M78" },
+        rapid(P1),
+        Event::Release,
+        Event::Spindle(Spindle::Off),
+        Event::Coolant(Coolant::Off),
+        Event::End,
+    ]);
+    events
+}

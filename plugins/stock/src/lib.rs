@@ -1,0 +1,29 @@
+//! The plugins that are part of `post`: the dependencies in this crate's `Cargo.toml` are the list.
+
+use post_plugin::Linked;
+
+/// All of them, in the order of their names.
+pub fn plugins() -> &'static [Linked] {
+    const PLUGINS: &[Linked] = include!(concat!(env!("OUT_DIR"), "/plugins.rs"));
+    PLUGINS
+}
+
+/// The one of this name.
+pub fn plugin(name: &str) -> Option<Linked> {
+    plugins()
+        .iter()
+        .find(|plugin| plugin.name() == name)
+        .copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_is_in_order_and_each_is_found_by_its_name() {
+        assert!(plugins().is_sorted_by_key(|plugin| plugin.name()));
+        assert!(plugin("fanuc").is_some_and(|fanuc| fanuc.name() == "fanuc"));
+        assert!(plugin("fanuk").is_none());
+    }
+}

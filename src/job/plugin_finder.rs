@@ -1,6 +1,6 @@
 //! The plugins that are part of the command, and those that the user's folders hold.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use post_host::{
     Finder, GivenValue, OpenedDialect, OpenedModel, Plugin, PluginFault, ProgramSetup, ProgramWord,
@@ -9,10 +9,11 @@ use post_host::{
 use post_machine::axis_words;
 use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
 use post_machine::diagnostic::{Diagnostic, Place};
-use post_plugin::Units;
+use post_plugin::{Accuracy, Tolerance, Units};
 use post_posting::report::PluginUse;
 
 use super::folders;
+use crate::files::PathArg;
 
 /// The finder for a run, with the folders that the user `named`.
 pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
@@ -52,11 +53,12 @@ fn missing(folders: &[PathBuf]) -> Result<(), Vec<Diagnostic>> {
     }
 }
 
-/// Opens the dialect of a machine for the program `program`.
+/// Opens the dialect of a machine for the program `program`, made from the CL file `cl_file`.
 pub fn dialect(
     finder: &Finder,
     machine: &Machine,
     program: &str,
+    cl_file: Option<&PathArg>,
 ) -> Result<(OpenedDialect, PluginUse), Vec<Diagnostic>> {
     let control = &machine.control;
     let fault = |fault: PluginFault| {
@@ -77,14 +79,35 @@ pub fn dialect(
         tcp: control.tcp == Tcp::Control,
         words: axis_words::order(machine)
             .into_iter()
-            .map(|place| ProgramWord {
-                name: machine.axes[place].name.clone(),
-                rotary: machine.axes[place].joint.rotary,
-                wrapped: machine.axes[place].range.is_some(),
-                depth: axis_words::is_depth(machine, place),
+            .map(|place| {
+                let axis = &machine.axes[place];
+                ProgramWord {
+                    name: axis.name.clone(),
+                    rotary: axis.joint.rotary,
+                    wrapped: axis.range.is_some(),
+                    depth: axis_words::is_depth(machine, place),
+                    carries_part: axis.carries_part,
+                    travel: axis
+                        .travel
+                        .map(|travel| travel.map(|end| axis.reading(end))),
+                }
             })
             .collect(),
         options: given(&control.options),
+        cl_file: cl_file
+            .and_then(PathArg::path)
+            .and_then(Path::file_name)
+            .map(|name| name.to_string_lossy().into_owned())
+            .unwrap_or_default(),
+        accuracy: Some(Accuracy {
+            cut: Tolerance {
+                tip: machine.accuracy.tolerance,
+                axis: machine.accuracy.axis_tolerance.to_degrees(),
+            },
+            rapid: machine.accuracy.rapid_tolerance,
+        }),
+        // The input is read once, as it may be a pipe.
+        ahead: None,
     };
     let opened = plugin.dialect(&setup).map_err(fault)?;
     Ok((opened, used(&plugin)))

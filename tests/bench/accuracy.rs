@@ -19,7 +19,7 @@ use post_grammar::Units;
 use post_host::{OpenedModel, Plugin};
 use post_posting::accuracy::{Linearise, Move, Node, Placer, Run, Tolerances};
 use post_posting::program::Reading;
-use post_posting::{Job, Watch};
+use post_posting::{Job, Observer};
 
 const RUNS: usize = 3;
 
@@ -162,7 +162,7 @@ struct Blocks {
 /// More blocks than this say nothing new.
 const MOST: usize = 40_000;
 
-impl Watch for Blocks {
+impl Observer for Blocks {
     fn cut(&mut self, _: u64, cut: &Move<'_>) {
         if self.nodes.len() > MOST {
             return;

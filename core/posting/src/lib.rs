@@ -1,19 +1,39 @@
-//! A CL file becomes a program: what is meant, where the axes go, how far that strays, and how fast.
+//! A CL file becomes a program, in stages.
 //!
-//! A record of the CL file takes one way through, never back:
-//! [`program`] settles what is meant, the route finds the axis values, [`accuracy`] puts points in and
-//! proves the deviation, [`feed`] says how fast, and the events go to a dialect. [`Post`] joins them.
-//! There is no input or output here, no unsafe code and no dialect's name.
+//! A record takes one way through, never back, and enters no stage twice. Each stage takes a batch and hands on a
+//! batch; commands travel in the same stream as the points, in order.
+//!
+//! | stage | takes | hands on |
+//! |---|---|---|
+//! | [`program`] | records | [`program::Step`]: what is meant, mm, part frame |
+//! | `expand` | steps | straight moves, unless dialect and machine take the curve as it is |
+//! | `configuration` | moves | points with the axis values chosen for them, over whole passes |
+//! | `blocks` | points | [`Block`]: as printed, more or fewer of them, each certified |
+//! | `timing` | blocks | the same with time, feed and what limits it |
+//! | `emit` | blocks | the dialect's events, whose text goes to an [`Output`] |
+//!
+//! [`Post`] joins them. [`accuracy`] is the mathematics of error control that `configuration` and `blocks` stand on.
+//! What never happens here: input or output, unsafe code, a dialect's name, a CL keyword behind `program`, memory
+//! that grows with the file.
 
 pub mod accuracy;
-pub mod feed;
-mod path;
+mod blocks;
+mod configuration;
+mod emit;
+pub mod expand;
+mod findings;
+mod observer;
 mod post;
 pub mod program;
-mod recent;
 mod refusal;
 pub mod report;
-mod route;
+mod source_buffer;
+mod stream;
+mod timing;
 
-pub use path::{Output, Watch};
-pub use post::{Job, MOST_FAULTS, Post};
+pub use blocks::{Block, MotionKind, Nominal, Reason, Time};
+pub use findings::MOST_FAULTS;
+pub use observer::{Observer, Output};
+pub use post::{Job, Post};
+pub use stream::Flow;
+pub use timing::limits;

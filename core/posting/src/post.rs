@@ -1,18 +1,21 @@
 //! One run: records in, text and a report out.
 
 use post_grammar::{Record, SyntaxFault};
-use post_plugin::{DialectSession, ModelSession};
-
-use crate::path::{Output, Path, Watch};
-use crate::program::{Interpreter, Reading, record_place};
-use crate::recent::Recent;
-use crate::report::{AxisRange, Deviation, Report};
 use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
-use post_machine::diagnostic::{Diagnostic, Extreme, Place, Severity, unreadable};
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{DialectSession, ModelSession};
 
-/// Faults of one run that are told; what comes after is most likely more of the same.
-pub const MOST_FAULTS: usize = 20;
+use crate::blocks::{Block, Blocks, Surroundings};
+use crate::configuration::{Configuration, Configured};
+use crate::emit::Emit;
+use crate::expand::{Expand, Line};
+use crate::findings::Findings;
+use crate::observer::{Observer, Observers, Output};
+use crate::program::{Interpreter, Reading, Step};
+use crate::report::{AxisRange, Deviation, Report};
+use crate::stream::{BATCH, Flow, Outlet};
+use crate::timing::Timing;
 
 /// How one CL file is to be posted.
 #[derive(Clone, Debug, Default)]
@@ -25,33 +28,107 @@ pub struct Job {
     pub trust_model: bool,
 }
 
-/// Posts one CL file, record by record.
+/// Posts one CL file, record by record: the stages, and what lies between them.
 pub struct Post<'a> {
     machine: &'a Machine,
     interpreter: Interpreter,
-    path: Path<'a>,
-    file: String,
+    /// Steps that the stages have not seen yet, each with its line.
+    steps: Vec<(u64, Step)>,
+    stages: Stages<'a>,
+    findings: Findings,
     records: u64,
     last_line: u64,
-    findings: Vec<Diagnostic>,
-    repeats: Vec<Repeat>,
-    faults: usize,
-    recent: Recent,
 }
 
-/// A limit that is passed again and again.
-#[derive(Debug)]
-struct Repeat {
-    /// Its first finding.
-    finding: usize,
-    count: u64,
-    extreme: Extreme,
-    /// Where it is passed farthest.
-    line: u64,
+/// The stages behind the interpreter, and the batches between them.
+struct Stages<'a> {
+    expand: Expand,
+    lines: Vec<Flow<Line>>,
+    configuration: Configuration<'a>,
+    configured: Vec<Flow<Configured>>,
+    blocks: Blocks<'a>,
+    made: Vec<Flow<Block>>,
+    timing: Timing<'a>,
+    observers: Observers<'a>,
+    emit: Emit<'a>,
+}
+
+/// What the stages are to do.
+enum Work<'s> {
+    /// Take these steps.
+    Take(&'s mut Vec<(u64, Step)>),
+    /// The file ended on this line.
+    Finish(u64),
+}
+
+impl Stages<'_> {
+    /// Runs a batch through all stages. Nothing is left between them; what a stage cannot decide yet it keeps.
+    fn run(&mut self, work: Work<'_>, findings: &Findings) {
+        let Self {
+            expand,
+            lines,
+            configuration,
+            configured,
+            blocks,
+            made,
+            timing,
+            observers,
+            emit,
+        } = self;
+        let observers = &*observers;
+        let last_line = match &work {
+            Work::Take(_) => None,
+            Work::Finish(line) => Some(*line),
+        };
+        let finish = last_line.is_some();
+        let mut to_emit = |made: &mut Vec<Flow<Block>>| {
+            timing.take(made);
+            observers.blocks(made);
+            emit.take(made, findings);
+        };
+        let mut made = Outlet::new(made, &mut to_emit);
+        let mut to = Surroundings {
+            out: &mut made,
+            findings,
+            audience: observers,
+        };
+        let mut to_blocks =
+            |configured: &mut Vec<Flow<Configured>>| blocks.take(configured, &mut to);
+        let mut configured = Outlet::new(configured, &mut to_blocks);
+        let mut to_configuration =
+            |lines: &mut Vec<Flow<Line>>| configuration.take(lines, &mut configured, findings);
+        let mut lines = Outlet::new(lines, &mut to_configuration);
+        match work {
+            Work::Take(steps) => expand.take(steps, &mut lines, findings),
+            Work::Finish(_) => expand.finish(&mut lines, findings),
+        }
+        lines.flush();
+        if finish {
+            configuration.finish(&mut configured, findings);
+        }
+        configured.flush();
+        if finish {
+            blocks.finish(&mut to);
+        }
+        made.flush();
+        if let Some(line) = last_line {
+            emit.finish(line, findings);
+        }
+    }
+
+    /// Line of the CL file before which no finding will be made any more.
+    fn settled_line(&self) -> Option<u64> {
+        let kept = [
+            self.expand.first_line(),
+            self.configuration.first_line(),
+            self.blocks.first_line(),
+        ];
+        kept.into_iter().flatten().min()
+    }
 }
 
 impl<'a> Post<'a> {
-    /// Opens a run; the header goes out with the first records.
+    /// Opens a run; the header goes out with the first batch.
     ///
     /// # Errors
     /// What machine and dialect cannot do together.
@@ -66,33 +143,32 @@ impl<'a> Post<'a> {
         job.reading.chord_tolerance = machine.accuracy.tolerance / 2.0;
         job.reading.insert = machine.control.insert;
         job.reading.tool_length = machine.control.tool_length;
-        let file = job.reading.file.clone();
-        let mut path = Path::new(
-            machine,
-            dialect,
-            model,
-            output,
-            job.tool_length,
-            job.trust_model,
-        )?;
-        path.start();
+        let format = dialect.format().clone();
+        let stages = Stages {
+            expand: Expand::new(machine, job.reading.chord_tolerance),
+            lines: Vec::new(),
+            timing: Timing::new(machine, &format)?,
+            configuration: Configuration::new(machine, &format, job.tool_length)?,
+            configured: Vec::new(),
+            blocks: Blocks::new(machine, model, job.trust_model),
+            made: Vec::new(),
+            observers: Observers::default(),
+            emit: Emit::new(machine, dialect, output),
+        };
         Ok(Self {
             machine,
+            findings: Findings::new(&job.reading.file),
             interpreter: Interpreter::new(job.reading),
-            path,
-            file,
+            steps: Vec::with_capacity(BATCH),
+            stages,
             records: 0,
             last_line: 0,
-            findings: Vec::new(),
-            repeats: Vec::new(),
-            faults: 0,
-            recent: Recent::default(),
         })
     }
 
-    /// Shows every cut to `watch` from here on.
-    pub fn watch(&mut self, watch: &'a mut dyn Watch) {
-        self.path.watch(watch);
+    /// Shows what is made to `observer` from here on.
+    pub fn watch(&mut self, observer: &'a mut dyn Observer) {
+        self.stages.observers.add(observer);
     }
 
     /// Takes a record.
@@ -100,44 +176,55 @@ impl<'a> Post<'a> {
     pub fn record(&mut self, record: &Record<'_>) {
         self.records += 1;
         self.last_line = record.line;
-        let path = &mut self.path;
-        self.recent
-            .keep(record.line, record.raw, || path.settled_line());
+        let (stages, steps) = (&self.stages, &mut self.steps);
+        let waiting = steps.first().map(|(line, _)| *line);
+        self.findings.read(record, || {
+            [waiting, stages.settled_line()].into_iter().flatten().min()
+        });
         self.interpreter
-            .record(record, &mut |step| path.step(record.line, step));
-        if self.path.has_findings() || self.interpreter.has_findings() {
-            let place = record_place(&self.file, record);
-            self.gather(Some(&place));
+            .record(record, &mut |step| steps.push((record.line, step)));
+        if self.interpreter.has_findings() {
+            self.gather();
         }
+        if self.steps.len() >= BATCH {
+            self.run();
+        }
+    }
+
+    fn run(&mut self) {
+        self.stages.run(Work::Take(&mut self.steps), &self.findings);
     }
 
     /// Takes a line that could not be read.
     pub fn unreadable(&mut self, fault: &SyntaxFault) {
-        self.keep(unreadable(&self.file, fault));
+        self.findings.unreadable(fault);
     }
 
     /// So many faults that reading on would only repeat them.
     #[inline]
     pub fn gave_up(&self) -> bool {
-        self.faults >= MOST_FAULTS
+        self.findings.too_many()
     }
 
-    /// Ends the run: the report, if all is good, and every finding.
+    /// Ends the run: the report, if all is good, and every finding, in the order of the lines.
     pub fn finish(mut self) -> (Option<Report>, Vec<Diagnostic>) {
         if !self.gave_up() {
+            self.run();
             self.interpreter.finish();
-            self.gather(None);
-            self.path.end(self.last_line);
-            self.gather(None);
+            self.gather();
+            let end = Work::Finish(self.last_line);
+            self.stages.run(end, &self.findings);
         }
-        if self.faults == 0 && self.path.tally().moves == 0 {
-            self.keep(
-                Diagnostic::error("empty", format!("{} has no move", self.file))
+        let configuration = &self.stages.configuration;
+        if !self.findings.failed() && configuration.moves() == 0 {
+            let file = self.findings.file();
+            self.findings.add(
+                Diagnostic::error("empty", format!("{file} has no move"))
                     .help("is it a cutter-location file (APT, CLSF, NCL)?"),
             );
         }
-        if self.faults == 0 && self.path.length_unknown() {
-            self.keep(
+        if !self.findings.failed() && configuration.length_unknown() {
+            self.findings.add(
                 Diagnostic::warning(
                     "tool-length",
                     "no length of the tool is known; it was taken as 0, and on this machine the axis positions depend on it",
@@ -145,105 +232,37 @@ impl<'a> Post<'a> {
                 .help("give --tool-length, or [tools] in the machine file"),
             );
         }
-        self.tell_repeats();
-        let report = (self.faults == 0).then(|| self.report());
-        (report, self.findings)
+        let report = (!self.findings.failed()).then(|| self.report());
+        (report, self.findings.sorted())
     }
 
-    /// Takes the findings of the stages; those without a place stand at `place`.
+    /// Takes the findings of the interpreter.
     #[cold]
-    fn gather(&mut self, place: Option<&Place>) {
-        let mut new = self.interpreter.take_findings();
-        for mut finding in self.path.take_findings() {
-            match &mut finding.place {
-                None => finding.place = place.cloned(),
-                Some(known) => {
-                    known.file.clone_from(&self.file);
-                    if let Some(text) = self.recent.text(known.line) {
-                        known.span = 0..text.len();
-                        known.text = text;
-                    }
-                }
-            }
-            if finding.code == "dialect" && finding.help.is_none() && !self.interpreter.has_tool() {
-                finding.help =
-                    Some("the CL file loads no tool: --tool N says which it is".to_owned());
-            }
-            new.push(finding);
-        }
-        for finding in new {
-            self.keep(finding);
-        }
-    }
-
-    fn keep(&mut self, finding: Diagnostic) {
-        if finding.severity == Severity::Error {
-            self.path.fail();
-            if self.repeated(&finding) {
-                return;
-            }
-            self.faults += 1;
-        }
-        self.findings.push(finding);
-    }
-
-    /// A limit that was passed before: counted, and its largest value kept.
-    fn repeated(&mut self, finding: &Diagnostic) -> bool {
-        let Some(extreme) = &finding.extreme else {
-            return false;
-        };
-        let line = finding.place.as_ref().map_or(0, |place| place.line);
-        let known = self.repeats.iter_mut().find(|repeat| {
-            let first = &self.findings[repeat.finding];
-            first.code == finding.code
-                && first.extreme.as_ref().map(|extreme| extreme.key) == Some(extreme.key)
-        });
-        if let Some(repeat) = known {
-            repeat.count += 1;
-            if extreme.by > repeat.extreme.by {
-                repeat.extreme = extreme.clone();
-                repeat.line = line;
-            }
-            return true;
-        }
-        self.repeats.push(Repeat {
-            finding: self.findings.len(),
-            count: 1,
-            extreme: extreme.clone(),
-            line,
-        });
-        false
-    }
-
-    /// Adds to the first finding of a limit how often and how far it was passed.
-    fn tell_repeats(&mut self) {
-        for repeat in &self.repeats {
-            if repeat.count > 1 {
-                let finding = &mut self.findings[repeat.finding];
-                finding.message.push_str(&format!(
-                    "; {} points pass it, the farthest with {} on line {}",
-                    repeat.count, repeat.extreme.value, repeat.line
-                ));
-            }
+    fn gather(&mut self) {
+        for finding in self.interpreter.take_findings() {
+            self.findings.add(finding);
         }
     }
 
     fn report(&self) -> Report {
         let machine = self.machine;
-        let tally = self.path.tally();
-        let [tip, axis, rapid] = tally.deviations;
+        let stages = &self.stages;
+        let counts = stages.blocks.counts();
+        let durations = stages.timing.statistics();
+        let extremes = stages.emit.extremes();
+        let [tip, axis, rapid] = extremes.deviations;
         let axes = axis_words::order(machine)
             .into_iter()
             .map(|index| {
                 let axis = &machine.axes[index];
                 AxisRange {
                     name: axis.name.clone(),
-                    min: axis.reading(tally.least[index]),
-                    max: axis.reading(tally.most[index]),
+                    min: axis.reading(extremes.least[index]),
+                    max: axis.reading(extremes.most[index]),
                     travel: axis
                         .travel
                         .map(|travel| travel.map(|end| axis.reading(end))),
-                    way: tally.travel[index] / axis.unit(),
+                    way: extremes.travel[index] / axis.unit(),
                 }
             })
             .collect();
@@ -257,12 +276,12 @@ impl<'a> Post<'a> {
             .to_owned(),
             model: machine.accuracy.model.clone(),
             records: self.records,
-            moves: tally.moves,
-            blocks: tally.blocks,
-            nc_lines: tally.lines,
-            points_added: tally.points_added,
-            points_dropped: tally.points_dropped,
-            model_overruled: self.path.overruled(),
+            moves: stages.configuration.moves(),
+            blocks: extremes.blocks,
+            nc_lines: stages.emit.lines(),
+            points_added: counts.points_added,
+            points_dropped: counts.points_dropped,
+            model_overruled: stages.blocks.overruled(),
             tip_deviation_mm: tip,
             axis_deviation_deg: Deviation {
                 value: axis.value.to_degrees(),
@@ -273,27 +292,19 @@ impl<'a> Post<'a> {
             tolerance_mm: machine.accuracy.tolerance,
             axis_tolerance_deg: machine.accuracy.axis_tolerance.to_degrees(),
             axes,
-            branch_changes: tally.branch_changes,
-            rewinds: tally.rewinds,
-            points_eased: tally.eased,
-            time_s: (tally.cutting + tally.other) * 60.0,
-            cutting_time_s: tally.cutting * 60.0,
-            blocks_limited: tally.limited,
+            branch_changes: counts.branch_changes,
+            rewinds: counts.rewinds,
+            points_eased: counts.eased,
+            time_s: (durations.cutting + durations.other) * 60.0,
+            cutting_time_s: durations.cutting * 60.0,
+            blocks_limited: durations.limited,
             ignored_words: self
                 .interpreter
                 .ignored()
                 .map(|(word, count)| (word.to_owned(), count))
                 .collect(),
             plugins: Vec::new(),
-            warnings: self
-                .findings
-                .iter()
-                .filter(|finding| finding.severity == Severity::Warning)
-                .map(|finding| match &finding.place {
-                    Some(place) => format!("line {}: {}", place.line, finding.message),
-                    None => finding.message.clone(),
-                })
-                .collect(),
+            warnings: self.findings.warnings(),
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::placed::{each, split, strays};
 use crate::survey::{compensating, placing};
 use post_machine::description::{Machine, Placement};
 use post_machine::kinematics::Joints;
-use post_posting::Watch;
+use post_posting::Observer;
 use post_posting::accuracy::{Linearise, Move, Node, Placer, Stuck, Tolerances};
 
 /// A move with all that it needs.
@@ -55,7 +55,7 @@ impl Keeper {
     }
 }
 
-impl Watch for Keeper {
+impl Observer for Keeper {
     fn cut(&mut self, line: u64, cut: &Move<'_>) {
         let number = self.peaks.len();
         self.peaks.push(peak(|t| strays(cut, t).norm()).size);

@@ -7,7 +7,7 @@ use crate::curve::{Peak, explained, peak};
 use crate::edge::Rim;
 use crate::placed::{Placed, place, strays};
 use post_machine::description::{Accuracy, Machine, Method, Placement};
-use post_posting::Watch;
+use post_posting::Observer;
 use post_posting::accuracy::{Linearise, Move};
 
 /// One move.
@@ -122,7 +122,7 @@ impl<'a> Survey<'a> {
     }
 }
 
-impl Watch for Survey<'_> {
+impl Observer for Survey<'_> {
     fn cut(&mut self, line: u64, cut: &Move<'_>) {
         let (first, last) = (&cut.from.trace.joints, &cut.to.trace.joints);
         let turns = self.rotary.iter().map(|joint| last[*joint] - first[*joint]);

@@ -16,7 +16,7 @@
  * - No C++ exception and no longjmp may leave a function.
  *
  * This header is for 64-bit machines; the assertions at its end say so if it is not one.
- * The block between the marks is written by `UPDATE_HEADER=1 cargo test -p post-plugin --test header`.
+ * The block between the marks is written by `UPDATE_HEADER=1 cargo test -p post-plugin --test it header`.
  */
 #ifndef POST_PLUGIN_H
 #define POST_PLUGIN_H
@@ -79,68 +79,79 @@ typedef struct {
     size_t choices_len;
 } PostOption;
 
-/* `rotary`: degrees. `depth`: the linear axis along the spindle at all axes zero. */
+/* `rotary`: 1 for degrees, 2 if its words also lie within one turn, so that the control must take the shorter way.
+ * `depth`: the linear axis along the spindle at all axes zero. `carries_part`: else it carries the tool. `least`,
+ * `largest`: position of the axis as the machine shows it, mm or degrees; NaN without ends. */
 typedef struct {
     PostText name;
     uint32_t rotary;
     uint32_t depth;
+    uint32_t carries_part;
+    uint32_t reserved;
+    double least;
+    double largest;
 } PostAxisWord;
 
-/* `tcp`: 1 if the control keeps the tip on its path. `options`: every declared one has a value. */
+/* mm; NaN is not known. */
 typedef struct {
+    PostText name;
+    uint32_t number;
+    uint32_t reserved;
+    double length; /* from the gauge point to the tip */
+    double diameter;
+    double corner_radius;
+} PostTool;
+
+/* Later versions may append to it: read no further than `size`. */
+typedef struct {
+    uint64_t size;
     PostText program;
     PostText machine;
-    uint32_t units;
-    uint32_t tcp;
+    uint32_t units; /* POST_UNITS_ */
+    uint32_t tcp;   /* 1 if the control keeps the tip on its path */
     const PostAxisWord *words;
     size_t words_len;
-    const PostPair *options;
+    const PostPair *options; /* every declared one has a value */
     size_t options_len;
+    PostText cl_file;
+    double tip_tolerance;  /* of a cut, mm; 0 where nothing is certified */
+    double axis_tolerance; /* degrees */
+    double rapid_tolerance;
+    uint32_t ahead; /* 1 if the host has looked ahead, so that what follows is known */
+    uint32_t moves; /* 1 if `least` and `largest` are known */
+    const PostTool *tools; /* in the order in which they are first used */
+    size_t tools_len;
+    double least[3]; /* of the tip, mm, part frame */
+    double largest[3];
+    double time; /* seconds; NaN is not known */
 } PostSetup;
 
-/* One step of a program; a field that its kind does not use is 0.
- *
- *   kind                        fields
- *   POST_EVENT_START            -
- *   POST_EVENT_COMMENT          text; any characters: make it safe
- *   POST_EVENT_LITERAL          text; write it letter for letter
- *   POST_EVENT_WORD             text; write it letter for letter; nothing in force changes (a clamp)
- *   POST_EVENT_TOOL_CHANGE      number, register (of the length), text (its name, may be empty)
- *   POST_EVENT_PRESELECT        number
- *   POST_EVENT_SPINDLE          code POST_SPINDLE_, value: revolutions a minute
- *   POST_EVENT_COOLANT          code POST_COOLANT_
- *   POST_EVENT_COMPENSATE       code POST_COMPENSATE_, register; with the next move
- *   POST_EVENT_POSITION         words, code POST_FEED_ (NONE: rapid), value; puts length or TCP in force,
- *                               rotary axes first, then the plane, then the depth
- *   POST_EVENT_RELEASE          cancels what POSITION put in force
- *   POST_EVENT_RAPID            words
- *   POST_EVENT_LINEAR           words, code POST_FEED_, value
- *   POST_EVENT_DWELL            value: seconds
- *   POST_EVENT_STOP, _OPTIONAL_STOP, _HOME, _END
- *
- * `words` holds one number for each word of the setup, rounded to the decimals of the format. `line` is
- * that of the CL file. */
+/* One step of a program. What its numbers and texts are stands below at POST_EVENT_ of its kind; POST_LINEAR_FEED
+ * is the place of the feed among the numbers of a POST_EVENT_LINEAR. A feed is two numbers, POST_FEED_ and its
+ * value; a tool six, tip in mm and unit vector from the tip to the spindle, both in the part frame. NaN is not
+ * given. Axis words are as many as the setup has, rounded to the decimals of the format. Later versions may put
+ * more numbers and texts behind those that you know. `line` is that of the CL file. */
 typedef struct {
     uint32_t kind;
-    uint32_t code;
+    uint32_t texts_len;
     uint64_t line;
-    uint32_t number;
-    uint32_t register_; /* `register` is a keyword */
-    double value;
-    const double *words;
-    size_t words_len;
-    PostText text;
+    const double *numbers;
+    size_t numbers_len;
+    const PostText *texts;
 } PostEvent;
 
-/* Comes filled with zeros. Decimals are at most 9; `inverse_time` is -1 if there is no G93; `words_len` is
- * that of the setup; `extension` is padded with zeros. */
+/* Comes filled with zeros but for `size`: write no further. Decimals are at most 9; `inverse_time` is -1 if there
+ * is no G93; `words_len` is that of the setup; `extension` is padded with zeros; `writes` is the sum of
+ * POST_WRITES_ of all that the dialect writes beyond straight moves: 0 to begin with. */
 typedef struct {
+    uint64_t size;
     uint8_t words[32];
     uint32_t feed;
     int32_t inverse_time;
     uint32_t feed_per_revolution;
     uint32_t words_len;
     uint8_t extension[16];
+    uint64_t writes;
 } PostFormat;
 
 /* tip: mm, part frame, minus the chord. axis: rotation vector in degrees, part frame. */
@@ -231,8 +242,8 @@ typedef struct {
 
 /* generated: begin */
 #define POST_MAGIC 0x47554c5054534f50u
-#define POST_LAYOUT 0x14d7bbec8762b65bu
-#define POST_ABI 1u
+#define POST_LAYOUT 0xf97d5a5d8a758ecdu
+#define POST_ABI 2u
 #define POST_KIND_DIALECT 1u
 #define POST_KIND_MODEL 2u
 #define POST_MAX_WORDS 32u
@@ -243,24 +254,6 @@ typedef struct {
 #define POST_OPTION_CHOICE 5u
 #define POST_UNITS_MILLIMETRE 1u
 #define POST_UNITS_INCH 2u
-#define POST_EVENT_START 1u
-#define POST_EVENT_COMMENT 2u
-#define POST_EVENT_LITERAL 3u
-#define POST_EVENT_TOOL_CHANGE 4u
-#define POST_EVENT_PRESELECT 5u
-#define POST_EVENT_SPINDLE 6u
-#define POST_EVENT_COOLANT 7u
-#define POST_EVENT_COMPENSATE 8u
-#define POST_EVENT_POSITION 9u
-#define POST_EVENT_RELEASE 10u
-#define POST_EVENT_RAPID 11u
-#define POST_EVENT_LINEAR 12u
-#define POST_EVENT_DWELL 13u
-#define POST_EVENT_STOP 14u
-#define POST_EVENT_OPTIONAL_STOP 15u
-#define POST_EVENT_HOME 16u
-#define POST_EVENT_END 17u
-#define POST_EVENT_WORD 18u
 #define POST_FEED_NONE 0u
 #define POST_FEED_PER_MINUTE 1u
 #define POST_FEED_INVERSE_TIME 2u
@@ -269,6 +262,8 @@ typedef struct {
 #define POST_SPINDLE_CLOCKWISE 1u
 #define POST_SPINDLE_COUNTER_CLOCKWISE 2u
 #define POST_SPINDLE_ORIENT 3u
+#define POST_SENSE_CLOCKWISE 1u
+#define POST_SENSE_COUNTER_CLOCKWISE 2u
 #define POST_COOLANT_OFF 0u
 #define POST_COOLANT_FLOOD 1u
 #define POST_COOLANT_MIST 2u
@@ -277,6 +272,306 @@ typedef struct {
 #define POST_COMPENSATE_OFF 0u
 #define POST_COMPENSATE_LEFT 1u
 #define POST_COMPENSATE_RIGHT 2u
+#define POST_CYCLE_DRILL 1u
+#define POST_CYCLE_DEEP 2u
+#define POST_CYCLE_BREAK_CHIP 3u
+#define POST_CYCLE_TAP 4u
+#define POST_CYCLE_TAP_LEFT 5u
+#define POST_CYCLE_REAM 6u
+#define POST_CYCLE_BORE 7u
+#define POST_CYCLE_BORE_FINE 8u
+#define POST_CYCLE_BORE_BACK 9u
+/* Arc in the plane of X and Y (G17). */
+#define POST_WRITES_ARC_XY 0x0000000000000001u
+/* Arc in the plane of Z and X (G18). */
+#define POST_WRITES_ARC_ZX 0x0000000000000002u
+/* Arc in the plane of Y and Z (G19). */
+#define POST_WRITES_ARC_YZ 0x0000000000000004u
+/* Arc about any direction. */
+#define POST_WRITES_ARC_ANY 0x0000000000000008u
+/* Arc that ends off the plane of its start, in the planes declared. */
+#define POST_WRITES_HELIX 0x0000000000000010u
+/* Arc also while tool centre point control is on. */
+#define POST_WRITES_ARC_TCP 0x0000000000000020u
+/* Spline. */
+#define POST_WRITES_SPLINE 0x0000000000000040u
+/* Plane and PlaneOff. */
+#define POST_WRITES_PLANE 0x0000000000000080u
+/* Cycles and arcs inside a Plane. */
+#define POST_WRITES_CYCLE_IN_PLANE 0x0000000000000100u
+/* Cycles along any tool axis, without a Plane. */
+#define POST_WRITES_CYCLE_ANY_AXIS 0x0000000000000200u
+/* Cycle of kind Drill. */
+#define POST_WRITES_CYCLE_DRILL 0x0000000000000400u
+/* Cycle of kind Deep. */
+#define POST_WRITES_CYCLE_DEEP 0x0000000000000800u
+/* Cycle of kind BreakChip. */
+#define POST_WRITES_CYCLE_BREAK_CHIP 0x0000000000001000u
+/* Cycle of kind Tap. */
+#define POST_WRITES_CYCLE_TAP 0x0000000000002000u
+/* Cycle of kind TapLeft. */
+#define POST_WRITES_CYCLE_TAP_LEFT 0x0000000000004000u
+/* Cycle of kind Ream. */
+#define POST_WRITES_CYCLE_REAM 0x0000000000008000u
+/* Cycle of kind Bore. */
+#define POST_WRITES_CYCLE_BORE 0x0000000000010000u
+/* Cycle of kind BoreFine. */
+#define POST_WRITES_CYCLE_BORE_FINE 0x0000000000020000u
+/* Cycle of kind BoreBack. */
+#define POST_WRITES_CYCLE_BORE_BACK 0x0000000000040000u
+/* Smoothing and SmoothingOff. */
+#define POST_WRITES_SMOOTHING 0x0000000000080000u
+/* Tcp. */
+#define POST_WRITES_TCP_SWITCH 0x0000000000100000u
+/* The tool vector of a move instead of its rotary words. */
+#define POST_WRITES_TOOL_VECTOR 0x0000000000200000u
+/* Operation and OperationEnd. */
+#define POST_WRITES_OPERATION 0x0000000000400000u
+/* Message. */
+#define POST_WRITES_MESSAGE 0x0000000000800000u
+/* Units. */
+#define POST_WRITES_UNITS 0x0000000001000000u
+/* WorkOffset. */
+#define POST_WRITES_WORK_OFFSET 0x0000000002000000u
+/* Offsets. */
+#define POST_WRITES_OFFSETS 0x0000000004000000u
+/* SurfaceSpeed. */
+#define POST_WRITES_SURFACE_SPEED 0x0000000008000000u
+/* Clamp. */
+#define POST_WRITES_CLAMP 0x0000000010000000u
+/* Surface. */
+#define POST_WRITES_SURFACE 0x0000000020000000u
+/* Compensate3d. */
+#define POST_WRITES_COMPENSATE_3D 0x0000000040000000u
+/* Subprogram. */
+#define POST_WRITES_SUBPROGRAM 0x0000000080000000u
+/* Probe. */
+#define POST_WRITES_PROBE 0x0000000100000000u
+/* The program begins: header, units, safe state. */
+#define POST_EVENT_START 1u
+/* A remark for the operator (PPRINT, the names of operations). */
+#define POST_EVENT_COMMENT 2u
+/* texts[0], text: One line, any characters: the dialect makes it safe. */
+/* A line to be written letter for letter (INSERT). */
+#define POST_EVENT_LITERAL 3u
+/* texts[0], text: The line. */
+/* Change to a tool. The last tool's compensation was released before. */
+#define POST_EVENT_TOOL_CHANGE 4u
+/* Tool number. */
+#define POST_TOOL_CHANGE_NUMBER 0u
+/* Register of the length compensation. */
+#define POST_TOOL_CHANGE_REGISTER 1u
+/* From the gauge point to the tip, mm; none if not known. */
+#define POST_TOOL_CHANGE_LENGTH 2u
+/* Of the cutter, mm; none if not known. */
+#define POST_TOOL_CHANGE_DIAMETER 3u
+/* Of the cutter's corner, mm: half the diameter for a ball; none if not known. */
+#define POST_TOOL_CHANGE_CORNER_RADIUS 4u
+/* texts[0], name: Its name, empty if not known. */
+/* Bring a tool to the change position without changing. */
+#define POST_EVENT_PRESELECT 5u
+/* Tool number. */
+#define POST_PRESELECT_NUMBER 0u
+/* Spindle on, off or oriented. */
+#define POST_EVENT_SPINDLE 6u
+/* 2 numbers: POST_SPINDLE_… and revolutions a minute. */
+#define POST_SPINDLE_SPINDLE 0u
+/* Coolant. */
+#define POST_EVENT_COOLANT 7u
+/* POST_COOLANT_…. */
+#define POST_COOLANT_COOLANT 0u
+/* Cutter radius compensation, in force from the next move on. */
+#define POST_EVENT_COMPENSATE 8u
+/* 2 numbers: POST_COMPENSATE_… and the register of the radius. */
+#define POST_COMPENSATE_COMPENSATION 0u
+/* The first position after the start, a tool change or a Event::Release: the tool comes from wherever it stands
+ * (clear of the part). The dialect puts the compensation in force (length compensation, or tool centre point
+ * control if Setup::tcp), rotary axes first, then the plane, then the depth. */
+#define POST_EVENT_POSITION 9u
+/* 6 numbers: Where the tool stands then; none where nobody knows. */
+#define POST_POSITION_TOOL 0u
+/* 2 numbers: Feed of the last approach; none is rapid. */
+#define POST_POSITION_FEED 6u
+/* how many there are, and behind it as many: All axis words, in the order of Setup::words. */
+#define POST_POSITION_WORDS 8u
+/* Cancel what Event::Position put in force (TCP, length), before a tool change, home or the end. */
+#define POST_EVENT_RELEASE 10u
+/* Rapid traverse. */
+#define POST_EVENT_RAPID 11u
+/* 6 numbers: Where the tool stands at its end; none where nobody knows. */
+#define POST_RAPID_TOOL 0u
+/* how many there are, and behind it as many: All axis words. */
+#define POST_RAPID_WORDS 6u
+/* A cut: all axes move linearly in time. */
+#define POST_EVENT_LINEAR 12u
+/* 6 numbers: Where the tool stands at its end; none where nobody knows. */
+#define POST_LINEAR_TOOL 0u
+/* 2 numbers: Its feed. */
+#define POST_LINEAR_FEED 6u
+/* how many there are, and behind it as many: All axis words. */
+#define POST_LINEAR_WORDS 8u
+/* Wait. */
+#define POST_EVENT_DWELL 13u
+/* Seconds. */
+#define POST_DWELL_SECONDS 0u
+/* Unconditional stop (M0). */
+#define POST_EVENT_STOP 14u
+/* Optional stop (M1). */
+#define POST_EVENT_OPTIONAL_STOP 15u
+/* Retract to the machine's reference (depth axis first). Comes after Event::Release. */
+#define POST_EVENT_HOME 16u
+/* The program ends. */
+#define POST_EVENT_END 17u
+/* A line of the machine builder's own (a clamp, another head), to be written letter for letter. It moves
+ * nothing, and what is in force stays in force. */
+#define POST_EVENT_WORD 18u
+/* texts[0], text: The line. */
+/* An operation begins. Sent under Capabilities::OPERATION, else its name is a remark. */
+#define POST_EVENT_OPERATION 19u
+/* texts[0], name: Its name in the CAM system, empty if it has none. */
+/* The operation ends. Under the same capability. */
+#define POST_EVENT_OPERATION_END 20u
+/* A message on the control's screen (MSG), under MESSAGE. */
+#define POST_EVENT_MESSAGE 21u
+/* texts[0], text: One line, any characters; empty clears it. */
+/* Units change inside the program, under UNITS; no length is in force across it. */
+#define POST_EVENT_UNITS 22u
+/* POST_UNITS_…. */
+#define POST_UNITS_UNITS 0u
+/* Another work offset, under WORK_OFFSET. The tool was released before. */
+#define POST_EVENT_WORK_OFFSET 23u
+/* From 1: G54 is 1, G55 is 2. */
+#define POST_WORK_OFFSET_NUMBER 0u
+/* texts[0], name: As the CL file names it, empty if it does not. */
+/* Other registers for the tool in the spindle, under OFFSETS. */
+#define POST_EVENT_OFFSETS 24u
+/* Register of the length; none stays. */
+#define POST_OFFSETS_LENGTH 0u
+/* Register of the radius; none stays. */
+#define POST_OFFSETS_RADIUS 1u
+/* Spindle on at a constant cutting speed, under SURFACE_SPEED. */
+#define POST_EVENT_SURFACE_SPEED 25u
+/* m/min, or feet a minute in an inch program. */
+#define POST_SURFACE_SPEED_SPEED 0u
+/* Revolutions a minute that it must not exceed; none if not said. */
+#define POST_SURFACE_SPEED_MOST 1u
+/* POST_SENSE_…. */
+#define POST_SURFACE_SPEED_SENSE 2u
+/* Tool centre point control on or off by itself, under TCP_SWITCH; else Event::Position and Event::Release do
+ * it. */
+#define POST_EVENT_TCP 26u
+/* On, else off. */
+#define POST_TCP_ON 0u
+/* A tilted plane begins, under PLANE: until Event::PlaneOff linear words are in its frame. The tool was released
+ * before; the rotary axes turn to words with it. */
+#define POST_EVENT_PLANE 27u
+/* 3 numbers: Origin of the plane's frame, mm, part frame. */
+#define POST_PLANE_ORIGIN 0u
+/* 3 numbers: Its first direction, unit vector, part frame. */
+#define POST_PLANE_X 3u
+/* 3 numbers: Its normal, unit vector, part frame: the tool axis. */
+#define POST_PLANE_Z 6u
+/* how many there are, and behind it as many: Where the axes stand in it: of these the rotary words count. */
+#define POST_PLANE_WORDS 9u
+/* The tilted plane ends. */
+#define POST_EVENT_PLANE_OFF 28u
+/* The control may leave the path by so much, under SMOOTHING (G187, CYCLE832, CYCL DEF 32, G61.1). */
+#define POST_EVENT_SMOOTHING 29u
+/* Of the tip, mm. */
+#define POST_SMOOTHING_TOLERANCE 0u
+/* Of the tool axis, degrees; none where it does not turn. */
+#define POST_SMOOTHING_AXIS_TOLERANCE 1u
+/* The control keeps the path exactly, or as it does by default. */
+#define POST_EVENT_SMOOTHING_OFF 30u
+/* A rotary axis is clamped or let go, under CLAMP; else the machine file's own word comes as Event::Word. */
+#define POST_EVENT_CLAMP 31u
+/* Which word of the setup, from 0. */
+#define POST_CLAMP_WORD 0u
+/* Clamped, else let go. */
+#define POST_CLAMP_ON 1u
+/* An arc or a helix about normal, at a feed, under ARC_…, HELIX. */
+#define POST_EVENT_ARC 32u
+/* 6 numbers: Where the tool stands at its end; none where nobody knows. */
+#define POST_ARC_TOOL 0u
+/* 2 numbers: Its feed. */
+#define POST_ARC_FEED 6u
+/* 3 numbers: Centre in the frame and the units of the linear words. */
+#define POST_ARC_CENTRE 8u
+/* 3 numbers: Unit vector in that frame about which it turns. */
+#define POST_ARC_NORMAL 11u
+/* Degrees from start to end, counter-clockwise seen against the normal; negative: clockwise. */
+#define POST_ARC_TURN 14u
+/* how many there are, and behind it as many: All axis words at its end; a helix ends off the plane of its start. */
+#define POST_ARC_WORDS 15u
+/* A spline at a feed, under SPLINE. */
+#define POST_EVENT_SPLINE 33u
+/* 2 numbers: Its feed. */
+#define POST_SPLINE_FEED 0u
+/* Degree. */
+#define POST_SPLINE_DEGREE 2u
+/* how many there are, and behind it as many: Knots. */
+#define POST_SPLINE_KNOTS 3u
+/* then weights, how many there are, and behind it as many: A weight for each control point. */
+/* then points, how many there are, and behind it as many: All axis words of the first control point, then of the
+ * second, and so on. */
+/* A drilling cycle is in force at each Event::CyclePoint from here on, under CYCLE_… of its kind. Lengths are
+ * in program units, along the tool axis. */
+#define POST_EVENT_CYCLE 34u
+/* POST_CYCLE_…. */
+#define POST_CYCLE_CYCLE 0u
+/* 2 numbers: Its feed. */
+#define POST_CYCLE_FEED 1u
+/* From the point down to the bottom. */
+#define POST_CYCLE_DEPTH 3u
+/* From the point up to where the feed begins. */
+#define POST_CYCLE_CLEARANCE 4u
+/* From the point up to where the tool goes on the way to the next one. */
+#define POST_CYCLE_RETRACT 5u
+/* Into the part in one go; none if it goes in one. */
+#define POST_CYCLE_STEP 6u
+/* At the bottom, seconds; none if it does not wait. */
+#define POST_CYCLE_DWELL 7u
+/* A thread's way a turn; none if the feed says it. */
+#define POST_CYCLE_PITCH 8u
+/* A point of the cycle in force. */
+#define POST_EVENT_CYCLE_POINT 35u
+/* 6 numbers: Where the tool would stand on it; none where nobody knows. */
+#define POST_CYCLE_POINT_TOOL 0u
+/* how many there are, and behind it as many: All axis words with the tip on the point. */
+#define POST_CYCLE_POINT_WORDS 6u
+/* No cycle is in force any more; the tool stands at the last point's retract level. */
+#define POST_EVENT_CYCLE_OFF 36u
+/* A cut with the surface's normal, under SURFACE (LN, 3-D compensation). */
+#define POST_EVENT_SURFACE 37u
+/* 6 numbers: Where the tool stands at its end; none where nobody knows. */
+#define POST_SURFACE_TOOL 0u
+/* 2 numbers: Its feed. */
+#define POST_SURFACE_FEED 6u
+/* 3 numbers: Unit vector out of the part, part frame. */
+#define POST_SURFACE_NORMAL 8u
+/* how many there are, and behind it as many: All axis words. */
+#define POST_SURFACE_WORDS 11u
+/* Compensation of the tool's size in space, under COMPENSATE_3D. */
+#define POST_EVENT_COMPENSATE_3D 38u
+/* On, else off. */
+#define POST_COMPENSATE_3D_ON 0u
+/* Register of the radius. */
+#define POST_COMPENSATE_3D_REGISTER 1u
+/* A subprogram is called, under SUBPROGRAM. Afterwards nothing is known to be in force. */
+#define POST_EVENT_SUBPROGRAM 39u
+/* Its number; none if it has a name. */
+#define POST_SUBPROGRAM_NUMBER 0u
+/* How often. */
+#define POST_SUBPROGRAM_TIMES 1u
+/* texts[0], name: Its name, empty if it has a number. */
+/* A move until the probe touches, under PROBE. */
+#define POST_EVENT_PROBE 40u
+/* 6 numbers: Where the tool would stand at its end; none where nobody knows. */
+#define POST_PROBE_TOOL 0u
+/* 2 numbers: Its feed. */
+#define POST_PROBE_FEED 6u
+/* how many there are, and behind it as many: All axis words of its end. */
+#define POST_PROBE_WORDS 8u
 POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");
 POST_ASSERT(offsetof(PostText, ptr) == 0, "PostText.ptr");
 POST_ASSERT(offsetof(PostText, len) == 8, "PostText.len");
@@ -302,36 +597,28 @@ POST_ASSERT(offsetof(PostOption, max) == 48, "PostOption.max");
 POST_ASSERT(offsetof(PostOption, default_value) == 56, "PostOption.default_value");
 POST_ASSERT(offsetof(PostOption, choices) == 96, "PostOption.choices");
 POST_ASSERT(offsetof(PostOption, choices_len) == 104, "PostOption.choices_len");
-POST_ASSERT(sizeof(PostAxisWord) == 24 && POST_ALIGN(PostAxisWord) == 8, "PostAxisWord");
+POST_ASSERT(sizeof(PostAxisWord) == 48 && POST_ALIGN(PostAxisWord) == 8, "PostAxisWord");
 POST_ASSERT(offsetof(PostAxisWord, name) == 0, "PostAxisWord.name");
 POST_ASSERT(offsetof(PostAxisWord, rotary) == 16, "PostAxisWord.rotary");
 POST_ASSERT(offsetof(PostAxisWord, depth) == 20, "PostAxisWord.depth");
-POST_ASSERT(sizeof(PostSetup) == 72 && POST_ALIGN(PostSetup) == 8, "PostSetup");
-POST_ASSERT(offsetof(PostSetup, program) == 0, "PostSetup.program");
-POST_ASSERT(offsetof(PostSetup, machine) == 16, "PostSetup.machine");
-POST_ASSERT(offsetof(PostSetup, units) == 32, "PostSetup.units");
-POST_ASSERT(offsetof(PostSetup, tcp) == 36, "PostSetup.tcp");
-POST_ASSERT(offsetof(PostSetup, words) == 40, "PostSetup.words");
-POST_ASSERT(offsetof(PostSetup, words_len) == 48, "PostSetup.words_len");
-POST_ASSERT(offsetof(PostSetup, options) == 56, "PostSetup.options");
-POST_ASSERT(offsetof(PostSetup, options_len) == 64, "PostSetup.options_len");
-POST_ASSERT(sizeof(PostEvent) == 64 && POST_ALIGN(PostEvent) == 8, "PostEvent");
+POST_ASSERT(offsetof(PostAxisWord, carries_part) == 24, "PostAxisWord.carries_part");
+POST_ASSERT(offsetof(PostAxisWord, reserved) == 28, "PostAxisWord.reserved");
+POST_ASSERT(offsetof(PostAxisWord, least) == 32, "PostAxisWord.least");
+POST_ASSERT(offsetof(PostAxisWord, largest) == 40, "PostAxisWord.largest");
+POST_ASSERT(sizeof(PostTool) == 48 && POST_ALIGN(PostTool) == 8, "PostTool");
+POST_ASSERT(offsetof(PostTool, name) == 0, "PostTool.name");
+POST_ASSERT(offsetof(PostTool, number) == 16, "PostTool.number");
+POST_ASSERT(offsetof(PostTool, reserved) == 20, "PostTool.reserved");
+POST_ASSERT(offsetof(PostTool, length) == 24, "PostTool.length");
+POST_ASSERT(offsetof(PostTool, diameter) == 32, "PostTool.diameter");
+POST_ASSERT(offsetof(PostTool, corner_radius) == 40, "PostTool.corner_radius");
+POST_ASSERT(sizeof(PostEvent) == 40 && POST_ALIGN(PostEvent) == 8, "PostEvent");
 POST_ASSERT(offsetof(PostEvent, kind) == 0, "PostEvent.kind");
-POST_ASSERT(offsetof(PostEvent, code) == 4, "PostEvent.code");
+POST_ASSERT(offsetof(PostEvent, texts_len) == 4, "PostEvent.texts_len");
 POST_ASSERT(offsetof(PostEvent, line) == 8, "PostEvent.line");
-POST_ASSERT(offsetof(PostEvent, number) == 16, "PostEvent.number");
-POST_ASSERT(offsetof(PostEvent, register_) == 20, "PostEvent.register_");
-POST_ASSERT(offsetof(PostEvent, value) == 24, "PostEvent.value");
-POST_ASSERT(offsetof(PostEvent, words) == 32, "PostEvent.words");
-POST_ASSERT(offsetof(PostEvent, words_len) == 40, "PostEvent.words_len");
-POST_ASSERT(offsetof(PostEvent, text) == 48, "PostEvent.text");
-POST_ASSERT(sizeof(PostFormat) == 64 && POST_ALIGN(PostFormat) == 4, "PostFormat");
-POST_ASSERT(offsetof(PostFormat, words) == 0, "PostFormat.words");
-POST_ASSERT(offsetof(PostFormat, feed) == 32, "PostFormat.feed");
-POST_ASSERT(offsetof(PostFormat, inverse_time) == 36, "PostFormat.inverse_time");
-POST_ASSERT(offsetof(PostFormat, feed_per_revolution) == 40, "PostFormat.feed_per_revolution");
-POST_ASSERT(offsetof(PostFormat, words_len) == 44, "PostFormat.words_len");
-POST_ASSERT(offsetof(PostFormat, extension) == 48, "PostFormat.extension");
+POST_ASSERT(offsetof(PostEvent, numbers) == 16, "PostEvent.numbers");
+POST_ASSERT(offsetof(PostEvent, numbers_len) == 24, "PostEvent.numbers_len");
+POST_ASSERT(offsetof(PostEvent, texts) == 32, "PostEvent.texts");
 POST_ASSERT(sizeof(PostDeviation) == 48 && POST_ALIGN(PostDeviation) == 8, "PostDeviation");
 POST_ASSERT(offsetof(PostDeviation, tip) == 0, "PostDeviation.tip");
 POST_ASSERT(offsetof(PostDeviation, axis) == 24, "PostDeviation.axis");
@@ -344,6 +631,36 @@ POST_ASSERT(offsetof(PostCurve, tip_at) == 8, "PostCurve.tip_at");
 POST_ASSERT(offsetof(PostCurve, axis_peak) == 16, "PostCurve.axis_peak");
 POST_ASSERT(offsetof(PostCurve, axis_at) == 24, "PostCurve.axis_at");
 POST_ASSERT(offsetof(PostCurve, terms) == 32, "PostCurve.terms");
+POST_ASSERT(sizeof(PostSetup) == 200 && POST_ALIGN(PostSetup) == 8, "PostSetup");
+POST_ASSERT(offsetof(PostSetup, size) == 0, "PostSetup.size");
+POST_ASSERT(offsetof(PostSetup, program) == 8, "PostSetup.program");
+POST_ASSERT(offsetof(PostSetup, machine) == 24, "PostSetup.machine");
+POST_ASSERT(offsetof(PostSetup, units) == 40, "PostSetup.units");
+POST_ASSERT(offsetof(PostSetup, tcp) == 44, "PostSetup.tcp");
+POST_ASSERT(offsetof(PostSetup, words) == 48, "PostSetup.words");
+POST_ASSERT(offsetof(PostSetup, words_len) == 56, "PostSetup.words_len");
+POST_ASSERT(offsetof(PostSetup, options) == 64, "PostSetup.options");
+POST_ASSERT(offsetof(PostSetup, options_len) == 72, "PostSetup.options_len");
+POST_ASSERT(offsetof(PostSetup, cl_file) == 80, "PostSetup.cl_file");
+POST_ASSERT(offsetof(PostSetup, tip_tolerance) == 96, "PostSetup.tip_tolerance");
+POST_ASSERT(offsetof(PostSetup, axis_tolerance) == 104, "PostSetup.axis_tolerance");
+POST_ASSERT(offsetof(PostSetup, rapid_tolerance) == 112, "PostSetup.rapid_tolerance");
+POST_ASSERT(offsetof(PostSetup, ahead) == 120, "PostSetup.ahead");
+POST_ASSERT(offsetof(PostSetup, moves) == 124, "PostSetup.moves");
+POST_ASSERT(offsetof(PostSetup, tools) == 128, "PostSetup.tools");
+POST_ASSERT(offsetof(PostSetup, tools_len) == 136, "PostSetup.tools_len");
+POST_ASSERT(offsetof(PostSetup, least) == 144, "PostSetup.least");
+POST_ASSERT(offsetof(PostSetup, largest) == 168, "PostSetup.largest");
+POST_ASSERT(offsetof(PostSetup, time) == 192, "PostSetup.time");
+POST_ASSERT(sizeof(PostFormat) == 80 && POST_ALIGN(PostFormat) == 8, "PostFormat");
+POST_ASSERT(offsetof(PostFormat, size) == 0, "PostFormat.size");
+POST_ASSERT(offsetof(PostFormat, words) == 8, "PostFormat.words");
+POST_ASSERT(offsetof(PostFormat, feed) == 40, "PostFormat.feed");
+POST_ASSERT(offsetof(PostFormat, inverse_time) == 44, "PostFormat.inverse_time");
+POST_ASSERT(offsetof(PostFormat, feed_per_revolution) == 48, "PostFormat.feed_per_revolution");
+POST_ASSERT(offsetof(PostFormat, words_len) == 52, "PostFormat.words_len");
+POST_ASSERT(offsetof(PostFormat, extension) == 56, "PostFormat.extension");
+POST_ASSERT(offsetof(PostFormat, writes) == 72, "PostFormat.writes");
 POST_ASSERT(sizeof(PostPlugin) == 96 && POST_ALIGN(PostPlugin) == 8, "PostPlugin");
 POST_ASSERT(offsetof(PostPlugin, magic) == 0, "PostPlugin.magic");
 POST_ASSERT(offsetof(PostPlugin, abi) == 8, "PostPlugin.abi");

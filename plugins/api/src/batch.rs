@@ -1,80 +1,56 @@
 //! A run of events, stored flat: no allocation for an event once the buffers have grown.
 
-use crate::{Compensation, Coolant, Event, Feed, Spindle};
+use crate::Event;
+use crate::field::{MAX_TEXTS, Reader};
 
 /// Events in order, each with the line of the CL file it comes from.
 #[derive(Debug, Default)]
 pub struct Batch {
     events: Vec<Stored>,
-    values: Vec<f64>,
+    flat: Flat,
+}
+
+/// An event whose numbers and texts end here; they begin where those of the event before it end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stored {
+    pub(crate) line: u64,
+    pub(crate) kind: u32,
+    numbers_end: u32,
+    texts_end: u32,
+}
+
+/// Numbers and texts of all events, one behind the other.
+#[derive(Debug, Default)]
+pub(crate) struct Flat {
+    numbers: Vec<f64>,
+    /// Where each text ends in `text`.
+    texts: Vec<u32>,
     text: String,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Stored {
-    line: u64,
-    step: Step,
-}
+impl Flat {
+    #[inline]
+    pub(crate) fn numbers(&mut self, numbers: &[f64]) {
+        self.numbers.extend_from_slice(numbers);
+    }
 
-/// [`Event`] with ranges in the place of slices.
-#[derive(Clone, Copy, Debug)]
-enum Step {
-    Start,
-    Comment(Range),
-    Literal(Range),
-    Word(Range),
-    ToolChange(u32, u32, Range),
-    Preselect(u32),
-    Spindle(Spindle),
-    Coolant(Coolant),
-    Compensate(Compensation),
-    Position(Range, Option<Feed>),
-    Release,
-    Rapid(Range),
-    Linear(Range, Feed),
-    Dwell(f64),
-    Stop,
-    OptionalStop,
-    Home,
-    End,
-    Unknown(u32),
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Range {
-    start: u32,
-    len: u32,
+    pub(crate) fn text(&mut self, text: &str) {
+        self.text.push_str(text);
+        self.texts.push(self.text.len() as u32);
+    }
 }
 
 impl Batch {
     /// Appends an event that comes from `line`.
+    #[inline]
     pub fn push(&mut self, line: u64, event: Event<'_>) {
-        let step = match event {
-            Event::Start => Step::Start,
-            Event::Comment { text } => Step::Comment(self.keep_text(text)),
-            Event::Literal { text } => Step::Literal(self.keep_text(text)),
-            Event::Word { text } => Step::Word(self.keep_text(text)),
-            Event::ToolChange {
-                number,
-                register,
-                name,
-            } => Step::ToolChange(number, register, self.keep_text(name)),
-            Event::Preselect { number } => Step::Preselect(number),
-            Event::Spindle(spindle) => Step::Spindle(spindle),
-            Event::Coolant(coolant) => Step::Coolant(coolant),
-            Event::Compensate(compensation) => Step::Compensate(compensation),
-            Event::Position { words, feed } => Step::Position(self.keep_values(words), feed),
-            Event::Release => Step::Release,
-            Event::Rapid { words } => Step::Rapid(self.keep_values(words)),
-            Event::Linear { words, feed } => Step::Linear(self.keep_values(words), feed),
-            Event::Dwell { seconds } => Step::Dwell(seconds),
-            Event::Stop => Step::Stop,
-            Event::OptionalStop => Step::OptionalStop,
-            Event::Home => Step::Home,
-            Event::End => Step::End,
-            Event::Unknown { kind } => Step::Unknown(kind),
-        };
-        self.events.push(Stored { line, step });
+        event.put(&mut self.flat);
+        self.events.push(Stored {
+            line,
+            kind: event.kind(),
+            numbers_end: self.flat.numbers.len() as u32,
+            texts_end: self.flat.texts.len() as u32,
+        });
     }
 
     /// Number of events.
@@ -90,8 +66,9 @@ impl Batch {
     /// Forgets all events and keeps the memory.
     pub fn clear(&mut self) {
         self.events.clear();
-        self.values.clear();
-        self.text.clear();
+        self.flat.numbers.clear();
+        self.flat.texts.clear();
+        self.flat.text.clear();
     }
 
     /// Line of the CL file that event `index` comes from.
@@ -100,46 +77,16 @@ impl Batch {
     }
 
     /// Event `index`.
+    #[inline]
     pub fn event(&self, index: usize) -> Event<'_> {
-        match self.events[index].step {
-            Step::Start => Event::Start,
-            Step::Comment(range) => Event::Comment {
-                text: self.text(range),
-            },
-            Step::Literal(range) => Event::Literal {
-                text: self.text(range),
-            },
-            Step::Word(range) => Event::Word {
-                text: self.text(range),
-            },
-            Step::ToolChange(number, register, range) => Event::ToolChange {
-                number,
-                register,
-                name: self.text(range),
-            },
-            Step::Preselect(number) => Event::Preselect { number },
-            Step::Spindle(spindle) => Event::Spindle(spindle),
-            Step::Coolant(coolant) => Event::Coolant(coolant),
-            Step::Compensate(compensation) => Event::Compensate(compensation),
-            Step::Position(range, feed) => Event::Position {
-                words: self.values(range),
-                feed,
-            },
-            Step::Release => Event::Release,
-            Step::Rapid(range) => Event::Rapid {
-                words: self.values(range),
-            },
-            Step::Linear(range, feed) => Event::Linear {
-                words: self.values(range),
-                feed,
-            },
-            Step::Dwell(seconds) => Event::Dwell { seconds },
-            Step::Stop => Event::Stop,
-            Step::OptionalStop => Event::OptionalStop,
-            Step::Home => Event::Home,
-            Step::End => Event::End,
-            Step::Unknown(kind) => Event::Unknown { kind },
+        let (stored, numbers) = self.stored(index);
+        let mut texts = [""; MAX_TEXTS];
+        for (place, text) in self.texts(index).zip(&mut texts) {
+            *text = place;
         }
+        // What was pushed comes back.
+        Event::get(stored.kind, &mut Reader::new(numbers, texts))
+            .unwrap_or(Event::Unknown { kind: stored.kind })
     }
 
     /// All events in order.
@@ -147,29 +94,29 @@ impl Batch {
         (0..self.len()).map(|index| self.event(index))
     }
 
-    fn keep_text(&mut self, text: &str) -> Range {
-        let start = self.text.len() as u32;
-        self.text.push_str(text);
-        Range {
-            start,
-            len: text.len() as u32,
-        }
+    /// Event `index` with its numbers.
+    #[inline]
+    pub(crate) fn stored(&self, index: usize) -> (Stored, &[f64]) {
+        let stored = self.events[index];
+        let start = self.before(index).map_or(0, |before| before.numbers_end);
+        let numbers = &self.flat.numbers[start as usize..stored.numbers_end as usize];
+        (stored, numbers)
     }
 
-    fn keep_values(&mut self, values: &[f64]) -> Range {
-        let start = self.values.len() as u32;
-        self.values.extend_from_slice(values);
-        Range {
-            start,
-            len: values.len() as u32,
-        }
+    /// The texts of event `index`.
+    #[inline]
+    pub(crate) fn texts(&self, index: usize) -> impl Iterator<Item = &str> {
+        let start = self.before(index).map_or(0, |before| before.texts_end) as usize;
+        let end = self.events[index].texts_end as usize;
+        (start..end).map(|place| {
+            let ends = &self.flat.texts;
+            let from = place.checked_sub(1).map_or(0, |before| ends[before]);
+            &self.flat.text[from as usize..ends[place] as usize]
+        })
     }
 
-    fn text(&self, range: Range) -> &str {
-        &self.text[range.start as usize..][..range.len as usize]
-    }
-
-    fn values(&self, range: Range) -> &[f64] {
-        &self.values[range.start as usize..][..range.len as usize]
+    #[inline]
+    fn before(&self, index: usize) -> Option<&Stored> {
+        index.checked_sub(1).map(|before| &self.events[before])
     }
 }

@@ -1,6 +1,6 @@
 //! A dialect: one control's language.
 
-use crate::{Batch, Event, OptionSpec, Setup};
+use crate::{Batch, Capabilities, Event, OptionSpec, Setup};
 
 /// Writes one control's language. Implemented by the author of a dialect.
 ///
@@ -20,16 +20,22 @@ pub trait Dialect: Sized + Send + 'static {
     /// How numbers are written; asked once, after [`Dialect::open`].
     fn format(&self) -> Format;
 
+    /// What it writes beyond straight moves; asked once, after [`Dialect::open`].
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::NONE
+    }
+
     /// Appends the lines that `event` needs to `out`, each ended by `\n`.
     /// Called once for every event, in order.
     ///
     /// # Errors
-    /// A sentence for the user. An event that the dialect does not know is an error, never dropped.
+    /// A sentence for the user. An event that the dialect does not know is an error, never dropped:
+    /// [`Event::refusal`] says it.
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String>;
 }
 
 /// How a dialect writes numbers, and what its control can do. The host rounds to these before it certifies.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Format {
     /// Decimals of each axis word, in the order of [`Setup::words`].
     pub words: Vec<u8>,
@@ -48,6 +54,11 @@ pub trait DialectSession {
     /// How numbers are written.
     fn format(&self) -> &Format;
 
+    /// What the dialect writes beyond straight moves.
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::NONE
+    }
+
     /// Appends the text of all events to `out`, and for each event the length of `out` behind it to `ends`.
     ///
     /// # Errors
@@ -55,7 +66,7 @@ pub trait DialectSession {
     fn write_batch(
         &mut self,
         batch: &Batch,
-        out: &mut Vec<u8>,
+        out: &mut String,
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault>;
 }

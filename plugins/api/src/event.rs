@@ -1,119 +1,499 @@
 //! What a dialect is asked to write, one event a step of the program, in order.
+//!
+//! The table below is the only description of the events: the Rust enum, the raw form, the flat batch, the C
+//! header and the host's checks follow from it.
 
-/// One step of a program.
-///
-/// The numbers are final: axis words are rounded to the decimals that the dialect's
-/// [`Format`](crate::Format) declares, in the units of its [`Setup`](crate::Setup), so comparing two
-/// of them with `==` compares what would be printed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Event<'a> {
+use crate::batch::Flat;
+use crate::field::{Codes, Field, List, NotKnown, Promise, Reader, Shape, ToolPose, codes};
+use crate::setup::Units;
+
+/// A kind of event as the contract has it.
+#[derive(Clone, Copy, Debug)]
+pub struct EventSpec {
+    /// Its number.
+    pub kind: u32,
+    /// Its name in C, without `POST_EVENT_`.
+    pub c_name: &'static str,
+    /// Its name in Rust.
+    pub name: &'static str,
+    /// What it is, with its article.
+    pub what: &'static str,
+    /// What a dialect does with it.
+    pub doc: &'static str,
+    /// Its fields, in the order of its numbers and texts.
+    pub fields: &'static [FieldSpec],
+}
+
+/// A field of an event.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldSpec {
+    /// Its name.
+    pub name: &'static str,
+    /// What it takes up.
+    pub shape: Shape,
+    /// What it means.
+    pub doc: &'static str,
+}
+
+macro_rules! events {
+    (<$a:lifetime> $(#[$about:meta])* Event { $(
+        $(#[doc = $doc:literal])*
+        $kind:literal $c:ident $what:literal $variant:ident
+        $({ $($(#[doc = $field_doc:literal])* $field:ident: $type:ty,)* })?
+        $(( $(#[doc = $only_doc:literal])* $only:ident: $only_type:ty ))?;
+    )* }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[non_exhaustive]
+        pub enum Event<$a> {
+            $(
+                $(#[doc = $doc])*
+                $variant $({ $($(#[doc = $field_doc])* $field: $type,)* })?
+                $(( $(#[doc = $only_doc])* $only_type ))?,
+            )*
+            /// Newer than this plugin. Refuse it; never drop it.
+            Unknown {
+                /// The kind's number in the contract.
+                kind: u32,
+            },
+        }
+
+        impl<$a> Event<$a> {
+            /// Number of the kind in the contract.
+            #[inline]
+            pub const fn kind(&self) -> u32 {
+                match self {
+                    $(Event::$variant { .. } => $kind,)*
+                    Event::Unknown { kind } => *kind,
+                }
+            }
+
+            /// Name of the kind, for messages.
+            pub const fn name(&self) -> &'static str {
+                match self {
+                    $(Event::$variant { .. } => stringify!($variant),)*
+                    Event::Unknown { .. } => "Unknown",
+                }
+            }
+
+            /// The sentence with which a dialect refuses an event that its control has no words for.
+            pub fn refusal(&self) -> String {
+                match self {
+                    $(Event::$variant { .. } => concat!("this dialect has no words for ", $what).to_owned(),)*
+                    Event::Unknown { kind } => format!("this dialect does not know events of kind {kind}"),
+                }
+            }
+
+            /// One event of each kind, for tests.
+            pub fn samples() -> Vec<Self> {
+                vec![$(
+                    Event::$variant
+                        $({ $($field: <$type as Field<$a>>::SAMPLE,)* })?
+                        $(( <$only_type as Field<$a>>::SAMPLE ))?,
+                )*]
+            }
+
+            /// Is it what the host promises to a dialect? A sentence if not.
+            #[inline]
+            pub(crate) fn promised(&self, promise: &Promise) -> Result<(), String> {
+                match *self {
+                    $(Event::$variant $({ $($field),* })? $(($only))? => {
+                        $($($field.check(promise)?;)*)?
+                        $($only.check(promise)?;)?
+                    })*
+                    Event::Unknown { .. } => {}
+                }
+                let _ = promise;
+                Ok(())
+            }
+
+            /// Appends its fields.
+            #[inline]
+            pub(crate) fn put(&self, to: &mut Flat) {
+                match *self {
+                    $(Event::$variant $({ $($field),* })? $(($only))? => {
+                        $($($field.put(to);)*)?
+                        $($only.put(to);)?
+                    })*
+                    Event::Unknown { .. } => {}
+                }
+            }
+
+            /// The event of a kind with these fields.
+            #[inline]
+            pub(crate) fn get(kind: u32, from: &mut Reader<$a>) -> Result<Self, NotKnown> {
+                Ok(match kind {
+                    $($kind => Event::$variant
+                        $({ $($field: <$type as Field<$a>>::get(from)?,)* })?
+                        $(( <$only_type as Field<$a>>::get(from)? ))?,)*
+                    _ => Event::Unknown { kind },
+                })
+            }
+
+            const TABLE: &'static [EventSpec] = &[$(EventSpec {
+                kind: $kind,
+                c_name: stringify!($c),
+                name: stringify!($variant),
+                what: $what,
+                doc: concat!($($doc),*),
+                fields: &[
+                    $($(FieldSpec {
+                        name: stringify!($field),
+                        shape: <$type as Field<$a>>::SHAPE,
+                        doc: concat!($($field_doc),*),
+                    },)*)?
+                    $(FieldSpec {
+                        name: stringify!($only),
+                        shape: <$only_type as Field<$a>>::SHAPE,
+                        doc: concat!($($only_doc),*),
+                    })?
+                ],
+            }),*];
+        }
+
+        /// Every kind of event that this version knows.
+        pub const EVENTS: &[EventSpec] = Event::TABLE;
+    };
+}
+
+events! { <'a>
+    /// One step of a program.
+    ///
+    /// The numbers are final: axis words are rounded to the decimals that the dialect's
+    /// [`Format`](crate::Format) declares, in the units of its [`Setup`](crate::Setup), so comparing two
+    /// of them with `==` compares what would be printed.
+    ///
+    /// A dialect must know the kinds up to [`Event::Word`]. The others are sent to a dialect that declares them
+    /// ([`Capabilities`](crate::Capabilities)); one that does not know a kind refuses it with [`Event::refusal`].
+    Event {
     /// The program begins: header, units, safe state.
-    Start,
+    1 START "the program's start" Start;
     /// A remark for the operator (`PPRINT`, the names of operations).
-    Comment {
+    2 COMMENT "remarks" Comment {
         /// One line, any characters: the dialect makes it safe.
         text: &'a str,
-    },
+    };
     /// A line to be written letter for letter (`INSERT`).
-    Literal {
+    3 LITERAL "a line of the user's own" Literal {
         /// The line.
         text: &'a str,
-    },
-    /// A line of the machine builder's own (a clamp, another head), to be written letter for letter. It moves
-    /// nothing, and what is in force stays in force.
-    Word {
-        /// The line.
-        text: &'a str,
-    },
+    };
     /// Change to a tool. The last tool's compensation was released before.
-    ToolChange {
+    4 TOOL_CHANGE "a tool change" ToolChange {
         /// Tool number.
         number: u32,
         /// Register of the length compensation.
         register: u32,
+        /// From the gauge point to the tip, mm; none if not known.
+        length: Option<f64>,
+        /// Of the cutter, mm; none if not known.
+        diameter: Option<f64>,
+        /// Of the cutter's corner, mm: half the diameter for a ball; none if not known.
+        corner_radius: Option<f64>,
         /// Its name, empty if not known.
         name: &'a str,
-    },
+    };
     /// Bring a tool to the change position without changing.
-    Preselect {
+    5 PRESELECT "the preselection of a tool" Preselect {
         /// Tool number.
         number: u32,
-    },
+    };
     /// Spindle on, off or oriented.
-    Spindle(Spindle),
+    6 SPINDLE "a spindle command" Spindle(
+        /// POST_SPINDLE_… and revolutions a minute.
+        spindle: Spindle
+    );
     /// Coolant.
-    Coolant(Coolant),
+    7 COOLANT "coolant" Coolant(
+        /// POST_COOLANT_….
+        coolant: Coolant
+    );
     /// Cutter radius compensation, in force from the next move on.
-    Compensate(Compensation),
+    8 COMPENSATE "cutter radius compensation" Compensate(
+        /// POST_COMPENSATE_… and the register of the radius.
+        compensation: Compensation
+    );
     /// The first position after the start, a tool change or a [`Event::Release`]: the tool comes from
     /// wherever it stands (clear of the part). The dialect puts the compensation in force
     /// (length compensation, or tool centre point control if [`Setup::tcp`](crate::Setup::tcp)),
     /// rotary axes first, then the plane, then the depth.
-    Position {
-        /// All axis words, in the order of [`Setup::words`](crate::Setup::words).
-        words: &'a [f64],
+    9 POSITION "a first position" Position {
+        /// Where the tool stands then; none where nobody knows.
+        tool: Option<ToolPose>,
         /// Feed of the last approach; none is rapid.
         feed: Option<Feed>,
-    },
+        /// All axis words, in the order of [`Setup::words`](crate::Setup::words).
+        words: &'a [f64],
+    };
     /// Cancel what [`Event::Position`] put in force (TCP, length), before a tool change, home or the end.
-    Release,
+    10 RELEASE "the release of a tool" Release;
     /// Rapid traverse.
-    Rapid {
+    11 RAPID "a rapid" Rapid {
+        /// Where the tool stands at its end; none where nobody knows.
+        tool: Option<ToolPose>,
         /// All axis words.
         words: &'a [f64],
-    },
+    };
     /// A cut: all axes move linearly in time.
-    Linear {
-        /// All axis words.
-        words: &'a [f64],
+    12 LINEAR "a cut" Linear {
+        /// Where the tool stands at its end; none where nobody knows.
+        tool: Option<ToolPose>,
         /// Its feed.
         feed: Feed,
-    },
+        /// All axis words.
+        words: &'a [f64],
+    };
     /// Wait.
-    Dwell {
+    13 DWELL "a dwell" Dwell {
         /// Seconds.
         seconds: f64,
-    },
+    };
     /// Unconditional stop (M0).
-    Stop,
+    14 STOP "a stop" Stop;
     /// Optional stop (M1).
-    OptionalStop,
+    15 OPTIONAL_STOP "an optional stop" OptionalStop;
     /// Retract to the machine's reference (depth axis first). Comes after [`Event::Release`].
-    Home,
+    16 HOME "the way home" Home;
     /// The program ends.
-    End,
-    /// Newer than this plugin. Refuse it; never drop it.
-    Unknown {
-        /// The kind's number in the contract.
-        kind: u32,
-    },
+    17 END "the program's end" End;
+    /// A line of the machine builder's own (a clamp, another head), to be written letter for letter. It moves
+    /// nothing, and what is in force stays in force.
+    18 WORD "a line of the machine's own" Word {
+        /// The line.
+        text: &'a str,
+    };
+
+    /// An operation begins. Sent under [`Capabilities::OPERATION`](crate::Capabilities::OPERATION), else its
+    /// name is a remark.
+    19 OPERATION "the start of an operation" Operation {
+        /// Its name in the CAM system, empty if it has none.
+        name: &'a str,
+    };
+    /// The operation ends. Under the same capability.
+    20 OPERATION_END "the end of an operation" OperationEnd;
+    /// A message on the control's screen (`MSG`), under `MESSAGE`.
+    21 MESSAGE "a message to the operator" Message {
+        /// One line, any characters; empty clears it.
+        text: &'a str,
+    };
+    /// Units change inside the program, under `UNITS`; no length is in force across it.
+    22 UNITS "a change of units" Units(
+        /// POST_UNITS_….
+        units: Units
+    );
+    /// Another work offset, under `WORK_OFFSET`. The tool was released before.
+    23 WORK_OFFSET "a work offset" WorkOffset {
+        /// From 1: G54 is 1, G55 is 2.
+        number: u32,
+        /// As the CL file names it, empty if it does not.
+        name: &'a str,
+    };
+    /// Other registers for the tool in the spindle, under `OFFSETS`.
+    24 OFFSETS "other registers of a tool" Offsets {
+        /// Register of the length; none stays.
+        length: Option<u32>,
+        /// Register of the radius; none stays.
+        radius: Option<u32>,
+    };
+    /// Spindle on at a constant cutting speed, under `SURFACE_SPEED`.
+    25 SURFACE_SPEED "a constant cutting speed" SurfaceSpeed {
+        /// m/min, or feet a minute in an inch program.
+        speed: f64,
+        /// Revolutions a minute that it must not exceed; none if not said.
+        most: Option<f64>,
+        /// POST_SENSE_….
+        sense: SpindleSense,
+    };
+    /// Tool centre point control on or off by itself, under `TCP_SWITCH`; else [`Event::Position`] and
+    /// [`Event::Release`] do it.
+    26 TCP "a switch of tool centre point control" Tcp {
+        /// On, else off.
+        on: bool,
+    };
+    /// A tilted plane begins, under `PLANE`: until [`Event::PlaneOff`] linear words are in its frame. The tool was
+    /// released before; the rotary axes turn to `words` with it.
+    27 PLANE "a tilted plane" Plane {
+        /// Origin of the plane's frame, mm, part frame.
+        origin: [f64; 3],
+        /// Its first direction, unit vector, part frame.
+        x: [f64; 3],
+        /// Its normal, unit vector, part frame: the tool axis.
+        z: [f64; 3],
+        /// Where the axes stand in it: of these the rotary words count.
+        words: &'a [f64],
+    };
+    /// The tilted plane ends.
+    28 PLANE_OFF "the end of a tilted plane" PlaneOff;
+    /// The control may leave the path by so much, under `SMOOTHING` (G187, CYCLE832, CYCL DEF 32, G61.1).
+    29 SMOOTHING "smoothing" Smoothing {
+        /// Of the tip, mm.
+        tolerance: f64,
+        /// Of the tool axis, degrees; none where it does not turn.
+        axis_tolerance: Option<f64>,
+    };
+    /// The control keeps the path exactly, or as it does by default.
+    30 SMOOTHING_OFF "the end of smoothing" SmoothingOff;
+    /// A rotary axis is clamped or let go, under `CLAMP`; else the machine file's own word comes as
+    /// [`Event::Word`].
+    31 CLAMP "a clamp" Clamp {
+        /// Which word of the setup, from 0.
+        word: u32,
+        /// Clamped, else let go.
+        on: bool,
+    };
+    /// An arc or a helix about `normal`, at a feed, under `ARC_…`, `HELIX`.
+    32 ARC "an arc" Arc {
+        /// Where the tool stands at its end; none where nobody knows.
+        tool: Option<ToolPose>,
+        /// Its feed.
+        feed: Feed,
+        /// Centre in the frame and the units of the linear words.
+        centre: [f64; 3],
+        /// Unit vector in that frame about which it turns.
+        normal: [f64; 3],
+        /// Degrees from start to end, counter-clockwise seen against the normal; negative: clockwise.
+        turn: f64,
+        /// All axis words at its end; a helix ends off the plane of its start.
+        words: &'a [f64],
+    };
+    /// A spline at a feed, under `SPLINE`.
+    33 SPLINE "a spline" Spline {
+        /// Its feed.
+        feed: Feed,
+        /// Degree.
+        degree: u32,
+        /// Knots.
+        knots: List<'a>,
+        /// A weight for each control point.
+        weights: List<'a>,
+        /// All axis words of the first control point, then of the second, and so on.
+        points: List<'a>,
+    };
+    /// A drilling cycle is in force at each [`Event::CyclePoint`] from here on, under `CYCLE_…` of its kind. Lengths
+    /// are in program units, along the tool axis.
+    34 CYCLE "a cycle" Cycle {
+        /// POST_CYCLE_….
+        cycle: Cycle,
+        /// Its feed.
+        feed: Feed,
+        /// From the point down to the bottom.
+        depth: f64,
+        /// From the point up to where the feed begins.
+        clearance: f64,
+        /// From the point up to where the tool goes on the way to the next one.
+        retract: f64,
+        /// Into the part in one go; none if it goes in one.
+        step: Option<f64>,
+        /// At the bottom, seconds; none if it does not wait.
+        dwell: Option<f64>,
+        /// A thread's way a turn; none if the feed says it.
+        pitch: Option<f64>,
+    };
+    /// A point of the cycle in force.
+    35 CYCLE_POINT "a point of a cycle" CyclePoint {
+        /// Where the tool would stand on it; none where nobody knows.
+        tool: Option<ToolPose>,
+        /// All axis words with the tip on the point.
+        words: &'a [f64],
+    };
+    /// No cycle is in force any more; the tool stands at the last point's retract level.
+    36 CYCLE_OFF "the end of a cycle" CycleOff;
+    /// A cut with the surface's normal, under `SURFACE` (`LN`, 3-D compensation).
+    37 SURFACE "a cut with a surface normal" Surface {
+        /// Where the tool stands at its end; none where nobody knows.
+        tool: Option<ToolPose>,
+        /// Its feed.
+        feed: Feed,
+        /// Unit vector out of the part, part frame.
+        normal: [f64; 3],
+        /// All axis words.
+        words: &'a [f64],
+    };
+    /// Compensation of the tool's size in space, under `COMPENSATE_3D`.
+    38 COMPENSATE_3D "compensation in space" Compensate3d {
+        /// On, else off.
+        on: bool,
+        /// Register of the radius.
+        register: u32,
+    };
+    /// A subprogram is called, under `SUBPROGRAM`. Afterwards nothing is known to be in force.
+    39 SUBPROGRAM "a subprogram" Subprogram {
+        /// Its number; none if it has a name.
+        number: Option<u32>,
+        /// How often.
+        times: u32,
+        /// Its name, empty if it has a number.
+        name: &'a str,
+    };
+    /// A move until the probe touches, under `PROBE`.
+    40 PROBE "a probing move" Probe {
+        /// Where the tool would stand at its end; none where nobody knows.
+        tool: Option<ToolPose>,
+        /// Its feed.
+        feed: Feed,
+        /// All axis words of its end.
+        words: &'a [f64],
+    };
+    }
 }
 
-impl Event<'_> {
-    /// Name of the kind, for messages.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Event::Start => "Start",
-            Event::Comment { .. } => "Comment",
-            Event::Literal { .. } => "Literal",
-            Event::Word { .. } => "Word",
-            Event::ToolChange { .. } => "ToolChange",
-            Event::Preselect { .. } => "Preselect",
-            Event::Spindle(_) => "Spindle",
-            Event::Coolant(_) => "Coolant",
-            Event::Compensate(_) => "Compensate",
-            Event::Position { .. } => "Position",
-            Event::Release => "Release",
-            Event::Rapid { .. } => "Rapid",
-            Event::Linear { .. } => "Linear",
-            Event::Dwell { .. } => "Dwell",
-            Event::Stop => "Stop",
-            Event::OptionalStop => "OptionalStop",
-            Event::Home => "Home",
-            Event::End => "End",
-            Event::Unknown { .. } => "Unknown",
+impl<'a> Event<'a> {
+    /// A first position of which only the words are known.
+    pub const fn position(words: &'a [f64], feed: Option<Feed>) -> Self {
+        let tool = None;
+        Event::Position { tool, feed, words }
+    }
+
+    /// A rapid of which only the words are known.
+    pub const fn rapid(words: &'a [f64]) -> Self {
+        Event::Rapid { tool: None, words }
+    }
+
+    /// A cut of which only the words are known.
+    pub const fn linear(words: &'a [f64], feed: Feed) -> Self {
+        let tool = None;
+        Event::Linear { tool, feed, words }
+    }
+
+    /// A change to a tool whose size nobody knows.
+    pub const fn tool_change(number: u32, register: u32, name: &'a str) -> Self {
+        Event::ToolChange {
+            number,
+            register,
+            length: None,
+            diameter: None,
+            corner_radius: None,
+            name,
         }
+    }
+
+    /// Does the host keep its promise to the dialect with it? A sentence if not.
+    ///
+    /// # Errors
+    /// What is wrong with it: too few words, a number that is none, a feed that does not move.
+    #[inline]
+    pub fn check(&self, promise: &Promise) -> Result<(), String> {
+        self.promised(promise)?;
+        match *self {
+            Event::Dwell { seconds } if seconds < 0.0 => Err(format!("its number is {seconds}")),
+            _ => Ok(()),
+        }
+    }
+
+    /// Its text moves axes: no word of it may be anything but a number.
+    pub const fn moves(&self) -> bool {
+        matches!(
+            self,
+            Event::Position { .. }
+                | Event::Rapid { .. }
+                | Event::Linear { .. }
+                | Event::Arc { .. }
+                | Event::Spline { .. }
+                | Event::CyclePoint { .. }
+                | Event::Surface { .. }
+                | Event::Probe { .. }
+                | Event::Plane { .. }
+        )
     }
 }
 
@@ -126,6 +506,85 @@ pub enum Feed {
     InverseTime(f64),
     /// Length units a spindle revolution (G95).
     PerRevolution(f64),
+}
+
+impl Feed {
+    pub(crate) const CODES: Codes = Codes {
+        name: "FEED",
+        codes: &[
+            ("NONE", 0),
+            ("PER_MINUTE", 1),
+            ("INVERSE_TIME", 2),
+            ("PER_REVOLUTION", 3),
+        ],
+    };
+}
+
+impl Field<'_> for Option<Feed> {
+    const SHAPE: Shape = Shape::Numbers(2);
+    const SAMPLE: Self = Some(Feed::PerMinute(500.0));
+
+    #[inline]
+    fn put(self, to: &mut Flat) {
+        to.numbers(&match self {
+            None => [0.0, 0.0],
+            Some(Feed::PerMinute(feed)) => [1.0, feed],
+            Some(Feed::InverseTime(feed)) => [2.0, feed],
+            Some(Feed::PerRevolution(feed)) => [3.0, feed],
+        });
+    }
+
+    #[inline]
+    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+        let code = u32::get(from)?;
+        let value = f64::get(from)?;
+        match code {
+            0 => Ok(None),
+            1 => Ok(Some(Feed::PerMinute(value))),
+            2 => Ok(Some(Feed::InverseTime(value))),
+            3 => Ok(Some(Feed::PerRevolution(value))),
+            _ => Err(NotKnown),
+        }
+    }
+
+    #[inline]
+    fn check(self, promise: &Promise) -> Result<(), String> {
+        match self {
+            None => Ok(()),
+            Some(Feed::InverseTime(_)) if !promise.inverse_time => {
+                Err("this control has no inverse-time feed".to_owned())
+            }
+            Some(
+                Feed::PerMinute(value) | Feed::InverseTime(value) | Feed::PerRevolution(value),
+            ) => {
+                if value.is_finite() && value > 0.0 {
+                    Ok(())
+                } else {
+                    Err(format!("the feed is {value}"))
+                }
+            }
+        }
+    }
+}
+
+impl Field<'_> for Feed {
+    const SHAPE: Shape = Shape::Numbers(2);
+    const SAMPLE: Self = Feed::PerMinute(500.0);
+
+    #[inline]
+    fn put(self, to: &mut Flat) {
+        Some(self).put(to);
+    }
+
+    #[inline]
+    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+        Option::get(from)?.ok_or(NotKnown)
+    }
+
+    #[inline]
+    fn check(self, promise: &Promise) -> Result<(), String> {
+        Some(self).check(promise)
+    }
 }
 
 /// Spindle commands.
@@ -144,28 +603,103 @@ pub enum Spindle {
     Orient,
 }
 
-/// Sense of the spindle, seen from the spindle to the part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SpindleSense {
-    /// M3.
-    Clockwise,
-    /// M4.
-    CounterClockwise,
+impl Spindle {
+    /// Those of turning are the codes of [`SpindleSense`].
+    pub(crate) const CODES: Codes = Codes {
+        name: "SPINDLE",
+        codes: &[
+            ("OFF", 0),
+            ("CLOCKWISE", SpindleSense::Clockwise.code()),
+            ("COUNTER_CLOCKWISE", SpindleSense::CounterClockwise.code()),
+            ("ORIENT", 3),
+        ],
+    };
 }
 
-/// Coolant commands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coolant {
-    /// All off.
-    Off,
-    /// Flood.
-    Flood,
-    /// Mist.
-    Mist,
-    /// Through the tool.
-    Through,
-    /// Air.
-    Air,
+impl Field<'_> for Spindle {
+    const SHAPE: Shape = Shape::Numbers(2);
+    const SAMPLE: Self = Spindle::On {
+        rpm: 3000.0,
+        sense: SpindleSense::Clockwise,
+    };
+
+    fn put(self, to: &mut Flat) {
+        to.numbers(&match self {
+            Spindle::Off => [0.0, 0.0],
+            Spindle::On { rpm, sense } => [sense.code().into(), rpm],
+            Spindle::Orient => [3.0, 0.0],
+        });
+    }
+
+    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+        let code = u32::get(from)?;
+        let rpm = f64::get(from)?;
+        match (code, SpindleSense::of(code)) {
+            (0, _) => Ok(Spindle::Off),
+            (3, _) => Ok(Spindle::Orient),
+            (_, Some(sense)) => Ok(Spindle::On { rpm, sense }),
+            _ => Err(NotKnown),
+        }
+    }
+
+    fn check(self, _: &Promise) -> Result<(), String> {
+        match self {
+            Spindle::On { rpm, .. } if !rpm.is_finite() || rpm < 0.0 => {
+                Err(format!("its number is {rpm}"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+codes! {
+    /// Sense of the spindle, seen from the spindle to the part.
+    SpindleSense "SENSE" {
+        /// M3.
+        Clockwise = 1 "CLOCKWISE",
+        /// M4.
+        CounterClockwise = 2 "COUNTER_CLOCKWISE",
+    }
+}
+
+codes! {
+    /// Coolant commands.
+    Coolant "COOLANT" {
+        /// All off.
+        Off = 0 "OFF",
+        /// Flood.
+        Flood = 1 "FLOOD",
+        /// Mist.
+        Mist = 2 "MIST",
+        /// Through the tool.
+        Through = 3 "THROUGH",
+        /// Air.
+        Air = 4 "AIR",
+    }
+}
+
+codes! {
+    /// Kinds of cycles.
+    Cycle "CYCLE" {
+        /// In one go (G81), with a dwell where one is given (G82).
+        Drill = 1 "DRILL",
+        /// In steps, out of the hole after each (G83).
+        Deep = 2 "DEEP",
+        /// In steps, drawn back a little after each (G73).
+        BreakChip = 3 "BREAK_CHIP",
+        /// A thread with the spindle turning right (G84).
+        Tap = 4 "TAP",
+        /// A thread with the spindle turning left (G74).
+        TapLeft = 5 "TAP_LEFT",
+        /// Out at feed (G85), after a dwell where one is given (G89).
+        Ream = 6 "REAM",
+        /// Out at rapid with the spindle stopped (G86).
+        Bore = 7 "BORE",
+        /// Oriented, drawn off the wall and out (G76).
+        BoreFine = 8 "BORE_FINE",
+        /// From below (G87).
+        BoreBack = 9 "BORE_BACK",
+    }
 }
 
 /// Cutter radius compensation.
@@ -184,3 +718,46 @@ pub enum Compensation {
         register: u32,
     },
 }
+
+impl Compensation {
+    pub(crate) const CODES: Codes = Codes {
+        name: "COMPENSATE",
+        codes: &[("OFF", 0), ("LEFT", 1), ("RIGHT", 2)],
+    };
+}
+
+impl Field<'_> for Compensation {
+    const SHAPE: Shape = Shape::Numbers(2);
+    const SAMPLE: Self = Compensation::Left { register: 5 };
+
+    fn put(self, to: &mut Flat) {
+        let (code, register) = match self {
+            Compensation::Off => (0, 0),
+            Compensation::Left { register } => (1, register),
+            Compensation::Right { register } => (2, register),
+        };
+        to.numbers(&[f64::from(code), f64::from(register)]);
+    }
+
+    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+        let code = u32::get(from)?;
+        let register = u32::get(from)?;
+        match code {
+            0 => Ok(Compensation::Off),
+            1 => Ok(Compensation::Left { register }),
+            2 => Ok(Compensation::Right { register }),
+            _ => Err(NotKnown),
+        }
+    }
+}
+
+/// All numbers that stand for a word in the fields of events.
+pub const CODES: &[Codes] = &[
+    Units::CODES,
+    Feed::CODES,
+    Spindle::CODES,
+    SpindleSense::CODES,
+    Coolant::CODES,
+    Compensation::CODES,
+    Cycle::CODES,
+];

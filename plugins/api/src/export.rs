@@ -14,23 +14,116 @@ use std::sync::Once;
 
 use crate::raw::{self, PostDialect, PostEmit, PostFormat, PostModel, PostPlugin, PostText};
 use crate::raw::{PostDeviationFn, PostEvent, PostPair, PostSetup, PostSink};
-use crate::{Curve, Deviation, Dialect, ErrorModel, OptionSpec, Tolerance};
+use crate::{
+    Batch, Capabilities, Curve, Deviation, Dialect, ErrorModel, Format, OptionSpec, Promise, Setup,
+    Tolerance, WriteFault,
+};
 
-/// A plugin that is part of the program itself. The host calls it through the same pointers as an
-/// opened library, so there is one way through.
+/// A plugin that is part of the program itself.
+///
+/// The host judges and describes it through what its library would export. An error model is called through that
+/// as well; a dialect writes straight into the host's text, by the same code that stands behind the exported
+/// functions.
 #[derive(Clone, Copy, Debug)]
-pub struct Linked(&'static Exported);
+pub struct Linked {
+    exported: &'static Exported,
+    open: Option<OpenLinked>,
+}
+
+type OpenLinked = fn(&Setup<'_>) -> Result<Box<dyn LinkedDialect>, String>;
+
+/// An opened dialect that is part of the program itself.
+pub trait LinkedDialect: Send {
+    /// See [`Dialect::format`] and [`Dialect::capabilities`].
+    ///
+    /// # Errors
+    /// The dialect panicked.
+    fn format(&mut self) -> Result<(Format, Capabilities), String>;
+
+    /// Appends the text of all events to `out`, and to `ends` the length of `out` behind each.
+    ///
+    /// # Errors
+    /// Which event breaks the promise or could not be written, and why; what was appended before it stays.
+    fn write(
+        &mut self,
+        batch: &Batch,
+        promise: &Promise,
+        out: &mut String,
+        ends: &mut Vec<usize>,
+    ) -> Result<(), WriteFault>;
+}
 
 impl Linked {
-    /// For the export lines.
+    /// For the export line of a dialect.
     #[doc(hidden)]
-    pub const fn new(exported: &'static Exported) -> Self {
-        Linked(exported)
+    pub const fn dialect<D: Dialect>(exported: &'static Exported) -> Self {
+        Linked {
+            exported,
+            open: Some(open_linked::<D>),
+        }
+    }
+
+    /// For the export line of an error model.
+    #[doc(hidden)]
+    pub const fn model<M: ErrorModel>(exported: &'static Exported) -> Self {
+        Linked {
+            exported,
+            open: None,
+        }
     }
 
     /// What the library of this plugin would export.
     pub fn raw(self) -> &'static PostPlugin {
-        &self.0.0
+        &self.exported.0
+    }
+
+    /// Opens it for a program; none if it is no dialect.
+    pub fn open(self, setup: &Setup<'_>) -> Option<Result<Box<dyn LinkedDialect>, String>> {
+        self.open.map(|open| open(setup))
+    }
+}
+
+fn open_linked<D: Dialect>(setup: &Setup<'_>) -> Result<Box<dyn LinkedDialect>, String> {
+    let value = guarded(|| D::open(setup))?;
+    Ok(Box::new(Context::new(value)))
+}
+
+impl<D: Dialect> LinkedDialect for Context<D> {
+    fn format(&mut self) -> Result<(Format, Capabilities), String> {
+        self.run(|dialect| Ok((dialect.format(), dialect.capabilities())))
+            .ok_or_else(|| self.error.clone())
+    }
+
+    fn write(
+        &mut self,
+        batch: &Batch,
+        promise: &Promise,
+        out: &mut String,
+        ends: &mut Vec<usize>,
+    ) -> Result<(), WriteFault> {
+        let mut index = 0;
+        let mut good = out.len();
+        let done = self.run(|dialect| {
+            for event in batch.iter() {
+                event.check(promise)?;
+                dialect.write(&event, out)?;
+                if out.len() < good {
+                    return Err("it took back text of earlier events".to_owned());
+                }
+                good = out.len();
+                ends.push(good);
+                index += 1;
+            }
+            Ok(())
+        });
+        match done {
+            Some(()) => Ok(()),
+            None => {
+                out.truncate(good);
+                let message = self.error.clone();
+                Err(WriteFault { index, message })
+            }
+        }
     }
 }
 
@@ -86,7 +179,7 @@ const fn common(name: &'static str, version: &'static str, kind: u32) -> PostPlu
 #[macro_export]
 macro_rules! export_dialect {
     ($name:ident, $type:ty) => {
-        $crate::export_plugin!($name, $crate::export::Exported::dialect::<$type>);
+        $crate::export_plugin!($name, $type, dialect);
     };
 }
 
@@ -94,14 +187,14 @@ macro_rules! export_dialect {
 #[macro_export]
 macro_rules! export_error_model {
     ($name:ident, $type:ty) => {
-        $crate::export_plugin!($name, $crate::export::Exported::model::<$type>);
+        $crate::export_plugin!($name, $type, model);
     };
 }
 
 #[doc(hidden)]
 #[macro_export]
 macro_rules! export_plugin {
-    ($name:ident, $make:expr) => {
+    ($name:ident, $type:ty, $kind:ident) => {
         const _: () = assert!(
             $crate::export::names_crate(stringify!($name), option_env!("CARGO_CRATE_NAME")),
             concat!(
@@ -113,11 +206,11 @@ macro_rules! export_plugin {
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!("post_plugin_", stringify!($name)))]
         static POST_PLUGIN: $crate::export::Exported =
-            $make(stringify!($name), env!("CARGO_PKG_VERSION"));
+            $crate::export::Exported::$kind::<$type>(stringify!($name), env!("CARGO_PKG_VERSION"));
 
         /// This plugin, linked in.
         pub fn plugin() -> $crate::Linked {
-            $crate::Linked::new(&POST_PLUGIN)
+            $crate::Linked::$kind::<$type>(&POST_PLUGIN)
         }
     };
 }
@@ -208,15 +301,24 @@ struct Context<T> {
 }
 
 impl<T> Context<T> {
+    fn new(value: T) -> Self {
+        Context {
+            value,
+            error: String::new(),
+            text: String::new(),
+            broken: false,
+        }
+    }
+
     /// Runs `call` on the value, keeping the message if it fails.
-    fn run<R>(&mut self, call: impl FnOnce(&mut T, &mut String) -> Result<R, String>) -> Option<R> {
+    fn run<R>(&mut self, call: impl FnOnce(&mut T) -> Result<R, String>) -> Option<R> {
         if self.broken {
             return None;
         }
         self.broken = true;
-        let (value, text) = (&mut self.value, &mut self.text);
+        let value = &mut self.value;
         // The inner result is the author's, the outer one fails only by a panic.
-        match guarded(|| Ok(call(value, text))) {
+        match guarded(|| Ok(call(value))) {
             Ok(outcome) => {
                 self.broken = false;
                 outcome.map_err(|error| self.error = error).ok()
@@ -235,13 +337,7 @@ impl<T> Context<T> {
 /// `error` is null or a sink in force.
 unsafe fn hand_over<T>(opened: Result<T, String>, error: *const PostSink) -> *mut c_void {
     match opened {
-        Ok(value) => Box::into_raw(Box::new(Context {
-            value,
-            error: String::new(),
-            text: String::new(),
-            broken: false,
-        }))
-        .cast(),
+        Ok(value) => Box::into_raw(Box::new(Context::new(value))).cast(),
         Err(message) => {
             // SAFETY: the caller vouches for the sink.
             if let Some(sink) = unsafe { error.as_ref() } {
@@ -315,22 +411,23 @@ unsafe extern "C" fn open_dialect<D: Dialect>(
     error: *const PostSink,
 ) -> *mut c_void {
     // SAFETY: as stated above.
-    let opened =
-        guarded(|| unsafe { (*setup).with(D::open) }.unwrap_or_else(|| Err(NOT_TEXT.to_owned())));
+    let opened = guarded(|| {
+        unsafe { PostSetup::with(setup, D::open) }.unwrap_or_else(|| Err(NOT_TEXT.to_owned()))
+    });
     unsafe { hand_over(opened, error) }
 }
 
 unsafe extern "C" fn format<D: Dialect>(ctx: *mut c_void, out: *mut PostFormat) -> i32 {
     // SAFETY: as stated above.
     let context = unsafe { context::<D>(ctx) };
-    let format = context.run(|dialect, _| {
-        PostFormat::new(&dialect.format())
+    let format = context.run(|dialect| {
+        PostFormat::new(&dialect.format(), dialect.capabilities())
             .ok_or_else(|| "its format has too many words or too long an extension".to_owned())
     });
     match format {
         Some(format) => {
             // SAFETY: as stated above.
-            unsafe { *out = format };
+            unsafe { format.write(out) };
             0
         }
         None => 1,
@@ -347,14 +444,15 @@ unsafe extern "C" fn write<D: Dialect>(
     // SAFETY: as stated above.
     let context = unsafe { context::<D>(ctx) };
     let events = unsafe { raw::slice(events, n) };
-    context.text.clear();
+    let mut text = std::mem::take(&mut context.text);
+    text.clear();
     let mut written = 0;
     let mut good = 0;
-    context.run(|dialect, text| {
+    context.run(|dialect| {
         for event in events {
             // SAFETY: as stated above.
             let event = unsafe { event.get() }.ok_or_else(|| NOT_TEXT.to_owned())?;
-            dialect.write(&event, text)?;
+            dialect.write(&event, &mut text)?;
             good = text.len();
             // SAFETY: `ends` has room for `n` numbers, and `written` is less.
             unsafe { *ends.add(written) = good as u64 };
@@ -364,8 +462,8 @@ unsafe extern "C" fn write<D: Dialect>(
     });
     // SAFETY: as stated above. What an event left before it failed is not handed on; an author who
     // shortened the text is found out by the host, since the ends are then not in order.
-    let text = context.text.get(..good).unwrap_or_default();
-    unsafe { (*out).put(text) };
+    unsafe { (*out).put(text.get(..good).unwrap_or_default()) };
+    context.text = text;
     written
 }
 
@@ -391,7 +489,7 @@ unsafe extern "C" fn fit<M: ErrorModel>(
 ) -> i32 {
     // SAFETY: as stated above.
     let (context, tolerance) = unsafe { (context::<M>(ctx), &*tolerance) };
-    let fitted = context.run(|model, _| {
+    let fitted = context.run(|model| {
         model.fit(tolerance, &mut |ts, out| {
             let n = ts.len().min(out.len());
             // SAFETY: both hold `n` numbers, and the call is inside `fit`.
@@ -418,7 +516,7 @@ unsafe extern "C" fn value<M: ErrorModel>(
     // SAFETY: as stated above; `out` has room for `n` deviations.
     let (context, curve) = unsafe { (context::<M>(ctx), &*curve) };
     let ts = unsafe { raw::slice(ts, n) };
-    let done = context.run(|model, _| {
+    let done = context.run(|model| {
         for (index, t) in ts.iter().enumerate() {
             unsafe { *out.add(index) = model.value(curve, *t) };
         }

@@ -5,11 +5,13 @@
 
 mod batch;
 mod block;
+mod capabilities;
 mod deviation;
 mod dialect;
 mod event;
 #[doc(hidden)]
 pub mod export;
+mod field;
 mod iso;
 mod model;
 mod number;
@@ -19,12 +21,19 @@ mod text;
 
 pub use batch::Batch;
 pub use block::{Axes, Block, Group, Modal, NumberStyle};
+pub use capabilities::{CAPABILITIES, Capabilities, CapabilitySpec};
 pub use deviation::{ask, length};
 pub use dialect::{Dialect, DialectSession, Format, WriteFault};
-pub use event::{Compensation, Coolant, Event, Feed, Spindle, SpindleSense};
-pub use export::Linked;
+pub use event::{
+    CODES, Compensation, Coolant, Cycle, EVENTS, Event, EventSpec, Feed, FieldSpec, Spindle,
+    SpindleSense,
+};
+pub use export::{Linked, LinkedDialect};
+pub use field::{Codes, List, Promise, Shape, ToolPose};
 pub use iso::{FeedDecimals, IsoMotion};
 pub use model::{Curve, Deviation, ErrorModel, ModelSession, Tolerance};
 pub use number::{fixed, quantise};
-pub use setup::{AxisWord, OptionKind, OptionSpec, Setup, Units, Value};
+pub use setup::{
+    Accuracy, Ahead, AxisWord, Kinematics, OptionKind, OptionSpec, Setup, Tool, Units, Value,
+};
 pub use text::{ascii, remark};

@@ -4,24 +4,29 @@
 //! enum, no ownership: whoever made a thing frees it. Text is UTF-8 without a terminating zero and lives
 //! as long as the call that hands it over. Text of a plugin leaves it through a [`PostSink`].
 //!
-//! `include/post_plugin.h` says the same in C; `tests/header.rs` keeps the two together.
+//! `include/post_plugin.h` says the same in C; `tests/it/header.rs` keeps the two together.
 
 #![allow(unsafe_code)]
 
-use std::ffi::c_void;
-use std::mem::{align_of, offset_of, size_of};
+mod event;
+mod layout;
+mod setup;
 
-use crate::{
-    AxisWord, Compensation, Coolant, Curve, Deviation, Event, Feed, Format, OptionKind, OptionSpec,
-    Setup, Spindle, SpindleSense, Tolerance, Units, Value,
-};
+use std::ffi::c_void;
+
+use crate::{Curve, Deviation, OptionKind, OptionSpec, Tolerance, Value};
+
+pub use event::events;
+pub use layout::{LAYOUT, LAYOUTS, Layout, TABLES};
+pub use setup::with_setup;
 
 /// First field of every [`PostPlugin`]: the letters `POSTPLUG` in memory on a little-endian machine.
 pub const MAGIC: u64 = u64::from_le_bytes(*b"POSTPLUG");
 
-/// Version of the contract. It changes when a shared struct or the meaning of a call does; functions
-/// that are appended to a table do not change it.
-pub const ABI: u32 = 1;
+/// Version of the contract. It changes when a struct of [`LAYOUTS`] or the meaning of a call does. What may grow
+/// without a new one: tables of functions, [`PostSetup`] and [`PostFormat`] at their end, events (more kinds; more
+/// numbers and texts behind those of a kind), capabilities.
+pub const ABI: u32 = 2;
 
 /// [`PostPlugin::kind`] of a dialect.
 pub const KIND_DIALECT: u32 = 1;
@@ -123,17 +128,46 @@ pub struct PostAxisWord {
     pub rotary: u32,
     /// 1 for the linear axis along the spindle at all axes zero.
     pub depth: u32,
+    /// 1 if the axis carries the part, 0 if it carries the tool.
+    pub carries_part: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Least position of the axis as the machine shows it, mm or degrees; NaN without ends.
+    pub least: f64,
+    /// Largest.
+    pub largest: f64,
 }
 
-/// What a dialect is told when it is opened.
+/// A tool of the program. A number that is not known is NaN.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct PostTool {
+    /// Its name.
+    pub name: PostText,
+    /// Tool number.
+    pub number: u32,
+    /// 0.
+    pub reserved: u32,
+    /// From the gauge point to the tip, mm.
+    pub length: f64,
+    /// Of the cutter, mm.
+    pub diameter: f64,
+    /// Of the cutter's corner, mm.
+    pub corner_radius: f64,
+}
+
+/// What a dialect is told when it is opened. Later versions may append to it, so a plugin reads no further than
+/// `size`; what is not there is 0.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostSetup {
+    /// Bytes of this struct as the host knows it.
+    pub size: u64,
     /// Name of the program.
     pub program: PostText,
     /// Name of the machine.
     pub machine: PostText,
-    /// `UNITS_MILLIMETRE` or `UNITS_INCH`.
+    /// `UNITS_…`.
     pub units: u32,
     /// 1 if the control keeps the tip on its path, else 0.
     pub tcp: u32,
@@ -145,114 +179,56 @@ pub struct PostSetup {
     pub options: *const PostPair,
     /// Number of options.
     pub options_len: usize,
+    /// Name of the CL file.
+    pub cl_file: PostText,
+    /// Tolerance of a cut's tip, mm; 0 where nothing is certified.
+    pub tip_tolerance: f64,
+    /// Tolerance of the tool axis, degrees.
+    pub axis_tolerance: f64,
+    /// Tolerance of a rapid's tip, mm.
+    pub rapid_tolerance: f64,
+    /// 1 if the host has looked ahead, so that what follows is known.
+    pub ahead: u32,
+    /// 1 if there are extents.
+    pub moves: u32,
+    /// The tools in the order in which they are first used.
+    pub tools: *const PostTool,
+    /// Number of tools.
+    pub tools_len: usize,
+    /// Least X, Y, Z of the tip, mm, part frame.
+    pub least: [f64; 3],
+    /// Largest.
+    pub largest: [f64; 3],
+    /// The program's time, seconds; NaN if not known.
+    pub time: f64,
 }
 
-/// mm, mm/min.
-pub const UNITS_MILLIMETRE: u32 = 1;
-/// inch, inch/min.
-pub const UNITS_INCH: u32 = 2;
-
-/// One event. What a field means depends on `kind`; a field that the kind does not use is 0.
+/// One event: see [`EVENTS`](crate::EVENTS) for the numbers and texts of each kind. Those that a reader does not
+/// know stand behind those that it knows; those that are missing have their default (0, none, empty).
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostEvent {
-    /// One of `EVENT_…`. A kind that the plugin does not know must be refused.
+    /// Its kind. One that the plugin does not know must be refused.
     pub kind: u32,
-    /// Spindle: `SPINDLE_…`; coolant: `COOLANT_…`; compensation: `COMPENSATE_…`; moves: `FEED_…`.
-    pub code: u32,
+    /// Number of texts.
+    pub texts_len: u32,
     /// Line of the CL file.
     pub line: u64,
-    /// Tool number.
-    pub number: u32,
-    /// Register of the length (tool change) or the radius (compensation).
-    pub register: u32,
-    /// Moves: the feed; spindle: revolutions a minute; dwell: seconds. Always finite.
-    pub value: f64,
-    /// Moves: one number for each word of the setup, rounded to the decimals of the format. Always finite.
-    pub words: *const f64,
-    /// Number of words.
-    pub words_len: usize,
-    /// Comment, literal, name of a tool.
-    pub text: PostText,
+    /// Its numbers, finite but where NaN stands for one that is not given.
+    pub numbers: *const f64,
+    /// Number of numbers.
+    pub numbers_len: usize,
+    /// Its texts.
+    pub texts: *const PostText,
 }
 
-/// See [`Event::Start`].
-pub const EVENT_START: u32 = 1;
-/// See [`Event::Comment`]: `text`.
-pub const EVENT_COMMENT: u32 = 2;
-/// See [`Event::Literal`]: `text`.
-pub const EVENT_LITERAL: u32 = 3;
-/// See [`Event::ToolChange`]: `number`, `register`, `text`.
-pub const EVENT_TOOL_CHANGE: u32 = 4;
-/// See [`Event::Preselect`]: `number`.
-pub const EVENT_PRESELECT: u32 = 5;
-/// See [`Event::Spindle`]: `code`, `value`.
-pub const EVENT_SPINDLE: u32 = 6;
-/// See [`Event::Coolant`]: `code`.
-pub const EVENT_COOLANT: u32 = 7;
-/// See [`Event::Compensate`]: `code`, `register`.
-pub const EVENT_COMPENSATE: u32 = 8;
-/// See [`Event::Position`]: `words`, `code`, `value`.
-pub const EVENT_POSITION: u32 = 9;
-/// See [`Event::Release`].
-pub const EVENT_RELEASE: u32 = 10;
-/// See [`Event::Rapid`]: `words`.
-pub const EVENT_RAPID: u32 = 11;
-/// See [`Event::Linear`]: `words`, `code`, `value`.
-pub const EVENT_LINEAR: u32 = 12;
-/// See [`Event::Dwell`]: `value`.
-pub const EVENT_DWELL: u32 = 13;
-/// See [`Event::Stop`].
-pub const EVENT_STOP: u32 = 14;
-/// See [`Event::OptionalStop`].
-pub const EVENT_OPTIONAL_STOP: u32 = 15;
-/// See [`Event::Home`].
-pub const EVENT_HOME: u32 = 16;
-/// See [`Event::End`].
-pub const EVENT_END: u32 = 17;
-/// See [`Event::Word`]: `text`.
-pub const EVENT_WORD: u32 = 18;
-
-/// No feed: rapid.
-pub const FEED_NONE: u32 = 0;
-/// See [`Feed::PerMinute`].
-pub const FEED_PER_MINUTE: u32 = 1;
-/// See [`Feed::InverseTime`].
-pub const FEED_INVERSE_TIME: u32 = 2;
-/// See [`Feed::PerRevolution`].
-pub const FEED_PER_REVOLUTION: u32 = 3;
-
-/// Spindle off.
-pub const SPINDLE_OFF: u32 = 0;
-/// Clockwise, seen from the spindle to the part.
-pub const SPINDLE_CLOCKWISE: u32 = 1;
-/// Counter-clockwise.
-pub const SPINDLE_COUNTER_CLOCKWISE: u32 = 2;
-/// Oriented stop.
-pub const SPINDLE_ORIENT: u32 = 3;
-
-/// All coolant off.
-pub const COOLANT_OFF: u32 = 0;
-/// Flood.
-pub const COOLANT_FLOOD: u32 = 1;
-/// Mist.
-pub const COOLANT_MIST: u32 = 2;
-/// Through the tool.
-pub const COOLANT_THROUGH: u32 = 3;
-/// Air.
-pub const COOLANT_AIR: u32 = 4;
-
-/// No cutter compensation.
-pub const COMPENSATE_OFF: u32 = 0;
-/// Tool left of the path.
-pub const COMPENSATE_LEFT: u32 = 1;
-/// Tool right of the path.
-pub const COMPENSATE_RIGHT: u32 = 2;
-
-/// How a dialect writes numbers; filled in by the plugin. The host hands it over filled with zeros.
+/// How a dialect writes numbers and what it writes; filled in by the plugin. The host hands it over filled with
+/// zeros but for `size`, and a plugin writes no further than that.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostFormat {
+    /// Bytes of this struct as the host knows it.
+    pub size: u64,
     /// Decimals of each axis word, at most 9.
     pub words: [u8; MAX_WORDS],
     /// Decimals of a feed a minute.
@@ -265,6 +241,8 @@ pub struct PostFormat {
     pub words_len: u32,
     /// Usual ending of a program's file name, without the dot, padded with zeros.
     pub extension: [u8; 16],
+    /// The sum of `WRITES_…`: see [`Capabilities`](crate::Capabilities).
+    pub writes: u64,
 }
 
 /// Host's function that takes a declared option.
@@ -380,77 +358,6 @@ pub struct PostModel {
     /// Called once at the end, also after a failure.
     pub close: Option<unsafe extern "C" fn(ctx: *mut c_void)>,
 }
-
-/// Size, alignment and fields of a shared struct, as the C header must have them.
-#[derive(Clone, Copy, Debug)]
-pub struct Layout {
-    /// Its name in C.
-    pub name: &'static str,
-    /// Bytes.
-    pub size: usize,
-    /// Bytes.
-    pub align: usize,
-    /// Name and offset of each field.
-    pub fields: &'static [(&'static str, usize)],
-}
-
-macro_rules! layouts {
-    ($($type:ident as $name:literal { $($field:ident)* })*) => {
-        &[$(Layout {
-            name: $name,
-            size: size_of::<$type>(),
-            align: align_of::<$type>(),
-            fields: &[$((stringify!($field), offset_of!($type, $field))),*],
-        }),*]
-    };
-}
-
-/// The data that is shared. A change here is a new [`ABI`].
-pub const LAYOUTS: &[Layout] = layouts! {
-    PostText as "PostText" { ptr len }
-    PostSink as "PostSink" { ctx write }
-    PostValue as "PostValue" { kind reserved integer number text }
-    PostPair as "PostPair" { key value }
-    PostOption as "PostOption" { key help kind reserved min max default_value choices choices_len }
-    PostAxisWord as "PostAxisWord" { name rotary depth }
-    PostSetup as "PostSetup" { program machine units tcp words words_len options options_len }
-    PostEvent as "PostEvent" { kind code line number register value words words_len text }
-    PostFormat as "PostFormat" { words feed inverse_time feed_per_revolution words_len extension }
-    Deviation as "PostDeviation" { tip axis }
-    Tolerance as "PostTolerance" { tip axis }
-    Curve as "PostCurve" { tip_peak tip_at axis_peak axis_at terms }
-};
-
-/// The tables of functions. They may grow at their end, so they are not part of [`LAYOUT`].
-pub const TABLES: &[Layout] = layouts! {
-    PostPlugin as "PostPlugin" {
-        magic abi kind size table_size layout name version describe loaded dialect model
-    }
-    PostDialect as "PostDialect" { open format write last_error close }
-    PostModel as "PostModel" { open fit value last_error close }
-};
-
-/// Hash over size, alignment and offsets of the shared data: catches a plugin that was built against
-/// another header, or for another kind of machine.
-pub const LAYOUT: u64 = {
-    // FNV-1a, a number at a time: its only use is to differ when a number does.
-    const fn mix(hash: u64, value: usize) -> u64 {
-        (hash ^ value as u64).wrapping_mul(0x0000_0100_0000_01b3)
-    }
-    let mut hash = 0xcbf2_9ce4_8422_2325;
-    let mut index = 0;
-    while index < LAYOUTS.len() {
-        let layout = LAYOUTS[index];
-        hash = mix(mix(hash, layout.size), layout.align);
-        let mut field = 0;
-        while field < layout.fields.len() {
-            hash = mix(hash, layout.fields[field].1);
-            field += 1;
-        }
-        index += 1;
-    }
-    hash
-};
 
 impl PostText {
     /// `text` as it crosses the border. The caller keeps it alive for the call.
@@ -577,376 +484,4 @@ pub fn with_option(spec: &OptionSpec, take: impl FnOnce(&PostOption)) {
         choices: choices.as_ptr(),
         choices_len: choices.len(),
     });
-}
-
-/// Hands `setup` to `take` in its raw form.
-pub fn with_setup<R>(setup: &Setup<'_>, take: impl FnOnce(&PostSetup) -> R) -> R {
-    let words: Vec<PostAxisWord> = setup
-        .words
-        .iter()
-        .map(|word| PostAxisWord {
-            name: PostText::new(word.name),
-            rotary: u32::from(word.rotary) + u32::from(word.rotary && word.wrapped),
-            depth: word.depth.into(),
-        })
-        .collect();
-    let options: Vec<PostPair> = setup
-        .options
-        .iter()
-        .map(|(key, value)| PostPair::new(key, value))
-        .collect();
-    take(&PostSetup {
-        program: PostText::new(setup.program),
-        machine: PostText::new(setup.machine),
-        units: match setup.units {
-            Units::Millimetre => UNITS_MILLIMETRE,
-            Units::Inch => UNITS_INCH,
-        },
-        tcp: setup.tcp.into(),
-        words: words.as_ptr(),
-        words_len: words.len(),
-        options: options.as_ptr(),
-        options_len: options.len(),
-    })
-}
-
-impl PostSetup {
-    /// Hands the setup to `take` in its safe form; none if a text is not valid or the units are not known.
-    ///
-    /// # Safety
-    /// Every pointer in it is valid for the call.
-    pub unsafe fn with<R>(&self, take: impl FnOnce(&Setup<'_>) -> R) -> Option<R> {
-        // SAFETY: handed on to the caller, here and in the calls below.
-        let raw_words = unsafe { slice(self.words, self.words_len) };
-        let mut words = Vec::with_capacity(raw_words.len());
-        for word in raw_words {
-            words.push(AxisWord {
-                name: unsafe { word.name.get() }?,
-                rotary: word.rotary != 0,
-                wrapped: word.rotary == 2,
-                depth: word.depth != 0,
-            });
-        }
-        let options = unsafe { pairs(self.options, self.options_len) }?;
-        Some(take(&Setup {
-            program: unsafe { self.program.get() }?,
-            machine: unsafe { self.machine.get() }?,
-            units: match self.units {
-                UNITS_MILLIMETRE => Units::Millimetre,
-                UNITS_INCH => Units::Inch,
-                _ => return None,
-            },
-            tcp: self.tcp != 0,
-            words: &words,
-            options: &options,
-        }))
-    }
-}
-
-impl PostEvent {
-    /// `event` as it crosses the border; it borrows from `event` without the compiler's help.
-    pub fn new(line: u64, event: &Event<'_>) -> Self {
-        let mut raw = PostEvent {
-            kind: 0,
-            code: 0,
-            line,
-            number: 0,
-            register: 0,
-            value: 0.0,
-            words: std::ptr::null(),
-            words_len: 0,
-            text: PostText::EMPTY,
-        };
-        raw.kind = match *event {
-            Event::Start => EVENT_START,
-            Event::Comment { text } => {
-                raw.text = PostText::new(text);
-                EVENT_COMMENT
-            }
-            Event::Literal { text } => {
-                raw.text = PostText::new(text);
-                EVENT_LITERAL
-            }
-            Event::Word { text } => {
-                raw.text = PostText::new(text);
-                EVENT_WORD
-            }
-            Event::ToolChange {
-                number,
-                register,
-                name,
-            } => {
-                raw.number = number;
-                raw.register = register;
-                raw.text = PostText::new(name);
-                EVENT_TOOL_CHANGE
-            }
-            Event::Preselect { number } => {
-                raw.number = number;
-                EVENT_PRESELECT
-            }
-            Event::Spindle(spindle) => {
-                (raw.code, raw.value) = match spindle {
-                    Spindle::Off => (SPINDLE_OFF, 0.0),
-                    Spindle::Orient => (SPINDLE_ORIENT, 0.0),
-                    Spindle::On { rpm, sense } => match sense {
-                        SpindleSense::Clockwise => (SPINDLE_CLOCKWISE, rpm),
-                        SpindleSense::CounterClockwise => (SPINDLE_COUNTER_CLOCKWISE, rpm),
-                    },
-                };
-                EVENT_SPINDLE
-            }
-            Event::Coolant(coolant) => {
-                raw.code = match coolant {
-                    Coolant::Off => COOLANT_OFF,
-                    Coolant::Flood => COOLANT_FLOOD,
-                    Coolant::Mist => COOLANT_MIST,
-                    Coolant::Through => COOLANT_THROUGH,
-                    Coolant::Air => COOLANT_AIR,
-                };
-                EVENT_COOLANT
-            }
-            Event::Compensate(compensation) => {
-                (raw.code, raw.register) = match compensation {
-                    Compensation::Off => (COMPENSATE_OFF, 0),
-                    Compensation::Left { register } => (COMPENSATE_LEFT, register),
-                    Compensation::Right { register } => (COMPENSATE_RIGHT, register),
-                };
-                EVENT_COMPENSATE
-            }
-            Event::Position { words, feed } => {
-                raw.put_move(words, feed);
-                EVENT_POSITION
-            }
-            Event::Release => EVENT_RELEASE,
-            Event::Rapid { words } => {
-                raw.put_move(words, None);
-                EVENT_RAPID
-            }
-            Event::Linear { words, feed } => {
-                raw.put_move(words, Some(feed));
-                EVENT_LINEAR
-            }
-            Event::Dwell { seconds } => {
-                raw.value = seconds;
-                EVENT_DWELL
-            }
-            Event::Stop => EVENT_STOP,
-            Event::OptionalStop => EVENT_OPTIONAL_STOP,
-            Event::Home => EVENT_HOME,
-            Event::End => EVENT_END,
-            Event::Unknown { kind } => kind,
-        };
-        raw
-    }
-
-    fn put_move(&mut self, words: &[f64], feed: Option<Feed>) {
-        self.words = words.as_ptr();
-        self.words_len = words.len();
-        (self.code, self.value) = match feed {
-            None => (FEED_NONE, 0.0),
-            Some(Feed::PerMinute(feed)) => (FEED_PER_MINUTE, feed),
-            Some(Feed::InverseTime(feed)) => (FEED_INVERSE_TIME, feed),
-            Some(Feed::PerRevolution(feed)) => (FEED_PER_REVOLUTION, feed),
-        };
-    }
-
-    /// The event in its safe form. A kind or a code that is not known comes out as [`Event::Unknown`];
-    /// none if a text is not valid UTF-8.
-    ///
-    /// # Safety
-    /// Every pointer in it is valid for `'a`.
-    pub unsafe fn get<'a>(&self) -> Option<Event<'a>> {
-        // SAFETY: handed on to the caller, here and for the words.
-        let text = unsafe { self.text.get() }?;
-        let words = unsafe { slice(self.words, self.words_len) };
-        let unknown = Event::Unknown { kind: self.kind };
-        let feed = match self.code {
-            FEED_PER_MINUTE => Some(Feed::PerMinute(self.value)),
-            FEED_INVERSE_TIME => Some(Feed::InverseTime(self.value)),
-            FEED_PER_REVOLUTION => Some(Feed::PerRevolution(self.value)),
-            _ => None,
-        };
-        let turn = |sense| {
-            Event::Spindle(Spindle::On {
-                rpm: self.value,
-                sense,
-            })
-        };
-        Some(match self.kind {
-            EVENT_START => Event::Start,
-            EVENT_COMMENT => Event::Comment { text },
-            EVENT_LITERAL => Event::Literal { text },
-            EVENT_WORD => Event::Word { text },
-            EVENT_TOOL_CHANGE => Event::ToolChange {
-                number: self.number,
-                register: self.register,
-                name: text,
-            },
-            EVENT_PRESELECT => Event::Preselect {
-                number: self.number,
-            },
-            EVENT_SPINDLE => match self.code {
-                SPINDLE_OFF => Event::Spindle(Spindle::Off),
-                SPINDLE_CLOCKWISE => turn(SpindleSense::Clockwise),
-                SPINDLE_COUNTER_CLOCKWISE => turn(SpindleSense::CounterClockwise),
-                SPINDLE_ORIENT => Event::Spindle(Spindle::Orient),
-                _ => unknown,
-            },
-            EVENT_COOLANT => match self.code {
-                COOLANT_OFF => Event::Coolant(Coolant::Off),
-                COOLANT_FLOOD => Event::Coolant(Coolant::Flood),
-                COOLANT_MIST => Event::Coolant(Coolant::Mist),
-                COOLANT_THROUGH => Event::Coolant(Coolant::Through),
-                COOLANT_AIR => Event::Coolant(Coolant::Air),
-                _ => unknown,
-            },
-            EVENT_COMPENSATE => match self.code {
-                COMPENSATE_OFF => Event::Compensate(Compensation::Off),
-                COMPENSATE_LEFT => Event::Compensate(Compensation::Left {
-                    register: self.register,
-                }),
-                COMPENSATE_RIGHT => Event::Compensate(Compensation::Right {
-                    register: self.register,
-                }),
-                _ => unknown,
-            },
-            EVENT_POSITION if self.code == FEED_NONE || feed.is_some() => {
-                Event::Position { words, feed }
-            }
-            EVENT_RELEASE => Event::Release,
-            EVENT_RAPID => Event::Rapid { words },
-            EVENT_LINEAR => match feed {
-                Some(feed) => Event::Linear { words, feed },
-                None => unknown,
-            },
-            EVENT_DWELL => Event::Dwell {
-                seconds: self.value,
-            },
-            EVENT_STOP => Event::Stop,
-            EVENT_OPTIONAL_STOP => Event::OptionalStop,
-            EVENT_HOME => Event::Home,
-            EVENT_END => Event::End,
-            _ => unknown,
-        })
-    }
-}
-
-impl PostFormat {
-    /// All zero, as the host hands it over.
-    pub const EMPTY: PostFormat = PostFormat {
-        words: [0; MAX_WORDS],
-        feed: 0,
-        inverse_time: 0,
-        feed_per_revolution: 0,
-        words_len: 0,
-        extension: [0; 16],
-    };
-
-    /// `format` as it crosses the border; none if it has too many words or too long an extension.
-    pub fn new(format: &Format) -> Option<Self> {
-        let mut raw = PostFormat {
-            feed: format.feed.into(),
-            inverse_time: format.inverse_time.map_or(-1, i32::from),
-            feed_per_revolution: format.feed_per_revolution.into(),
-            words_len: format.words.len() as u32,
-            ..PostFormat::EMPTY
-        };
-        raw.words
-            .get_mut(..format.words.len())?
-            .copy_from_slice(&format.words);
-        raw.extension
-            .get_mut(..format.extension.len())?
-            .copy_from_slice(format.extension.as_bytes());
-        Some(raw)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_event_comes_back_as_it_went() {
-        let words = [1.0, -2.5];
-        let feeds = [
-            Feed::PerMinute(100.0),
-            Feed::InverseTime(2.5),
-            Feed::PerRevolution(0.1),
-        ];
-        let mut events = vec![
-            Event::Start,
-            Event::Comment { text: "a µ" },
-            Event::Literal { text: "" },
-            Event::Word { text: "M10" },
-            Event::ToolChange {
-                number: 3,
-                register: 4,
-                name: "ball 10",
-            },
-            Event::Preselect { number: 7 },
-            Event::Spindle(Spindle::Off),
-            Event::Spindle(Spindle::Orient),
-            Event::Position {
-                words: &words,
-                feed: None,
-            },
-            Event::Release,
-            Event::Rapid { words: &words },
-            Event::Dwell { seconds: 2.5 },
-            Event::Stop,
-            Event::OptionalStop,
-            Event::Home,
-            Event::End,
-            Event::Unknown { kind: 4711 },
-        ];
-        for sense in [SpindleSense::Clockwise, SpindleSense::CounterClockwise] {
-            events.push(Event::Spindle(Spindle::On { rpm: 3000.0, sense }));
-        }
-        for coolant in [
-            Coolant::Off,
-            Coolant::Flood,
-            Coolant::Mist,
-            Coolant::Through,
-            Coolant::Air,
-        ] {
-            events.push(Event::Coolant(coolant));
-        }
-        for compensation in [
-            Compensation::Off,
-            Compensation::Left { register: 5 },
-            Compensation::Right { register: 6 },
-        ] {
-            events.push(Event::Compensate(compensation));
-        }
-        for feed in feeds {
-            events.push(Event::Linear {
-                words: &words,
-                feed,
-            });
-            events.push(Event::Position {
-                words: &words,
-                feed: Some(feed),
-            });
-        }
-        for event in events {
-            // SAFETY: what the raw event points to outlives it.
-            let back = unsafe { PostEvent::new(12, &event).get() };
-            assert_eq!(back, Some(event));
-        }
-    }
-
-    #[test]
-    fn a_code_that_is_not_known_makes_the_event_unknown() {
-        let mut raw = PostEvent::new(1, &Event::Coolant(Coolant::Flood));
-        raw.code = 99;
-        // SAFETY: the event has no pointers.
-        let event = unsafe { raw.get() };
-        assert_eq!(
-            event,
-            Some(Event::Unknown {
-                kind: EVENT_COOLANT
-            })
-        );
-    }
 }

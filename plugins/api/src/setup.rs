@@ -1,7 +1,10 @@
 //! What a plugin is told before its first call, and the options that it declares.
 
+use crate::field::{Codes, codes};
+use crate::model::Tolerance;
+
 /// What a dialect is told before the first event. Lives as long as the call.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Setup<'a> {
     /// Name of the program (the output file's stem).
     pub program: &'a str,
@@ -15,9 +18,73 @@ pub struct Setup<'a> {
     pub words: &'a [AxisWord<'a>],
     /// Options from the machine file, checked against [`OptionSpec`] and completed by the defaults.
     pub options: &'a [(&'a str, Value<'a>)],
+    /// Name of the CL file, without its folder; empty if it has none (standard input).
+    pub cl_file: &'a str,
+    /// What the program is certified to keep; none where nothing is certified.
+    pub accuracy: Option<Accuracy>,
+    /// What is known of the whole program; none if the host has not looked ahead.
+    pub ahead: Option<Ahead<'a>>,
+}
+
+/// What a program is certified to keep against the CL path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Of a cut.
+    pub cut: Tolerance,
+    /// Of a rapid's tip, mm.
+    pub rapid: f64,
+}
+
+/// What a first pass over the CL file found.
+#[derive(Clone, Copy, Debug)]
+pub struct Ahead<'a> {
+    /// The tools in the order in which they are first used.
+    pub tools: &'a [Tool<'a>],
+    /// Least and largest tip, mm, part frame; none if there is no move.
+    pub extents: Option<[[f64; 3]; 2]>,
+    /// The program's time, seconds; none if not known.
+    pub time: Option<f64>,
+}
+
+/// A tool of the program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tool<'a> {
+    /// Tool number.
+    pub number: u32,
+    /// Its name, empty if not known.
+    pub name: &'a str,
+    /// From the gauge point to the tip, mm; none if not known.
+    pub length: Option<f64>,
+    /// Of the cutter, mm; none if not known.
+    pub diameter: Option<f64>,
+    /// Of the cutter's corner, mm; none if not known.
+    pub corner_radius: Option<f64>,
+}
+
+/// Where the rotary axes of a machine stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kinematics {
+    /// Rotary axes that carry the part.
+    pub table: usize,
+    /// Rotary axes that carry the tool.
+    pub head: usize,
 }
 
 impl<'a> Setup<'a> {
+    /// The machine's class: how many of its rotary words turn the part, and how many the tool.
+    pub fn kinematics(&self) -> Kinematics {
+        let count = |carries_part: bool| {
+            let words = self.words.iter();
+            words
+                .filter(|word| word.rotary && word.carries_part == carries_part)
+                .count()
+        };
+        Kinematics {
+            table: count(true),
+            head: count(false),
+        }
+    }
+
     /// An option's value. Every declared option has one.
     pub fn option(&self, key: &str) -> Option<Value<'a>> {
         self.options
@@ -63,7 +130,7 @@ impl<'a> Setup<'a> {
 }
 
 /// One axis word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisWord<'a> {
     /// Its address: `X`, `C`, …
     pub name: &'a str,
@@ -73,15 +140,23 @@ pub struct AxisWord<'a> {
     pub wrapped: bool,
     /// The linear axis along the spindle at all axes zero: moved last when the tool comes near, first when it goes.
     pub depth: bool,
+    /// The axis carries the part, else the tool.
+    pub carries_part: bool,
+    /// Least and largest position of the axis as the machine shows it, mm or degrees, whatever the units are;
+    /// none for one without ends.
+    pub travel: Option<[f64; 2]>,
 }
 
-/// Units of a program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Units {
-    /// mm, mm/min.
-    Millimetre,
-    /// inch, inch/min.
-    Inch,
+codes! {
+    /// Units of a program.
+    #[derive(Default)]
+    Units "UNITS" {
+        /// mm, mm/min.
+        #[default]
+        Millimetre = 1 "MILLIMETRE",
+        /// inch, inch/min.
+        Inch = 2 "INCH",
+    }
 }
 
 /// The value of an option.

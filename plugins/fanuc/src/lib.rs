@@ -111,6 +111,7 @@ impl Dialect for Fanuc {
                 number,
                 register,
                 name,
+                ..
             } => {
                 self.clear(out);
                 if self.spindle.is(true) {
@@ -131,7 +132,7 @@ impl Dialect for Fanuc {
             Event::Spindle(spindle) => self.turn(spindle, out),
             Event::Coolant(coolant) => self.cool(coolant, out)?,
             Event::Compensate(compensation) => self.iso.compensate(compensation),
-            Event::Position { words, feed } => {
+            Event::Position { words, feed, .. } => {
                 let register = self.register.ok_or(
                     "no tool was loaded, so the length register is not known: load one, or set the \
                      option `length_register`",
@@ -146,8 +147,8 @@ impl Dialect for Fanuc {
                 self.retracted.forget();
             }
             Event::Release => self.release(out),
-            Event::Rapid { words } => self.iso.rapid(words, out),
-            Event::Linear { words, feed } => self.iso.cut(words, feed, out),
+            Event::Rapid { words, .. } => self.iso.rapid(words, out),
+            Event::Linear { words, feed, .. } => self.iso.cut(words, feed, out),
             // In ms, without a point. A dwell too short to be written waits the least.
             Event::Dwell { seconds } => {
                 let ms = (seconds * 1000.0).round().max(1.0);
@@ -159,7 +160,7 @@ impl Dialect for Fanuc {
             Event::OptionalStop => self.iso.line("M1", out),
             Event::Home => self.go_home(out),
             Event::End => self.end(out),
-            other => return Err(format!("this dialect has no words for {other:?}")),
+            other => return Err(other.refusal()),
         }
         Ok(())
     }

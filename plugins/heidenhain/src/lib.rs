@@ -157,16 +157,16 @@ impl Dialect for Heidenhain {
                     Compensation::Right { .. } => "RR",
                 }
             }
-            Event::Position { words, feed } => self.approach(words, feed, out)?,
+            Event::Position { words, feed, .. } => self.approach(words, feed, out)?,
             Event::Release => self.release(out),
-            Event::Rapid { words } => {
+            Event::Rapid { words, .. } => {
                 if self.axes.moved(words) {
                     self.block.word("L");
                     self.axes.write(&mut self.block, words);
                     self.finish_move(None, true, out)?;
                 }
             }
-            Event::Linear { words, feed } => {
+            Event::Linear { words, feed, .. } => {
                 if self.axes.moved(words) {
                     let length = [Group::Plane, Group::Depth]
                         .iter()
@@ -187,7 +187,7 @@ impl Dialect for Heidenhain {
             Event::OptionalStop => self.block.line("M1", out),
             Event::Home => self.go_home(out),
             Event::End => self.end(out),
-            other => return Err(format!("this dialect has no words for {other:?}")),
+            other => return Err(other.refusal()),
         }
         Ok(())
     }

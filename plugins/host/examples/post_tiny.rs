@@ -34,12 +34,16 @@ impl Dialect for Tiny {
                 out.push_str("M30\n");
                 return Ok(());
             }
-            Event::Position { words, feed: None } | Event::Rapid { words } => ("G0", words, None),
+            Event::Position {
+                words, feed: None, ..
+            }
+            | Event::Rapid { words, .. } => ("G0", words, None),
             Event::Linear {
                 words,
                 feed: Feed::PerMinute(feed),
+                ..
             } => ("G1", words, Some(feed)),
-            other => return Err(format!("it has no words for {other:?}")),
+            other => return Err(other.refusal()),
         };
         let mut block = Block::plain();
         block.word(motion);

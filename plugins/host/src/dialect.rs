@@ -3,10 +3,12 @@
 #![allow(unsafe_code)]
 
 use std::ffi::c_void;
+use std::fmt;
 
-use post_plugin::raw::{self, PostDialect, PostEvent, PostFormat};
+use post_plugin::raw::{self, PostDialect, PostEvent, PostFormat, PostText};
 use post_plugin::{
-    AxisWord, Batch, DialectSession, Event, Feed, Format, Setup, Spindle, Units, Value, WriteFault,
+    Accuracy, Ahead, AxisWord, Batch, Capabilities, DialectSession, Event, Format, LinkedDialect,
+    Promise, Setup, Tool, Units, Value, WriteFault,
 };
 
 use crate::plugin::Table;
@@ -14,7 +16,7 @@ use crate::sink::{message, with_sink};
 use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};
 
 /// What a dialect is told about a program.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ProgramSetup {
     /// Name of the program (the output file's stem).
     pub program: String,
@@ -28,10 +30,16 @@ pub struct ProgramSetup {
     pub words: Vec<ProgramWord>,
     /// The options of the machine file, as given.
     pub options: Vec<(String, GivenValue)>,
+    /// See [`Setup::cl_file`].
+    pub cl_file: String,
+    /// See [`Setup::accuracy`].
+    pub accuracy: Option<Accuracy>,
+    /// See [`Setup::ahead`].
+    pub ahead: Option<ProgramAhead>,
 }
 
 /// See [`AxisWord`].
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProgramWord {
     /// Its address.
     pub name: String,
@@ -41,23 +49,116 @@ pub struct ProgramWord {
     pub wrapped: bool,
     /// The linear axis along the spindle.
     pub depth: bool,
+    /// The axis carries the part.
+    pub carries_part: bool,
+    /// See [`AxisWord::travel`].
+    pub travel: Option<[f64; 2]>,
+}
+
+/// See [`post_plugin::Ahead`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProgramAhead {
+    /// The tools in the order in which they are first used.
+    pub tools: Vec<ProgramTool>,
+    /// Least and largest tip, mm, part frame.
+    pub extents: Option<[[f64; 3]; 2]>,
+    /// The program's time, seconds.
+    pub time: Option<f64>,
+}
+
+/// See [`post_plugin::Tool`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProgramTool {
+    /// Tool number.
+    pub number: u32,
+    /// Its name, empty if not known.
+    pub name: String,
+    /// From the gauge point to the tip, mm.
+    pub length: Option<f64>,
+    /// Of the cutter, mm.
+    pub diameter: Option<f64>,
+    /// Of the cutter's corner, mm.
+    pub corner_radius: Option<f64>,
+}
+
+impl ProgramSetup {
+    /// Hands it to `take` as a dialect sees it, with `options` completed.
+    fn with<R>(&self, options: &[(String, GivenValue)], take: impl FnOnce(&Setup<'_>) -> R) -> R {
+        let options: Vec<(&str, Value<'_>)> = options
+            .iter()
+            .map(|(key, value)| (key.as_str(), value.as_value()))
+            .collect();
+        let words: Vec<AxisWord<'_>> = self
+            .words
+            .iter()
+            .map(|word| AxisWord {
+                name: &word.name,
+                rotary: word.rotary,
+                wrapped: word.wrapped,
+                depth: word.depth,
+                carries_part: word.carries_part,
+                travel: word.travel,
+            })
+            .collect();
+        let tools = self.ahead.iter().flat_map(|ahead| &ahead.tools);
+        let tools: Vec<Tool<'_>> = tools
+            .map(|tool| Tool {
+                number: tool.number,
+                name: &tool.name,
+                length: tool.length,
+                diameter: tool.diameter,
+                corner_radius: tool.corner_radius,
+            })
+            .collect();
+        take(&Setup {
+            program: &self.program,
+            machine: &self.machine,
+            units: self.units,
+            tcp: self.tcp,
+            words: &words,
+            options: &options,
+            cl_file: &self.cl_file,
+            accuracy: self.accuracy,
+            ahead: self.ahead.as_ref().map(|ahead| Ahead {
+                tools: &tools,
+                extents: ahead.extents,
+                time: ahead.time,
+            }),
+        })
+    }
 }
 
 /// A dialect that is writing a program.
-#[derive(Debug)]
 pub struct OpenedDialect {
     plugin: String,
+    way: Way,
+    format: Format,
+    capabilities: Capabilities,
+}
+
+/// How a dialect is reached.
+enum Way {
+    /// It is part of this program and writes straight into the host's text.
+    Linked(Box<dyn LinkedDialect>),
+    /// Through the C contract.
+    Library(Library),
+}
+
+/// A context behind the C contract.
+struct Library {
     table: &'static PostDialect,
     ctx: *mut c_void,
-    format: Format,
     /// The batch in its raw form; empty but during a call.
     events: Vec<PostEvent>,
+    texts: Vec<PostText>,
     ends: Vec<u64>,
+    /// What it wrote, before it is believed.
+    written: Vec<u8>,
 }
 
 // SAFETY: the contract lets a context wander between threads, one call at a time, and `&mut self` sees
-// to that; the events hold pointers only during a call.
-unsafe impl Send for OpenedDialect {}
+// to that; events and texts hold pointers only during a call.
+unsafe impl Send for Library {}
 
 impl Plugin {
     /// Opens this dialect for one program.
@@ -68,38 +169,80 @@ impl Plugin {
         let Table::Dialect(table) = self.table else {
             return Err(self.other_kind(Kind::Dialect));
         };
-        if setup.words.len() > raw::MAX_WORDS {
+        let words = setup.words.len();
+        if words > raw::MAX_WORDS {
             return Err(self.fault(Reason::Refused {
                 message: format!("a program may have {} axis words", raw::MAX_WORDS),
             }));
         }
         let options = check_options(self.options(), &setup.options)
             .map_err(|fault| self.fault(Reason::Option(fault)))?;
-        let options: Vec<(&str, Value<'_>)> = options
-            .iter()
-            .map(|(key, value)| (key.as_str(), value.as_value()))
-            .collect();
-        let words: Vec<AxisWord<'_>> = setup
-            .words
-            .iter()
-            .map(|word| AxisWord {
-                name: &word.name,
-                rotary: word.rotary,
-                wrapped: word.wrapped,
-                depth: word.depth,
-            })
-            .collect();
-        let setup = Setup {
-            program: &setup.program,
-            machine: &setup.machine,
-            units: setup.units,
-            tcp: setup.tcp,
-            words: &words,
-            options: &options,
+        let refused = |message| self.fault(Reason::Refused { message });
+        let nonsense = |message| self.fault(Reason::Nonsense { message });
+        let linked = self
+            .linked
+            .and_then(|linked| setup.with(&options, |setup| linked.open(setup)));
+        let (way, format, capabilities) = match linked {
+            Some(opened) => {
+                let mut dialect = opened.map_err(|message| refused(reason_of(message)))?;
+                let (format, capabilities) = dialect.format().map_err(nonsense)?;
+                (Way::Linked(dialect), format, capabilities)
+            }
+            None => {
+                let library = setup
+                    .with(&options, |setup| Library::open(table, setup))
+                    .map_err(refused)?;
+                let (format, capabilities) = library.ask_format(words).map_err(nonsense)?;
+                (Way::Library(library), format, capabilities)
+            }
         };
+        check_format(&format, words).map_err(nonsense)?;
+        Ok(OpenedDialect {
+            plugin: self.name.clone(),
+            way,
+            format,
+            capabilities,
+        })
+    }
+}
+
+/// What a format says must be possible.
+fn check_format(format: &Format, words: usize) -> Result<(), String> {
+    if format.words.len() != words {
+        return Err(format!(
+            "its format has {} axis words, the program has {words}",
+            format.words.len()
+        ));
+    }
+    let feeds = [
+        Some(format.feed),
+        format.inverse_time,
+        Some(format.feed_per_revolution),
+    ];
+    let decimals = format
+        .words
+        .iter()
+        .copied()
+        .chain(feeds.into_iter().flatten());
+    if let Some(count) = decimals.max().filter(|count| *count > 9) {
+        return Err(format!(
+            "its format asks for {count} decimals, at most 9 are possible"
+        ));
+    }
+    let extension = &format.extension;
+    if extension.len() > 16 || !extension.bytes().all(|byte| byte.is_ascii_alphanumeric()) {
+        return Err("its file extension is not letters and digits".to_owned());
+    }
+    Ok(())
+}
+
+impl Library {
+    /// # Errors
+    /// Why it refuses.
+    fn open(table: &'static PostDialect, setup: &Setup<'_>) -> Result<Self, String> {
         let mut ctx = std::ptr::null_mut();
         let refusal = message(|sink| {
-            ctx = raw::with_setup(&setup, |setup| {
+            ctx = raw::with_setup(setup, |setup| {
                 // SAFETY: the setup and the sink live for the call; the pointer was checked at loading.
                 table
                     .open
@@ -107,32 +250,20 @@ impl Plugin {
             });
         });
         if ctx.is_null() {
-            return Err(self.fault(Reason::Refused { message: refusal }));
+            return Err(refusal);
         }
         // From here on, dropping it closes the context.
-        let mut opened = OpenedDialect {
-            plugin: self.name.clone(),
+        Ok(Library {
             table,
             ctx,
-            format: Format {
-                words: Vec::new(),
-                feed: 0,
-                inverse_time: None,
-                feed_per_revolution: 0,
-                extension: String::new(),
-            },
             events: Vec::new(),
+            texts: Vec::new(),
             ends: Vec::new(),
-        };
-        opened.format = opened
-            .ask_format(words.len())
-            .map_err(|message| self.fault(Reason::Nonsense { message }))?;
-        Ok(opened)
+            written: Vec::new(),
+        })
     }
-}
 
-impl OpenedDialect {
-    fn ask_format(&self, words: usize) -> Result<Format, String> {
+    fn ask_format(&self, words: usize) -> Result<(Format, Capabilities), String> {
         let mut raw = PostFormat::EMPTY;
         // SAFETY: the context is open and `raw` lives for the call.
         let failed = self
@@ -142,37 +273,26 @@ impl OpenedDialect {
         if failed {
             return Err(self.last_error());
         }
-        if raw.words_len as usize != words {
-            return Err(format!(
+        let decimals_of = raw.words.get(..raw.words_len as usize).ok_or_else(|| {
+            format!(
                 "its format has {} axis words, the program has {words}",
                 raw.words_len
-            ));
-        }
-        let decimals = |count: i64| match u8::try_from(count) {
-            Ok(count) if count <= 9 => Ok(count),
-            _ => Err(format!(
-                "its format asks for {count} decimals, at most 9 are possible"
-            )),
-        };
+            )
+        })?;
+        // More than a byte holds is more than is allowed.
+        let decimals = |count: u32| u8::try_from(count).unwrap_or(u8::MAX);
         let extension = raw.extension.split(|byte| *byte == 0).next().unwrap_or(&[]);
-        Ok(Format {
-            words: raw.words[..words]
-                .iter()
-                .map(|count| decimals((*count).into()))
-                .collect::<Result<_, _>>()?,
-            feed: decimals(raw.feed.into())?,
+        let format = Format {
+            words: decimals_of.to_vec(),
+            feed: decimals(raw.feed),
             inverse_time: match raw.inverse_time {
                 -1 => None,
-                count => Some(decimals(count.into())?),
+                count => Some(u8::try_from(count).unwrap_or(u8::MAX)),
             },
-            feed_per_revolution: decimals(raw.feed_per_revolution.into())?,
-            extension: match std::str::from_utf8(extension) {
-                Ok(text) if text.bytes().all(|byte| byte.is_ascii_alphanumeric()) => {
-                    text.to_owned()
-                }
-                _ => return Err("its file extension is not letters and digits".to_owned()),
-            },
-        })
+            feed_per_revolution: decimals(raw.feed_per_revolution),
+            extension: String::from_utf8_lossy(extension).into_owned(),
+        };
+        Ok((format, Capabilities::from_bits(raw.writes)))
     }
 
     fn last_error(&self) -> String {
@@ -184,83 +304,89 @@ impl OpenedDialect {
         })
     }
 
-    /// Keeps the promises made to plugins: right number of words, all numbers finite, feeds that move.
-    fn promised(&self, event: &Event<'_>) -> Result<(), String> {
-        let words = |words: &[f64]| {
-            if words.len() != self.format.words.len() {
-                return Err(format!(
-                    "{} axis words instead of {}",
-                    words.len(),
-                    self.format.words.len()
-                ));
-            }
-            match words.iter().find(|word| !word.is_finite()) {
-                Some(word) => Err(format!("an axis word is {word}")),
-                None => Ok(()),
-            }
-        };
-        let feed = |feed: &Feed| match *feed {
-            Feed::InverseTime(_) if self.format.inverse_time.is_none() => {
-                Err("this control has no inverse-time feed".to_owned())
-            }
-            Feed::PerMinute(value) | Feed::InverseTime(value) | Feed::PerRevolution(value) => {
-                if value.is_finite() && value > 0.0 {
-                    Ok(())
-                } else {
-                    Err(format!("the feed is {value}"))
-                }
-            }
-        };
-        match event {
-            Event::Position {
-                words: values,
-                feed: approach,
-            } => words(values).and_then(|()| approach.iter().try_for_each(feed)),
-            Event::Rapid { words: values } => words(values),
-            Event::Linear {
-                words: values,
-                feed: cut,
-            } => words(values).and_then(|()| feed(cut)),
-            Event::Spindle(Spindle::On { rpm: value, .. }) | Event::Dwell { seconds: value } => {
-                if value.is_finite() && *value >= 0.0 {
-                    Ok(())
-                } else {
-                    Err(format!("its number is {value}"))
-                }
-            }
-            _ => Ok(()),
-        }
-    }
-
-    fn fault(&self, batch: &Batch, index: usize, message: &str) -> WriteFault {
-        let kind = batch.event(index).name();
-        WriteFault {
-            index,
-            message: format!("dialect `{}`, event {kind}: {message}", self.plugin),
-        }
-    }
-
-    /// Calls the plugin on `self.events`; says how many it wrote, or why its answer is not believed.
-    fn call(&mut self, out: &mut Vec<u8>) -> Result<usize, String> {
-        let events = &self.events;
+    /// Calls the plugin on the first `count` events of `batch`; says how many it wrote, or why its answer is not
+    /// believed.
+    fn call(&mut self, batch: &Batch, count: usize) -> Result<usize, String> {
+        raw::events(batch, count, &mut self.events, &mut self.texts);
         self.ends.clear();
-        self.ends.resize(events.len(), u64::MAX);
-        let ends = self.ends.as_mut_ptr();
+        self.ends.resize(count, u64::MAX);
+        self.written.clear();
+        let (events, ends) = (self.events.as_ptr(), self.ends.as_mut_ptr());
         let Some(write) = self.table.write else {
             return Err("it has no `write`".to_owned());
         };
+        let ctx = self.ctx;
         // SAFETY: the events and what they point to (the batch) live for the call, `ends` has room for
         // one number each, the sink is in force, and the context is open and used by this call alone.
-        let written = with_sink(out, |sink| unsafe {
-            write(self.ctx, events.as_ptr(), events.len(), sink, ends)
+        let written = with_sink(&mut self.written, |sink| unsafe {
+            write(ctx, events, count, sink, ends)
         });
-        if written > events.len() {
-            return Err(format!(
-                "it says it wrote {written} events of {}",
-                events.len()
-            ));
+        // They point into the batch, which is the caller's.
+        self.events.clear();
+        self.texts.clear();
+        if written > count {
+            return Err(format!("it says it wrote {written} events of {count}"));
         }
         Ok(written)
+    }
+
+    /// As [`LinkedDialect::write`].
+    fn write(
+        &mut self,
+        batch: &Batch,
+        promise: &Promise,
+        out: &mut String,
+        ends: &mut Vec<usize>,
+    ) -> Result<(), WriteFault> {
+        let broken = batch.iter().enumerate().find_map(|(index, event)| {
+            let message = event.check(promise).err()?;
+            Some(WriteFault { index, message })
+        });
+        let asked = broken.as_ref().map_or(batch.len(), |fault| fault.index);
+        let fault = |index, message| Err(WriteFault { index, message });
+        let written = match self.call(batch, asked) {
+            Ok(written) => written,
+            Err(message) => return fault(0, message),
+        };
+        // All at once; event by event only to name the one that is at fault.
+        let whole = std::str::from_utf8(&self.written);
+        let base = out.len();
+        let mut from = 0;
+        for index in 0..written {
+            let to = usize::try_from(self.ends[index]).ok();
+            let piece = to.and_then(|to| Some((to, self.written.get(from..to)?)));
+            let Some((to, piece)) = piece else {
+                return fault(index, "the end of its text is not where it says".to_owned());
+            };
+            // Whole text may still be cut within a letter.
+            let text = match whole {
+                Ok(whole) => whole.get(from..to),
+                Err(_) => std::str::from_utf8(piece).ok(),
+            };
+            let Some(text) = text else {
+                return fault(index, "its text is not UTF-8".to_owned());
+            };
+            out.push_str(text);
+            from = to;
+            ends.push(base + from);
+        }
+        if written < asked {
+            return fault(written, self.last_error());
+        }
+        if from != self.written.len() {
+            let message = "it wrote text that belongs to no event".to_owned();
+            return fault(written.saturating_sub(1), message);
+        }
+        broken.map_or(Ok(()), Err)
+    }
+}
+
+impl Drop for Library {
+    fn drop(&mut self) {
+        if let Some(close) = self.table.close {
+            // SAFETY: the context is open, and this is its last use.
+            unsafe { close(self.ctx) };
+        }
     }
 }
 
@@ -269,78 +395,85 @@ impl DialectSession for OpenedDialect {
         &self.format
     }
 
+    fn capabilities(&self) -> Capabilities {
+        self.capabilities
+    }
+
     fn write_batch(
         &mut self,
         batch: &Batch,
-        out: &mut Vec<u8>,
+        out: &mut String,
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         if batch.is_empty() {
             return Ok(());
         }
-        self.events.clear();
-        let mut broken = None;
-        for index in 0..batch.len() {
-            let event = batch.event(index);
-            if let Err(message) = self.promised(&event) {
-                broken = Some(self.fault(batch, index, &message));
-                break;
+        let promise = Promise {
+            words: self.format.words.len(),
+            inverse_time: self.format.inverse_time.is_some(),
+        };
+        let (base, first) = (out.len(), ends.len());
+        let written = match &mut self.way {
+            Way::Linked(dialect) => dialect.write(batch, &promise, out, ends),
+            Way::Library(library) => library.write(batch, &promise, out, ends),
+        };
+        let believed = check_batch(batch, out, base, ends, first);
+        believed.and(written).map_err(|fault| {
+            let event = batch.event(fault.index.min(batch.len() - 1)).name();
+            WriteFault {
+                message: format!(
+                    "dialect `{}`, event {event}: {}",
+                    self.plugin, fault.message
+                ),
+                ..fault
             }
-            self.events.push(PostEvent::new(batch.line(index), &event));
-        }
-        let base = out.len();
-        let written = self.call(out);
-        let asked = self.events.len();
-        // They point into the batch, which is the caller's.
-        self.events.clear();
-        let written = written.map_err(|message| {
-            out.truncate(base);
-            self.fault(batch, 0, &message)
-        })?;
-
-        // All at once, at the speed of memory; event by event only to name the one that is at fault.
-        let sound = is_sound(&out[base..]);
-        let mut from = base;
-        for index in 0..written {
-            let to = usize::try_from(self.ends[index])
-                .ok()
-                .and_then(|end| base.checked_add(end))
-                .filter(|to| (from..=out.len()).contains(to));
-            let checked = match to {
-                None => Err("the end of its text is not where it says".to_owned()),
-                Some(to) if sound && (to == from || out[to - 1] == b'\n') => Ok(to),
-                Some(to) => check_text(&out[from..to], &batch.event(index)).map(|()| to),
-            };
-            match checked {
-                Ok(to) => from = to,
-                Err(message) => {
-                    out.truncate(from);
-                    return Err(self.fault(batch, index, &message));
-                }
-            }
-            ends.push(from);
-        }
-        if written < asked {
-            out.truncate(from);
-            let message = self.last_error();
-            return Err(self.fault(batch, written, &message));
-        }
-        if from != out.len() {
-            out.truncate(from);
-            let message = "it wrote text that belongs to no event";
-            return Err(self.fault(batch, written.saturating_sub(1), message));
-        }
-        broken.map_or(Ok(()), Err)
+        })
     }
 }
 
-impl Drop for OpenedDialect {
-    fn drop(&mut self) {
-        if let Some(close) = self.table.close {
-            // SAFETY: the context is open, and this is its last use.
-            unsafe { close(self.ctx) };
-        }
+impl fmt::Debug for OpenedDialect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { plugin, format, .. } = self;
+        f.debug_struct("OpenedDialect")
+            .field("plugin", plugin)
+            .field("format", format)
+            .finish_non_exhaustive()
     }
+}
+
+/// No reason is no sentence.
+fn reason_of(message: String) -> String {
+    if message.trim().is_empty() {
+        "it gives no reason".to_owned()
+    } else {
+        message
+    }
+}
+
+/// The text of each event is whole lines that a control can read, and a move's numbers are numbers. What does not
+/// fit is taken back, with all that comes behind it.
+fn check_batch(
+    batch: &Batch,
+    out: &mut String,
+    base: usize,
+    ends: &mut Vec<usize>,
+    first: usize,
+) -> Result<(), WriteFault> {
+    // All at once, at the speed of memory; event by event only to name the one that is at fault.
+    let bytes = out.as_bytes();
+    let sound = is_sound(&bytes[base..]);
+    let mut from = base;
+    for (index, &to) in ends[first..].iter().enumerate() {
+        if !(sound && (to == from || bytes[to - 1] == b'\n'))
+            && let Err(message) = check_text(&bytes[from..to], &batch.event(index))
+        {
+            out.truncate(from);
+            ends.truncate(first + index);
+            return Err(WriteFault { index, message });
+        }
+        from = to;
+    }
+    Ok(())
 }
 
 /// A text in which [`check_text`] can find nothing but a missing line feed; a few others fail here as well.
@@ -366,9 +499,6 @@ fn is_sound(text: &[u8]) -> bool {
 
 /// The text of one event is whole lines that a control can read, and a move's numbers are numbers.
 fn check_text(text: &[u8], event: &Event<'_>) -> Result<(), String> {
-    if std::str::from_utf8(text).is_err() {
-        return Err("its text is not UTF-8".to_owned());
-    }
     if text.last().is_some_and(|byte| *byte != b'\n') {
         return Err("its text does not end with a line feed".to_owned());
     }
@@ -376,11 +506,7 @@ fn check_text(text: &[u8], event: &Event<'_>) -> Result<(), String> {
     if let Some(byte) = text.iter().find(odd) {
         return Err(format!("its text holds the control character {byte}"));
     }
-    let moves = matches!(
-        event,
-        Event::Position { .. } | Event::Rapid { .. } | Event::Linear { .. }
-    );
-    if moves && has_no_number(text) {
+    if event.moves() && has_no_number(text) {
         return Err(format!(
             "it wrote something that is no number: {}",
             String::from_utf8_lossy(text).trim()

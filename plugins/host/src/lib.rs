@@ -1,8 +1,8 @@
 //! Finds, checks, opens and calls plugins: the host's side of the contract in `post-plugin`.
 //!
-//! A plugin that is linked in and one that is opened from a file are called through the same pointers,
-//! so what is tested on the one holds for the other. Nothing that a plugin returns is believed before it
-//! was checked.
+//! An error model that is linked in and one that is opened from a file are called through the same pointers; a
+//! linked-in dialect writes straight into the host's text instead, by the code that stands behind those pointers.
+//! Nothing that a plugin returns is believed before it was checked.
 
 pub mod conformance;
 mod dialect;
@@ -13,7 +13,7 @@ mod options;
 mod plugin;
 mod sink;
 
-pub use dialect::{OpenedDialect, ProgramSetup, ProgramWord};
+pub use dialect::{OpenedDialect, ProgramAhead, ProgramSetup, ProgramTool, ProgramWord};
 pub use fault::{OptionFault, PluginFault, Reason};
 pub use finder::Finder;
 pub use model::OpenedModel;

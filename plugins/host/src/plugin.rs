@@ -18,6 +18,8 @@ pub struct Plugin {
     pub(crate) name: String,
     version: String,
     pub(crate) table: Table,
+    /// Where it is part of this program.
+    pub(crate) linked: Option<Linked>,
     path: Option<PathBuf>,
     hash: Option<String>,
     options: &'static [OptionSpec],
@@ -61,11 +63,13 @@ impl Plugin {
     /// If what it declares does not hold together.
     pub fn linked(linked: Linked) -> Result<Plugin, PluginFault> {
         // SAFETY: only the export macros make a `Linked`, and only of functions that keep the contract.
-        unsafe { judge(linked.raw()) }.map_err(|reason| PluginFault {
+        let mut plugin = unsafe { judge(linked.raw()) }.map_err(|reason| PluginFault {
             plugin: "linked in".to_owned(),
             path: None,
             reason,
-        })
+        })?;
+        plugin.linked = Some(linked);
+        Ok(plugin)
     }
 
     /// Opens `…/libpost_<name>.so` (`.dylib`, `post_<name>.dll`), which must export `post_plugin_<name>`.
@@ -287,6 +291,7 @@ unsafe fn judge(plugin: *const PostPlugin) -> Result<Plugin, Reason> {
         name: name.to_owned(),
         version: version.to_owned(),
         table,
+        linked: None,
         path: None,
         hash: None,
         options: unsafe { declared(plugin) }?,

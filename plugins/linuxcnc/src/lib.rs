@@ -120,6 +120,7 @@ impl Dialect for LinuxCnc {
                 number,
                 register,
                 name,
+                ..
             } => {
                 self.clear(out);
                 if self.spindle.is(true) {
@@ -139,7 +140,7 @@ impl Dialect for LinuxCnc {
             Event::Spindle(spindle) => self.turn(spindle, out),
             Event::Coolant(coolant) => self.cool(coolant, out)?,
             Event::Compensate(compensation) => self.iso.compensate(compensation),
-            Event::Position { words, feed } => {
+            Event::Position { words, feed, .. } => {
                 let length = match self.register {
                     Some(register) => format!("G43 H{register}"),
                     None => "G43".to_owned(),
@@ -153,8 +154,8 @@ impl Dialect for LinuxCnc {
                 self.retracted.forget();
             }
             Event::Release => self.release(out),
-            Event::Rapid { words } => self.iso.rapid(words, out),
-            Event::Linear { words, feed } => self.iso.cut(words, feed, out),
+            Event::Rapid { words, .. } => self.iso.rapid(words, out),
+            Event::Linear { words, feed, .. } => self.iso.cut(words, feed, out),
             Event::Dwell { seconds } => {
                 self.iso.block.word("G4");
                 self.iso
@@ -166,7 +167,7 @@ impl Dialect for LinuxCnc {
             Event::OptionalStop => self.iso.line("M1", out),
             Event::Home => self.go_home(out),
             Event::End => self.end(out),
-            other => return Err(format!("this dialect has no words for {other:?}")),
+            other => return Err(other.refusal()),
         }
         Ok(())
     }

@@ -14,8 +14,10 @@ const fn word(name: &str, rotary: bool, depth: bool) -> AxisWord<'_> {
     AxisWord {
         name,
         rotary,
-        wrapped: false,
         depth,
+        wrapped: false,
+        carries_part: false,
+        travel: None,
     }
 }
 
@@ -38,6 +40,7 @@ fn program(
         tcp,
         words: WORDS,
         options: &options,
+        ..Setup::default()
     })?;
     let mut out = String::new();
     for event in events {
@@ -47,21 +50,15 @@ fn program(
 }
 
 fn cut(words: &[f64], feed: f64) -> Event<'_> {
-    Event::Linear {
-        words,
-        feed: Feed::PerMinute(feed),
-    }
+    Event::linear(words, Feed::PerMinute(feed))
 }
 
 fn timed(words: &[f64], feed: f64) -> Event<'_> {
-    Event::Linear {
-        words,
-        feed: Feed::InverseTime(feed),
-    }
+    Event::linear(words, Feed::InverseTime(feed))
 }
 
 fn rapid(words: &[f64]) -> Event<'_> {
-    Event::Rapid { words }
+    Event::rapid(words)
 }
 
 fn turning(rpm: f64) -> Event<'static> {
@@ -71,14 +68,10 @@ fn turning(rpm: f64) -> Event<'static> {
     })
 }
 
-const TOOL: Event<'_> = Event::ToolChange {
-    number: 1,
-    register: 1,
-    name: "Ball Ø10 (R5)",
-};
+const TOOL: Event<'_> = Event::tool_change(1, 1, "Ball Ø10 (R5)");
 
 fn at(words: &[f64]) -> Event<'_> {
-    Event::Position { words, feed: None }
+    Event::position(words, None)
 }
 
 const P1: &[f64] = &[10.0, -20.5, 100.0, -30.0, 45.0];
@@ -109,16 +102,9 @@ fn job() -> Vec<Event<'static>> {
         Event::OptionalStop,
         Event::Release,
         Event::Home,
-        Event::ToolChange {
-            number: 2,
-            register: 12,
-            name: "",
-        },
+        Event::tool_change(2, 12, ""),
         turning(1200.0),
-        Event::Position {
-            words: P1,
-            feed: Some(Feed::PerMinute(2000.5)),
-        },
+        Event::position(P1, Some(Feed::PerMinute(2000.5))),
         Event::Compensate(Compensation::Left { register: 32 }),
         cut(P2, 300.0),
         cut(P3, 300.0),

@@ -37,7 +37,7 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failur
     let finder = plugin_finder::finder(&arguments.plugins)?;
     let name = arguments.output.as_ref().and_then(PathArg::stem);
     let name = name.unwrap_or_else(|| "COMMISSION".to_owned());
-    let (mut dialect, _) = plugin_finder::dialect(&finder, &plain, &name)?;
+    let (mut dialect, _) = plugin_finder::dialect(&finder, &plain, &name, None)?;
     let target = target(arguments, &dialect.format().extension)?;
     let mut writer = Writer {
         machine: &plain,
@@ -47,11 +47,11 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failur
         batch: Batch::default(),
     };
     writer.program(&plan);
-    let (mut text, mut ends) = (Vec::new(), Vec::new());
+    let (mut text, mut ends) = (String::new(), Vec::new());
     dialect
         .write_batch(&writer.batch, &mut text, &mut ends)
         .map_err(|fault| Diagnostic::error("dialect", fault.message))?;
-    files::write(&target, &text)?;
+    files::write(&target, text.as_bytes())?;
     if let Some(path) = target.path() {
         print(&format!(
             "{}: {} moves, one axis each. Run it without a part, with a hand on the feed override.\n",
@@ -93,13 +93,7 @@ impl Writer<'_> {
             // Whoever has set it up as told sees no move here; else it is a slow one.
             let feed = self.feed(first);
             let words = self.words(&plan.start);
-            self.batch.push(
-                0,
-                Event::Linear {
-                    words: &words,
-                    feed,
-                },
-            );
+            self.batch.push(0, Event::linear(&words, feed));
         }
         while let Some(trial) = trials.next() {
             let following = trials.peek().copied();
@@ -166,24 +160,12 @@ impl Writer<'_> {
         there[trial.place] += trial.by;
         let feed = self.feed(trial);
         let words = self.words(&there);
-        self.batch.push(
-            0,
-            Event::Linear {
-                words: &words,
-                feed,
-            },
-        );
+        self.batch.push(0, Event::linear(&words, feed));
         let shown = self.told(&there, true);
         self.say(&format!("The display shows {shown}"));
         self.batch.push(0, Event::Stop);
         let words = self.words(&self.start);
-        self.batch.push(
-            0,
-            Event::Linear {
-                words: &words,
-                feed,
-            },
-        );
+        self.batch.push(0, Event::linear(&words, feed));
         if let Some(clamp) = &axis.clamp {
             self.batch.push(0, Event::Word { text: &clamp.on });
         }

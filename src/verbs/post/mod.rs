@@ -44,7 +44,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let machine = job::machine(&arguments.job, &[])?;
     let finder = plugin_finder::finder(&arguments.job.plugins)?;
     let program = job::program_name(source, arguments.output.as_ref());
-    let (mut dialect, dialect_use) = plugin_finder::dialect(&finder, &machine, &program)?;
+    let (mut dialect, dialect_use) =
+        plugin_finder::dialect(&finder, &machine, &program, Some(source))?;
     let (mut model, model_use) = plugin_finder::model(&finder, &machine)?;
     let target = program_target(arguments, &dialect.format().extension)?;
     let summary = summary_file(arguments, &target)?;

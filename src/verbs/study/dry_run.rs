@@ -5,7 +5,7 @@ use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Batch, DialectSession, Format, WriteFault};
 use post_posting::report::Report;
-use post_posting::{Post, Watch};
+use post_posting::{Observer, Post};
 
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
@@ -53,11 +53,11 @@ impl<'a> DryRun<'a> {
     pub fn pass(
         &self,
         machine: &Machine,
-        watch: Option<&mut dyn Watch>,
+        watch: Option<&mut dyn Observer>,
     ) -> Result<(Report, Vec<Diagnostic>), Failure> {
         let source = self.arguments.input();
         let program = job::program_name(source, None);
-        let (dialect, _) = plugin_finder::dialect(&self.finder, machine, &program)?;
+        let (dialect, _) = plugin_finder::dialect(&self.finder, machine, &program, Some(source))?;
         let (mut model, _) = plugin_finder::model(&self.finder, machine)?;
         let input = ClInput::open(source)?;
         let posting = job::posting(self.arguments, &input.name);
@@ -100,7 +100,7 @@ impl DialectSession for Rounding {
     fn write_batch(
         &mut self,
         batch: &Batch,
-        out: &mut Vec<u8>,
+        out: &mut String,
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         self.dialect.write_batch(batch, out, ends)

@@ -10,7 +10,7 @@ use post_machine::axis_words;
 use post_machine::description::{self, Machine, Setting, Source};
 use post_plugin::Units;
 use post_posting::report::Report;
-use post_posting::{Job, Output, Post, Watch};
+use post_posting::{Job, Observer, Output, Post};
 
 /// A machine of the library.
 pub fn machine(name: &str, settings: &[String]) -> Result<Machine, Box<dyn Error>> {
@@ -44,7 +44,7 @@ pub fn watched(
     name: &str,
     settings: &[String],
     job: Job,
-    watch: Option<&mut dyn Watch>,
+    watch: Option<&mut dyn Observer>,
 ) -> Result<Report, Box<dyn Error>> {
     let machine = machine(name, settings)?;
     let depth = axis_words::depth(&machine);
@@ -58,11 +58,11 @@ pub fn watched(
             .map(|place| ProgramWord {
                 name: machine.axes[place].name.clone(),
                 rotary: machine.axes[place].joint.rotary,
-                wrapped: false,
                 depth: Some(place) == depth,
+                ..ProgramWord::default()
             })
             .collect(),
-        options: Vec::new(),
+        ..ProgramSetup::default()
     };
     let dialect = match machine.control.dialect.as_str() {
         "linuxcnc" => post_linuxcnc::plugin(),

@@ -23,11 +23,31 @@ pub struct Asked {
     pub kind: &'static str,
     pub words: Vec<f64>,
     pub feed: Option<Feed>,
+    /// Any other number it has: the seconds of a dwell, the number of a tool.
+    pub value: f64,
 }
 
-struct Recorder {
+/// A dialect that writes nothing down but the events themselves. No word may be a negative zero, no number an
+/// infinite one.
+pub struct Recorder {
     format: Format,
-    asked: Vec<Asked>,
+    pub asked: Vec<Asked>,
+}
+
+impl Recorder {
+    /// For a machine, its words printed with so many decimals.
+    pub fn new(machine: &Machine, decimals: u8) -> Self {
+        Self {
+            format: Format {
+                words: machine.axes.iter().map(|_| decimals).collect(),
+                feed: 1,
+                inverse_time: Some(4),
+                feed_per_revolution: 4,
+                extension: "nc".to_owned(),
+            },
+            asked: Vec::new(),
+        }
+    }
 }
 
 impl DialectSession for Recorder {
@@ -38,23 +58,38 @@ impl DialectSession for Recorder {
     fn write_batch(
         &mut self,
         batch: &Batch,
-        out: &mut Vec<u8>,
+        out: &mut String,
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
-            let (words, feed) = match event {
-                Event::Position { words, feed } => (words, feed),
-                Event::Rapid { words } => (words, None),
-                Event::Linear { words, feed } => (words, Some(feed)),
-                _ => (&[][..], None),
+            let (words, feed, value) = match event {
+                Event::Position { words, feed, .. } => (words, feed, 0.0),
+                Event::Rapid { words, .. } => (words, None, 0.0),
+                Event::Linear { words, feed, .. } => (words, Some(feed), 0.0),
+                Event::Dwell { seconds } => (&[][..], None, seconds),
+                Event::ToolChange { number, .. } => (&[][..], None, f64::from(number)),
+                _ => (&[][..], None, 0.0),
             };
+            for word in words {
+                assert!(
+                    word.is_finite() && (*word != 0.0 || word.is_sign_positive()),
+                    "a word is {word}"
+                );
+            }
+            if let Some(
+                Feed::PerMinute(feed) | Feed::InverseTime(feed) | Feed::PerRevolution(feed),
+            ) = feed
+            {
+                assert!(feed.is_finite() && feed > 0.0, "a feed is {feed}");
+            }
             self.asked.push(Asked {
                 line: batch.line(index),
                 kind: event.name(),
                 words: words.to_vec(),
                 feed,
+                value,
             });
-            out.extend_from_slice(b"block\n");
+            out.push_str("block\n");
             ends.push(out.len());
         }
         Ok(())
@@ -62,7 +97,7 @@ impl DialectSession for Recorder {
 }
 
 /// An error model that looks at 33 places and has no opinion.
-struct Samples;
+pub struct Samples;
 
 impl ModelSession for Samples {
     fn fit(
@@ -73,15 +108,11 @@ impl ModelSession for Samples {
         let places: [f64; 33] = std::array::from_fn(|step| step as f64 / 32.0);
         let mut out = [Deviation::default(); 33];
         deviation(&places, &mut out);
-        let peak = |part: fn(&Deviation) -> [f64; 3]| {
-            out.iter()
-                .map(|place| Vector3::from(part(place)).norm())
-                .fold(0.0, f64::max)
-        };
+        let [tip_peak, axis_peak] = peaks(&out);
         Ok(Curve {
-            tip_peak: peak(|place| place.tip),
+            tip_peak,
             tip_at: 0.5,
-            axis_peak: peak(|place| place.axis),
+            axis_peak,
             axis_at: 0.5,
             terms: [0.0; 60],
         })
@@ -92,7 +123,17 @@ impl ModelSession for Samples {
     }
 }
 
-struct Nowhere;
+/// The largest lengths of the deviations of tip and tool axis.
+pub(crate) fn peaks(places: &[Deviation]) -> [f64; 2] {
+    let peak = |part: fn(&Deviation) -> [f64; 3]| {
+        let lengths = places.iter().map(|place| Vector3::from(part(place)).norm());
+        lengths.fold(0.0, f64::max)
+    };
+    [peak(|place| place.tip), peak(|place| place.axis)]
+}
+
+/// An output that throws away what is written.
+pub struct Nowhere;
 
 impl Output for Nowhere {
     fn write(&mut self, _: &[u8]) -> Result<(), String> {
@@ -136,6 +177,35 @@ impl Run {
     pub fn good(self, what: &str) -> Self {
         assert!(self.report.is_some(), "{what}: {}", self.told());
         self
+    }
+}
+
+/// Posts a CL text on a machine whose words are printed with so many decimals.
+pub fn post(
+    machine: &Machine,
+    decimals: u8,
+    cl: &str,
+    job: Job,
+    model: &mut dyn ModelSession,
+) -> Run {
+    let mut dialect = Recorder::new(machine, decimals);
+    let mut output = Nowhere;
+    let mut post = Post::new(machine, job, &mut dialect, model, &mut output)
+        .expect("machine and dialect agree");
+    let mut reader = Reader::new(cl.as_bytes());
+    while !post.gave_up() {
+        match reader.next_record() {
+            Ok(Some(record)) => post.record(&record),
+            Ok(None) => break,
+            Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
+            Err(other) => panic!("{other}"),
+        }
+    }
+    let (report, findings) = post.finish();
+    Run {
+        asked: dialect.asked,
+        report,
+        findings,
     }
 }
 
@@ -257,39 +327,12 @@ impl Bench {
 
     /// With an error model of the test's own, and maybe nothing but its word.
     pub fn run_with(&self, cl: &str, model: &mut dyn ModelSession, trust_model: bool) -> Run {
-        let mut dialect = Recorder {
-            format: Format {
-                words: self.machine.axes.iter().map(|_| self.decimals).collect(),
-                feed: 1,
-                inverse_time: Some(4),
-                feed_per_revolution: 4,
-                extension: "nc".to_owned(),
-            },
-            asked: Vec::new(),
-        };
-        let mut output = Nowhere;
         let job = Job {
             tool_length: Some(self.length),
             trust_model,
             ..Job::default()
         };
-        let mut post = Post::new(&self.machine, job, &mut dialect, model, &mut output)
-            .expect("machine and dialect agree");
-        let mut reader = Reader::new(cl.as_bytes());
-        while !post.gave_up() {
-            match reader.next_record() {
-                Ok(Some(record)) => post.record(&record),
-                Ok(None) => break,
-                Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
-                Err(other) => panic!("{other}"),
-            }
-        }
-        let (report, findings) = post.finish();
-        Run {
-            asked: dialect.asked,
-            report,
-            findings,
-        }
+        post(&self.machine, self.decimals, cl, job, model)
     }
 }
 

@@ -7,7 +7,7 @@ use post_machine::kinematics::Joints;
 use post_plugin::{Curve, Deviation, Feed, ModelSession, Tolerance};
 
 use super::{angle, between, distance, slerp, turned};
-use crate::posted::{Bench, Run};
+use crate::posted::{Bench, Point, Run, peaks, point};
 
 type V = Vector3<f64>;
 
@@ -24,10 +24,10 @@ pub struct Stop {
 
 /// A stop whose numbers are those that are written.
 pub fn stop(tip: V, axis: V, feed: Option<f64>) -> Stop {
-    let rounded = |vector: V, scale: f64| vector.map(|value| libm::rint(value * scale) / scale);
+    let Point { tip, axis, .. } = point(tip, axis, feed.is_none());
     Stop {
-        tip: rounded(tip, 1e4),
-        axis: rounded(axis, 1e9),
+        tip,
+        axis,
         feed,
         before: String::new(),
     }
@@ -289,12 +289,7 @@ impl ModelSession for Shape {
         let looks: Vec<f64> = (0..=64).map(|step| f64::from(step) / 64.0).collect();
         let mut out = vec![Deviation::default(); looks.len()];
         deviation(&looks, &mut out);
-        let peak = |part: fn(&Deviation) -> [f64; 3]| {
-            out.iter()
-                .map(|at| Vector3::from(part(at)).norm())
-                .fold(0.0, f64::max)
-        };
-        let (mut tip_peak, axis_peak) = (peak(|at| at.tip), peak(|at| at.axis));
+        let [mut tip_peak, axis_peak] = peaks(&out);
         if *self == Self::Fine {
             let places: Vec<f64> = (0..PLACES).map(place).collect();
             let mut out = [Deviation::default(); PLACES];

@@ -185,41 +185,82 @@ impl Chain {
 
     /// Where the tool stands, seen from the part.
     pub fn forward(&self, joints: &Joints) -> Pose {
-        let mut trace = Trace {
-            joints: *joints,
-            turns: self.turns(joints),
-            ..Trace::default()
-        };
-        self.trace(&mut trace);
-        trace.pose
+        self.reach(joints, &self.turns(joints), |_, _, _, _| {})
     }
 
     /// [`Chain::forward`] from the joints and turns of `trace`; fills in the rest of it.
     #[inline]
     pub fn trace(&self, trace: &mut Trace) {
+        let Trace {
+            joints,
+            turns,
+            tip_rates,
+            axes,
+            pose,
+        } = trace;
+        *pose = self.reach(joints, turns, |index, joint, arm, axis| {
+            tip_rates[index] = joint.direction.cross(arm);
+            axes[index] = *axis;
+        });
+    }
+
+    /// Where the tool stands when every axis is halfway between two places.
+    ///
+    /// The middle of an angle lies along the sum of the two unit vectors at its ends, so that no sine is evaluated.
+    pub fn halfway(&self, from: &Trace, to: &Trace) -> Pose {
+        let mut joints = Joints::default();
+        let mut turns = Turns::default();
+        for (index, joint) in self.joints().iter().enumerate() {
+            let (first, last) = (from.joints[index], to.joints[index]);
+            let middle = first * 0.5 + last * 0.5;
+            joints[index] = middle;
+            if !joint.rotary {
+                continue;
+            }
+            let (sine, cosine) = if (last - first).abs() < 2.0 {
+                let sine = from.turns.sines[index] + to.turns.sines[index];
+                let cosine = from.turns.cosines[index] + to.turns.cosines[index];
+                let length = (sine * sine + cosine * cosine).sqrt();
+                (sine / length, cosine / length)
+            } else {
+                libm::sincos(middle)
+            };
+            turns.set(index, sine, cosine);
+        }
+        self.reach(&joints, &turns, |_, _, _, _| {})
+    }
+
+    /// The forward product. `pass` is told of every rotary joint, from the tool on, the arm from its line to the tip
+    /// and the tool axis, both before it has turned.
+    #[inline]
+    fn reach(
+        &self,
+        joints: &Joints,
+        turns: &Turns,
+        mut pass: impl FnMut(usize, &Joint, &Vector3<f64>, &Vector3<f64>),
+    ) -> Pose {
         let mut tip = self.tip;
         let mut axis = self.axis;
         let mut edge = self.edge;
         for (index, joint) in self.joints().iter().enumerate().rev() {
             if joint.rotary {
-                let (sine, cosine) = trace.turns.of(index);
+                let (sine, cosine) = turns.of(index);
                 let arm = tip - joint.point;
-                trace.tip_rates[index] = joint.direction.cross(&arm);
-                trace.axes[index] = axis;
+                pass(index, joint, &arm, &axis);
                 tip = joint.point + turn(arm, joint.direction, sine, cosine);
                 axis = turn(axis, joint.direction, sine, cosine);
                 if let Some(edge) = &mut edge {
                     *edge = turn(*edge, joint.direction, sine, cosine);
                 }
             } else {
-                tip += joint.direction * trace.joints[index];
+                tip += joint.direction * joints[index];
             }
         }
-        trace.pose = Pose {
+        Pose {
             tip: tip - self.mount,
             axis,
             edge: edge.unwrap_or_default(),
-        };
+        }
     }
 }
 
@@ -236,6 +277,43 @@ mod tests {
                 let turned = turn(vector, k, sine, cosine);
                 assert!((turned - turn_askew(vector, k, sine, cosine)).norm() < 1e-15 * 8.0);
             }
+        }
+    }
+
+    #[test]
+    fn halfway_is_the_pose_in_the_middle() {
+        let joint = |direction: Vector3<f64>, point: Vector3<f64>| Joint {
+            rotary: true,
+            direction: direction.normalize(),
+            point,
+        };
+        let chain = Chain::new(
+            vec![
+                joint(Vector3::new(0.1, -0.2, 1.0), Vector3::new(3.0, 4.0, 0.0)),
+                joint(Vector3::y(), Vector3::new(0.0, 5.0, 60.0)),
+            ],
+            Vector3::zeros(),
+            Vector3::new(0.0, 0.0, 300.0),
+            Vector3::z(),
+        );
+        let at = |values: [f64; 2]| {
+            let mut trace = Trace::default();
+            trace.joints[..2].copy_from_slice(&values);
+            trace.turns = chain.turns(&trace.joints);
+            chain.trace(&mut trace);
+            trace
+        };
+        for step in 0..80 {
+            // Up to whole turns apart, and so to both sides of where the sum of the ends says little.
+            let first = [-3.0 + 0.07 * f64::from(step), 0.4];
+            let last = [
+                first[0] + 0.1 * f64::from(step),
+                0.4 - 0.06 * f64::from(step),
+            ];
+            let middle = chain.halfway(&at(first), &at(last));
+            let wanted = at([0, 1].map(|place| (first[place] + last[place]) / 2.0)).pose;
+            assert!((middle.tip - wanted.tip).norm() < 1e-11, "step {step}");
+            assert!((middle.axis - wanted.axis).norm() < 1e-14, "step {step}");
         }
     }
 

@@ -17,6 +17,17 @@ const SHORTEST: f64 = 1.0 / (1u64 << 22) as f64;
 /// Points put in may use so much of the tool axis' tolerance.
 const ROOM: f64 = 0.9;
 
+/// A piece whose quick bound is over by this factor is most likely over: its middle is looked at first.
+const LIKELY: f64 = 3.0;
+
+/// What was found of a piece.
+enum Verdict {
+    /// It needs no further point.
+    Good(Bound),
+    /// It needs one; with its bound, if that was worked out.
+    Over(Option<Bound>),
+}
+
 impl Linearise {
     /// Can the axes follow this move with the tool axis within tolerance, whatever points that takes? Nothing is
     /// sampled, no model asked.
@@ -34,7 +45,11 @@ impl Linearise {
         };
         let judge = |_: &mut Self, piece: &Move<'_>| {
             let bound = piece.measured();
-            Ok((piece.tolerances.hold(bound), bound))
+            Ok(if piece.tolerances.hold(bound) {
+                Verdict::Good(bound)
+            } else {
+                Verdict::Over(Some(bound))
+            })
         };
         self.bisect(&whole, judge).is_ok()
     }
@@ -48,9 +63,32 @@ impl Linearise {
         whole: &Move<'_>,
         model: &mut dyn ModelSession,
     ) -> Result<(), Stuck> {
-        self.bisect(whole, |this, piece| {
-            let judged = this.judge(piece, model)?;
-            Ok((judged.good, judged.bound))
+        self.bisect(whole, |this, piece| this.verdict(piece, model))
+    }
+
+    /// Where the middle of a piece is over, no bound can clear it, and no model is asked: its word could not save the
+    /// piece, unless it is trusted.
+    fn verdict(
+        &mut self,
+        piece: &Move<'_>,
+        model: &mut dyn ModelSession,
+    ) -> Result<Verdict, Stuck> {
+        let over = || !self.trust_model && piece.over_halfway();
+        let (quick, tolerances) = (piece.quick(), piece.tolerances);
+        let rough = piece.bound(quick.0);
+        let likely = rough.tip > LIKELY * tolerances.tip || rough.axis > LIKELY * tolerances.axis;
+        if likely && over() {
+            return Ok(Verdict::Over(None));
+        }
+        let measured = piece.course(quick);
+        if !likely && !tolerances.hold(measured.0) && over() {
+            return Ok(Verdict::Over(None));
+        }
+        let judged = self.judge_measured(piece, measured, model)?;
+        Ok(if judged.good {
+            Verdict::Good(judged.bound)
+        } else {
+            Verdict::Over(Some(judged.bound))
         })
     }
 
@@ -58,7 +96,7 @@ impl Linearise {
     fn bisect(
         &mut self,
         whole: &Move<'_>,
-        mut judge: impl FnMut(&mut Self, &Move<'_>) -> Result<(bool, Bound), Stuck>,
+        mut judge: impl FnMut(&mut Self, &Move<'_>) -> Result<Verdict, Stuck>,
     ) -> Result<(), Stuck> {
         let mut from = *whole.from;
         self.stack.clear();
@@ -69,16 +107,19 @@ impl Linearise {
                 to: &to,
                 ..*whole
             };
-            let (good, bound) = judge(self, &piece)?;
-            if good {
-                self.keep(to, bound);
-                from = to;
-                continue;
-            }
+            let bound = match judge(self, &piece)? {
+                Verdict::Good(bound) => {
+                    self.keep(to, bound);
+                    from = to;
+                    continue;
+                }
+                Verdict::Over(bound) => bound,
+            };
             if let Some(stuck) = stuck(&piece) {
                 return Err(stuck);
             }
-            let middle = middle(&piece, bound).map_err(Stuck::Refused)?;
+            let holds = || bound.unwrap_or_else(|| piece.certify()).axis <= piece.tolerances.axis;
+            let middle = put_in(&piece, 0.5, holds).map_err(Stuck::Refused)?;
             self.stack.push(to);
             self.stack.push(middle);
         }
@@ -107,11 +148,6 @@ fn stuck(piece: &Move<'_>) -> Option<Stuck> {
         from: from.trace.joints[joint],
         to: to.trace.joints[joint],
     })
-}
-
-/// The node in the middle of a piece whose deviation is bounded by `bound`.
-fn middle(piece: &Move<'_>, bound: Bound) -> Result<Node, Refused> {
-    put_in(piece, 0.5, || bound.axis <= piece.tolerances.axis)
 }
 
 /// The node at a share of a piece: on the exact inverse solution, unless the axes jump there. `holds` says whether

@@ -10,6 +10,7 @@ use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
 use super::certificate::{self, Bend, Course, chord_angle};
 use super::node::{Node, Placer};
+use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::orientation::angle;
 use post_machine::kinematics::{Joints, Pose};
 
@@ -49,8 +50,41 @@ pub struct Move<'a> {
 /// Between samples the certificate may be blind by this share of the tolerance.
 const BLIND: f64 = 0.02;
 
+/// What is over by this factor is over by more than rounding.
+const CERTAIN: f64 = 1.0 + 1e-6;
+
 /// A block that needs more samples than this to be certified is split instead.
 const MOST_SAMPLES: f64 = 64.0;
+
+impl<'n> Move<'n> {
+    /// A motion between two nodes, and what it must keep: within the tolerance of a rapid if it is `loose` (off the
+    /// part), `chord` mm of it being spent already.
+    #[inline]
+    pub fn planned(
+        machine: &Machine,
+        placer: &'n Placer,
+        chord: f64,
+        loose: bool,
+        [from, to]: [&'n Node; 2],
+    ) -> Self {
+        let accuracy = &machine.accuracy;
+        let (tip, axis) = if loose {
+            (accuracy.rapid_tolerance, f64::INFINITY)
+        } else {
+            (accuracy.tolerance, accuracy.axis_tolerance)
+        };
+        Self {
+            placer,
+            from,
+            to,
+            tolerances: Tolerances {
+                tip: tip - chord,
+                axis,
+            },
+            control_keeps_tip: machine.control.tcp == Tcp::Control,
+        }
+    }
+}
 
 impl Move<'_> {
     /// The bound of the whole move, if the cheap certificate clears it: then no point is needed, whatever a
@@ -69,11 +103,31 @@ impl Move<'_> {
     /// The tightest bound: where none at hand clears the move, it is sampled so densely that its bend can hide no
     /// more than a small share of the tolerance between them.
     pub fn certify(&self) -> Bound {
-        let (bound, bend) = self.known();
+        self.looked_at(self.known())
+    }
+
+    /// The bound and bend of [`Move::known`], and where they do not clear the move, samples.
+    pub(super) fn looked_at(&self, (bound, bend): (Bound, Bend)) -> Bound {
         if self.tolerances.hold(bound) {
             return bound;
         }
         bound.least(self.sampled(bend))
+    }
+
+    /// Is the middle of the block so far off that no bound can clear it? Cheaper than any bound that is worth more
+    /// than the quick one; what stands within tolerance in the middle may still be over elsewhere.
+    ///
+    /// A leading edge is not looked at.
+    pub(super) fn over_halfway(&self) -> bool {
+        let (from, to) = (self.from, self.to);
+        let pose = self.placer.solver().chain().halfway(&from.trace, &to.trace);
+        let chord = from.target.tip * 0.5 + to.target.tip * 0.5;
+        if (self.reached(&pose, 0.5) - chord).norm() > CERTAIN * self.tolerances.tip {
+            return true;
+        }
+        // An angle is never less than its chord.
+        let middle = (from.target.axis + to.target.axis).try_normalize(1e-3);
+        middle.is_some_and(|axis| (pose.axis - axis).norm() > CERTAIN * self.tolerances.axis)
     }
 
     /// A bound that needs no samples and its bend: the cheap one where it clears the move, else the tightest.
@@ -88,7 +142,7 @@ impl Move<'_> {
 
     /// The bend that norms alone give, and how far the wanted directions turn, radians.
     #[inline]
-    fn quick(&self) -> (Bend, f64) {
+    pub(super) fn quick(&self) -> (Bend, f64) {
         // An upper bound on the sweep is enough, and cheaper than the angle.
         let (from, to) = (&self.from.target, &self.to.target);
         let chain = self.placer.solver().chain();
@@ -102,7 +156,7 @@ impl Move<'_> {
     }
 
     /// The bound by the block's second derivatives, and its bend; see [`Move::quick`].
-    fn course(&self, (quick, sweep): (Bend, f64)) -> (Bound, Bend) {
+    pub(super) fn course(&self, (quick, sweep): (Bend, f64)) -> (Bound, Bend) {
         let (from, to) = (self.from, self.to);
         let chain = self.placer.solver().chain();
         let course = Course::new(chain, &from.trace, &to.trace);
@@ -134,7 +188,7 @@ impl Move<'_> {
 
     /// The bound that a bend proves.
     #[inline]
-    fn bound(&self, bend: Bend) -> Bound {
+    pub(super) fn bound(&self, bend: Bend) -> Bound {
         let (from, to) = (self.from, self.to);
         let axis_ends = from.axis_error.max(to.axis_error);
         let tip_ends = from.tip_error.max(to.tip_error);
@@ -154,23 +208,15 @@ impl Move<'_> {
         }
     }
 
-    /// How far a cutting edge strays beyond the control point, mm.
+    /// How far a cutting edge strays beyond the control point at most, mm; no model sees that.
     #[inline]
-    fn edge_bow(&self, bend: Bend) -> f64 {
+    pub(super) fn edge_bow(&self, bend: Bend) -> f64 {
         let radius = self.placer.control_point().radius;
         if radius == 0.0 {
             return 0.0;
         }
         let ends = self.from.axis_error.max(self.to.axis_error);
         radius * certificate::deviation(ends, bend.turn)
-    }
-
-    /// How far the cutting edge strays beyond the control point at most, mm; no model sees that.
-    pub(super) fn edge(&self) -> f64 {
-        if self.placer.control_point().radius == 0.0 {
-            return 0.0;
-        }
-        self.edge_bow(self.course(self.quick()).1)
     }
 
     fn sampled(&self, bend: Bend) -> Bound {
@@ -184,10 +230,11 @@ impl Move<'_> {
         let needed = (tip_bend / (8.0 * BLIND * tolerances.tip))
             .max(axis_bend / (8.0 * BLIND * tolerances.axis));
         let count = libm::ceil(libm::sqrt(needed)).clamp(1.0, MOST_SAMPLES);
+        let path = self.path();
         let mut tip = self.from.tip_error.max(self.to.tip_error);
         let mut axis = self.from.axis_error.max(self.to.axis_error);
         for step in 1..count as u32 {
-            let deviation = self.deviation(f64::from(step) / count);
+            let deviation = path.deviation(f64::from(step) / count);
             tip = tip.max(Vector3::from(deviation.tip).norm());
             axis = axis.max(Vector3::from(deviation.axis).norm().to_radians());
         }
@@ -202,7 +249,7 @@ impl Move<'_> {
     /// great circle, a leading edge as near to its own as stands across the axis.
     pub fn target(&self, t: f64) -> Pose {
         let (from, to) = (&self.from.target, &self.to.target);
-        let axis = great_circle(from.axis, to.axis, t);
+        let axis = Circle::new(from.axis, to.axis).at(t);
         let edge = from.edge * (1.0 - t) + to.edge * t;
         Pose {
             tip: from.tip * (1.0 - t) + to.tip * t,
@@ -222,9 +269,10 @@ impl Move<'_> {
             tip: self.tolerances.tip,
             axis: self.tolerances.axis.to_degrees(),
         };
+        let path = self.path();
         model.fit(&tolerance, &mut |ts, out| {
             for (t, out) in ts.iter().zip(out) {
-                *out = self.deviation(*t);
+                *out = path.deviation(*t);
             }
         })
     }
@@ -242,15 +290,39 @@ impl Move<'_> {
 
     /// Pose of the interpolated axes minus the CL path at the share `t` of this block.
     pub fn deviation(&self, t: f64) -> Deviation {
-        let (from, to) = (self.from, self.to);
+        self.path().deviation(t)
+    }
+
+    /// What is the same for every place along this block.
+    fn path(&self) -> Path<'_> {
+        let (from, to) = (&self.from.target, &self.to.target);
+        let follows = self.placer.solver().chain().edge().is_some();
+        Path {
+            block: self,
+            axis: Circle::new(from.axis, to.axis),
+            edge: follows.then(|| Circle::new(from.edge, to.edge)),
+        }
+    }
+}
+
+/// A block beside the great circles that tool axis and leading edge are to go along.
+struct Path<'a> {
+    block: &'a Move<'a>,
+    axis: Circle,
+    edge: Option<Circle>,
+}
+
+impl Path<'_> {
+    /// See [`Move::deviation`].
+    fn deviation(&self, t: f64) -> Deviation {
+        let (from, to) = (self.block.from, self.block.to);
         let joints = between(&from.trace.joints, &to.trace.joints, t);
-        let chain = self.placer.solver().chain();
-        let pose = chain.forward(&joints);
-        let tip = self.reached(&pose, t) - (from.target.tip * (1.0 - t) + to.target.tip * t);
-        let mut turn = turned(great_circle(from.target.axis, to.target.axis, t), pose.axis);
-        if chain.edge().is_some() {
-            let edge = great_circle(from.target.edge, to.target.edge, t);
-            let edge = turned(edge, pose.edge);
+        let pose = self.block.placer.solver().chain().forward(&joints);
+        let chord = from.target.tip * (1.0 - t) + to.target.tip * t;
+        let tip = self.block.reached(&pose, t) - chord;
+        let mut turn = turned(self.axis.at(t), pose.axis);
+        if let Some(edge) = &self.edge {
+            let edge = turned(edge.at(t), pose.edge);
             // Whichever of axis and edge is farther off.
             if edge.norm() > turn.norm() {
                 turn = edge;
@@ -306,14 +378,39 @@ fn turned(wanted: Vector3<f64>, reached: Vector3<f64>) -> Vector3<f64> {
     }
 }
 
-/// The unit vector at `t` on the great circle between two.
-fn great_circle(from: Vector3<f64>, to: Vector3<f64>, t: f64) -> Vector3<f64> {
-    let sweep = angle(from, to);
-    let sine = libm::sin(sweep);
-    if sine < 1e-9 {
-        return (from * (1.0 - t) + to * t)
-            .try_normalize(1e-9)
-            .unwrap_or(from);
+/// The great circle between two unit vectors.
+struct Circle {
+    from: Vector3<f64>,
+    to: Vector3<f64>,
+    /// The angle between them, radians, and its sine.
+    sweep: f64,
+    sine: f64,
+}
+
+impl Circle {
+    fn new(from: Vector3<f64>, to: Vector3<f64>) -> Self {
+        let sweep = angle(from, to);
+        Self {
+            from,
+            to,
+            sweep,
+            sine: libm::sin(sweep),
+        }
     }
-    (from * libm::sin((1.0 - t) * sweep) + to * libm::sin(t * sweep)) / sine
+
+    /// The unit vector at the share `t` of the way.
+    fn at(&self, t: f64) -> Vector3<f64> {
+        let Self {
+            from,
+            to,
+            sweep,
+            sine,
+        } = *self;
+        if sine < 1e-9 {
+            return (from * (1.0 - t) + to * t)
+                .try_normalize(1e-9)
+                .unwrap_or(from);
+        }
+        (from * libm::sin((1.0 - t) * sweep) + to * libm::sin(t * sweep)) / sine
+    }
 }

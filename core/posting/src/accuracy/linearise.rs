@@ -5,6 +5,7 @@
 
 use post_plugin::{Curve, ModelSession};
 
+use super::certificate::Bend;
 use super::deviation::{Bound, Move};
 use super::node::{Node, Refused};
 use super::run::Run;
@@ -214,8 +215,17 @@ impl Linearise {
         piece: &Move<'_>,
         model: &mut dyn ModelSession,
     ) -> Result<Judged, Stuck> {
+        self.judge_measured(piece, piece.course(piece.quick()), model)
+    }
+
+    /// [`Linearise::judge`] with the tightest bound that needs no samples, and its bend, at hand.
+    pub(super) fn judge_measured(
+        &mut self,
+        piece: &Move<'_>,
+        (bound, bend): (Bound, Bend),
+        model: &mut dyn ModelSession,
+    ) -> Result<Judged, Stuck> {
         let tolerances = piece.tolerances;
-        let bound = piece.measured();
         if tolerances.hold(bound) {
             return Ok(Judged {
                 good: true,
@@ -226,11 +236,11 @@ impl Linearise {
         }
         let curve = piece.fit(model).map_err(Stuck::Model)?;
         let peak = Bound {
-            tip: curve.tip_peak + piece.edge(),
+            tip: curve.tip_peak + piece.edge_bow(bend),
             axis: curve.axis_peak.to_radians(),
         };
         let content = tolerances.hold(peak);
-        let bound = piece.certify();
+        let bound = piece.looked_at((bound, bend));
         let sure = tolerances.hold(bound);
         if content && !sure && !self.trust_model {
             self.overruled += 1;

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 /// An arc about an axis; a spiral or a helix where its ends differ in radius or height.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Arc {
+pub struct Arc {
     centre: Vector3<f64>,
     axis: Vector3<f64>,
     /// From the centre to the start, in the plane, unit vector.
@@ -27,7 +27,7 @@ impl Arc {
     ///
     /// # Errors
     /// If the axis is null or an end lies on it.
-    pub(crate) fn new(
+    pub fn new(
         start: Vector3<f64>,
         end: Vector3<f64>,
         centre: Vector3<f64>,
@@ -67,20 +67,34 @@ impl Arc {
         })
     }
 
+    /// The same arc where `turn` takes directions and `shift` points: a rotation and what goes with it.
+    pub fn placed(
+        &self,
+        shift: impl Fn(Vector3<f64>) -> Vector3<f64>,
+        turn: impl Fn(Vector3<f64>) -> Vector3<f64>,
+    ) -> Self {
+        Self {
+            centre: shift(self.centre),
+            axis: turn(self.axis),
+            radial: turn(self.radial),
+            ..*self
+        }
+    }
+
     /// By how much the distances of its ends from the centre differ, mm.
-    pub(crate) fn mismatch(&self) -> f64 {
+    pub fn mismatch(&self) -> f64 {
         libm::fabs(self.end_radius - self.start_radius)
     }
 
     /// The distance between ends so near that a whole turn may be meant, mm.
-    pub(crate) fn doubtful(&self) -> Option<f64> {
+    pub fn doubtful(&self) -> Option<f64> {
         let gap = (self.at(1.0) - self.at(0.0) - self.axis * (self.end_height - self.start_height))
             .norm();
         (CLOSED..10.0 * CLOSED).contains(&gap).then_some(gap)
     }
 
     /// The largest of its radii, mm.
-    pub(crate) fn radius(&self) -> f64 {
+    pub fn radius(&self) -> f64 {
         self.start_radius.max(self.end_radius)
     }
 
@@ -88,14 +102,14 @@ impl Arc {
     ///
     /// The second derivative along t is at most `radius·sweep² + 2·|Δradius|·sweep`, so a chord over 1/n of
     /// the arc strays by at most an eighth of that over n².
-    pub(crate) fn chords(&self, tolerance: f64) -> (u64, f64) {
+    pub fn chords(&self, tolerance: f64) -> (u64, f64) {
         let bend = self.radius() * self.sweep * self.sweep + 2.0 * self.mismatch() * self.sweep;
         let count = libm::ceil(libm::sqrt(bend / (8.0 * tolerance))).max(1.0);
         (count as u64, bend / (8.0 * count * count))
     }
 
     /// The point at `t` in 0 to 1.
-    pub(crate) fn at(&self, t: f64) -> Vector3<f64> {
+    pub fn at(&self, t: f64) -> Vector3<f64> {
         let (sine, cosine) = libm::sincos(self.sweep * t);
         let radius = self.start_radius + (self.end_radius - self.start_radius) * t;
         let height = self.start_height + (self.end_height - self.start_height) * t;

@@ -4,7 +4,7 @@ use post_grammar::{Argument, CycleDefinition};
 
 /// How a cycle drills, lengths in mm along the tool axis from the programmed point, plus is away from the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Drill {
+pub struct DrillCycle {
     /// Where the feed begins.
     clearance: f64,
     /// The bottom, not above zero.
@@ -29,7 +29,7 @@ struct Peck {
 
 /// One leg of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Leg {
+pub enum Leg {
     /// At rapid traverse to this height.
     Rapid(f64),
     /// At the cycle's feed to this height.
@@ -50,12 +50,12 @@ const GAP: f64 = 0.5;
 /// Pecks in one hole; more is a slip of the decimal point.
 const MOST_PECKS: f64 = 10_000.0;
 
-impl Drill {
+impl DrillCycle {
     /// Reads a definition; `scale` takes the file's lengths to mm.
     ///
     /// # Errors
     /// What cannot be made as moves, as a sentence.
-    pub(crate) fn new(cycle: &CycleDefinition, scale: f64) -> Result<Self, String> {
+    pub fn new(cycle: &CycleDefinition, scale: f64) -> Result<Self, String> {
         let is = |kind: &str| cycle.kinds.iter().any(|word| word == kind);
         for kind in &cycle.kinds {
             match kind.as_str() {
@@ -114,12 +114,12 @@ impl Drill {
     }
 
     /// Level between the holes.
-    pub(crate) fn retract(&self) -> f64 {
+    pub fn retract(&self) -> f64 {
         self.retract
     }
 
     /// Words of a definition that have no effect here.
-    pub(crate) fn left_out(cycle: &CycleDefinition) -> impl Iterator<Item = String> {
+    pub fn left_out(cycle: &CycleDefinition) -> impl Iterator<Item = String> {
         let pecks = cycle.step.is_none()
             && cycle
                 .kinds
@@ -137,7 +137,7 @@ impl Drill {
     }
 
     /// Calls `emit` with the legs at one point, in order.
-    pub(crate) fn legs(&self, emit: &mut dyn FnMut(Leg)) {
+    pub fn legs(&self, emit: &mut dyn FnMut(Leg)) {
         emit(Leg::Rapid(self.retract));
         emit(Leg::Rapid(self.clearance));
         if let Some(peck) = self.peck {
@@ -170,7 +170,7 @@ mod tests {
 
     fn legs(definition: &CycleDefinition, scale: f64) -> Vec<Leg> {
         let mut legs = Vec::new();
-        Drill::new(definition, scale)
+        DrillCycle::new(definition, scale)
             .unwrap()
             .legs(&mut |leg| legs.push(leg));
         legs
@@ -228,6 +228,6 @@ mod tests {
             depth: Some(10.0),
             ..CycleDefinition::default()
         };
-        assert!(Drill::new(&definition, 1.0).is_err());
+        assert!(DrillCycle::new(&definition, 1.0).is_err());
     }
 }

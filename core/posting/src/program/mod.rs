@@ -1,18 +1,18 @@
-//! From what a CL file says to what it means.
+//! From what a CL file says to what it means: records become steps.
 
 mod arc;
 mod cycle;
-mod edge;
 mod frame;
 mod interpret;
 mod met;
-mod motion;
 mod spline;
+mod step;
 mod words;
 
-pub(crate) use edge::Edges;
-pub(crate) use interpret::record_place;
+pub use arc::Arc;
+pub use cycle::{DrillCycle, Leg};
 pub use interpret::{Interpreter, Reading};
 pub use met::Unknown;
-pub use motion::{Motion, Pace, Step, Tool};
+pub use spline::Spline;
+pub use step::{ArcStep, Command, CycleStep, Motion, Pace, PlaneStep, SplineStep, Step, Tool};
 pub use words::{Usage, usage};

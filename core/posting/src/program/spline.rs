@@ -8,7 +8,7 @@ const DEGREE: usize = 3;
 
 /// A clamped cubic B-spline.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Spline {
+pub struct Spline {
     knots: Vec<f64>,
     points: Vec<Vector3<f64>>,
 }
@@ -18,7 +18,7 @@ impl Spline {
     ///
     /// # Errors
     /// What does not fit.
-    pub(crate) fn new(knots: &[f64], points: Vec<Vector3<f64>>) -> Result<Self, String> {
+    pub fn new(knots: &[f64], points: Vec<Vector3<f64>>) -> Result<Self, String> {
         let interior = match knots {
             [interior @ .., last] if *last == 1.0 => interior,
             _ => return Err("its last knot must be 1".to_owned()),
@@ -44,11 +44,24 @@ impl Spline {
         Ok(Self { knots: all, points })
     }
 
+    /// The same spline where `shift` takes points: a rotation and a shift.
+    pub fn placed(mut self, shift: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Self {
+        for point in &mut self.points {
+            *point = shift(*point);
+        }
+        self
+    }
+
+    /// Where it ends.
+    pub fn end(&self) -> Vector3<f64> {
+        self.points.last().copied().unwrap_or_default()
+    }
+
     /// Calls `emit` with the ends of chords that stay within `tolerance` mm, and how far each strays.
     ///
     /// In one knot span the second derivative is linear, so it is largest at an end of the span, and a chord
     /// over `h` of the parameter strays by at most `h²/8` times that.
-    pub(crate) fn flatten(&self, tolerance: f64, emit: &mut dyn FnMut(Vector3<f64>, f64)) {
+    pub fn flatten(&self, tolerance: f64, emit: &mut dyn FnMut(Vector3<f64>, f64)) {
         for span in DEGREE..self.points.len() {
             let (from, to) = (self.knots[span], self.knots[span + 1]);
             if to <= from {

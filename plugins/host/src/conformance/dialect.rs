@@ -24,17 +24,16 @@ pub(super) fn test(
     let mut setup = ProgramSetup {
         program: "kit".to_owned(),
         machine: "five axes".to_owned(),
-        units: Units::Millimetre,
-        tcp: false,
         words: ["X", "Y", "Z", "A", "C"]
             .map(|name| ProgramWord {
                 name: name.to_owned(),
                 rotary: name == "A" || name == "C",
-                wrapped: false,
                 depth: name == "Z",
+                ..ProgramWord::default()
             })
             .to_vec(),
         options: options.to_owned(),
+        ..ProgramSetup::default()
     };
     let format = plugin.dialect(&setup)?.format().clone();
     let mut cases = Vec::new();
@@ -175,30 +174,23 @@ fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>> {
         Event::Comment {
             text: "naïve (µ); % ~",
         },
-        Event::ToolChange {
-            number: 1,
-            register: 1,
-            name: "ball 6",
-        },
+        Event::tool_change(1, 1, "ball 6"),
         Event::Spindle(Spindle::On {
             rpm: 3000.0,
             sense: SpindleSense::Clockwise,
         }),
         Event::Coolant(Coolant::Flood),
-        Event::Position {
-            words: words(0),
-            feed: None,
-        },
+        Event::position(words(0), None),
     ];
-    events.extend((1..positions.len() - 1).map(|cut| Event::Linear {
-        words: words(cut),
-        feed: Feed::PerMinute(if cut % 5 == 0 { 900.0 } else { 400.0 }),
+    events.extend((1..positions.len() - 1).map(|cut| {
+        Event::linear(
+            words(cut),
+            Feed::PerMinute(if cut % 5 == 0 { 900.0 } else { 400.0 }),
+        )
     }));
     events.extend([
         Event::Dwell { seconds: 0.5 },
-        Event::Rapid {
-            words: words(positions.len() - 1),
-        },
+        Event::rapid(words(positions.len() - 1)),
         Event::Stop,
         Event::OptionalStop,
         Event::Coolant(Coolant::Off),
@@ -219,7 +211,7 @@ fn write(
     batch: usize,
 ) -> Result<Written, PluginFault> {
     let mut session = plugin.dialect(setup)?;
-    let (mut out, mut ends) = (Vec::new(), Vec::new());
+    let (mut out, mut ends) = (String::new(), Vec::new());
     let mut done = 0;
     for chunk in events.chunks(batch.min(events.len()).max(1)) {
         let mut batch = Batch::default();
@@ -231,7 +223,7 @@ fn write(
         }
         done += chunk.len();
     }
-    Ok(Ok(String::from_utf8_lossy(&out).into_owned()))
+    Ok(Ok(out))
 }
 
 /// A second run must write the same.

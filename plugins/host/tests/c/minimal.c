@@ -59,6 +59,22 @@ static int32_t format(void *ctx, PostFormat *f) {
     return 0;
 }
 
+/* `feed` and `words`: where they stand among the event's numbers; -1 if there is no feed. */
+static int move_(Context *c, const PostEvent *e, int feed, size_t words, char *line, size_t size, int *len) {
+    double code = feed < 0 ? POST_FEED_NONE : e->numbers[feed];
+    if (code > POST_FEED_PER_MINUTE) {
+        snprintf(c->error, sizeof c->error, "it knows feeds a minute alone");
+        return 0;
+    }
+    int n = snprintf(line, size, "%s", code == POST_FEED_NONE ? "G0" : "G1");
+    for (size_t w = 0; w < (size_t)e->numbers[words] && n < 400; w++)
+        n += snprintf(line + n, size - n, " %s%.*f", c->names[w], c->decimals, e->numbers[words + 1 + w]);
+    if (code != POST_FEED_NONE)
+        n += snprintf(line + n, size - n, " F%.1f", e->numbers[feed + 1]);
+    *len = n + snprintf(line + n, size - n, "\n");
+    return 1;
+}
+
 static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSink *out, uint64_t *ends) {
     Context *c = ctx;
     uint64_t end = 0;
@@ -71,19 +87,16 @@ static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSin
             len = snprintf(line, sizeof line, "G21 G90 G94\n");
             break;
         case POST_EVENT_POSITION:
-        case POST_EVENT_RAPID:
-        case POST_EVENT_LINEAR:
-            if (e->code > POST_FEED_PER_MINUTE) {
-                snprintf(c->error, sizeof c->error, "it knows feeds a minute alone");
+            if (!move_(c, e, POST_POSITION_FEED, POST_POSITION_WORDS, line, sizeof line, &len))
                 return i;
-            }
-            len = snprintf(line, sizeof line, "%s", e->code == POST_FEED_NONE ? "G0" : "G1");
-            for (size_t w = 0; w < e->words_len && len < 400; w++)
-                len += snprintf(line + len, sizeof line - len, " %s%.*f", c->names[w], c->decimals,
-                                e->words[w]);
-            if (e->code != POST_FEED_NONE)
-                len += snprintf(line + len, sizeof line - len, " F%.1f", e->value);
-            len += snprintf(line + len, sizeof line - len, "\n");
+            break;
+        case POST_EVENT_RAPID:
+            if (!move_(c, e, -1, POST_RAPID_WORDS, line, sizeof line, &len))
+                return i;
+            break;
+        case POST_EVENT_LINEAR:
+            if (!move_(c, e, POST_LINEAR_FEED, POST_LINEAR_WORDS, line, sizeof line, &len))
+                return i;
             break;
         case POST_EVENT_END:
             len = snprintf(line, sizeof line, "M30\n");

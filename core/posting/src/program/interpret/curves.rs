@@ -1,18 +1,13 @@
-//! Arcs and splines become chords.
+//! Arcs and splines: what the file says of them, put together and checked.
 
 use nalgebra::Vector3;
 use post_grammar::{Circle, Record, Sense, Statement};
 
 use super::{Interpreter, Pending};
-use crate::program::arc::Arc;
-use crate::program::motion::{Pace, Step};
-use crate::program::spline::Spline;
+use crate::program::{Arc, ArcStep, Spline, SplineStep, Step};
 
 /// Knots or control points of one spline; a longer one would not stream.
 const MOST_SPLINE_NUMBERS: usize = 1_000_000;
-
-/// Chords of one arc; more is a slip of the decimal point.
-const MOST_CHORDS: u64 = 10_000_000;
 
 /// Ends of an arc whose distances from its centre differ by more are no arc: mm.
 const ARC_MISMATCH: f64 = 0.1;
@@ -100,38 +95,18 @@ impl Interpreter {
                 ),
             );
         }
-        let (count, stray) = arc.chords(self.reading.chord_tolerance);
-        if count > MOST_CHORDS {
-            self.fault(
-                record,
-                "arc",
-                format!(
-                    "this arc needs {count} chords to stay within {} mm",
-                    self.reading.chord_tolerance
-                ),
-                "widen the tolerance",
-            );
-            return;
-        }
-        let end_axis = self.axis;
-        let pace = match pace {
-            // The time is that of the whole arc.
-            Pace::InverseTime(feed) => Pace::InverseTime(feed * count as f64),
-            pace => pace,
-        };
-        for piece in 1..=count {
-            let t = piece as f64 / count as f64;
-            let point = if piece == count { end } else { arc.at(t) };
-            self.axis = if start_axis == end_axis {
-                end_axis
-            } else {
-                (start_axis * (1.0 - t) + end_axis * t)
-                    .try_normalize(1e-9)
-                    .unwrap_or(end_axis)
-            };
-            self.advance(point, pace, stray, emit);
-        }
-        self.axis = end_axis;
+        let (turn, shift) = (
+            |direction| self.frame.direction_to_part(direction),
+            |point| self.frame.to_part(point, Vector3::zeros()).0,
+        );
+        let arc = arc.placed(shift, turn);
+        let start_axis = turn(start_axis);
+        self.arrive(end);
+        emit(Step::Arc(Box::new(ArcStep {
+            arc,
+            start_axis,
+            end: self.motion(end, pace),
+        })));
     }
 
     pub(super) fn spline_data(&mut self, record: &Record<'_>) {
@@ -183,10 +158,13 @@ impl Interpreter {
         };
         match Spline::new(&knots, points) {
             Ok(spline) => {
-                let tolerance = self.reading.chord_tolerance;
-                spline.flatten(tolerance, &mut |point, stray| {
-                    self.advance(point, pace, stray, emit);
-                });
+                let end = spline.end();
+                self.arrive(end);
+                let spline = spline.placed(|point| self.frame.to_part(point, Vector3::zeros()).0);
+                emit(Step::Spline(Box::new(SplineStep {
+                    spline,
+                    end: self.motion(end, pace),
+                })));
             }
             Err(message) => self.fault(
                 record,

@@ -4,49 +4,44 @@ use nalgebra::Vector3;
 use post_grammar::{Cycle, CycleDefinition, Record};
 
 use super::{FeedWord, Interpreter};
-use crate::program::cycle::{Drill, Leg};
-use crate::program::motion::{Pace, Step};
+use crate::program::{CycleStep, DrillCycle, Pace, Step};
 
 impl Interpreter {
     pub(super) fn drill(
         &mut self,
-        drill: Drill,
+        drill: DrillCycle,
         feed: Pace,
         point: Vector3<f64>,
         emit: &mut impl FnMut(Step),
     ) {
         self.rapid = false;
-        let axis = self.axis;
-        // Between holes the tool goes up before it goes aside, and aside before it goes down.
-        if let Some(tip) = self.tip {
-            let height = axis.dot(&(tip - point));
-            let aside = tip - point - axis * height;
-            if aside.norm() > 1e-6 {
-                let level = drill.retract();
-                if height < level {
-                    self.advance(point + aside + axis * level, Pace::Rapid, 0.0, emit);
-                } else if height > level {
-                    self.advance(point + axis * height, Pace::Rapid, 0.0, emit);
-                }
-            }
-        }
-        drill.legs(&mut |leg| match leg {
-            Leg::Rapid(height) => self.advance(point + axis * height, Pace::Rapid, 0.0, emit),
-            Leg::Feed(height) => self.advance(point + axis * height, feed, 0.0, emit),
-            Leg::Dwell(seconds) => emit(Step::Dwell(seconds)),
-        });
+        // Behind it the tool stands at the level between the holes.
+        self.arrive(point + self.axis * drill.retract());
+        emit(Step::Cycle(Box::new(CycleStep {
+            cycle: drill,
+            point: self.motion(point, feed),
+        })));
     }
 
-    pub(super) fn cycle(&mut self, record: &Record<'_>, cycle: &Cycle) {
+    pub(super) fn cycle(
+        &mut self,
+        record: &Record<'_>,
+        cycle: &Cycle,
+        emit: &mut impl FnMut(Step),
+    ) {
         match cycle {
-            Cycle::Off => self.cycle = None,
+            Cycle::Off => {
+                if self.cycle.take().is_some() {
+                    emit(Step::EndCycle);
+                }
+            }
             Cycle::On => self.cycle = self.last_cycle,
             Cycle::Define(definition) => self.define_cycle(record, definition),
         }
     }
 
     pub(super) fn define_cycle(&mut self, record: &Record<'_>, definition: &CycleDefinition) {
-        let drill = match Drill::new(definition, self.scale) {
+        let drill = match DrillCycle::new(definition, self.scale) {
             Ok(drill) => drill,
             Err(message) => {
                 self.fault(
@@ -62,7 +57,7 @@ impl Interpreter {
             Some(feed) => self.feed_word(record, feed),
             None => self.feed,
         };
-        let left: Vec<String> = Drill::left_out(definition).collect();
+        let left: Vec<String> = DrillCycle::left_out(definition).collect();
         if !left.is_empty() {
             self.warn(
                 record,

@@ -3,7 +3,7 @@
 use post_grammar::{FeedRate, FeedUnit, Record, Units};
 
 use super::{FeedWord, Interpreter, millimetres};
-use crate::program::motion::Pace;
+use crate::program::Pace;
 
 impl Interpreter {
     /// A feed word as the spindle turns now.

@@ -1,4 +1,4 @@
-//! Settles what is modal in a CL file: units, axis, feed, frames, cycles; arcs and splines become chords.
+//! Settles what is modal in a CL file: units, axis, feed, frames, cycles; curves keep their shape.
 
 mod curves;
 mod cycles;
@@ -9,11 +9,10 @@ use nalgebra::Vector3;
 use post_grammar::{Circle, Coolant as CoolantWord, Delay, Delta, Record, Side, Statement, Units};
 use post_plugin::{Coolant, SpindleSense};
 
-use super::cycle::Drill;
 use super::frame::Frame;
 use super::met::{Unknown, WordsMet};
-use super::motion::{Motion, Pace, Step};
 use super::words::{Usage, usage};
+use super::{Command, DrillCycle, Motion, Pace, PlaneStep, Step};
 use post_machine::description::{Insert, ToolLength};
 use post_machine::diagnostic::{Diagnostic, Place};
 
@@ -64,8 +63,8 @@ pub struct Interpreter {
     feed: Option<FeedWord>,
     frame: Frame,
     pending: Option<Pending>,
-    cycle: Option<(Drill, FeedWord)>,
-    last_cycle: Option<(Drill, FeedWord)>,
+    cycle: Option<(DrillCycle, FeedWord)>,
+    last_cycle: Option<(DrillCycle, FeedWord)>,
     rpm: Option<f64>,
     sense: SpindleSense,
     coolant: Coolant,
@@ -249,7 +248,7 @@ impl Interpreter {
             }
             Statement::Head(name) => {
                 self.tip = None;
-                emit(Step::Head(name.clone()));
+                emit(Step::Command(Command::Head(name.clone())));
             }
             Statement::Godlta(delta) => {
                 let Some(tip) = self.tip else {
@@ -285,12 +284,12 @@ impl Interpreter {
                 self.measured = true;
                 self.tip = Some(tip);
                 let (tip, axis) = self.frame.to_part(tip, self.axis);
-                emit(Step::From { tip, axis });
+                emit(Step::Command(Command::From { tip, axis }));
             }
             Statement::Gohome(None) => {
                 self.rapid = false;
                 self.tip = None;
-                emit(Step::Home);
+                emit(Step::Command(Command::Home));
             }
             Statement::Gohome(Some((point, axis))) => {
                 self.rapid = true;
@@ -318,12 +317,12 @@ impl Interpreter {
                     self.coolant = coolant;
                 }
                 self.load_told(record, emit);
-                emit(Step::Coolant(coolant));
+                emit(Step::Command(Command::Coolant(coolant)));
             }
             Statement::LoadTool(tool) => self.load(record, tool, emit),
             Statement::SelectTool(number) => {
                 if self.loaded.map(|(loaded, ..)| loaded) != Some(*number) {
-                    emit(Step::Preselect(*number));
+                    emit(Step::Command(Command::Preselect(*number)));
                 }
             }
             Statement::ToolData { numbers, .. } => self.cutter(numbers, 2),
@@ -385,14 +384,20 @@ impl Interpreter {
                 }
             }
             Statement::Knot(_) | Statement::Control { .. } => self.spline_data(record),
-            Statement::Cycle(cycle) => self.cycle(record, cycle),
+            Statement::Cycle(cycle) => self.cycle(record, cycle, emit),
             Statement::Cutcom(cutcom) => {
                 self.load_told(record, emit);
                 self.cutcom(*cutcom, emit);
             }
             Statement::Rotate(rotate) => match self.frame.rotate(rotate) {
                 Ok((axis, angle)) => {
-                    emit(Step::Index { axis, angle });
+                    emit(Step::Command(Command::Index { axis, angle }));
+                    let plane = self.frame.turned().map(|turned| {
+                        Box::new(PlaneStep {
+                            axes: [0, 1, 2].map(|axis| turned.column(axis).into_owned()),
+                        })
+                    });
+                    emit(Step::Plane(plane));
                     self.axis = match (self.frame.turned(), self.told_axis) {
                         (None, Some(axis)) => axis,
                         _ => Vector3::z(),
@@ -417,9 +422,11 @@ impl Interpreter {
                 }
                 None => self.fault(record, "axis", "the tool axis is null".to_owned(), ""),
             },
-            Statement::Delay(Delay::Seconds(seconds)) => emit(Step::Dwell(*seconds)),
+            Statement::Delay(Delay::Seconds(seconds)) => {
+                emit(Step::Command(Command::Dwell(*seconds)))
+            }
             Statement::Delay(Delay::Revolutions(turns)) => match self.rpm {
-                Some(rpm) if rpm > 0.0 => emit(Step::Dwell(turns * 60.0 / rpm)),
+                Some(rpm) if rpm > 0.0 => emit(Step::Command(Command::Dwell(turns * 60.0 / rpm))),
                 _ => self.fault(
                     record,
                     "dwell",
@@ -427,20 +434,22 @@ impl Interpreter {
                     "put a SPINDL before it",
                 ),
             },
-            Statement::Stop => emit(Step::Stop),
-            Statement::OptionalStop => emit(Step::OptionalStop),
+            Statement::Stop => emit(Step::Command(Command::Stop)),
+            Statement::OptionalStop => emit(Step::Command(Command::OptionalStop)),
             Statement::ToolPath { name, tool } => {
                 self.end_spline(record, emit);
                 // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
                 self.axis = Vector3::z();
                 self.tool_name = tool.clone().unwrap_or_default();
-                emit(Step::Comment(name.clone()));
+                emit(Step::Command(Command::Comment(name.clone())));
             }
             Statement::EndOfPath => self.end_spline(record, emit),
-            Statement::PartName(text) | Statement::Print(text) => emit(Step::Comment(text.clone())),
+            Statement::PartName(text) | Statement::Print(text) => {
+                emit(Step::Command(Command::Comment(text.clone())))
+            }
             Statement::Insert(text) => match self.reading.insert {
-                Insert::Comment => emit(Step::Comment(text.clone())),
-                Insert::Literal => emit(Step::Literal(text.clone())),
+                Insert::Comment => emit(Step::Command(Command::Comment(text.clone()))),
+                Insert::Literal => emit(Step::Command(Command::Literal(text.clone()))),
             },
             Statement::Csys(_) | Statement::Remark(_) => {
                 self.count(record.statement.word(), record, Usage::Ignored);
@@ -462,7 +471,7 @@ impl Interpreter {
                     );
                 }
                 if usage == Usage::Unknown && self.reading.unknown == Unknown::Pass {
-                    emit(Step::Comment(record.text().into_owned()));
+                    emit(Step::Command(Command::Comment(record.text().into_owned())));
                 }
             }
         }
@@ -485,7 +494,8 @@ impl Interpreter {
         }
         let tip = self.point(point);
         if let Some(pace) = self.pace(record) {
-            self.advance(tip, pace, 0.0, emit);
+            self.arrive(tip);
+            emit(Step::Move(self.motion(tip, pace)));
         }
     }
 
@@ -601,25 +611,30 @@ impl Interpreter {
         self.resolved(record, feed)
     }
 
-    /// Emits one straight move and keeps its end.
+    /// The tool comes to stand at `tip`.
     #[inline]
-    fn advance(&mut self, tip: Vector3<f64>, pace: Pace, chord: f64, emit: &mut impl FnMut(Step)) {
+    fn arrive(&mut self, tip: Vector3<f64>) {
         self.tip = Some(tip);
         self.measured = true;
         self.cut_any = true;
+    }
+
+    /// The motion to `tip` (frame of the file) with axis and edge in force.
+    #[inline]
+    fn motion(&self, tip: Vector3<f64>, pace: Pace) -> Motion {
         let (tip, axis) = self.frame.to_part(tip, self.axis);
         let edge = if self.edge == Vector3::zeros() {
             self.edge
         } else {
             self.frame.direction_to_part(self.edge)
         };
-        emit(Step::Move(Motion {
+        Motion {
             tip,
             axis,
             edge,
             pace,
-            chord,
-        }));
+            chord: 0.0,
+        }
     }
 
     fn count(&mut self, word: &str, record: &Record<'_>, usage: Usage) {

@@ -4,7 +4,7 @@ use post_grammar::{Cutcom, LoadTool, Record, Sense, Side, Spindle as SpindleWord
 use post_plugin::{Compensation, Spindle, SpindleSense};
 
 use super::Interpreter;
-use crate::program::motion::{Step, Tool};
+use crate::program::{Command, Step, Tool};
 use post_machine::description::ToolLength;
 
 impl Interpreter {
@@ -61,7 +61,7 @@ impl Interpreter {
                 }
             }
         };
-        emit(Step::Spindle(step));
+        emit(Step::Command(Command::Spindle(step)));
     }
 
     pub(super) fn load(
@@ -98,7 +98,7 @@ impl Interpreter {
         self.cut_any = false;
         if self.compensated {
             self.compensated = false;
-            emit(Step::Compensate(Compensation::Off));
+            emit(Step::Command(Command::Compensate(Compensation::Off)));
             self.warn(
                 record,
                 "compensation",
@@ -108,12 +108,12 @@ impl Interpreter {
         }
         // The tool comes from the changer: no arc begins where the last one stood.
         self.tip = None;
-        emit(Step::Tool(Tool {
+        emit(Step::Command(Command::Tool(Tool {
             number: tool.number,
             register,
             length,
             name: self.tool_name.clone(),
-        }));
+        })));
     }
 
     /// Loads the tool that the user names, before the first record that needs one.
@@ -142,7 +142,7 @@ impl Interpreter {
         let side = match cutcom.side {
             Some(Side::Off) => {
                 self.compensated = false;
-                emit(Step::Compensate(Compensation::Off));
+                emit(Step::Command(Command::Compensate(Compensation::Off)));
                 return;
             }
             Some(side) => {
@@ -156,8 +156,12 @@ impl Interpreter {
         let register = self.register.or(tool).unwrap_or(1);
         self.compensated |= matches!(side, Some(Side::Left | Side::Right));
         match side {
-            Some(Side::Left) => emit(Step::Compensate(Compensation::Left { register })),
-            Some(Side::Right) => emit(Step::Compensate(Compensation::Right { register })),
+            Some(Side::Left) => emit(Step::Command(Command::Compensate(Compensation::Left {
+                register,
+            }))),
+            Some(Side::Right) => emit(Step::Command(Command::Compensate(Compensation::Right {
+                register,
+            }))),
             // CAMWorks switches it ON first and names the side in the next record.
             Some(Side::Off) | None => {}
         }

@@ -1,0 +1,218 @@
+//! Four linear axes: one held, a quill with a share, a quill in reserve.
+
+use super::*;
+
+/// Directions of the linear joints at `q`, part frame.
+fn ways(machine: &Random, q: &Joints) -> Vec<(usize, Vector3<f64>)> {
+    let reference = &machine.reference;
+    reference
+        .linear()
+        .into_iter()
+        .map(|index| (index, reference.direction(q, index)))
+        .collect()
+}
+
+/// The volume that three of four linear axes span; axis `extra` is left out, and `beside` goes along `along`.
+fn volume(
+    ways: &[(usize, Vector3<f64>)],
+    extra: usize,
+    beside: usize,
+    along: Option<Vector3<f64>>,
+) -> f64 {
+    let columns: Vec<Vector3<f64>> = ways
+        .iter()
+        .filter(|(index, _)| *index != extra)
+        .map(|(index, way)| match along {
+            Some(along) if *index == beside => along,
+            _ => *way,
+        })
+        .collect();
+    Matrix3::from_columns(&columns).determinant().abs()
+}
+
+/// A machine with four linear axes and up to two rotary ones, and of the linear ones two: the quill, and the axis
+/// that it runs beside.
+fn four(rng: &mut Rng, round: usize) -> (Random, usize, usize) {
+    let mut kinds = vec![Kind::Linear; 4];
+    kinds.extend(vec![Kind::Free; round % 3]);
+    kinds.extend(vec![Kind::Held; usize::from(round.is_multiple_of(7))]);
+    loop {
+        let machine = Random::of(rng, &kinds);
+        if let [a, b] = *machine.free.as_slice()
+            && machine
+                .reference
+                .direction(&machine.held, a)
+                .cross(&machine.reference.direction(&machine.held, b))
+                .norm()
+                < 0.05
+        {
+            continue;
+        }
+        let linear = machine.reference.linear();
+        let quill = linear[rng.pick(4)];
+        let beside = loop {
+            let beside = linear[rng.pick(4)];
+            if beside != quill {
+                break beside;
+            }
+        };
+        if volume(&ways(&machine, &machine.held), quill, beside, None) > 0.2 {
+            return (machine, quill, beside);
+        }
+    }
+}
+
+#[test]
+fn a_fourth_linear_axis_that_is_held_stands_still() {
+    let (rounds, mut rng) = randomised(3_000, 13);
+    let (mut tip, mut poses) = (0.0f64, 0);
+    for round in rounds {
+        let (machine, quill, beside) = four(&mut rng, round);
+        let mut held = machine.held;
+        held[quill] = rng.range(-SIZE, SIZE);
+        let freedom = Freedom {
+            rotary: machine.free.clone(),
+            still: vec![quill],
+            held,
+            seconds: Vec::new(),
+        };
+        let solver = Solver::with(machine.reference.chain(), &freedom).expect("a closed form");
+        for _ in 0..3 {
+            let mut q = machine.values(&mut rng);
+            q[quill] = held[quill];
+            if volume(&ways(&machine, &q), quill, beside, None) < 0.1 {
+                continue;
+            }
+            poses += 1;
+            let machine = Random {
+                reference: machine.reference.clone(),
+                free: machine.free.clone(),
+                held,
+            };
+            let (found, worst) = solutions(&solver, &machine, &q);
+            tip = tip.max(worst);
+            assert!(found.iter().all(|solution| solution[quill] == held[quill]));
+        }
+    }
+    println!("{poses} poses with a held quill: tip {tip:.1e} mm");
+    assert!(poses > 4_000 && tip < 1e-9, "{poses} {tip}");
+}
+
+#[test]
+fn a_quill_takes_its_share() {
+    let (rounds, mut rng) = randomised(3_000, 14);
+    let (mut tip, mut poses, mut shares) = (0.0f64, 0, 0.0f64);
+    for round in rounds {
+        let (machine, quill, beside) = four(&mut rng, round);
+        // Both ends of the range as well.
+        let share = [0.0, 1.0, rng.range(0.0, 1.0), 0.5][rng.pick(4)];
+        let freedom = Freedom {
+            rotary: machine.free.clone(),
+            held: machine.held,
+            seconds: vec![(
+                quill,
+                Second::Share { of: beside, share },
+                [f64::NEG_INFINITY, f64::INFINITY],
+            )],
+            ..Freedom::default()
+        };
+        let solver = Solver::with(machine.reference.chain(), &freedom).expect("a closed form");
+        for _ in 0..3 {
+            let mut q = machine.values(&mut rng);
+            let way = rng.range(-SIZE, SIZE);
+            q[quill] = way * share;
+            q[beside] = way * (1.0 - share);
+            let ways = ways(&machine, &q);
+            let along = |joint: usize| {
+                let found = ways.iter().find(|(index, _)| *index == joint);
+                found.expect("a linear axis").1
+            };
+            let both = along(beside) * (1.0 - share) + along(quill) * share;
+            if volume(&ways, quill, beside, Some(both)) < 0.1 {
+                continue;
+            }
+            poses += 1;
+            let (found, worst) = solutions(&solver, &machine, &q);
+            tip = tip.max(worst);
+            for solution in &found {
+                let whole = solution[quill] + solution[beside];
+                shares = shares.max((solution[quill] - whole * share).abs());
+            }
+        }
+    }
+    println!("{poses} poses with a shared quill: tip {tip:.1e} mm, share off by {shares:.1e} mm");
+    assert!(
+        poses > 4_000 && tip < 1e-9 && shares < 1e-9,
+        "{poses} {tip} {shares}"
+    );
+}
+
+#[test]
+fn a_quill_in_reserve_moves_where_the_other_ends() {
+    let (rounds, mut rng) = randomised(4_000, 15);
+    let (mut tip, mut inside, mut beyond) = (0.0f64, 0, 0);
+    for round in rounds {
+        let (machine, quill, beside) = four(&mut rng, round);
+        let middle = rng.range(-200.0, 200.0);
+        let travel = [
+            middle - rng.range(0.0, 300.0),
+            middle + rng.range(0.0, 300.0),
+        ];
+        let freedom = Freedom {
+            rotary: machine.free.clone(),
+            held: machine.held,
+            seconds: vec![(quill, Second::Reserve { of: beside }, travel)],
+            ..Freedom::default()
+        };
+        let solver = Solver::with(machine.reference.chain(), &freedom).expect("a closed form");
+        for _ in 0..3 {
+            // The pose is one that the other axis would reach alone.
+            let mut q = machine.values(&mut rng);
+            q[quill] = 0.0;
+            let ways = ways(&machine, &q);
+            let found = ways.iter().find(|(index, _)| *index == quill);
+            let along = found.expect("a linear axis").1;
+            if volume(&ways, quill, beside, None) < 0.1
+                || volume(&ways, quill, beside, Some(along)) < 0.1
+            {
+                continue;
+            }
+            let (found, worst) = solutions(&solver, &machine, &q);
+            tip = tip.max(worst);
+            // With the other branch the way of each may be another; that of the values themselves is known.
+            let own = found.iter().find(|solution| {
+                machine
+                    .free
+                    .iter()
+                    .all(|joint| turned(solution[*joint], q[*joint]).abs() < 1e-6)
+            });
+            for solution in &found {
+                let end = solution[beside];
+                assert!(
+                    (travel[0]..=travel[1]).contains(&end),
+                    "round {round}: {end} {travel:?}"
+                );
+                assert!(
+                    solution[quill] == 0.0 || end == travel[0] || end == travel[1],
+                    "round {round}: {solution:?} {travel:?}"
+                );
+            }
+            let Some(own) = own else { continue };
+            if (travel[0]..=travel[1]).contains(&q[beside]) {
+                inside += 1;
+                assert!(own[quill].abs() < 1e-9 || (own[beside] - q[beside]).abs() < 1e-6);
+            } else {
+                beyond += 1;
+                let end = if q[beside] > travel[1] {
+                    travel[1]
+                } else {
+                    travel[0]
+                };
+                assert_eq!(own[beside], end, "round {round}");
+                assert!(own[quill] != 0.0);
+            }
+        }
+    }
+    println!("quill in reserve: {inside} inside, {beyond} beyond, tip {tip:.1e} mm");
+    assert!(inside > 1_000 && beyond > 1_000 && tip < 1e-9, "{tip}");
+}

@@ -1,0 +1,553 @@
+//! Machine files: those of the workspace load, and every slip is refused with its line, the text underlined
+//! and, where something can be done about it, a remedy.
+
+use std::fs;
+
+use post_machine::description::{Machine, Setting, Source, Tcp, load};
+use post_machine::diagnostic::{Diagnostic, Severity};
+use post_testkit::repository;
+
+/// A good machine; every refusal changes some of its text.
+const GOOD: &str = r#"name = "trunnion"
+chain = "[w C' A' b Y X Z (S) t]"
+
+[parameters]
+Zc = 50.5
+half = "Zc / 2"
+
+[workpiece]
+mount = [0, 0, "half"]
+
+[tool]
+gauge = [0, 0, 400]
+axis = [0, 0, 1]
+
+[tools]
+1 = 120.5
+
+[axis.C]
+rotary = [0, 0, 1]
+point = [0, 0, 0]
+cyclic = true
+max_feed = 9000
+
+[axis.A]
+rotary = [1, 0, 0]
+point = [0, 0.012, "Zc"]
+travel = [-120, 30]
+
+[axis.X]
+linear = [1, 0, 0]
+travel = [-300, 300]
+
+[axis.Y]
+linear = [0, 1, 0]
+travel = [-300, 300]
+
+[axis.Z]
+linear = [0, 0, 1]
+travel = [-450, 200]
+
+[control]
+dialect = "fanuc"
+tcp = "post"
+
+[control.fanuc]
+program = 7
+
+[accuracy]
+tolerance = 0.005
+"#;
+
+fn source(name: &str, text: &str) -> Source {
+    Source {
+        name: name.to_owned(),
+        text: text.to_owned(),
+    }
+}
+
+/// Loads `text` with `settings`; the machine `good` can be extended, and `circle` extends itself.
+fn try_load(text: &str, settings: &[&str]) -> Result<Machine, Vec<Diagnostic>> {
+    let settings: Vec<Setting> = settings
+        .iter()
+        .map(|&setting| Setting::Written(setting.to_owned()))
+        .collect();
+    load(source("m.toml", text), &settings, &mut |name| match name {
+        "good" => Ok(source("good.toml", GOOD)),
+        "circle" => Ok(source("circle.toml", "extends = \"circle\"\n")),
+        other => Err(format!("no machine {other}")),
+    })
+}
+
+/// What is underlined, behind its line.
+fn underlined(finding: &Diagnostic) -> String {
+    let place = finding
+        .place
+        .as_ref()
+        .unwrap_or_else(|| panic!("no place: {finding:?}"));
+    format!("{} {}", place.line, &place.text[place.span.clone()])
+}
+
+#[test]
+fn every_machine_of_the_workspace_loads() {
+    let folder = repository().join("machines");
+    let read =
+        |name: &str| fs::read_to_string(folder.join(name)).map_err(|error| error.to_string());
+    let mut count = 0;
+    for entry in fs::read_dir(&folder).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if !name.ends_with(".toml") {
+            continue;
+        }
+        let mut find = |parent: &str| {
+            let file = format!("{parent}.toml");
+            Ok(source(&file, &read(&file)?))
+        };
+        let loaded = load(source(&name, &read(&name).unwrap()), &[], &mut find);
+        let machine = loaded.unwrap_or_else(|faults| panic!("{name}: {faults:#?}"));
+        assert!(machine.solver(100.0).is_ok(), "{name}");
+        count += 1;
+    }
+    assert!(count >= 20, "{count} machines");
+}
+
+#[test]
+fn a_good_file_means_what_it_says() {
+    let machine = try_load(GOOD, &[]).unwrap();
+    let names: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+    assert_eq!(names, ["C", "A", "Y", "X", "Z"]);
+    assert_eq!(machine.mount.z, 25.25);
+    assert_eq!(machine.axes[1].joint.point.z, 50.5);
+    assert_eq!(
+        machine.axes[1].travel,
+        Some([-120.0f64, 30.0].map(f64::to_radians))
+    );
+    assert_eq!(machine.axes[0].travel, None);
+    assert_eq!(machine.axes[0].max_feed, 9000f64.to_radians());
+    assert_eq!(machine.tools, [(1, 120.5)]);
+    assert_eq!(machine.control.tcp, Tcp::Post);
+    assert_eq!(machine.control.options.len(), 1);
+    assert_eq!(machine.accuracy.axis_tolerance, 0.05f64.to_radians());
+}
+
+/// One slip: what is replaced by what, the line and what is underlined of it, part of the message, and whether a
+/// remedy is given.
+type Slip = (&'static str, &'static str, &'static str, &'static str, bool);
+
+const CHAIN: &str = "2 \"[w C' A' b Y X Z (S) t]\"";
+
+const SLIPS: &[Slip] = &[
+    // Keys and syntax.
+    ("mount =", "mout =", "9 mout", "unknown field `mout`", false),
+    (
+        "tolerance =",
+        "tolerence =",
+        "49 tolerence",
+        "unknown field `tolerence`",
+        false,
+    ),
+    (
+        "max_feed = 9000",
+        "max_fed = 9000",
+        "22 max_fed",
+        "unknown field `max_fed`",
+        false,
+    ),
+    (
+        "half = \"Zc / 2\"",
+        "Zc = 2",
+        "6 Zc",
+        "duplicate key",
+        false,
+    ),
+    ("[axis.A]\n", "[axis.C]\n", "24 C", "duplicate key", false),
+    ("[0, 0, 400]", "[0, 0, 400", "13 ", "expected `,`", false),
+    (
+        "[0, 0, 400]",
+        "[0, 400]",
+        "12 [0, 400]",
+        "array of length 3",
+        false,
+    ),
+    (
+        "[control]\ndialect = \"fanuc\"",
+        "[control]",
+        "41 [control]",
+        "missing field `dialect`",
+        false,
+    ),
+    (
+        "tcp = \"post\"",
+        "tcp = \"posts\"",
+        "43 \"posts\"",
+        "expected `control` or `post`",
+        false,
+    ),
+    (
+        "program = 7",
+        "program = [7]",
+        "46 program",
+        "a flag, a number or a text",
+        false,
+    ),
+    (
+        "1 = 120.5",
+        "one = 120.5",
+        "16 120.5",
+        "no tool number",
+        true,
+    ),
+    // Geometry.
+    (
+        "[axis.A]\nrotary = [1, 0, 0]",
+        "[axis.A]\nrotary = [0, 0, 0.0]",
+        "25 0, 0, 0.0",
+        "direction of A is null",
+        true,
+    ),
+    (
+        "axis = [0, 0, 1]",
+        "axis = [0, 0, 0]",
+        "13 0, 0, 0",
+        "tool axis is null",
+        true,
+    ),
+    (
+        "[-120, 30]",
+        "[30, -120]",
+        "27 [30, -120]",
+        "from 30 to -120",
+        true,
+    ),
+    (
+        "[-120, 30]",
+        "[30, 30]",
+        "27 [30, 30]",
+        "from 30 to 30",
+        true,
+    ),
+    (
+        "cyclic = true",
+        "cyclic = true\ntravel = [-1, 1]",
+        "22 [-1, 1]",
+        "cyclic (endless) and has travel",
+        true,
+    ),
+    (
+        "cyclic = true\n",
+        "",
+        "18 [axis.C]",
+        "C has no travel",
+        true,
+    ),
+    (
+        "linear = [1, 0, 0]\ntravel = [-300, 300]",
+        "linear = [1, 0, 0]",
+        "29 [axis.X]",
+        "X has no travel",
+        true,
+    ),
+    (
+        "linear = [1, 0, 0]",
+        "linear = [1, 0, 0]\nrotary = [1, 0, 0]",
+        "29 [axis.X]",
+        "one of the two",
+        true,
+    ),
+    (
+        "linear = [1, 0, 0]",
+        "linear = [1, 0, 0]\npoint = [1, 0, 0]",
+        "31 1",
+        "a point means nothing",
+        true,
+    ),
+    (
+        "linear = [1, 0, 0]",
+        "linear = [0, 1, 1]",
+        CHAIN,
+        "span no volume",
+        true,
+    ),
+    (
+        "point = [0, 0.012, \"Zc\"]\n",
+        "",
+        "24 [axis.A]",
+        "where its axis line runs",
+        true,
+    ),
+    (
+        "rotary = [1, 0, 0]",
+        "rotary = [0, 0, -2]",
+        CHAIN,
+        "C and A turn about parallel axes",
+        true,
+    ),
+    (
+        "b Y X Z (S) t]\"",
+        "b Y X Z B t]\"\naxis.B = { rotary = [0, 1, 0], point = [0, 0, 0], cyclic = true }",
+        "2 \"[w C' A' b Y X Z B t]\"",
+        "3 rotary axes move at once (C, A, B)",
+        true,
+    ),
+    (
+        "b Y X Z (S) t]\"",
+        "b Y X Z U t]\"\naxis.U = { linear = [0, 0, 1], travel = [0, 1] }",
+        "2 \"[w C' A' b Y X Z U t]\"",
+        "4 linear axes",
+        true,
+    ),
+    (
+        "travel = [-120, 30]",
+        "travel = [-120, 30]\nindexed = 31",
+        "28 31",
+        "outside its travel",
+        false,
+    ),
+    (
+        "max_feed = 9000",
+        "max_feed = 0",
+        "22 0",
+        "above zero",
+        false,
+    ),
+    (
+        "tolerance = 0.005",
+        "tolerance = -0.005",
+        "49 -0.005",
+        "above zero",
+        false,
+    ),
+    (
+        "tcp = \"post\"\n",
+        "",
+        "41 [control]",
+        "who keeps the tip",
+        true,
+    ),
+    // The chain.
+    (
+        "b Y X Z",
+        "b Y Z",
+        "29 [axis.X]",
+        "does not stand in the chain",
+        true,
+    ),
+    ("b Y X Z", "b Y X Z U", "2 U", "no [axis.U]", true),
+    ("C' A' b", "C' A b", "2 A", "write A'", true),
+    ("b Y X", "b Y X'", "2 X'", "X' is primed", true),
+    ("b Y X", "b Y Y X", "2 Y", "Y stands twice", false),
+    ("(S) t]", "(S)]", "2 ", "`t`, the tool, is missing", true),
+    // Expressions.
+    ("\"Zc\"", "\"Zd\"", "26 \"Zd\"", "`Zd` is not known", true),
+    (
+        "\"Zc\"",
+        "\"Zc +\"",
+        "26 \"Zc +\"",
+        "is missing at the end",
+        true,
+    ),
+    (
+        "\"Zc\"",
+        "\"Zc / (half - 25.25)\"",
+        "26 \"Zc / (half - 25.25)\"",
+        "division by zero",
+        true,
+    ),
+    (
+        "\"Zc\"",
+        "\"sqrt(-Zc)\"",
+        "26 \"sqrt(-Zc)\"",
+        "no finite value",
+        true,
+    ),
+    (
+        "Zc = 50.5",
+        "Zc = \"half * 2\"",
+        "5 \"half * 2\"",
+        "in a circle",
+        true,
+    ),
+    (
+        "[0, 0, 400]",
+        "[0, 0, nan]",
+        "12 nan",
+        "no finite number",
+        false,
+    ),
+];
+
+#[test]
+fn every_slip_is_refused_where_it_stands() {
+    for (good, bad, place, message, help) in SLIPS {
+        assert!(GOOD.contains(good), "{good} is not in the good file");
+        let Err(found) = try_load(&GOOD.replacen(good, bad, 1), &[]) else {
+            panic!("{bad} was loaded");
+        };
+        let first = &found[0];
+        assert_eq!(underlined(first), *place, "{bad}: {first:?}");
+        assert!(first.message.contains(message), "{bad}: {}", first.message);
+        assert_eq!(first.help.is_some(), *help, "{bad}: {:?}", first.help);
+        assert_eq!(first.severity, Severity::Error);
+        assert_eq!(
+            first.place.as_ref().map(|place| place.file.as_str()),
+            Some("m.toml")
+        );
+    }
+}
+
+#[test]
+fn faults_that_do_not_hide_one_another_are_told_together() {
+    let text = GOOD
+        .replace("[-120, 30]", "[30, -120]")
+        .replace("max_feed = 9000", "max_feed = -1")
+        .replace("[0, 0, 400]", "[0, 0, \"gauge\"]")
+        .replace("tcp = \"post\"\n", "");
+    let found = try_load(&text, &[]).unwrap_err();
+    let places: Vec<String> = found.iter().map(underlined).collect();
+    assert_eq!(
+        places,
+        ["22 -1", "27 [30, -120]", "12 \"gauge\"", "41 [control]"]
+    );
+}
+
+/// One missing bracket is one slip.
+#[test]
+fn a_syntax_error_is_told_once() {
+    let found = try_load(&GOOD.replace("[0, 0, 400]", "[0, 0, 400"), &[]).unwrap_err();
+    assert!(found.len() <= 5, "{} findings", found.len());
+}
+
+/// A parameter that has no value is a slip, whether or not anything uses it.
+#[test]
+fn parameters_that_nothing_uses_are_checked_too() {
+    for (value, message) in [
+        ("\"1 / 0\"", "division by zero"),
+        ("\"Zd\"", "not known"),
+        ("\"unused + 1\"", "in a circle"),
+    ] {
+        let text = GOOD.replace("Zc = 50.5", &format!("Zc = 50.5\nunused = {value}"));
+        let Err(found) = try_load(&text, &[]) else {
+            panic!("unused = {value} was loaded");
+        };
+        assert_eq!(underlined(&found[0]), format!("6 {value}"));
+        assert!(found[0].message.contains(message), "{found:?}");
+    }
+}
+
+#[test]
+fn a_machine_extends_another_key_by_key() {
+    let machine = try_load(
+        "extends = \"good\"\nname = \"other\"\naxis.A.travel = [-90, 90]\n",
+        &[],
+    )
+    .unwrap();
+    assert_eq!(machine.name, "other");
+    assert_eq!(
+        machine.axes[1].travel,
+        Some([-90.0f64, 90.0].map(f64::to_radians))
+    );
+    assert_eq!(machine.axes[1].joint.point.z, 50.5);
+
+    let found = try_load("name = \"x\"\nextends = \"nowhere\"\n", &[]).unwrap_err();
+    assert_eq!(underlined(&found[0]), "2 \"nowhere\"");
+    assert!(found[0].message.contains("nowhere"), "{found:?}");
+
+    let found = try_load("extends = \"circle\"\n", &[]).unwrap_err();
+    assert_eq!(underlined(&found[0]), "1 \"circle\"");
+    assert!(found[0].message.contains("circle"), "{found:?}");
+
+    // A fault is told in the file that it stands in.
+    let found = try_load(
+        "extends = \"good\"\nparameters.Zc = 0\naxis.X.linear = [0, 0, 0]\nmount = 1\n",
+        &[],
+    )
+    .unwrap_err();
+    assert_eq!(underlined(&found[0]), "4 mount");
+    let found = try_load("extends = \"good\"\naxis.A.max_feed = \"Zc - 60\"\n", &[]).unwrap_err();
+    assert_eq!(underlined(&found[0]), "2 \"Zc - 60\"");
+
+    // Of two keys that stand in one another's place the later takes the earlier away.
+    let endless = try_load("extends = \"good\"\naxis.A.cyclic = true\n", &[]).unwrap();
+    assert_eq!(endless.axes[1].travel, None);
+    let limited = try_load("extends = \"good\"\naxis.C.travel = [0, 90]\n", &[]);
+    assert!(limited.unwrap().axes[0].travel.is_some());
+    let kept = try_load("extends = \"good\"\naxis.A.cyclic = false\n", &[]).unwrap();
+    assert!(kept.axes[1].travel.is_some());
+}
+
+#[test]
+fn settings_win_over_the_file() {
+    let machine = try_load(
+        GOOD,
+        &[
+            "Zc=60",
+            "accuracy.tolerance=0.001",
+            "control.dialect=own",
+            "axis.A.travel=[-90, 20]",
+        ],
+    )
+    .unwrap();
+    assert_eq!(machine.mount.z, 30.0);
+    assert_eq!(machine.accuracy.tolerance, 0.001);
+    assert_eq!(machine.control.dialect, "own");
+    assert_eq!(
+        machine.axes[1].travel,
+        Some([-90.0f64, 20.0].map(f64::to_radians))
+    );
+    // The last one wins, and an expression is one here too.
+    assert_eq!(
+        try_load(GOOD, &["Zc=1", "Zc=\"half0 * 2\"", "parameters.half0=7"])
+            .map(|machine| machine.mount.z)
+            .ok(),
+        None
+    );
+    assert_eq!(
+        try_load(GOOD, &["Zc=1", "Zc=\"3 * 4\""]).unwrap().mount.z,
+        6.0
+    );
+
+    let found = try_load(GOOD, &["Zd=60"]).unwrap_err();
+    assert!(
+        found[0].message.contains("no parameter of that name"),
+        "{found:?}"
+    );
+    assert!(
+        found[0].help.as_ref().unwrap().contains("Zc, half"),
+        "{found:?}"
+    );
+    let found = try_load(GOOD, &["Zc"]).unwrap_err();
+    assert!(
+        found[0].message.contains("no value") && found[0].help.is_some(),
+        "{found:?}"
+    );
+    let found = try_load(GOOD, &["accuracy.tolerence=1"]).unwrap_err();
+    assert_eq!(underlined(&found[0]), "1 tolerence");
+    let found = try_load(GOOD, &["accuracy.tolerance=-1"]).unwrap_err();
+    let place = found[0].place.as_ref().unwrap();
+    assert_eq!(
+        (place.file.as_str(), underlined(&found[0]).as_str()),
+        ("--set", "1 -1")
+    );
+}
+
+/// Whatever is done to a file, it loads or is refused with places that can be shown.
+#[test]
+fn no_text_makes_it_stumble() {
+    let mut refused = 0;
+    for at in 0..GOOD.len() {
+        for piece in ["", "\"", "[", "=", "\n", "ß", "-", "9e999"] {
+            let text = format!(
+                "{}{piece}{}",
+                &GOOD[..at],
+                &GOOD[at + usize::from(piece.is_empty())..]
+            );
+            if let Err(found) = try_load(&text, &[]) {
+                refused += 1;
+                for finding in found.iter().filter(|finding| finding.place.is_some()) {
+                    underlined(finding);
+                }
+            }
+        }
+    }
+    assert!(refused > 1_000, "{refused}");
+}

@@ -1,0 +1,7 @@
+//! Tests of the machine: chain, kinematics both ways, machine file, and what is derived from it.
+
+mod check;
+mod freedom;
+mod kinematics;
+mod linuxcnc;
+mod machine_file;

@@ -1,0 +1,82 @@
+//! A block of the program: a motion as it will be printed, with all that anyone behind may want to know of it.
+
+use nalgebra::Vector3;
+use post_machine::axis_words::WordValues;
+use post_machine::kinematics::Joints;
+use post_plugin::Feed;
+
+use super::nominal::Nominal;
+use crate::accuracy::Bound;
+use crate::program::Pace;
+
+/// A motion of the program, from where the block before it ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Line of the CL file.
+    pub line: u64,
+    /// How the tool comes to its end.
+    pub kind: MotionKind,
+    /// Why it is there.
+    pub reason: Reason,
+    /// The tolerance of a rapid was enough for it: it goes off the part.
+    pub loose: bool,
+    /// No word of it differs from those of the block before: nothing is printed.
+    pub still: bool,
+    /// The feed that the CL file asks for.
+    pub pace: Pace,
+    /// The printed words.
+    pub words: WordValues,
+    /// Axis values at its end, as printed: mm, radians.
+    pub joints: Joints,
+    /// Where the tip comes to stand, mm, part frame.
+    pub tip: Vector3<f64>,
+    /// The tool axis there, unit vector, part frame.
+    pub axis: Vector3<f64>,
+    /// Certified: the block stays this close to the CL path, chords of arcs and splines counted in.
+    pub deviation: Bound,
+    /// Way of the control point and of the tip, mm.
+    pub way: [f64; 2],
+    /// The time that the CL file asks for.
+    pub nominal: Nominal,
+    /// How long it takes; filled in by the timing stage.
+    pub time: Time,
+}
+
+/// How the tool comes to the end of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionKind {
+    /// From wherever it stands, clear of the part: the first position after the start or a tool change.
+    Position,
+    /// As [`MotionKind::Position`], over the reference: an index axis turns on the way.
+    Reference,
+    /// At rapid traverse.
+    Rapid,
+    /// All axes linear in time.
+    Linear,
+}
+
+/// Why a block is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// It ends on a CL point.
+    Point,
+    /// Error control put its end in.
+    PutIn,
+    /// The tool leaves the part as it stands, before its axes turn.
+    Leave,
+    /// A stop on the way of axes that cannot go in one block.
+    Stage,
+    /// The tool is drawn back, turned and brought back.
+    Rewind,
+}
+
+/// How long a block takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Time {
+    /// Minutes.
+    pub minutes: f64,
+    /// The feed as written; none in a rapid.
+    pub feed: Option<Feed>,
+    /// The limit that made it slower than asked for.
+    pub limit: Option<&'static str>,
+}

@@ -1,0 +1,147 @@
+//! CL points that wait for what comes behind them: along one stretch of path some of them may be needless.
+
+use super::{Blocks, LONGEST, Leg, Reason, STILL, Surroundings};
+use crate::accuracy::Node;
+use crate::program::{Motion, Pace};
+use post_machine::description::Axis;
+use post_machine::kinematics::Second;
+use post_machine::kinematics::orientation::angle;
+
+/// More legs than this do not wait: the point at the end of them is kept.
+const MOST: usize = 1024;
+
+/// Directions of shorter moves mean nothing, mm.
+const LEAST: f64 = 1e-6;
+
+/// Legs that follow one another at one feed and without a corner, and the points at their ends.
+#[derive(Debug, Default)]
+pub(super) struct Gathered {
+    legs: Vec<(u64, Motion)>,
+    nodes: Vec<Node>,
+}
+
+impl Gathered {
+    /// Line of the first leg that waits.
+    pub(super) fn first_line(&self) -> Option<u64> {
+        self.legs.first().map(|(line, _)| *line)
+    }
+
+    /// Can a leg to `node` go on here, if the path turns by no more than `corner`, radians?
+    fn joins(&self, leg: &Leg<'_>, node: &Node, corner: f64) -> bool {
+        let (Some((_, motion)), [.., before, last]) = (self.legs.last(), self.nodes.as_slice())
+        else {
+            return false;
+        };
+        let (first, second) = (
+            last.target.tip - before.target.tip,
+            node.target.tip - last.target.tip,
+        );
+        self.legs.len() < MOST
+            && motion.pace == leg.motion.pace
+            && first.norm() > LEAST
+            && second.norm() > LEAST
+            && angle(first.normalize(), second.normalize()) <= corner
+    }
+}
+
+/// It moves where another axis ends.
+fn in_reserve(axis: &Axis) -> bool {
+    matches!(axis.second, Some(Second::Reserve { .. }))
+}
+
+impl Blocks<'_> {
+    /// Does a move to `node` wait, as part of a run?
+    #[inline]
+    pub(super) fn gathers(&self, leg: &Leg<'_>, node: &Node) -> bool {
+        // Cutter radius compensation offsets the points that the control is given.
+        if !self.machine.accuracy.reduce || leg.loose || self.compensating {
+            return false;
+        }
+        // A time of its own cannot be shared; axes that exclude one another, or of which one moves where the other
+        // ends, cannot move in one block.
+        let steady = matches!(leg.motion.pace, Pace::PerMinute(_))
+            && self.machine.solution.exclusive.is_empty()
+            && !self.machine.axes.iter().any(in_reserve);
+        steady
+            && self.last.as_ref().is_some_and(|last| {
+                let apart = self.stands(last, node)
+                    || (self.machine.indexes && self.indexes(last, node))
+                    || (self.machine.stages && self.special(last, node));
+                !apart
+            })
+    }
+
+    /// The tip as good as stands still while the axes turn. Such a move is paced by the axes: together with others
+    /// it would be paced by the way of the tip, and they would turn in no time.
+    fn stands(&self, last: &Node, node: &Node) -> bool {
+        let way = (node.target.tip - last.target.tip).norm();
+        way <= STILL && self.turn_between(last, node).to_degrees() > way
+    }
+
+    /// Takes a move into the run, or ends that and begins another with it.
+    pub(super) fn gather(
+        &mut self,
+        leg: &Leg<'_>,
+        last: &Node,
+        node: &Node,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        let corner = self.machine.accuracy.corner;
+        if !self.gathered.joins(leg, node, corner) || self.turns_too_far(node) {
+            self.end_run(to);
+            self.gathered.nodes.push(*last);
+        }
+        self.gathered.nodes.push(*node);
+        self.gathered.legs.push((leg.line, *leg.motion));
+    }
+
+    /// With a move to `node`, a block of the run could turn an axis so far that a control which shows it over one
+    /// turn takes the other way round.
+    fn turns_too_far(&self, node: &Node) -> bool {
+        let axes = self.machine.axes.iter().enumerate();
+        let mut shown = axes.filter(|(_, axis)| axis.range.is_some());
+        shown.any(|(joint, _)| {
+            let value = node.trace.joints[joint];
+            let mut nodes = self.gathered.nodes.iter();
+            nodes.any(|node| (node.trace.joints[joint] - value).abs() > LONGEST)
+        })
+    }
+
+    /// Carries out the run that waits.
+    #[inline]
+    pub(super) fn end_run(&mut self, to: &mut Surroundings<'_, '_>) {
+        if !self.gathered.legs.is_empty() {
+            self.carry_out_run(to);
+        }
+    }
+
+    fn carry_out_run(&mut self, to: &mut Surroundings<'_, '_>) {
+        let Some(placer) = self.placer.clone() else {
+            return;
+        };
+        let mut gathered = std::mem::take(&mut self.gathered);
+        let chords = gathered.legs.iter().map(|(_, motion)| motion.chord);
+        let chord = chords.fold(0.0, f64::max);
+        // A block of several legs strays by the farthest of them.
+        for (_, motion) in &mut gathered.legs {
+            motion.chord = chord;
+        }
+        let legs: Vec<Leg<'_>> = gathered
+            .legs
+            .iter()
+            .map(|(line, motion)| Leg {
+                line: *line,
+                motion,
+                loose: false,
+                reason: Reason::Point,
+            })
+            .collect();
+        match (legs.as_slice(), gathered.nodes.as_slice()) {
+            ([leg], [last, node]) => self.cut(&placer, leg, last, node, to),
+            (legs, nodes) => self.split(&placer, legs, nodes, to),
+        }
+        gathered.legs.clear();
+        gathered.nodes.clear();
+        self.gathered = gathered;
+    }
+}

@@ -1,0 +1,541 @@
+//! Points whose axis values are chosen become blocks: points put in or left out, every block certified.
+
+mod block;
+mod gathered;
+mod nominal;
+mod off_part;
+mod staged;
+
+use std::rc::Rc;
+
+use nalgebra::Vector3;
+use post_machine::description::{Machine, Tcp};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Joints;
+use post_machine::kinematics::orientation::angle;
+use post_plugin::{Compensation, ModelSession};
+
+use crate::accuracy::{Bound, Linearise, Move, Node, Placer, Run};
+use crate::configuration::{Chosen, Configured, pose};
+use crate::findings::Findings;
+use crate::observer::Audience;
+use crate::program::{Command, Motion, Pace};
+use crate::refusal;
+use crate::stream::{Flow, Outlet};
+pub use block::{Block, MotionKind, Reason, Time};
+use gathered::Gathered;
+pub use nominal::Nominal;
+pub(crate) use nominal::{Kinds, STILL, Travels};
+
+/// Turns that differ by less are the same, radians.
+const TURN: f64 = 1e-6;
+
+/// A control that shows an axis over one turn takes the shorter way: no block turns it by more, radians.
+const LONGEST: f64 = 2.9;
+
+/// A straight piece of the CL path on its way to become blocks.
+#[derive(Clone, Copy, Debug)]
+struct Leg<'m> {
+    line: u64,
+    motion: &'m Motion,
+    /// Off the part: the tolerance of a rapid is enough.
+    loose: bool,
+    /// Why it is gone, if not to come to its CL point.
+    reason: Reason,
+}
+
+/// The largest deviations certified so far.
+#[derive(Clone, Copy, Debug, Default)]
+struct Largest {
+    cut: Bound,
+    rapid: f64,
+}
+
+impl Largest {
+    /// Can a block with this bound be the worst one?
+    #[inline]
+    fn is_below(&self, leg: &Leg<'_>, bound: Bound) -> bool {
+        let tip = bound.tip + leg.motion.chord;
+        if leg.loose {
+            tip > self.rapid
+        } else {
+            tip > self.cut.tip || bound.axis > self.cut.axis
+        }
+    }
+
+    #[inline]
+    fn keep(&mut self, leg: &Leg<'_>, bound: Bound) {
+        let tip = bound.tip + leg.motion.chord;
+        if leg.loose {
+            self.rapid = self.rapid.max(tip);
+        } else {
+            self.cut = self.cut.and(Bound { tip, ..bound });
+        }
+    }
+}
+
+/// What the stage is handed, beside its batch.
+pub(crate) struct Surroundings<'s, 'o> {
+    /// Where blocks go.
+    pub out: &'s mut Outlet<'o, Flow<Block>>,
+    /// Where faults go.
+    pub findings: &'s Findings,
+    /// Who looks on.
+    pub audience: &'s dyn Audience,
+}
+
+/// Counts of this stage.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Counts {
+    /// Points put in.
+    pub points_added: u64,
+    /// CL points that no block ends on.
+    pub points_dropped: u64,
+    /// Times that another branch or another full turn was taken, off the part.
+    pub branch_changes: u64,
+    /// Times that the tool was drawn back in a cut to go on otherwise.
+    pub rewinds: u64,
+    /// Points at which a rotary axis was held or turned early close to a pole.
+    pub eased: u64,
+}
+
+/// The stage that makes blocks.
+pub(crate) struct Blocks<'a> {
+    machine: &'a Machine,
+    /// The machine with the head that it starts with.
+    base: &'a Machine,
+    model: &'a mut dyn ModelSession,
+    /// Solves the points; none before the first.
+    placer: Option<Rc<Placer>>,
+    linearise: Linearise,
+    kinds: Kinds,
+    /// CL points that wait for those behind them.
+    gathered: Gathered,
+    /// What each leg of the run in hand is due.
+    nominal: Vec<Nominal>,
+    /// Where the tool stands; none before the first position.
+    last: Option<Box<Node>>,
+    /// The node before that, to be filled again.
+    spare: Option<Box<Node>>,
+    /// The last move was a cut: the tool is on the part.
+    on_part: bool,
+    /// Cutter radius compensation is in force.
+    compensating: bool,
+    /// Set once the fault that compensation cannot be was given.
+    told_compensation: bool,
+    /// The largest deviations so far.
+    largest: Largest,
+    counts: Counts,
+}
+
+impl<'a> Blocks<'a> {
+    pub(crate) fn new(
+        machine: &'a Machine,
+        model: &'a mut dyn ModelSession,
+        trust_model: bool,
+    ) -> Self {
+        Self {
+            machine,
+            base: machine,
+            model,
+            placer: None,
+            linearise: Linearise::new(&machine.accuracy, trust_model),
+            kinds: Kinds::new(machine),
+            gathered: Gathered::default(),
+            nominal: Vec::new(),
+            last: None,
+            spare: None,
+            on_part: false,
+            compensating: false,
+            told_compensation: false,
+            largest: Largest::default(),
+            counts: Counts::default(),
+        }
+    }
+
+    /// Counts so far.
+    pub(crate) fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Points that the certificate asked for over the model's head.
+    pub(crate) fn overruled(&self) -> u64 {
+        self.linearise.overruled()
+    }
+
+    /// Line of the first point that waits for those behind it.
+    pub(crate) fn first_line(&self) -> Option<u64> {
+        self.gathered.first_line()
+    }
+
+    /// Takes a batch.
+    pub(crate) fn take(
+        &mut self,
+        batch: &mut Vec<Flow<Configured>>,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        for next in batch.drain(..) {
+            match next {
+                Flow::Point(Configured::Point(chosen)) => self.point(&chosen, to),
+                Flow::Point(Configured::Placer(placer)) => {
+                    self.end_run(to);
+                    self.placer = Some(placer);
+                }
+                Flow::Point(Configured::Broken) => {
+                    self.end_run(to);
+                    self.stand_anywhere();
+                }
+                Flow::Command { line, command } => self.command(line, command, to),
+            }
+        }
+    }
+
+    /// The file ends: what waits is carried out.
+    pub(crate) fn finish(&mut self, to: &mut Surroundings<'_, '_>) {
+        self.end_run(to);
+    }
+
+    fn command(&mut self, line: u64, command: Command, to: &mut Surroundings<'_, '_>) {
+        self.end_run(to);
+        match &command {
+            Command::Tool(_) | Command::Home => self.stand_anywhere(),
+            Command::Head(name) => {
+                self.stand_anywhere();
+                if let Some(head) = self.base.heads.iter().find(|head| head.name == *name) {
+                    self.machine = &head.machine;
+                    self.kinds = Kinds::new(self.machine);
+                    self.linearise.set(&self.machine.accuracy);
+                }
+            }
+            Command::Compensate(compensation) => {
+                self.compensating = *compensation != Compensation::Off;
+            }
+            _ => {}
+        }
+        to.out.command(line, command);
+    }
+
+    /// The next point is a first position again.
+    fn stand_anywhere(&mut self) {
+        self.last = None;
+        self.on_part = false;
+    }
+
+    #[inline]
+    fn point(&mut self, chosen: &Chosen, to: &mut Surroundings<'_, '_>) {
+        let Some(placer) = self.placer.clone() else {
+            return;
+        };
+        let leg = Leg {
+            line: chosen.line,
+            motion: &chosen.motion,
+            loose: chosen.motion.pace == Pace::Rapid,
+            reason: Reason::Point,
+        };
+        if chosen.arrives {
+            self.counts.branch_changes += u64::from(chosen.changed && leg.loose);
+            self.counts.eased += u64::from(chosen.eased);
+            self.travel(&placer, &leg, &chosen.joints, to);
+        }
+        if let Some(joints) = &chosen.rewind {
+            self.end_run(to);
+            self.rewind(&placer, &leg, joints, to);
+        }
+    }
+
+    #[inline]
+    fn travel(
+        &mut self,
+        placer: &Placer,
+        leg: &Leg<'_>,
+        joints: &Joints,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        let mut node = self.spare.take().unwrap_or_default();
+        if let Err(refused) = placer.settle(&mut node, pose(leg.motion), 1.0, joints) {
+            self.spare = Some(node);
+            to.findings
+                .at(leg.line, refusal::refused(self.machine, &refused));
+            return;
+        }
+        if self.compensating {
+            self.check_compensation(placer, leg.line, &node, to.findings);
+        }
+        let gathers = self.gathers(leg, &node);
+        if !gathers {
+            self.end_run(to);
+        }
+        match self.last.take() {
+            None => self.first(leg, &node, MotionKind::Position, to),
+            Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
+                // An index axis turns with the tool at the reference, not somewhere over the part.
+                let last = self.leave_part(placer, leg, last, to);
+                self.first(leg, &node, MotionKind::Reference, to);
+                self.spare = Some(last);
+            }
+            Some(last) => self.spare = Some(self.go(placer, leg, last, &mut node, gathers, to)),
+        }
+        self.on_part = leg.motion.pace != Pace::Rapid;
+        self.last = Some(node);
+    }
+
+    /// The first position after the start or a tool change.
+    fn first(
+        &mut self,
+        leg: &Leg<'_>,
+        node: &Node,
+        kind: MotionKind,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        let block = self.block(leg, node, Bound::default());
+        to.out.push(Flow::Point(Block {
+            kind,
+            // Nobody knows the way: the feed is that of a millimetre.
+            way: [1.0; 2],
+            nominal: Nominal::of(leg.motion.pace, 1.0, Travels::default),
+            ..block
+        }));
+    }
+
+    /// A move from where the tool stands to `node`; gives the node that it left.
+    #[inline]
+    fn go(
+        &mut self,
+        placer: &Placer,
+        leg: &Leg<'_>,
+        mut last: Box<Node>,
+        node: &mut Node,
+        gathers: bool,
+        to: &mut Surroundings<'_, '_>,
+    ) -> Box<Node> {
+        if leg.loose && self.on_part {
+            // The tool leaves the part as it stands, and turns when it is away.
+            if let Ok(stay) = placer.place(node.target, 1.0, &last.trace.joints)
+                && self.turn_between(&last, &stay) + TURN < self.turn_between(&last, node)
+            {
+                let leaving = Leg {
+                    reason: Reason::Leave,
+                    ..*leg
+                };
+                self.cut(placer, &leaving, &last, &stay, to);
+                *last = stay;
+            }
+        }
+        if self.machine.stages && self.special(&last, node) {
+            self.by_stages(placer, leg, &last, node, to);
+        } else if gathers {
+            self.gather(leg, &last, node, to);
+        } else {
+            self.cut(placer, leg, &last, node, to);
+        }
+        last
+    }
+
+    /// The tool axis in the machine frame, as the head holds it.
+    fn in_machine(&self, placer: &Placer, node: &Node) -> Vector3<f64> {
+        let mut joints = node.trace.joints;
+        for (value, axis) in joints.iter_mut().zip(&self.machine.axes) {
+            if axis.carries_part {
+                *value = 0.0;
+            }
+        }
+        placer.solver().chain().forward(&joints).axis
+    }
+
+    /// The sum of all rotary moves between two nodes, radians.
+    fn turn_between(&self, from: &Node, to: &Node) -> f64 {
+        let axes = self.machine.axes.iter().enumerate();
+        axes.filter(|(_, axis)| axis.joint.rotary)
+            .map(|(joint, _)| (to.trace.joints[joint] - from.trace.joints[joint]).abs())
+            .sum()
+    }
+
+    /// A straight move, cut into pieces where it strays.
+    #[inline]
+    fn cut(
+        &mut self,
+        placer: &Placer,
+        leg: &Leg<'_>,
+        last: &Node,
+        node: &Node,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        let chord = leg.motion.chord;
+        let whole = Move::planned(self.machine, placer, chord, leg.loose, [last, node]);
+        if !leg.loose {
+            to.audience.cut(leg.line, &whole);
+        }
+        match whole.whole() {
+            Some(bound) => {
+                // The cheap bound decides whether the block can be the worst one; the tight one is kept.
+                let bound = if self.largest.is_below(leg, bound) {
+                    whole.measured().least(bound)
+                } else {
+                    bound
+                };
+                let nominal = self.nominal(leg, last, node);
+                self.push(leg, last, node, nominal, bound, to);
+            }
+            None => self.split(placer, &[*leg], &[*last, *node], to),
+        }
+    }
+
+    /// Legs, one after the other, that need points or can do without some of their own.
+    fn split(
+        &mut self,
+        placer: &Placer,
+        legs: &[Leg<'_>],
+        nodes: &[Node],
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        let Some(first) = legs.first() else {
+            return;
+        };
+        let mut linearise = std::mem::take(&mut self.linearise);
+        let (chord, loose) = (first.motion.chord, first.loose);
+        let planned = Move::planned(self.machine, placer, chord, loose, [&nodes[0], &nodes[1]]);
+        let moves = nodes
+            .windows(2)
+            .any(|pair| (pair[1].target.tip - pair[0].target.tip).norm() > STILL);
+        let run = Run {
+            placer,
+            nodes,
+            tolerances: planned.tolerances,
+            control_keeps_tip: planned.control_keeps_tip,
+            // A rapid has no surface to be balanced about. A tip that stands still must seem to: its feed is taken
+            // along the axes.
+            balances: !first.loose && moves,
+        };
+        match linearise.split(&run, self.model) {
+            Ok(()) => {
+                let mut due = std::mem::take(&mut self.nominal);
+                due.clear();
+                for (leg, pair) in legs.iter().zip(nodes.windows(2)) {
+                    due.push(self.nominal(leg, &pair[0], &pair[1]));
+                }
+                let mut from = nodes[0];
+                let (mut at, mut kept) = ((0, 0.0), 0);
+                for piece in linearise.pieces() {
+                    let on_point = piece.to.t == 1.0;
+                    kept += usize::from(on_point);
+                    self.counts.points_added += u64::from(!on_point);
+                    let end = (piece.leg, piece.to.t);
+                    let nominal = Nominal::between(&due, at, end);
+                    let leg = Leg {
+                        reason: if on_point {
+                            legs[piece.leg].reason
+                        } else {
+                            Reason::PutIn
+                        },
+                        ..legs[piece.leg]
+                    };
+                    self.push(&leg, &from, &piece.to, nominal, piece.bound, to);
+                    (from, at) = (piece.to, end);
+                }
+                self.nominal = due;
+                self.counts.points_dropped += (legs.len() - kept.min(legs.len())) as u64;
+            }
+            Err((leg, stuck)) => {
+                let leg = &legs[leg];
+                let finding = refusal::stuck(self.machine, &stuck, leg.motion);
+                to.findings.at(leg.line, finding);
+            }
+        }
+        self.linearise = linearise;
+    }
+
+    /// What a move is due.
+    #[inline]
+    fn nominal(&self, leg: &Leg<'_>, from: &Node, to: &Node) -> Nominal {
+        let length = (to.tip - from.tip).norm();
+        Nominal::of(leg.motion.pace, length, || {
+            self.kinds.travels(&from.trace.joints, &to.trace.joints)
+        })
+    }
+
+    /// One block.
+    #[inline]
+    fn push(
+        &mut self,
+        leg: &Leg<'_>,
+        from: &Node,
+        node: &Node,
+        nominal: Nominal,
+        bound: Bound,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        // Between the printed tips: that is the way that the control will time.
+        let turned =
+            (node.trace.pose.axis - from.trace.pose.axis) * self.machine.control_point.along;
+        let way = node.tip - from.tip;
+        self.largest.keep(leg, bound);
+        let block = self.block(leg, node, bound);
+        to.out.push(Flow::Point(Block {
+            still: from.words == node.words,
+            way: [way.norm(), (way - turned).norm()],
+            nominal,
+            ..block
+        }));
+    }
+
+    #[inline]
+    fn block(&self, leg: &Leg<'_>, node: &Node, bound: Bound) -> Block {
+        Block {
+            line: leg.line,
+            kind: if leg.motion.pace == Pace::Rapid {
+                MotionKind::Rapid
+            } else {
+                MotionKind::Linear
+            },
+            reason: leg.reason,
+            loose: leg.loose,
+            still: false,
+            pace: leg.motion.pace,
+            words: node.words,
+            joints: node.trace.joints,
+            tip: node.tip - node.trace.pose.axis * self.machine.control_point.along,
+            axis: node.trace.pose.axis,
+            deviation: Bound {
+                tip: bound.tip + leg.motion.chord,
+                ..bound
+            },
+            way: [0.0; 2],
+            nominal: Nominal::default(),
+            time: Time::default(),
+        }
+    }
+
+    /// Radius compensation works in the plane of X and Y of the machine (of the part, where the control keeps
+    /// the tip): a tool that does not stand upright in it would be moved sideways into the part.
+    fn check_compensation(&mut self, placer: &Placer, line: u64, node: &Node, findings: &Findings) {
+        let machine = self.machine;
+        let axis = match machine.control.tcp {
+            Tcp::Control => node.trace.pose.axis,
+            Tcp::Post => self.in_machine(placer, node),
+        };
+        let tilt = angle(axis, machine.tool_axis);
+        let turned = self
+            .last
+            .as_ref()
+            .is_some_and(|last| self.turn_between(last, node) > 0.0);
+        let what = if tilt > 1e-3 {
+            format!("the tool tilted by {:.3}°", tilt.to_degrees())
+        } else if turned {
+            "rotary axes turning".to_owned()
+        } else {
+            return;
+        };
+        self.compensating = false;
+        if std::mem::replace(&mut self.told_compensation, true) {
+            return;
+        }
+        findings.at(
+            line,
+            Diagnostic::error(
+                "compensation",
+                format!("cutter radius compensation (CUTCOM) with {what}: the control would offset in the wrong plane"),
+            )
+            .help("let the CAM system write the tool centre path, with CUTCOM/OFF"),
+        );
+    }
+}

@@ -1,0 +1,118 @@
+//! The nominal time of a move: what the CL file asks for, whatever the axes can do.
+
+use post_machine::description::Machine;
+use post_machine::kinematics::{Joints, MAX_AXES};
+
+use crate::program::Pace;
+
+/// A tip that moves by no more than this stands still but for the rounding of the words, mm.
+pub(crate) const STILL: f64 = 2e-3;
+
+/// The time that a block is due by the CL file.
+///
+/// It is found for the move and shared out: pieces that are shorter than the words' decimals, or put off the path,
+/// have no pace of their own.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Nominal {
+    /// Minutes.
+    pub minutes: f64,
+    /// The tip moves; else the feed is that of the axes.
+    pub moves: bool,
+}
+
+impl Nominal {
+    /// A share of it.
+    #[inline]
+    pub(super) fn share(self, share: f64) -> Self {
+        Self {
+            minutes: self.minutes * share,
+            ..self
+        }
+    }
+
+    /// What is due between two places of a run, each a leg and a share of it; `legs` has that of each leg.
+    pub(super) fn between(
+        legs: &[Self],
+        (first, from): (usize, f64),
+        (last, to): (usize, f64),
+    ) -> Self {
+        if first == last {
+            return legs[first].share(to - from);
+        }
+        let whole: f64 = legs[first + 1..last].iter().map(|leg| leg.minutes).sum();
+        Self {
+            minutes: legs[first].minutes * (1.0 - from) + whole + legs[last].minutes * to,
+            moves: true,
+        }
+    }
+
+    /// Of a move that goes `length` mm along the control point's path.
+    #[inline]
+    pub(crate) fn of(pace: Pace, length: f64, travels: impl FnOnce() -> Travels) -> Self {
+        let moves = length > STILL;
+        let minutes = match pace {
+            Pace::PerMinute(feed) if moves => length / feed,
+            // The tip stands still: the feed is taken along the axes, degrees as millimetres, as controls do.
+            Pace::PerMinute(feed) => travels().combined / feed,
+            Pace::InverseTime(feed) => 1.0 / feed,
+            Pace::Rapid => 0.0,
+        };
+        Self { minutes, moves }
+    }
+}
+
+/// Which axes of a chain are rotary.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Kinds {
+    rotary: [bool; MAX_AXES],
+    count: usize,
+}
+
+/// How far the axes go in a block: mm and degrees.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Travels {
+    pub linear: f64,
+    pub rotary: f64,
+    pub combined: f64,
+    pub linear_longest: f64,
+    pub rotary_longest: f64,
+}
+
+impl Kinds {
+    pub(crate) fn new(machine: &Machine) -> Self {
+        let mut kinds = Self {
+            count: machine.axes.len(),
+            ..Self::default()
+        };
+        for (rotary, axis) in kinds.rotary.iter_mut().zip(&machine.axes) {
+            *rotary = axis.joint.rotary;
+        }
+        kinds
+    }
+
+    /// Some rotary axis turns.
+    #[inline]
+    pub(crate) fn turning(&self, from: &Joints, to: &Joints) -> bool {
+        (0..MAX_AXES).any(|index| self.rotary[index] && from[index] != to[index])
+    }
+
+    pub(crate) fn travels(&self, from: &Joints, to: &Joints) -> Travels {
+        let mut travels = Travels::default();
+        let (mut linear, mut rotary) = (0.0, 0.0);
+        for index in 0..self.count.min(MAX_AXES) {
+            let travel = (to[index] - from[index]).abs();
+            if self.rotary[index] {
+                let degrees = travel.to_degrees();
+                rotary += degrees * degrees;
+                travels.rotary_longest = travels.rotary_longest.max(degrees);
+            } else {
+                linear += travel * travel;
+                travels.linear_longest = travels.linear_longest.max(travel);
+            }
+        }
+        travels.combined = (linear + rotary).sqrt();
+        travels.linear = linear.sqrt();
+        travels.rotary = rotary.sqrt();
+        travels
+    }
+}

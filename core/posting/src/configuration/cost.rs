@@ -1,0 +1,81 @@
+//! What a way through the lattice costs: first what should not be at all, then how far the axes travel.
+
+/// Costs are compared place by place: rewinds, points on a side that is not preferred, travel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cost {
+    rewinds: u32,
+    against: u32,
+    /// See [`super::metric::Measure`]; infinite where there is no way.
+    travel: f64,
+}
+
+/// A tie is decided by order: travels differ if they differ by more than this share.
+const EQUAL: f64 = 1e-9;
+
+impl Cost {
+    pub(crate) const NONE: Self = Self {
+        rewinds: 0,
+        against: 0,
+        travel: 0.0,
+    };
+    pub(crate) const NO_WAY: Self = Self {
+        rewinds: 0,
+        against: 0,
+        travel: f64::INFINITY,
+    };
+
+    /// There is a way.
+    #[inline]
+    pub(crate) fn is_way(&self) -> bool {
+        self.travel < f64::INFINITY
+    }
+
+    /// Goes on by so much travel, and stands on so many sides that are not preferred.
+    #[inline]
+    pub(crate) fn and(self, travel: f64, against: u32) -> Self {
+        Self {
+            rewinds: self.rewinds,
+            against: self.against + against,
+            travel: self.travel + travel,
+        }
+    }
+
+    /// Goes on by a rewind.
+    pub(crate) fn and_rewind(self, travel: f64) -> Self {
+        Self {
+            rewinds: self.rewinds + 1,
+            ..self.and(travel, 0)
+        }
+    }
+
+    /// What is left of it when every way has cost `base` so far.
+    pub(crate) fn beyond(self, base: &Self) -> Self {
+        Self {
+            rewinds: self.rewinds.saturating_sub(base.rewinds),
+            against: self.against.saturating_sub(base.against),
+            travel: self.travel - base.travel,
+        }
+    }
+
+    /// It is less than `other`, and not by rounding alone.
+    #[inline]
+    pub(crate) fn less(&self, other: &Self) -> bool {
+        if !self.is_way() || !other.is_way() {
+            return self.is_way();
+        }
+        let penalty = (self.rewinds, self.against);
+        let other_penalty = (other.rewinds, other.against);
+        if penalty != other_penalty {
+            return penalty < other_penalty;
+        }
+        self.travel + EQUAL * (1.0 + self.travel.abs()) < other.travel
+    }
+
+    /// Order for sorting.
+    pub(crate) fn order(&self, other: &Self) -> std::cmp::Ordering {
+        let key = |cost: &Self| (!cost.is_way(), cost.rewinds, cost.against);
+        key(self)
+            .cmp(&key(other))
+            .then(self.travel.total_cmp(&other.travel))
+    }
+}

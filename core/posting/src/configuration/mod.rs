@@ -1,0 +1,383 @@
+//! Which of several solutions is taken at each point, decided over whole passes.
+//!
+//! Points wait here until the choice is made, and the commands between them wait with them, in their places.
+//! A command that takes the tool off the part has everything before it decided.
+
+mod cost;
+mod full_turns;
+mod metric;
+mod recovery;
+mod route;
+mod settle;
+mod solution;
+mod taut;
+mod trellis;
+
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+use post_machine::description::{Machine, Positions, Tcp, ToolLength};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Pose;
+use post_plugin::Format;
+
+use crate::accuracy::Placer;
+use crate::expand::Line;
+use crate::findings::Findings;
+use crate::program::{Command, Motion, Tool};
+use crate::stream::{Flow, Outlet};
+pub(crate) use route::Chosen;
+use route::{Lost, Route};
+pub(crate) use trellis::pose;
+
+/// What this stage hands on beside commands.
+#[derive(Clone, Debug)]
+pub(crate) enum Configured {
+    /// A point with the axis values that were chosen for it.
+    Point(Chosen),
+    /// What solves the points from here on.
+    Placer(Rc<Placer>),
+    /// The path ended in a fault; the next point begins one anew.
+    Broken,
+}
+
+/// What is not decided yet.
+#[derive(Debug)]
+enum Waiting {
+    /// So many points.
+    Points(u64),
+    /// A command, with its line.
+    Command(u64, Command),
+}
+
+/// More commands than this do not wait for a point to be decided.
+const MOST_WAITING: usize = 4096;
+
+/// What leaves this stage.
+type Out<'o> = Outlet<'o, Flow<Configured>>;
+
+/// The stage that chooses axis values.
+#[derive(Debug)]
+pub(crate) struct Configuration<'a> {
+    machine: &'a Machine,
+    /// The machine with the head that it starts with.
+    base: &'a Machine,
+    route: Route<'a>,
+    /// The placer that the next stage knows of.
+    setting: Option<usize>,
+    waiting: VecDeque<Waiting>,
+    /// Commands among them.
+    commands: usize,
+    chosen: Vec<Chosen>,
+    /// What the user says of every tool.
+    told_length: Option<f64>,
+    /// Length of the tool in use, if anybody gave it.
+    length: Option<f64>,
+    /// The tool's length matters and nobody gave it.
+    length_unknown: bool,
+    /// The tool in use.
+    tool: Option<Tool>,
+    /// Points taken.
+    moves: u64,
+}
+
+impl<'a> Configuration<'a> {
+    /// Begins where the machine file says.
+    ///
+    /// # Errors
+    /// What the machine lacks for being solved.
+    pub(crate) fn new(
+        machine: &'a Machine,
+        format: &Format,
+        told_length: Option<f64>,
+    ) -> Result<Self, Box<Diagnostic>> {
+        Ok(Self {
+            machine,
+            base: machine,
+            route: Route::new(machine, format, told_length.unwrap_or(0.0))?,
+            setting: None,
+            waiting: VecDeque::new(),
+            commands: 0,
+            chosen: Vec::new(),
+            told_length,
+            length: told_length,
+            length_unknown: told_length.is_none(),
+            tool: None,
+            moves: 0,
+        })
+    }
+
+    /// Points taken so far.
+    pub(crate) fn moves(&self) -> u64 {
+        self.moves
+    }
+
+    /// The tool length mattered, and was taken as 0 because nobody gave it.
+    pub(crate) fn length_unknown(&self) -> bool {
+        self.length_unknown && self.length_matters()
+    }
+
+    /// Line of the first point or command that is not decided.
+    pub(crate) fn first_line(&self) -> Option<u64> {
+        let mut waiting = self.waiting.iter();
+        let command = waiting.find_map(|waiting| match waiting {
+            Waiting::Command(line, _) => Some(*line),
+            Waiting::Points(_) => None,
+        });
+        [command, self.route.first_line()]
+            .into_iter()
+            .flatten()
+            .min()
+    }
+
+    /// Takes a batch.
+    pub(crate) fn take(
+        &mut self,
+        batch: &mut Vec<Flow<Line>>,
+        out: &mut Out<'_>,
+        findings: &Findings,
+    ) {
+        for next in batch.drain(..) {
+            match next {
+                Flow::Point(at) => self.point(&at, out, findings),
+                Flow::Command { line, command } => self.arrange(line, command, out, findings),
+            }
+        }
+    }
+
+    /// The file ends: everything is decided.
+    pub(crate) fn finish(&mut self, out: &mut Out<'_>, findings: &Findings) {
+        self.settle(out, findings);
+    }
+
+    #[inline]
+    fn point(&mut self, at: &Line, out: &mut Out<'_>, findings: &Findings) {
+        self.moves += 1;
+        let line = at.line;
+        match self.route.add(line, &self.guided(at.motion)) {
+            Ok(()) => match self.waiting.back_mut() {
+                Some(Waiting::Points(count)) => *count += 1,
+                _ => self.waiting.push_back(Waiting::Points(1)),
+            },
+            Err(Lost::Point(fault)) => findings.at(line, *fault),
+            Err(Lost::Path(fault)) => {
+                findings.at(line, *fault);
+                self.drain(out, findings);
+                out.push(Flow::Point(Configured::Broken));
+            }
+        }
+        if self.route.has_chosen() {
+            self.drain(out, findings);
+        }
+    }
+
+    /// From here on a point of the path is the control point of the tool.
+    #[inline]
+    fn guided(&self, motion: Motion) -> Motion {
+        Motion {
+            tip: motion.tip + motion.axis * self.machine.control_point.along,
+            ..motion
+        }
+    }
+
+    /// A command is carried out between the points that it stands between.
+    fn arrange(&mut self, line: u64, command: Command, out: &mut Out<'_>, findings: &Findings) {
+        if command.leaves() || self.commands >= MOST_WAITING {
+            self.settle(out, findings);
+        }
+        if self.waiting.is_empty() {
+            self.command(line, command, out, findings);
+        } else {
+            self.commands += 1;
+            self.waiting.push_back(Waiting::Command(line, command));
+        }
+    }
+
+    /// Has everything decided, and hands it on.
+    fn settle(&mut self, out: &mut Out<'_>, findings: &Findings) {
+        self.route.settle_all();
+        self.drain(out, findings);
+    }
+
+    /// Hands on what was decided, and the commands that stand between.
+    fn drain(&mut self, out: &mut Out<'_>, findings: &Findings) {
+        let mut chosen = std::mem::take(&mut self.chosen);
+        self.route.take_chosen(&mut chosen);
+        for next in chosen.drain(..) {
+            if self.setting != Some(next.setting) {
+                self.setting = Some(next.setting);
+                let placer = Rc::clone(self.route.placer(next.setting));
+                out.push(Flow::Point(Configured::Placer(placer)));
+            }
+            let arrives = next.arrives;
+            out.push(Flow::Point(Configured::Point(next)));
+            if arrives {
+                self.arrived(out, findings);
+            }
+        }
+        self.chosen = chosen;
+    }
+
+    /// One more point is decided: the commands behind it follow.
+    #[inline]
+    fn arrived(&mut self, out: &mut Out<'_>, findings: &Findings) {
+        match self.waiting.front_mut() {
+            Some(Waiting::Points(count)) if *count > 1 => {
+                *count -= 1;
+                return;
+            }
+            Some(Waiting::Points(_)) => {
+                self.waiting.pop_front();
+            }
+            _ => {}
+        }
+        while let Some(Waiting::Command(..)) = self.waiting.front() {
+            if let Some(Waiting::Command(line, command)) = self.waiting.pop_front() {
+                self.commands -= 1;
+                self.command(line, command, out, findings);
+            }
+        }
+    }
+
+    /// Carries out what a command means for the choice, and hands it on.
+    fn command(&mut self, line: u64, mut command: Command, out: &mut Out<'_>, findings: &Findings) {
+        match &mut command {
+            Command::From { tip, axis } => self.stand(*tip, *axis),
+            Command::Tool(tool) => {
+                self.route.leave();
+                self.measure(tool);
+                self.tool = Some(tool.clone());
+                tool.length = self.length;
+                self.equip(line, findings);
+            }
+            Command::Index { axis, angle } => self.index(line, *axis, *angle, findings),
+            Command::Head(name) => {
+                let Some(head) = self.base.heads.iter().find(|head| head.name == *name) else {
+                    findings.at(line, no_head(self.base, name));
+                    return;
+                };
+                self.route.leave();
+                self.machine = &head.machine;
+                // A head may have lengths of its own.
+                if let Some(tool) = self.tool.take() {
+                    self.measure(&tool);
+                    self.tool = Some(tool);
+                }
+                self.equip(line, findings);
+            }
+            Command::Home => self.route.leave(),
+            _ => {}
+        }
+        out.command(line, command);
+    }
+
+    /// The tool stands there: solutions near to it are wanted, but nothing moves.
+    fn stand(&mut self, tip: nalgebra::Vector3<f64>, axis: nalgebra::Vector3<f64>) {
+        let pose = Pose {
+            tip: tip + axis * self.machine.control_point.along,
+            axis,
+            edge: self.route.edge_at_rest(),
+        };
+        let placed = self
+            .route
+            .present()
+            .place(pose, 1.0, self.route.stands_at());
+        if let Ok(node) = placed {
+            self.route.begin_at(node.trace.joints);
+        }
+    }
+
+    /// Finds the length of a tool.
+    fn measure(&mut self, tool: &Tool) {
+        let table = || {
+            let tools = &self.machine.tools;
+            tools
+                .iter()
+                .find(|(number, _)| *number == tool.number)
+                .map(|(_, length)| *length)
+        };
+        let length = self.told_length.or_else(table).or(tool.length);
+        self.length_unknown |= length.is_none();
+        if length.is_some() && self.moves == 0 {
+            self.length_unknown = false;
+        }
+        self.length = length;
+    }
+
+    /// Takes machine and tool length into the route.
+    fn equip(&mut self, line: u64, findings: &Findings) {
+        self.setting = None;
+        if let Err(fault) = self.route.equip(self.machine, self.length.unwrap_or(0.0)) {
+            findings.at(line, *fault);
+        }
+    }
+
+    /// An index move of the program: it sets the redundant axis of that name, if there is one. (The others
+    /// follow from the tool axis.)
+    fn index(&mut self, line: u64, axis: char, angle: f64, findings: &Findings) {
+        let named = |name: &str| name.len() == 1 && name.starts_with(axis);
+        let Some(joint) = self.machine.axes.iter().position(|axis| named(&axis.name)) else {
+            return;
+        };
+        let axis = &self.machine.axes[joint];
+        let value = angle - axis.zero;
+        let positions = axis.indexed.as_ref().map(|indexed| &indexed.positions);
+        let possible = positions
+            .is_none_or(|positions| positions.holds(value, axis.travel.is_none()))
+            && axis
+                .travel
+                .is_none_or(|[least, most]| (least - 1e-9..=most + 1e-9).contains(&value));
+        // Indices of settings may have changed.
+        self.setting = None;
+        match self.route.index(joint, value, possible) {
+            Ok(true) if !possible => {
+                let fault = Diagnostic::error(
+                    "index",
+                    format!(
+                        "{} cannot stand at {:.3}°, where ROTABL wants it",
+                        axis.name,
+                        axis.reading(value)
+                    ),
+                );
+                let help = match positions {
+                    Some(positions) if *positions != Positions::Any => format!(
+                        "the nearest of its positions is {:.3}°",
+                        axis.reading(positions.nearest(value, axis.travel.is_none()))
+                    ),
+                    _ => "it is outside the travel of the axis".to_owned(),
+                };
+                findings.at(line, fault.help(help));
+            }
+            Ok(_) => {}
+            Err(fault) => findings.at(line, *fault),
+        }
+    }
+
+    /// Does the program depend on the tool length? On a machine whose head turns, if the control does not
+    /// keep the tip.
+    fn length_matters(&self) -> bool {
+        let machine = self.machine;
+        if machine.control.tcp == Tcp::Control || machine.control.tool_length == ToolLength::Cl {
+            return false;
+        }
+        let first_linear = machine.axes.iter().position(|axis| !axis.joint.rotary);
+        machine
+            .axes
+            .iter()
+            .skip(first_linear.unwrap_or(0))
+            .any(|axis| axis.joint.rotary)
+    }
+}
+
+/// `HEAD` names a head that the machine does not have.
+fn no_head(machine: &Machine, name: &str) -> Diagnostic {
+    let heads = machine.heads.iter();
+    let known: Vec<&str> = heads.map(|head| head.name.as_str()).collect();
+    Diagnostic::error("head", format!("{} has no head {name}", machine.name)).help(
+        if known.is_empty() {
+            "its file describes no [head.NAME]".to_owned()
+        } else {
+            format!("its heads are: {}", known.join(", "))
+        },
+    )
+}

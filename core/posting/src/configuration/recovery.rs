@@ -1,0 +1,270 @@
+//! Where the path cannot go on: another index position off the part, a rewind, or a fault that says what was tried.
+
+use super::route::{Lost, Route};
+use super::solution::{Found, both};
+use super::trellis::{Kind, State, pose};
+use crate::accuracy::Refused;
+use crate::program::{Motion, Pace};
+use crate::refusal;
+use post_machine::description::Positions;
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::{Joints, Unreachable};
+
+/// Positions of an index axis that are tried.
+const MOST_POSITIONS: usize = 720;
+
+impl Route<'_> {
+    /// The newest point cannot be gone to. Finds a way, or says why there is none.
+    #[cold]
+    pub(super) fn find_way(
+        &mut self,
+        line: u64,
+        motion: &Motion,
+        pushed: Result<Found, Unreachable>,
+    ) -> Result<(), Lost> {
+        let kind = match (&pushed, self.lattice.layers.last()) {
+            (Ok(_), Some(layer)) => layer.kind,
+            _ => Kind::First,
+        };
+        if pushed.is_ok() {
+            self.lattice.pop();
+        }
+        if self.try_positions(line, motion).map_err(Lost::Point)? {
+            return Ok(());
+        }
+        let found = match pushed {
+            Ok(found) => found,
+            Err(unreachable) => {
+                let refused = Refused::Unreachable(unreachable);
+                return Err(Lost::Point(
+                    refusal::refused(self.machine, &refused).boxed(),
+                ));
+            }
+        };
+        if kind != Kind::Cut {
+            return Err(Lost::Point(self.over_travel(&found)));
+        }
+        if self.machine.rewind.is_some() && self.try_rewind(line, motion) {
+            return Ok(());
+        }
+        let fault = self.no_way(motion, &found);
+        // Behind the fault the path begins anew, so that what follows is checked too.
+        self.settle_all();
+        self.leave();
+        Err(Lost::Path(fault))
+    }
+
+    /// Pushes a point if there is a way to stand at it.
+    fn goes_on(&mut self, line: u64, motion: &Motion) -> bool {
+        let pushed = self.push(line, motion).is_ok();
+        if pushed && !self.alive() {
+            self.lattice.pop();
+            return false;
+        }
+        pushed
+    }
+
+    /// Goes back to where the tool was last off the part, and puts a redundant axis on another of its
+    /// positions there: the nearest with which the path comes through to this point.
+    fn try_positions(&mut self, line: u64, motion: &Motion) -> Result<bool, Box<Diagnostic>> {
+        let held = self.settings[self.setting].0;
+        let mut alternatives: Vec<Joints> = Vec::new();
+        for joint in self.machine.redundant() {
+            let axis = &self.machine.axes[joint];
+            let Some(indexed) = &axis.indexed else {
+                continue;
+            };
+            let inside = |value: &f64| {
+                axis.travel
+                    .is_none_or(|[least, most]| (least - 1e-9..=most + 1e-9).contains(value))
+            };
+            let values: Vec<f64> = match &indexed.positions {
+                Positions::Any => continue,
+                Positions::List(values) => values.clone(),
+                Positions::Step { step, .. } => (1..MOST_POSITIONS / 2)
+                    .flat_map(|count| [1.0, -1.0].map(|sign| sign * count as f64 * step))
+                    .filter(|way| axis.travel.is_some() || way.abs() <= std::f64::consts::PI)
+                    .map(|way| held[joint] + way)
+                    .collect(),
+            };
+            for value in values.into_iter().filter(inside) {
+                if (value - held[joint]).abs() > 1e-9 {
+                    let mut other = held;
+                    other[joint] = value;
+                    alternatives.push(other);
+                }
+            }
+        }
+        if alternatives.is_empty() {
+            return Ok(false);
+        }
+        alternatives.sort_by(|a, b| {
+            let way = |other: &Joints| self.lattice.measure.approach(&held, other);
+            way(a).total_cmp(&way(b))
+        });
+        // The points since the last rapid, this one last.
+        let settled = usize::from(self.anchored);
+        let off_part = |kind: Kind| kind != Kind::Cut;
+        let back = match motion.pace {
+            Pace::Rapid => self.lattice.layers.len(),
+            _ => match (settled..self.lattice.layers.len())
+                .rev()
+                .find(|layer| off_part(self.lattice.layers[*layer].kind))
+            {
+                Some(layer) => layer,
+                None if self.lattice.layers.is_empty() => 0,
+                None => return Ok(false),
+            },
+        };
+        let mut points: Vec<(u64, Motion)> = Vec::new();
+        while self.lattice.layers.len() > back {
+            if let Some(layer) = self.lattice.pop() {
+                points.insert(0, (layer.line, layer.motion));
+            }
+        }
+        points.push((line, *motion));
+        self.mark = 0;
+        let before = self.setting;
+        for other in alternatives {
+            self.setting = self.setting_for(&other)?;
+            let mut pushed = 0;
+            for (line, motion) in &points {
+                if !self.goes_on(*line, motion) {
+                    break;
+                }
+                pushed += 1;
+            }
+            if pushed == points.len() {
+                return Ok(true);
+            }
+            for _ in 0..pushed {
+                self.lattice.pop();
+            }
+        }
+        self.setting = before;
+        for (line, motion) in &points[..points.len() - 1] {
+            if !self.goes_on(*line, motion) {
+                // Only a rewind had led to it.
+                return Err(Diagnostic::error(
+                    "index",
+                    "no position of the redundant axes carries the pass to this line",
+                )
+                .help("retract before this line, so that the axis can be set anew")
+                .boxed());
+            }
+        }
+        Ok(false)
+    }
+
+    /// Adds to the point before the states that a rewind there can reach, and pushes the point again.
+    fn try_rewind(&mut self, line: u64, motion: &Motion) -> bool {
+        let Some(rewind) = self.machine.rewind else {
+            return false;
+        };
+        let Some(layer) = self.lattice.layers.last().cloned() else {
+            return false;
+        };
+        let placer = self.settings[layer.setting].1.clone();
+        let target = pose(&layer.motion);
+        let along = self.machine.control_point.along;
+        let Some(back) = layer.motion.drawn_back(&rewind, along) else {
+            return false;
+        };
+        let reaches = |joints: &Joints| placer.settled(pose(&back), 1.0, joints).is_ok();
+        let mut stands = Vec::new();
+        let states: Vec<State> = self
+            .lattice
+            .states_of(self.lattice.layers.len() - 1)
+            .to_vec();
+        let mut added = Vec::new();
+        for (place, state) in states.iter().enumerate() {
+            if !state.cost.is_way() || !reaches(&state.joints) {
+                continue;
+            }
+            stands.clear();
+            let axes = &self.lattice.axes;
+            let found = axes.stands(placer.solver(), &target, &state.joints, &both, &mut stands);
+            if found.is_err() {
+                continue;
+            }
+            for stand in &stands {
+                axes.turned(stand, &state.joints, &mut |joints| {
+                    if axes.largest_turn(&state.joints, joints) > 1e-6 {
+                        added.push((place, stand.branch, *joints));
+                    }
+                });
+            }
+        }
+        for (place, branch, joints) in added {
+            if !reaches(&joints) {
+                continue;
+            }
+            let state = &states[place];
+            self.rewound.push(state.joints);
+            let index = self.lattice.states.len();
+            self.lattice.states.push(State {
+                cost: state
+                    .cost
+                    .and_rewind(self.lattice.measure.between(&state.joints, &joints)),
+                joints,
+                from: state.from,
+                root: if self.mark + 1 == self.lattice.layers.len() {
+                    index
+                } else {
+                    state.root
+                },
+                branch,
+                rewind: Some(self.rewound.len() - 1),
+            });
+            if let Some(layer) = self.lattice.layers.last_mut() {
+                layer.count += 1;
+            }
+        }
+        self.goes_on(line, motion)
+    }
+
+    fn over_travel(&self, found: &Found) -> Box<Diagnostic> {
+        let refused = match found.over {
+            Some(over) => Refused::OverTravel {
+                over,
+                tried: found.solutions,
+            },
+            None if !self.machine.solution.require.is_empty() => {
+                return Diagnostic::error(
+                    "over-travel",
+                    "no solution stands on the side of zero that [solution] require asks for",
+                )
+                .help("another side, or another set-up of the part")
+                .boxed();
+            }
+            None => Refused::Unreachable(Unreachable::Linear),
+        };
+        refusal::refused(self.machine, &refused).boxed()
+    }
+
+    /// The fault of a cut that cannot go on: what each solution would have asked for.
+    fn no_way(&self, motion: &Motion, found: &Found) -> Box<Diagnostic> {
+        let placer = &self.settings[self.setting].1;
+        let target = pose(motion);
+        let Some(from) = self.lattice.best().map(|index| self.lattice.states[index]) else {
+            return self.over_travel(found);
+        };
+        let mut stands = Vec::new();
+        let axes = &self.lattice.axes;
+        let solved = axes.stands(placer.solver(), &target, &from.joints, &both, &mut stands);
+        if solved.is_err() || stands.is_empty() {
+            return self.over_travel(found);
+        }
+        let tried: Vec<_> = stands
+            .iter()
+            .map(|stand| {
+                (
+                    axes.carried(stand, &from.joints),
+                    stand.branch == from.branch,
+                    stand.joints,
+                )
+            })
+            .collect();
+        refusal::no_way(self.machine, &from.joints, &tried).boxed()
+    }
+}

@@ -1,0 +1,328 @@
+//! Settling: the cheapest way through the lattice is walked back, eased close to poles, and handed out.
+
+use super::cost::Cost;
+use super::route::{Chosen, Route};
+use super::taut::{Gate, taut};
+use super::trellis::{HELD, Kind, Lattice, State, pose};
+use crate::program::{Motion, Pace};
+use post_machine::kinematics::Joints;
+use post_machine::kinematics::POLE;
+
+/// A pole joint is eased where the tolerance leaves it more than this, radians (2°): elsewhere little would be
+/// gained, and the points stay exact.
+const WORTH: f64 = 0.034_906_585_039_886_59;
+
+/// Values that differ by less are the same, radians.
+const SAME: f64 = 1e-9;
+
+/// The way that was walked back.
+#[derive(Debug, Default)]
+pub(super) struct Way {
+    /// Of each layer the state that it goes through.
+    states: Vec<usize>,
+    /// Layers where the axes are eased, in order, and where they stand there.
+    eased: Vec<(usize, Joints)>,
+}
+
+impl Way {
+    /// Where the axes stand at a layer.
+    fn joints(&self, lattice: &Lattice, layer: usize) -> Joints {
+        match self.eased.binary_search_by_key(&layer, |(layer, _)| *layer) {
+            Ok(place) => self.eased[place].1,
+            Err(_) => lattice.states[self.states[layer]].joints,
+        }
+    }
+}
+
+impl Route<'_> {
+    /// Settles all points.
+    pub(crate) fn settle_all(&mut self) {
+        let last = self.lattice.layers.len().saturating_sub(1);
+        self.settle(last);
+    }
+
+    /// Settles what is decided: everything where one state is left, else the older half of a full window.
+    #[inline]
+    pub(super) fn advance(&mut self) {
+        let layers = &self.lattice.layers;
+        let Some(layer) = layers.last() else {
+            return;
+        };
+        let waiting = layers.len() - usize::from(self.anchored);
+        let look_ahead = self.machine.solution.look_ahead;
+        if layer.count == 1 && !self.eased(layer.latitude.0) && !self.tries_positions {
+            if self.anchored && layers.len() == 2 {
+                self.settle_only();
+            } else {
+                self.settle_all();
+            }
+        } else if waiting >= look_ahead {
+            let last = layers.len() - 1;
+            self.settle(if self.mark > 0 { self.mark } else { last });
+            self.set_mark();
+        } else if self.mark == 0 && 2 * waiting >= look_ahead {
+            self.set_mark();
+        }
+    }
+
+    /// Settles the only point that waits, which has one state.
+    #[inline]
+    fn settle_only(&mut self) {
+        let lattice = &mut self.lattice;
+        let at = &lattice.layers[1];
+        let (before, state) = (lattice.states[at.first].from, lattice.states[at.first]);
+        let before = lattice.states[before];
+        if before.rewind.is_some() || state.rewind.is_some() {
+            self.settle_all();
+            return;
+        }
+        self.chosen.push(Chosen {
+            line: at.line,
+            motion: at.motion,
+            setting: at.setting,
+            arrives: true,
+            joints: state.joints,
+            rewind: None,
+            changed: lattice.has_changed(
+                (before.branch, &before.joints),
+                (state.branch, &state.joints),
+            ),
+            eased: false,
+        });
+        lattice.layers.swap_remove(0);
+        lattice.layers[0].first = 0;
+        lattice.states.clear();
+        lattice.states.push(State {
+            cost: Cost::NONE,
+            from: 0,
+            root: 0,
+            ..state
+        });
+        self.mark = 0;
+    }
+
+    /// From here on every state knows which state of the newest layer it comes from.
+    fn set_mark(&mut self) {
+        let last = self.lattice.layers.len() - 1;
+        self.mark = last;
+        let layer = &self.lattice.layers[last];
+        for index in layer.first..layer.first + layer.count {
+            self.lattice.states[index].root = index;
+        }
+    }
+
+    /// So close to the pole that its joint has room.
+    fn eased(&self, sine: f64) -> bool {
+        sine * WORTH < self.lattice.freedom || sine <= self.lattice.cone
+    }
+
+    /// Settles the points up to `upto`; the best way to the newest point decides.
+    fn settle(&mut self, upto: usize) {
+        let Some(best) = self.lattice.best() else {
+            return;
+        };
+        let count = self.lattice.layers.len();
+        if count <= usize::from(self.anchored) {
+            return;
+        }
+        let mut way = std::mem::take(&mut self.way);
+        way.eased.clear();
+        way.states.clear();
+        way.states.resize(count, best);
+        for layer in (1..count).rev() {
+            way.states[layer - 1] = self.lattice.states[way.states[layer]].from;
+        }
+        self.ease(&mut way);
+        self.hand_out(&way, upto);
+        let joints = way.joints(&self.lattice, upto);
+        let branch = self.lattice.states[way.states[upto]].branch;
+        self.drop_before(upto, joints, branch, best);
+        self.way = way;
+    }
+
+    /// Pulls the pole joint taut wherever the tolerance leaves it room.
+    fn ease(&self, way: &mut Way) {
+        let lattice = &self.lattice;
+        let layers = &lattice.layers;
+        let Some(pole) = self.settings[layers[0].setting].1.solver().pole_joint() else {
+            return;
+        };
+        let state = |way: &Way, layer: usize| lattice.states[way.states[layer]];
+        let roomy = |way: &Way, layer: usize| {
+            self.eased(layers[layer].latitude.0) && state(way, layer).rewind.is_none()
+        };
+        let mut at = usize::from(self.anchored);
+        while at < layers.len() {
+            if !roomy(way, at) {
+                at += 1;
+                continue;
+            }
+            let end = (at..layers.len())
+                .find(|layer| !roomy(way, *layer))
+                .unwrap_or(layers.len());
+            // The point behind the run, if there is one, is where the string must arrive.
+            let gates: Vec<Gate> = (at..end)
+                .chain((end < layers.len()).then_some(end))
+                .map(|layer| Gate {
+                    time: match layers[layer].kind {
+                        Kind::Cut => Some(minutes(lattice, layer)),
+                        Kind::First | Kind::Rapid => None,
+                    },
+                    range: if layer < end {
+                        self.room(layer, &state(way, layer), pole)
+                    } else {
+                        let state = state(way, layer);
+                        let value = match state.rewind {
+                            Some(before) => self.rewound[before][pole],
+                            None => state.joints[pole],
+                        };
+                        [value, value]
+                    },
+                })
+                .collect();
+            let start = if at > 0 {
+                way.joints(lattice, at - 1)[pole]
+            } else {
+                self.near[pole]
+            };
+            let values = taut(Some(start), &gates);
+            for (layer, value) in (at..end).zip(values) {
+                if let Some(joints) = self.turned_to(way, layer, pole, value) {
+                    way.eased.push((layer, joints));
+                }
+            }
+            at = end;
+        }
+    }
+
+    /// What the tolerance leaves the pole joint at a point.
+    fn room(&self, layer: usize, state: &State, pole: usize) -> [f64; 2] {
+        let [least, most] = self.lattice.axes.travel(pole);
+        if state.branch == HELD {
+            return [least, most];
+        }
+        let sine = self.lattice.layers[layer].latitude.0;
+        let half = self.lattice.freedom / sine.max(1e-12);
+        let value = state.joints[pole];
+        [(value - half).max(least), (value + half).min(most)]
+    }
+
+    /// Where the axes stand with the pole joint at `value`; none if it stands there, or the others cannot follow.
+    fn turned_to(&self, way: &Way, layer: usize, pole: usize, value: f64) -> Option<Joints> {
+        let lattice = &self.lattice;
+        let joints = lattice.states[way.states[layer]].joints;
+        if (value - joints[pole]).abs() < SAME {
+            return None;
+        }
+        let at = &lattice.layers[layer];
+        let solver = self.settings[at.setting].1.solver();
+        let mut last = match layer {
+            0 => joints,
+            layer => way.joints(lattice, layer - 1),
+        };
+        let turned = value - last[pole];
+        last[pole] = value;
+        // The others come as near as they can, on the turns where they are.
+        let stand = lattice
+            .axes
+            .held(solver, &pose(&at.motion), &last, turned)?;
+        Some(stand.joints)
+    }
+
+    fn hand_out(&mut self, way: &Way, upto: usize) {
+        let lattice = &self.lattice;
+        let mut eased = way.eased.iter().peekable();
+        let mut last: Option<(u8, Joints)> = None;
+        for layer in 0..=upto {
+            let state = &lattice.states[way.states[layer]];
+            let turned = eased.next_if(|(place, _)| *place == layer);
+            let joints = turned.map_or(state.joints, |(_, joints)| *joints);
+            let before = state.rewind.map(|before| self.rewound[before]);
+            let settled = layer == 0 && self.anchored;
+            if !settled || before.is_some() {
+                let at = &lattice.layers[layer];
+                self.chosen.push(Chosen {
+                    line: at.line,
+                    motion: at.motion,
+                    setting: at.setting,
+                    arrives: !settled,
+                    joints: before.unwrap_or(joints),
+                    rewind: before.map(|_| joints),
+                    changed: last.is_some_and(|(branch, last)| {
+                        lattice.has_changed((branch, &last), (state.branch, &joints))
+                    }),
+                    eased: turned.is_some() || (state.branch == HELD && at.latitude.0 > POLE),
+                });
+            }
+            last = Some((state.branch, joints));
+        }
+    }
+
+    /// Forgets what is settled; what does not come from it is no way any more.
+    fn drop_before(&mut self, upto: usize, joints: Joints, branch: u8, best: usize) {
+        let lattice = &mut self.lattice;
+        let last = lattice.layers.len() - 1;
+        let (base, root) = (lattice.states[best].cost, lattice.states[best].root);
+        if upto < last {
+            let newest = &lattice.layers[last];
+            for state in &mut lattice.states[newest.first..newest.first + newest.count] {
+                if state.root == root {
+                    state.cost = state.cost.beyond(&base);
+                } else {
+                    state.cost = Cost::NO_WAY;
+                }
+            }
+        }
+        // One state is left of the settled layer; those behind it move up. A state that came from another one
+        // of it leads nowhere: its cost is infinite where the ways end.
+        let shift = lattice.layers[upto].first + lattice.layers[upto].count - 1;
+        lattice.layers.drain(..upto);
+        lattice.states.drain(..shift);
+        for layer in &mut lattice.layers[1..] {
+            layer.first -= shift;
+        }
+        for state in &mut lattice.states {
+            state.from = state.from.saturating_sub(shift);
+        }
+        lattice.layers[0].first = 0;
+        lattice.layers[0].count = 1;
+        lattice.states[0] = State {
+            cost: Cost::NONE,
+            joints,
+            from: 0,
+            root: 0,
+            branch,
+            rewind: None,
+        };
+        self.anchored = true;
+        self.mark = 0;
+        if upto == last {
+            self.rewound.clear();
+        }
+    }
+}
+
+impl Lattice {
+    /// Did the path take another branch or another full turn?
+    fn has_changed(&self, (a, before): (u8, &Joints), (b, after): (u8, &Joints)) -> bool {
+        (a != b && a != HELD && b != HELD)
+            || self.axes.largest_turn(before, after) > std::f64::consts::PI + SAME
+    }
+}
+
+/// Time of a cut, minutes.
+fn minutes(lattice: &Lattice, layer: usize) -> f64 {
+    let motion = &lattice.layers[layer].motion;
+    let way = layer.checked_sub(1).map_or(0.0, |before| {
+        distance(&lattice.layers[before].motion, motion)
+    });
+    match motion.pace {
+        Pace::PerMinute(feed) => way / feed,
+        Pace::InverseTime(feed) => 1.0 / feed,
+        Pace::Rapid => 0.0,
+    }
+}
+
+fn distance(from: &Motion, to: &Motion) -> f64 {
+    (to.tip - from.tip).norm()
+}

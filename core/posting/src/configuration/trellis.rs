@@ -1,0 +1,573 @@
+//! The lattice of a path: at each point every way to stand there, and between neighbouring points every way to
+//! go on. What has cost least so far is kept for each state (Viterbi), so that the cheapest path through all of
+//! them is known at every point.
+
+use super::cost::Cost;
+use super::metric::Measure;
+use super::solution::{Axes, Found, Stand};
+use crate::accuracy::Placer;
+use crate::program::{Motion, Pace};
+use post_machine::description::{Machine, Pole};
+use post_machine::kinematics::orientation::{Branches, angle};
+use post_machine::kinematics::{Joints, Pose, Unreachable};
+
+/// One point of the path with the ways to stand there.
+#[derive(Clone, Debug)]
+pub(crate) struct Layer {
+    /// Line of the CL file.
+    pub line: u64,
+    /// The move that ends here.
+    pub motion: Motion,
+    pub kind: Kind,
+    /// Which placer solves it.
+    pub setting: usize,
+    /// Its states.
+    pub first: usize,
+    pub count: usize,
+    /// Sine and cosine of the angle between the tool axis and the pole.
+    pub latitude: (f64, f64),
+}
+
+/// How a point is come to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// From nowhere: the first position after a start or a tool change.
+    First,
+    Rapid,
+    Cut,
+}
+
+/// One way to stand at a point, and the cheapest way to have come there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct State {
+    pub cost: Cost,
+    pub joints: Joints,
+    /// Which state of the point before.
+    pub from: usize,
+    /// Which state of the marked point this one comes from.
+    pub root: usize,
+    pub branch: u8,
+    /// The point is come to with the values of this state of the lattice's `rewound`; there the tool is drawn
+    /// back, turned to the values here, and brought back.
+    pub rewind: Option<usize>,
+}
+
+/// The branch of states whose pole joint stands where it stood.
+pub(crate) const HELD: u8 = u8::MAX;
+
+/// More states than this at one point are not followed: the cheapest of them are.
+const MOST_STATES: usize = 64;
+
+/// Of the tool axis' tolerance so much may be used close to a pole; the rest is for what happens between points.
+const SHARE: f64 = 0.75;
+
+/// What the states at a point can go on to.
+struct Ways {
+    /// Branches that have a state.
+    alive: [bool; 2],
+    /// Of the point before.
+    latitude: (f64, f64),
+    /// So far the tool axis goes, and can get on the way, radians.
+    arc: f64,
+    reach: f64,
+}
+
+/// What is known of a cut before its states go on.
+struct Passage {
+    /// It leads past where the branches meet.
+    meet: bool,
+    /// So far the tool axis goes, radians.
+    arc: f64,
+}
+
+impl Ways {
+    /// Does the way lead past where the branches meet? Only if both its ends are close enough to there. Else each
+    /// branch goes on by itself; there it has to be tried.
+    #[inline]
+    fn meet(&self, axes: &Axes, latitude: (f64, f64)) -> bool {
+        !axes.far(self.latitude, self.reach)
+            && !axes.far(latitude, self.reach)
+            && axes.margin(self.latitude) + axes.margin(latitude) <= self.reach
+    }
+
+    /// Branches that are worth being worked out.
+    #[inline]
+    fn going(&self, axes: &Axes, branches: &Branches) -> [bool; 2] {
+        if self.alive == [true; 2] || branches.count() == 1 || self.meet(axes, branches.latitude())
+        {
+            [true; 2]
+        } else {
+            self.alive
+        }
+    }
+}
+
+/// A cut from one of two states to another: does the machine come through, within tolerance?
+pub(crate) trait Judge {
+    fn passes(
+        &mut self,
+        placer: &Placer,
+        motion: &Motion,
+        from: (&Pose, &Joints),
+        to: (&Pose, &Joints),
+    ) -> bool;
+}
+
+/// The points that are not settled yet; the first of them is, if `anchored`.
+#[derive(Debug)]
+pub(crate) struct Lattice {
+    pub measure: Measure,
+    pub axes: Axes,
+    pub layers: Vec<Layer>,
+    pub states: Vec<State>,
+    stands: Vec<Stand>,
+    /// Tool axes closer to the pole than this (sine) leave the pole joint free.
+    pub cone: f64,
+    /// What a pole joint may be off by, as an angle of the tool axis, radians.
+    pub freedom: f64,
+}
+
+/// Where a point is wanted.
+pub(crate) fn pose(motion: &Motion) -> Pose {
+    Pose {
+        tip: motion.tip,
+        axis: motion.axis,
+        edge: motion.edge,
+    }
+}
+
+impl Lattice {
+    pub(crate) fn new(machine: &Machine, placer: &Placer) -> Self {
+        let freedom = match machine.solution.pole {
+            Pole::Blend => SHARE * machine.accuracy.axis_tolerance - placer.axis_rounding(),
+            Pole::Exact => 0.0,
+        }
+        .max(0.0);
+        Self {
+            measure: Measure::new(machine),
+            axes: Axes::new(machine, placer.solver(), freedom, |joint, travel| {
+                placer.printed_travel(joint, travel)
+            }),
+            layers: Vec::new(),
+            states: Vec::new(),
+            stands: Vec::new(),
+            cone: libm::sin(freedom).max(post_machine::kinematics::POLE),
+            freedom,
+        }
+    }
+
+    /// The states of a layer.
+    pub(crate) fn states_of(&self, layer: usize) -> &[State] {
+        let layer = &self.layers[layer];
+        &self.states[layer.first..layer.first + layer.count]
+    }
+
+    /// Adds a point; `near` is where the axes stand if it is the first. Gives what was found at the point; the
+    /// layer has no state if the path cannot go on to it.
+    ///
+    /// # Errors
+    /// The point has no solution at all, and is not added.
+    pub(crate) fn push(
+        &mut self,
+        line: u64,
+        motion: &Motion,
+        setting: usize,
+        placer: &Placer,
+        near: &Joints,
+        judge: &mut dyn Judge,
+    ) -> Result<Found, Unreachable> {
+        let kind = match (self.layers.is_empty(), motion.pace) {
+            (true, _) => Kind::First,
+            (false, Pace::Rapid) => Kind::Rapid,
+            (false, _) => Kind::Cut,
+        };
+        let target = pose(motion);
+        let before = self
+            .layers
+            .last()
+            .map(|layer| layer.first..layer.first + layer.count);
+        let mut stands = std::mem::take(&mut self.stands);
+        stands.clear();
+        let last = before
+            .clone()
+            .and_then(|range| self.states.get(range.start))
+            .map_or(*near, |state| state.joints);
+        let ways = self.ways(&target, kind);
+        let going = |branches: &Branches| ways.going(&self.axes, branches);
+        let found = self
+            .axes
+            .stands(placer.solver(), &target, &last, &going, &mut stands);
+        let found = match found {
+            Ok(found) => found,
+            Err(unreachable) => {
+                self.stands = stands;
+                return Err(unreachable);
+            }
+        };
+        let first = self.states.len();
+        let on_pole = found.latitude.0 <= self.cone && placer.solver().pole_joint().is_some();
+        if kind != Kind::Cut {
+            // A tie goes to the larger value of the axis nearest to the tool.
+            let joint = placer.solver().last_rotary();
+            stands.sort_by(|a, b| b.joints[joint].total_cmp(&a.joints[joint]));
+        }
+        let range = before.unwrap_or(0..0);
+        if on_pole {
+            self.hold(placer, &target, range.clone(), near, kind);
+        }
+        if self.states.len() == first {
+            match kind {
+                Kind::First => {
+                    for stand in &stands {
+                        self.reach(stand, None, near);
+                    }
+                }
+                Kind::Rapid => self.turn(&stands, range),
+                Kind::Cut => {
+                    if placer.solver().closed_form() {
+                        let passage = Passage {
+                            meet: ways.meet(&self.axes, found.latitude),
+                            arc: ways.arc,
+                        };
+                        self.go_on(placer, motion, &stands, &passage, range, judge);
+                    } else {
+                        self.search_on(placer, &target, range);
+                    }
+                }
+            }
+        }
+        self.stands = stands;
+        self.thin(first);
+        self.layers.push(Layer {
+            line,
+            motion: *motion,
+            kind,
+            setting,
+            first,
+            count: self.states.len() - first,
+            latitude: found.latitude,
+        });
+        Ok(found)
+    }
+
+    /// What the states of the newest layer can go on to.
+    #[inline]
+    fn ways(&self, target: &Pose, kind: Kind) -> Ways {
+        let mut ways = Ways {
+            alive: [true; 2],
+            latitude: (0.0, 0.0),
+            arc: 0.0,
+            reach: f64::INFINITY,
+        };
+        let Some(last) = self.layers.last().filter(|_| kind == Kind::Cut) else {
+            return ways;
+        };
+        ways.alive = [false; 2];
+        for state in &self.states[last.first..last.first + last.count] {
+            match ways.alive.get_mut(usize::from(state.branch)) {
+                Some(alive) => *alive = true,
+                // From a held joint every branch can be gone to.
+                None => ways.alive = [true; 2],
+            }
+        }
+        ways.latitude = last.latitude;
+        let chord = (last.motion.axis - target.axis).norm();
+        ways.arc = if chord < 0.5 {
+            // Never less than the arc, and cheaper.
+            1.02 * chord
+        } else {
+            1.01 * angle(last.motion.axis, target.axis)
+        };
+        ways.reach = ways.arc + 2.0 * self.freedom;
+        ways
+    }
+
+    /// A state, unless there is one like it that is no dearer: see [`Axes::alike`].
+    ///
+    /// Of two like states the dearer can never win. The ways on from a state depend on its joints and its branch
+    /// alone. Stands are carried to the turn nearest to it, what a move costs is made of differences, and an endless
+    /// axis has neither an end of travel nor a side of zero that counts. So each way on from the dearer state, put
+    /// back by the turns between the two, is a way on from the cheaper one, each of its moves costs the same, and
+    /// the whole stays cheaper by what the states differ by here.
+    ///
+    /// If only states with the same turns were held against each other, a path that comes and goes at a pole would
+    /// add a turn to either side each time, until there are [`MOST_STATES`] at every point.
+    fn keep(&mut self, first: usize, state: State) {
+        let axes = &self.axes;
+        let like = |known: &&mut State| {
+            axes.alike((known.branch, &known.joints), (state.branch, &state.joints))
+        };
+        match self.states[first..].iter_mut().find(like) {
+            Some(known) if state.cost.less(&known.cost) => *known = state,
+            Some(_) => {}
+            None => self.states.push(state),
+        }
+    }
+
+    /// On the pole the pole joint stands where it stood. Where the tip cannot be reached so, it is turned by
+    /// quarter turns.
+    fn hold(
+        &mut self,
+        placer: &Placer,
+        target: &Pose,
+        before: std::ops::Range<usize>,
+        near: &Joints,
+        kind: Kind,
+    ) {
+        let first = self.states.len();
+        for quarter in [0.0, 1.0, -1.0, 2.0] {
+            if kind == Kind::First {
+                self.hold_from(placer, target, (None, kind), near, quarter, first);
+            }
+            for index in before.clone() {
+                if self.states[index].cost.is_way() {
+                    self.hold_from(placer, target, (Some(index), kind), near, quarter, first);
+                }
+            }
+            if self.states.len() > first {
+                return;
+            }
+        }
+    }
+
+    fn hold_from(
+        &mut self,
+        placer: &Placer,
+        target: &Pose,
+        (from, kind): (Option<usize>, Kind),
+        near: &Joints,
+        quarter: f64,
+        first: usize,
+    ) {
+        let before = from.map(|index| self.states[index]);
+        let mut last = before.map_or(*near, |state| state.joints);
+        if let Some(pole) = placer.solver().pole_joint() {
+            last[pole] += quarter * std::f64::consts::FRAC_PI_2;
+        }
+        let turned = quarter * std::f64::consts::FRAC_PI_2;
+        let held = self.axes.held(placer.solver(), target, &last, turned);
+        let Some(mut stand) = held else {
+            return;
+        };
+        if kind == Kind::Cut && !self.axes.stand_still(&last, &mut stand.joints) {
+            return;
+        }
+        let (cost, way) = match &before {
+            Some(state) => (
+                state.cost,
+                self.measure.between(&state.joints, &stand.joints),
+            ),
+            None => (Cost::NONE, self.measure.approach(near, &stand.joints)),
+        };
+        self.keep(
+            first,
+            State {
+                cost: cost.and(way, self.measure.against(&stand.joints)),
+                joints: stand.joints,
+                from: from.unwrap_or(0),
+                root: before.map_or(0, |state| state.root),
+                branch: HELD,
+                rewind: None,
+            },
+        );
+    }
+
+    /// Every set of turns of a stand, come to from one state or from nowhere.
+    fn reach(&mut self, stand: &Stand, from: Option<usize>, near: &Joints) {
+        let Self {
+            axes,
+            measure,
+            states,
+            ..
+        } = self;
+        let before = from.map(|index| states[index]);
+        let last = before.map_or(*near, |state| state.joints);
+        axes.turned(stand, &last, &mut |joints| {
+            let (cost, way) = match &before {
+                Some(state) => (state.cost, measure.between(&state.joints, joints)),
+                None => (Cost::NONE, measure.approach(near, joints)),
+            };
+            states.push(State {
+                cost: cost.and(way, measure.against(joints)),
+                joints: *joints,
+                from: from.unwrap_or(0),
+                root: before.map_or(0, |state| state.root),
+                branch: stand.branch,
+                rewind: None,
+            });
+        });
+    }
+
+    /// Off the part every state can be reached from every other.
+    fn turn(&mut self, stands: &[Stand], before: std::ops::Range<usize>) {
+        let first = self.states.len();
+        let mut begun = false;
+        for index in before {
+            if !self.states[index].cost.is_way() {
+                continue;
+            }
+            let near = self.states[index].joints;
+            let from = self.states.len();
+            for stand in stands {
+                self.reach(stand, Some(index), &near);
+            }
+            if !begun {
+                begun = true;
+                continue;
+            }
+            // The same turns in the same order: the cheaper of each two stays.
+            let count = self.states.len() - from;
+            for place in 0..count {
+                let new = self.states[from + place];
+                let known = &mut self.states[first + place];
+                if new.cost.less(&known.cost) {
+                    *known = new;
+                }
+            }
+            self.states.truncate(from);
+        }
+    }
+
+    /// In a cut each state goes on by itself; to the other branch only where the two meet.
+    #[inline]
+    fn go_on(
+        &mut self,
+        placer: &Placer,
+        motion: &Motion,
+        stands: &[Stand],
+        passage: &Passage,
+        before: std::ops::Range<usize>,
+        judge: &mut dyn Judge,
+    ) {
+        let first = self.states.len();
+        let Some(last) = self.layers.last() else {
+            return;
+        };
+        let from_pose = pose(&last.motion);
+        let target = pose(motion);
+        for index in before {
+            let state = self.states[index];
+            if !state.cost.is_way() {
+                continue;
+            }
+            for stand in stands {
+                if state.branch == HELD {
+                    self.leave_pole(stand, index, first);
+                    continue;
+                }
+                let same = stand.branch == state.branch;
+                if !same && !passage.meet {
+                    continue;
+                }
+                let carried = self.axes.carried(stand, &state.joints);
+                let sure = same
+                    && !passage.meet
+                    && carried.as_ref().is_ok_and(|joints| {
+                        // Between two points an axis can go farther than at both of them.
+                        !self.axes.near_end(&state.joints, joints, 2.0 * passage.arc)
+                    });
+                if sure && let Ok(mut joints) = carried {
+                    if self.axes.stand_still(&state.joints, &mut joints) {
+                        self.states.push(self.after(index, joints, stand.branch));
+                    }
+                    continue;
+                }
+                // Of the turns that the axes can come to, the nearest that they do come to.
+                let mut tried: Vec<Joints> = carried.into_iter().collect();
+                self.axes
+                    .other_turns(stand, &state.joints, &mut |joints| tried.push(*joints));
+                let from = (&from_pose, &state.joints);
+                let found = tried.into_iter().find_map(|mut joints| {
+                    (self.axes.stand_still(&state.joints, &mut joints)
+                        && judge.passes(placer, motion, from, (&target, &joints)))
+                    .then_some(joints)
+                });
+                if let Some(joints) = found {
+                    let new = self.after(index, joints, stand.branch);
+                    self.keep(first, new);
+                }
+            }
+        }
+    }
+
+    /// The state that stands at `joints` and comes from another.
+    #[inline]
+    fn after(&self, from: usize, joints: Joints, branch: u8) -> State {
+        let state = &self.states[from];
+        State {
+            cost: state.cost.and(
+                self.measure.between(&state.joints, &joints),
+                self.measure.against(&joints),
+            ),
+            joints,
+            from,
+            root: state.root,
+            branch,
+            rewind: None,
+        }
+    }
+
+    /// From a held pole joint every stand can be gone to: that joint is turned while it turns nothing, the others
+    /// go on from where they are.
+    fn leave_pole(&mut self, stand: &Stand, from: usize, first: usize) {
+        let state = self.states[from];
+        let mut reached = Vec::new();
+        self.axes
+            .unheld(stand, &state.joints, &mut |joints| reached.push(*joints));
+        for mut joints in reached {
+            if !self.axes.stand_still(&state.joints, &mut joints) {
+                continue;
+            }
+            let new = self.after(from, joints, stand.branch);
+            self.keep(first, new);
+        }
+    }
+
+    /// In a cut without a closed form each state goes on to the solution next to it.
+    fn search_on(&mut self, placer: &Placer, target: &Pose, before: std::ops::Range<usize>) {
+        let first = self.states.len();
+        for index in before {
+            let state = self.states[index];
+            if !state.cost.is_way() {
+                continue;
+            }
+            let followed = self.axes.followed(placer.solver(), target, &state.joints);
+            let Some(mut joints) = followed else {
+                continue;
+            };
+            if !self.axes.stand_still(&state.joints, &mut joints) {
+                continue;
+            }
+            let new = self.after(index, joints, state.branch);
+            self.keep(first, new);
+        }
+    }
+
+    /// Keeps the cheapest states of the newest layer, if there are too many.
+    fn thin(&mut self, first: usize) {
+        if self.states.len() - first > MOST_STATES {
+            self.states[first..].sort_by(|a, b| a.cost.order(&b.cost));
+            self.states.truncate(first + MOST_STATES);
+        }
+    }
+
+    /// The newest layer's cheapest state.
+    pub(crate) fn best(&self) -> Option<usize> {
+        let layer = self.layers.last()?;
+        let mut best: Option<usize> = None;
+        for index in layer.first..layer.first + layer.count {
+            let cost = self.states[index].cost;
+            if cost.is_way() && best.is_none_or(|best: usize| cost.less(&self.states[best].cost)) {
+                best = Some(index);
+            }
+        }
+        best
+    }
+
+    /// Takes the newest layer back.
+    pub(crate) fn pop(&mut self) -> Option<Layer> {
+        let layer = self.layers.pop()?;
+        self.states.truncate(layer.first);
+        Some(layer)
+    }
+}

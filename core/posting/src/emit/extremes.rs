@@ -1,0 +1,97 @@
+//! Extremes of the program that was written, for the report.
+
+use post_machine::kinematics::{Joints, MAX_AXES};
+
+use crate::blocks::Block;
+use crate::report::Deviation;
+
+/// Deviations that differ by less are the same: mm or radians.
+const EQUAL: f64 = 1e-9;
+
+const TIP: usize = 0;
+const AXIS: usize = 1;
+const RAPID: usize = 2;
+
+/// Extremes and sums over the blocks of a program.
+#[derive(Clone, Debug)]
+pub(crate) struct Extremes {
+    /// Blocks with a motion.
+    pub blocks: u64,
+    /// Cuts: tip (mm), tool axis (radians); rapids: tip (mm).
+    pub deviations: [Deviation; 3],
+    /// Least axis values.
+    pub least: Joints,
+    /// Largest axis values.
+    pub most: Joints,
+    /// Way of each axis over all blocks, mm or radians.
+    pub travel: Joints,
+    /// Where the largest deviations stand in the batch that is not written yet: index of the event.
+    marks: [Option<usize>; 3],
+}
+
+impl Extremes {
+    pub(super) fn new() -> Self {
+        Self {
+            blocks: 0,
+            deviations: [Deviation::default(); 3],
+            least: [f64::INFINITY; MAX_AXES],
+            most: [f64::NEG_INFINITY; MAX_AXES],
+            travel: [0.0; MAX_AXES],
+            marks: [None; 3],
+        }
+    }
+
+    /// Keeps the largest deviations; the block will be event `index` of the batch.
+    #[inline]
+    pub(super) fn mark(&mut self, block: &Block, index: usize) {
+        if block.loose {
+            self.keep(RAPID, block.deviation.tip, block.line, index);
+        } else {
+            self.keep(TIP, block.deviation.tip, block.line, index);
+            self.keep(AXIS, block.deviation.axis, block.line, index);
+        }
+    }
+
+    #[inline]
+    fn keep(&mut self, slot: usize, value: f64, line: u64, index: usize) {
+        let deviation = &mut self.deviations[slot];
+        // Of blocks that are equal but for rounding errors, the first is named.
+        if value > deviation.value + EQUAL {
+            *deviation = Deviation {
+                value,
+                block: 0,
+                line,
+            };
+            self.marks[slot] = Some(index);
+        } else {
+            deviation.value = deviation.value.max(value);
+        }
+    }
+
+    /// The batch is written: `line_of` gives the line of the program that an event ends on.
+    pub(super) fn written(&mut self, line_of: impl Fn(usize) -> u64) {
+        for (deviation, mark) in self.deviations.iter_mut().zip(&mut self.marks) {
+            if let Some(index) = mark.take() {
+                deviation.block = line_of(index);
+            }
+        }
+    }
+
+    /// A block is written that ends at `joints`.
+    #[inline]
+    pub(super) fn reach(&mut self, joints: &Joints, axes: usize) {
+        self.blocks += 1;
+        for (index, value) in joints.iter().take(axes).enumerate() {
+            self.least[index] = self.least[index].min(*value);
+            self.most[index] = self.most[index].max(*value);
+        }
+    }
+
+    /// Adds a block's way of each axis.
+    #[inline]
+    pub(super) fn go(&mut self, from: &Joints, to: &Joints) {
+        for index in 0..MAX_AXES {
+            self.travel[index] += (to[index] - from[index]).abs();
+        }
+    }
+}

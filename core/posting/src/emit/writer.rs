@@ -1,0 +1,119 @@
+//! Events on their way to the dialect, and its text on the way to the output.
+
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{Batch, DialectSession, Event};
+
+use super::extremes::Extremes;
+use crate::findings::Findings;
+use crate::observer::Output;
+use crate::stream::BATCH;
+
+/// Hands events over in batches, and counts lines.
+pub(super) struct Writer<'a> {
+    dialect: &'a mut dyn DialectSession,
+    output: &'a mut dyn Output,
+    /// Words of a block.
+    words: usize,
+    batch: Batch,
+    text: String,
+    ends: Vec<usize>,
+    lines: u64,
+    /// The CL file has loaded a tool.
+    tool_known: bool,
+    /// The dialect refused an event, or the output text: no more is made.
+    broken: bool,
+}
+
+impl<'a> Writer<'a> {
+    pub(super) fn new(dialect: &'a mut dyn DialectSession, output: &'a mut dyn Output) -> Self {
+        Self {
+            words: dialect.format().words.len(),
+            dialect,
+            output,
+            batch: Batch::default(),
+            text: String::new(),
+            ends: Vec::new(),
+            lines: 0,
+            tool_known: false,
+            broken: false,
+        }
+    }
+
+    /// Words of a block.
+    #[inline]
+    pub(super) fn words(&self) -> usize {
+        self.words
+    }
+
+    /// Lines so far.
+    pub(super) fn lines(&self) -> u64 {
+        self.lines
+    }
+
+    /// Index in the batch that the next event gets.
+    #[inline]
+    pub(super) fn next(&self) -> usize {
+        self.batch.len()
+    }
+
+    /// It is time to flush.
+    #[inline]
+    pub(super) fn is_full(&self) -> bool {
+        self.batch.len() >= BATCH
+    }
+
+    /// The CL file loads a tool.
+    pub(super) fn tool_known(&mut self) {
+        self.tool_known = true;
+    }
+
+    /// Takes an event that comes from `line`.
+    #[inline]
+    pub(super) fn push(&mut self, line: u64, event: Event<'_>) {
+        if !self.broken {
+            self.batch.push(line, event);
+        }
+    }
+
+    /// Hands the batch to the dialect and its text to the output. Where something is wrong already, the dialect is
+    /// still asked, and no text is written.
+    pub(super) fn flush(&mut self, extremes: &mut Extremes, findings: &Findings) {
+        let Self {
+            batch, text, ends, ..
+        } = self;
+        if batch.is_empty() {
+            return;
+        }
+        text.clear();
+        ends.clear();
+        let written = self.dialect.write_batch(batch, text, ends);
+        extremes.written(|index| {
+            let end = ends.get(index).copied().unwrap_or(text.len());
+            self.lines + newlines(&text.as_bytes()[..end])
+        });
+        self.lines += newlines(text.as_bytes());
+        match written {
+            Err(refused) => {
+                self.broken = true;
+                let line = batch.line(refused.index.min(batch.len() - 1));
+                let mut fault = Diagnostic::error("dialect", refused.message);
+                if !self.tool_known {
+                    fault = fault.help("the CL file loads no tool: --tool N says which it is");
+                }
+                findings.at(line, fault);
+            }
+            Ok(()) if !findings.failed() => {
+                if let Err(message) = self.output.write(text.as_bytes()) {
+                    self.broken = true;
+                    findings.add(Diagnostic::error("output", message));
+                }
+            }
+            Ok(()) => self.broken = true,
+        }
+        batch.clear();
+    }
+}
+
+fn newlines(text: &[u8]) -> u64 {
+    memchr::memchr_iter(b'\n', text).count() as u64
+}

@@ -1,0 +1,218 @@
+//! Arcs, splines, cycles and planes become moves, unless dialect and machine take them as they are.
+//!
+//! What a dialect writes itself it declares at open ([`Capabilities`]); what the stages behind this one can carry to
+//! it is said in [`Kept`]. Everything else leaves here as straight moves and commands.
+
+mod tangential;
+
+use nalgebra::Vector3;
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+
+use crate::findings::Findings;
+use crate::program::{ArcStep, Command, CycleStep, Leg, Motion, Pace, SplineStep, Step};
+use crate::stream::{Flow, Outlet};
+use tangential::Tangential;
+
+/// A straight move of the path, from its line of the CL file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Line of the CL file.
+    pub line: u64,
+    /// The move.
+    pub motion: Motion,
+}
+
+/// Chords of one arc; more is a slip of the decimal point.
+const MOST_CHORDS: u64 = 10_000_000;
+
+/// The first stage behind the interpreter.
+#[derive(Debug)]
+pub(crate) struct Expand {
+    /// How far chords may stray from arcs and splines, mm.
+    chord_tolerance: f64,
+    /// Where the tool stands, mm, part frame; none if nobody knows.
+    tip: Option<Vector3<f64>>,
+    /// For a tool with a leading edge.
+    tangential: Option<Tangential>,
+}
+
+/// The moves and commands of `steps`, each with its line, chords straying by no more than `chord_tolerance` mm; and
+/// what cannot be expanded. The tool has no leading edge.
+pub fn expanded(
+    steps: Vec<(u64, Step)>,
+    chord_tolerance: f64,
+) -> (Vec<Flow<Line>>, Vec<Diagnostic>) {
+    let findings = Findings::new("");
+    let mut stage = Expand {
+        chord_tolerance,
+        tip: None,
+        tangential: None,
+    };
+    let mut all = Vec::new();
+    let mut next = |batch: &mut Vec<Flow<Line>>| all.append(batch);
+    let mut batch = Vec::new();
+    let mut out = Outlet::new(&mut batch, &mut next);
+    let mut steps = steps;
+    stage.take(&mut steps, &mut out, &findings);
+    out.flush();
+    (all, findings.sorted())
+}
+
+/// What leaves this stage.
+type Out<'o> = Outlet<'o, Flow<Line>>;
+
+impl Expand {
+    pub(crate) fn new(machine: &Machine, chord_tolerance: f64) -> Self {
+        Self {
+            chord_tolerance,
+            tip: None,
+            tangential: Tangential::new(machine),
+        }
+    }
+
+    /// Line of the first step that is kept back.
+    pub(crate) fn first_line(&self) -> Option<u64> {
+        self.tangential.as_ref()?.first_line()
+    }
+
+    /// Takes a batch of steps, each with its line.
+    pub(crate) fn take(
+        &mut self,
+        steps: &mut Vec<(u64, Step)>,
+        out: &mut Out<'_>,
+        findings: &Findings,
+    ) {
+        for (line, step) in steps.drain(..) {
+            match step {
+                Step::Move(motion) => self.go(line, motion, out, findings),
+                Step::Arc(arc) => self.arc(line, &arc, out, findings),
+                Step::Spline(spline) => self.spline(line, &spline, out, findings),
+                Step::Cycle(cycle) => self.cycle(line, &cycle, out, findings),
+                // Points are in the part frame whatever plane they lie in.
+                Step::Plane(_) | Step::EndCycle => {}
+                Step::Command(command) => self.command(line, command, out, findings),
+            }
+        }
+    }
+
+    /// The file ends: what was kept back is handed on.
+    pub(crate) fn finish(&mut self, out: &mut Out<'_>, findings: &Findings) {
+        if let Some(tangential) = &mut self.tangential {
+            tangential.finish(out, findings);
+        }
+    }
+
+    /// One straight move.
+    #[inline]
+    fn go(&mut self, line: u64, motion: Motion, out: &mut Out<'_>, findings: &Findings) {
+        self.tip = Some(motion.tip);
+        match &mut self.tangential {
+            None => out.push(Flow::Point(Line { line, motion })),
+            Some(tangential) => tangential.go(line, motion, out, findings),
+        }
+    }
+
+    fn command(&mut self, line: u64, command: Command, out: &mut Out<'_>, findings: &Findings) {
+        if let Command::From { tip, .. } = command {
+            self.tip = Some(tip);
+        } else if command.leaves() {
+            self.tip = None;
+        }
+        match &mut self.tangential {
+            None => out.command(line, command),
+            Some(tangential) => tangential.command(line, command, out, findings),
+        }
+    }
+
+    /// Chords, the tool axis turning evenly from start to end.
+    fn arc(&mut self, line: u64, step: &ArcStep, out: &mut Out<'_>, findings: &Findings) {
+        let ArcStep {
+            arc,
+            end,
+            start_axis,
+        } = step;
+        let (count, chord) = arc.chords(self.chord_tolerance);
+        if count > MOST_CHORDS {
+            let fault = Diagnostic::error(
+                "arc",
+                format!(
+                    "this arc needs {count} chords to stay within {} mm",
+                    self.chord_tolerance
+                ),
+            );
+            findings.at(line, fault.help("widen the tolerance"));
+            return;
+        }
+        let pace = match end.pace {
+            // The time is that of the whole arc.
+            Pace::InverseTime(feed) => Pace::InverseTime(feed * count as f64),
+            pace => pace,
+        };
+        for piece in 1..=count {
+            let t = piece as f64 / count as f64;
+            let axis = if *start_axis == end.axis {
+                end.axis
+            } else {
+                (start_axis * (1.0 - t) + end.axis * t)
+                    .try_normalize(1e-9)
+                    .unwrap_or(end.axis)
+            };
+            let motion = Motion {
+                tip: if piece == count { end.tip } else { arc.at(t) },
+                axis,
+                pace,
+                chord,
+                ..*end
+            };
+            self.go(line, motion, out, findings);
+        }
+    }
+
+    fn spline(&mut self, line: u64, step: &SplineStep, out: &mut Out<'_>, findings: &Findings) {
+        let SplineStep { spline, end } = step;
+        spline.flatten(self.chord_tolerance, &mut |tip, chord| {
+            self.go(line, Motion { tip, chord, ..*end }, out, findings);
+        });
+    }
+
+    /// Approach, pecks, dwell and retract at one point.
+    fn cycle(&mut self, line: u64, step: &CycleStep, out: &mut Out<'_>, findings: &Findings) {
+        let CycleStep { cycle, point } = *step;
+        let rapid = |tip| Motion {
+            tip,
+            pace: Pace::Rapid,
+            ..point
+        };
+        // Between holes the tool goes up before it goes aside, and aside before it goes down.
+        if let Some(tip) = self.tip {
+            let height = point.axis.dot(&(tip - point.tip));
+            let aside = tip - point.tip - point.axis * height;
+            if aside.norm() > 1e-6 {
+                let level = cycle.retract();
+                if height < level {
+                    let up = rapid(point.tip + aside + point.axis * level);
+                    self.go(line, up, out, findings);
+                } else if height > level {
+                    self.go(line, rapid(point.tip + point.axis * height), out, findings);
+                }
+            }
+        }
+        cycle.legs(&mut |leg| {
+            let at = |height: f64| point.tip + point.axis * height;
+            match leg {
+                Leg::Rapid(height) => self.go(line, rapid(at(height)), out, findings),
+                Leg::Feed(height) => {
+                    let motion = Motion {
+                        tip: at(height),
+                        ..point
+                    };
+                    self.go(line, motion, out, findings);
+                }
+                Leg::Dwell(seconds) => {
+                    self.command(line, Command::Dwell(seconds), out, findings);
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,70 @@
+//! Who looks on while a program is made, and where its text goes.
+
+use std::cell::RefCell;
+
+use crate::accuracy::Move;
+use crate::blocks::Block;
+use crate::stream::Flow;
+
+/// Where the text of the program goes.
+pub trait Output {
+    /// Takes text.
+    ///
+    /// # Errors
+    /// Why it cannot.
+    fn write(&mut self, text: &[u8]) -> Result<(), String>;
+}
+
+/// Looks on while a program is made. Each method does nothing unless it is written.
+pub trait Observer {
+    /// A cut between two CL points, before any point is put in. Chords of arcs, splines and cycles come one by
+    /// one. Where `reduce` gathers CL points, cuts go by unseen.
+    fn cut(&mut self, line: u64, cut: &Move<'_>) {
+        let _ = (line, cut);
+    }
+
+    /// Blocks and the commands between them, in order, as they go to the dialect.
+    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+        let _ = blocks;
+    }
+}
+
+/// All who look on.
+#[derive(Default)]
+pub(crate) struct Observers<'a> {
+    all: RefCell<Vec<&'a mut dyn Observer>>,
+    /// Somebody does.
+    any: bool,
+}
+
+impl<'a> Observers<'a> {
+    pub(crate) fn add(&mut self, observer: &'a mut dyn Observer) {
+        self.all.get_mut().push(observer);
+        self.any = true;
+    }
+
+    pub(crate) fn blocks(&self, blocks: &[Flow<Block>]) {
+        if self.any {
+            for observer in self.all.borrow_mut().iter_mut() {
+                observer.blocks(blocks);
+            }
+        }
+    }
+}
+
+/// Who is shown cuts: [`Observers`], whatever they borrow.
+pub(crate) trait Audience {
+    /// See [`Observer::cut`].
+    fn cut(&self, line: u64, cut: &Move<'_>);
+}
+
+impl Audience for Observers<'_> {
+    #[inline]
+    fn cut(&self, line: u64, cut: &Move<'_>) {
+        if self.any {
+            for observer in self.all.borrow_mut().iter_mut() {
+                observer.cut(line, cut);
+            }
+        }
+    }
+}

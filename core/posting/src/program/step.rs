@@ -1,0 +1,190 @@
+//! What a CL file means: moves and curves of the tip and the tool axis in mm in the part frame, and the commands
+//! between them.
+
+use nalgebra::Vector3;
+use post_machine::description::{Retract, Rewind};
+use post_plugin::{Compensation, Coolant, Spindle};
+
+use super::{Arc, DrillCycle, Spline};
+
+/// One step of the program, with every modal word settled. Curves and cycles keep their shape: whether they are
+/// written as such or as moves is for dialect and machine to say.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// Along a straight line.
+    Move(Motion),
+    /// Along an arc or a helix.
+    Arc(Box<ArcStep>),
+    /// Along a spline.
+    Spline(Box<SplineStep>),
+    /// A cycle at one point.
+    Cycle(Box<CycleStep>),
+    /// The cycle in force ends (`CYCLE/OFF`).
+    EndCycle,
+    /// The points that follow lie in a plane that the CL file names, until it names another or none.
+    Plane(Option<Box<PlaneStep>>),
+    /// Not a motion.
+    Command(Command),
+}
+
+/// What is said between the motions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// The tool stands here, and has not moved (`FROM`).
+    From {
+        /// Tip, mm, part frame.
+        tip: Vector3<f64>,
+        /// Tool axis, unit vector, part frame.
+        axis: Vector3<f64>,
+    },
+    /// Tool change.
+    Tool(Tool),
+    /// An index axis of the part is at an angle (`ROTABL`).
+    Index {
+        /// `A`, `B` or `C`.
+        axis: char,
+        /// Radians, from the part's own frame.
+        angle: f64,
+    },
+    /// Another head (`HEAD`).
+    Head(String),
+    /// The next tool is made ready.
+    Preselect(u32),
+    /// Spindle.
+    Spindle(Spindle),
+    /// Coolant.
+    Coolant(Coolant),
+    /// Cutter radius compensation.
+    Compensate(Compensation),
+    /// A remark for the operator.
+    Comment(String),
+    /// A line of the program, letter for letter.
+    Literal(String),
+    /// Wait, s.
+    Dwell(f64),
+    /// Stop.
+    Stop,
+    /// Optional stop.
+    OptionalStop,
+    /// To the machine's reference.
+    Home,
+}
+
+impl Command {
+    /// The tool leaves the part: what comes behind begins anew.
+    pub(crate) fn leaves(&self) -> bool {
+        matches!(
+            self,
+            Self::Tool(_) | Self::Home | Self::From { .. } | Self::Index { .. } | Self::Head(_)
+        )
+    }
+}
+
+/// A move along a straight line of the part frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Where the tip goes, mm, part frame.
+    pub tip: Vector3<f64>,
+    /// The tool axis there, unit vector from the tip to the holder, part frame.
+    pub axis: Vector3<f64>,
+    /// Leading edge of a knife or disc there, unit vector across the tool axis, part frame; zero if the file
+    /// does not say.
+    pub edge: Vector3<f64>,
+    /// How fast.
+    pub pace: Pace,
+    /// How far this line strays from the curve that the CL file asks for (arcs, splines), mm, proven.
+    pub chord: f64,
+}
+
+/// An arc, a helix, or a spiral between two radii.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArcStep {
+    /// Its course in the part frame.
+    pub arc: Arc,
+    /// The move to its end, whose pace is that of the whole arc.
+    pub end: Motion,
+    /// The tool axis at its start, part frame; it turns evenly to that of the end.
+    pub start_axis: Vector3<f64>,
+}
+
+/// A spline that begins where the tool stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SplineStep {
+    /// Its course in the part frame.
+    pub spline: Spline,
+    /// The move to its end.
+    pub end: Motion,
+}
+
+/// A cycle at one point: what is done there, along the tool axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CycleStep {
+    /// The cycle in force.
+    pub cycle: DrillCycle,
+    /// The point that its heights count from, and its feed.
+    pub point: Motion,
+}
+
+/// A plane that stays for an operation, the tool standing upright on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneStep {
+    /// Its X, Y and Z axes as unit vectors of the part frame.
+    pub axes: [Vector3<f64>; 3],
+}
+
+impl Motion {
+    /// The motion to where the tool is drawn back to from here; none if its axis does not lead there. The point of
+    /// the motion stands `along` mm above the tip.
+    pub(crate) fn drawn_back(&self, rewind: &Rewind, along: f64) -> Option<Self> {
+        let distance = match rewind.retract {
+            Retract::Distance(distance) => distance,
+            Retract::Plane(height) => {
+                // Nearly level, the tool would travel for ever.
+                let rise = self.axis.z;
+                if rise < 0.1 {
+                    return None;
+                }
+                (height - self.tip.z) / rise + along
+            }
+        };
+        // A plane below the tip leads into the part.
+        if distance <= 0.0 {
+            return None;
+        }
+        Some(Self {
+            tip: self.tip + self.axis * distance,
+            ..*self
+        })
+    }
+}
+
+/// How fast a move is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pace {
+    /// Rapid traverse.
+    Rapid,
+    /// Feed of the tip against the part, mm/min.
+    PerMinute(f64),
+    /// The move takes 1/F minutes.
+    InverseTime(f64),
+}
+
+impl Pace {
+    /// A feed in mm/min; none is rapid.
+    pub(crate) fn feed_or_rapid(feed: Option<f64>) -> Self {
+        feed.map_or(Self::Rapid, Self::PerMinute)
+    }
+}
+
+/// A tool change.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tool {
+    /// Tool number.
+    pub number: u32,
+    /// Register of its length compensation.
+    pub register: u32,
+    /// Length from the gauge point to the tip, mm, if the CL file gives it.
+    pub length: Option<f64>,
+    /// Its name, empty if not known.
+    pub name: String,
+}

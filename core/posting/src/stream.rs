@@ -1,0 +1,62 @@
+//! What runs from stage to stage: points of the path and the commands between them, in one stream, in order.
+//!
+//! Every stage takes a batch and hands on a batch. What a stage cannot decide yet it keeps, commands among it, so
+//! that nothing overtakes anything.
+
+use crate::program::Command;
+
+/// Points and commands are handed on in batches of about this length: long enough that work on neighbouring points
+/// overlaps and that a call costs nothing, short enough to stay in the fastest cache.
+pub(crate) const BATCH: usize = 128;
+
+/// One element of the stream.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Flow<P> {
+    /// A point of the path, or what a stage made of it.
+    Point(P),
+    /// A command between points.
+    Command {
+        /// Line of the CL file.
+        line: u64,
+        /// What it says.
+        command: Command,
+    },
+}
+
+/// Where a stage puts what it hands on; a batch that is full goes to the next stage at once, so that one arc of a
+/// million chords needs no more memory than another.
+pub(crate) struct Outlet<'o, T> {
+    batch: &'o mut Vec<T>,
+    next: &'o mut dyn FnMut(&mut Vec<T>),
+}
+
+impl<'o, T> Outlet<'o, T> {
+    /// An outlet into `batch`, which `next` takes when it is full; it leaves the batch empty.
+    pub(crate) fn new(batch: &'o mut Vec<T>, next: &'o mut dyn FnMut(&mut Vec<T>)) -> Self {
+        Self { batch, next }
+    }
+
+    /// Hands on one element.
+    #[inline]
+    pub(crate) fn push(&mut self, element: T) {
+        self.batch.push(element);
+        if self.batch.len() >= BATCH {
+            self.flush();
+        }
+    }
+
+    /// Hands on what there is.
+    pub(crate) fn flush(&mut self) {
+        if !self.batch.is_empty() {
+            (self.next)(self.batch);
+            self.batch.clear();
+        }
+    }
+}
+
+impl<P> Outlet<'_, Flow<P>> {
+    /// Hands on a command.
+    pub(crate) fn command(&mut self, line: u64, command: Command) {
+        self.push(Flow::Command { line, command });
+    }
+}

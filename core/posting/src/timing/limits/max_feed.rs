@@ -1,0 +1,41 @@
+//! `max_feed`: no axis goes faster than its largest feed.
+
+use post_machine::description::Machine;
+use post_machine::kinematics::{Joints, MAX_AXES};
+
+use super::Limit;
+
+/// Largest feeds of the axes.
+#[derive(Debug)]
+pub(super) struct MaxFeed {
+    /// Minutes that each axis needs for one mm or radian at its largest feed.
+    slowness: [f64; MAX_AXES],
+    count: usize,
+}
+
+impl MaxFeed {
+    pub(super) fn new(machine: &Machine) -> Self {
+        let mut slowness = [0.0; MAX_AXES];
+        for (slowness, axis) in slowness.iter_mut().zip(&machine.axes) {
+            *slowness = 1.0 / axis.max_feed;
+        }
+        Self {
+            slowness,
+            count: machine.axes.len().min(MAX_AXES),
+        }
+    }
+}
+
+impl Limit for MaxFeed {
+    fn name(&self) -> &'static str {
+        "max_feed"
+    }
+
+    fn least_minutes(&self, from: &Joints, to: &Joints) -> f64 {
+        let mut least: f64 = 0.0;
+        for index in 0..self.count {
+            least = least.max((to[index] - from[index]).abs() * self.slowness[index]);
+        }
+        least
+    }
+}

@@ -1,0 +1,20 @@
+//! What keeps a block from being faster: each limit a file of its own, and a line in [`of`].
+
+mod max_feed;
+
+use post_machine::description::Machine;
+use post_machine::kinematics::Joints;
+
+/// A limit of the machine.
+pub trait Limit: std::fmt::Debug {
+    /// Its name, as the machine file has it.
+    fn name(&self) -> &'static str;
+
+    /// The least time in which the axes can go from `from` to `to` (mm, radians), minutes.
+    fn least_minutes(&self, from: &Joints, to: &Joints) -> f64;
+}
+
+/// The limits that hold on a machine.
+pub fn of(machine: &Machine) -> Vec<Box<dyn Limit>> {
+    vec![Box::new(max_feed::MaxFeed::new(machine))]
+}

@@ -1,0 +1,268 @@
+//! Logical lines: ends, continuations, comments, chunks, faults between good records.
+
+use post_grammar::{ReadError, Reader, Statement};
+use proptest::prelude::*;
+use std::io::{self, Cursor, Read};
+
+/// Hands out at most so many bytes at a time, in turn.
+struct Trickle<'a> {
+    bytes: &'a [u8],
+    sizes: std::iter::Cycle<std::vec::IntoIter<usize>>,
+}
+
+impl Read for Trickle<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let size = self
+            .sizes
+            .next()
+            .unwrap_or(1)
+            .min(buffer.len())
+            .min(self.bytes.len());
+        let (now, later) = self.bytes.split_at(size);
+        buffer[..size].copy_from_slice(now);
+        self.bytes = later;
+        Ok(size)
+    }
+}
+
+/// Every record and fault, as text that tells them apart.
+fn all(input: impl Read) -> Vec<String> {
+    let mut reader = Reader::new(input);
+    let mut found = Vec::new();
+    loop {
+        match reader.next_record() {
+            Ok(None) => return found,
+            Ok(Some(record)) => found.push(format!(
+                "{} {} {:?}",
+                record.line,
+                record.text(),
+                record.statement
+            )),
+            Err(ReadError::Syntax(fault)) => {
+                assert!(fault.text.get(fault.span.clone()).is_some(), "{fault:?}");
+                found.push(format!("{fault:?}"));
+            }
+            Err(ReadError::Io(error)) => panic!("{error}"),
+        }
+    }
+}
+
+/// Line and text of each record; of a fault its message.
+fn lines(text: impl AsRef<[u8]>) -> Vec<(u64, String)> {
+    let mut reader = Reader::new(text.as_ref());
+    let mut found = Vec::new();
+    loop {
+        match reader.next_record() {
+            Ok(None) => break,
+            Ok(Some(record)) => found.push((record.line, record.text().into_owned())),
+            Err(ReadError::Syntax(fault)) => {
+                found.push((fault.line, format!("! {}", fault.message)))
+            }
+            Err(ReadError::Io(error)) => panic!("{error}"),
+        }
+    }
+    assert_eq!(reader.bytes_read(), text.as_ref().len() as u64);
+    found
+}
+
+fn expect(text: impl AsRef<[u8]>, expected: &[(u64, &str)]) {
+    let found = lines(&text);
+    let found: Vec<(u64, &str)> = found
+        .iter()
+        .map(|(line, text)| (*line, text.as_str()))
+        .collect();
+    assert_eq!(
+        found,
+        expected,
+        "{:?}",
+        String::from_utf8_lossy(text.as_ref())
+    );
+}
+
+#[test]
+fn line_ends() {
+    for end in ["\n", "\r\n", "\r"] {
+        let text = ["RAPID", "", "  \t", "GOTO/1,2,3", "FINI"].join(end);
+        let expected = [(1, "RAPID"), (4, "GOTO/1,2,3"), (5, "FINI")];
+        expect(&text, &expected);
+        expect(format!("{text}{end}"), &expected);
+        expect(format!("\u{FEFF}{text}"), &expected);
+    }
+    expect("", &[]);
+    expect("\u{FEFF}", &[]);
+    expect("\r\n\n\r", &[]);
+    expect("FINI\r\n\x1A", &[(1, "FINI")]);
+}
+
+#[test]
+fn a_dollar_continues() {
+    expect(
+        "GOTO / 1, 2,  $\n  3\nFINI",
+        &[(1, "GOTO / 1, 2, 3"), (3, "FINI")],
+    );
+    expect(
+        "GOTO/1,$ \r\n2,$\r\n3\r\nFINI",
+        &[(1, "GOTO/1, 2, 3"), (4, "FINI")],
+    );
+    expect(
+        "CYCLE / DEEP, DEPTH, 3.5, CLEAR,$\n 1.0\n",
+        &[(1, "CYCLE / DEEP, DEPTH, 3.5, CLEAR, 1.0")],
+    );
+    expect("GOTO/1,2, $ $$ to be continued\n3\n", &[(1, "GOTO/1,2, 3")]);
+    expect("\u{FEFF}GOTO/1,2, $\n3\n", &[(1, "GOTO/1,2, 3")]);
+    expect(
+        "$$-> CSYS / 1, 0, 0, 0, $\n 0, 1, 0, 0, $\n 0, 0, 1, 0\n",
+        &[(1, "$$-> CSYS / 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0")],
+    );
+    expect(
+        "GOTO/1,2,3 $\n",
+        &[(1, "! the file ends where this record should go on")],
+    );
+    expect(
+        "GOTO/1,2,3 $",
+        &[(1, "! the file ends where this record should go on")],
+    );
+    // A blank line is the last piece of a record.
+    expect(
+        "GOTO/1,2,3 $\n\nRAPID\n",
+        &[(1, "GOTO/1,2,3 "), (3, "RAPID")],
+    );
+}
+
+#[test]
+fn a_comment_does_not_continue() {
+    expect(
+        "RAPID $$ costs 5 $\nFINI\n",
+        &[(1, "RAPID $$ costs 5 $"), (2, "FINI")],
+    );
+    expect(
+        "GOTO/1,2,3 $$\nFINI\n",
+        &[(1, "GOTO/1,2,3 $$"), (2, "FINI")],
+    );
+    expect(
+        "$$ costs 5 $\nRAPID\n",
+        &[(1, "$$ costs 5 $"), (2, "RAPID")],
+    );
+    expect(
+        "PPRINT costs 5 $\nINSERT/A $\nRAPID\n",
+        &[(1, "PPRINT costs 5 $"), (2, "INSERT/A $"), (3, "RAPID")],
+    );
+    expect(
+        "TOOL PATH/A$,TOOL,B$\nRAPID\n",
+        &[(1, "TOOL PATH/A$,TOOL,B$"), (2, "RAPID")],
+    );
+}
+
+#[test]
+fn reading_goes_on_after_a_fault() {
+    let text = "GOTO/1,2\nGOTO/1,2,3\n,,,\nFEDRAT/MMPM\nFINI\n";
+    expect(
+        text,
+        &[
+            (1, "! GOTO takes 3 or 6 numbers, 2 are given"),
+            (2, "GOTO/1,2,3"),
+            (3, "! a record begins with a word"),
+            (4, "! FEDRAT needs a number"),
+            (5, "FINI"),
+        ],
+    );
+    expect(
+        b"RAPID\nGO\0TO/1,2,3\n\xFF\xFE\nFINI\n",
+        &[
+            (1, "RAPID"),
+            (2, "! byte 0x00 is not text"),
+            (3, "! a record begins with a word"),
+            (4, "FINI"),
+        ],
+    );
+}
+
+#[test]
+fn text_that_is_not_utf8_is_taken_for_latin1() {
+    let mut reader = Reader::new(&b"INSERT/Fr\xE4sen\nPPRINT Fr\xC3\xA4sen\n"[..]);
+    let insert = reader.next_record().unwrap().unwrap().statement;
+    assert_eq!(insert, Statement::Insert("Fräsen".to_owned()));
+    let print = reader.next_record().unwrap().unwrap().statement;
+    assert_eq!(print, Statement::Print("Fräsen".to_owned()));
+}
+
+#[test]
+fn a_record_may_be_long_but_not_endless() {
+    let long = format!("PPRINT {}\nFINI\n", "x".repeat(1024 * 1024 - 7));
+    assert_eq!(all(Cursor::new(&long)).len(), 2);
+    let message = "! a record of more than 1048576 bytes";
+    expect(
+        format!("RAPID\nPPRINT {}\r\nFINI\n", "x".repeat(1024 * 1024 - 6)),
+        &[(1, "RAPID"), (2, message), (3, "FINI")],
+    );
+    expect(format!("PPRINT {}", "x".repeat(5_000_000)), &[(1, message)]);
+    expect(
+        format!("GOTO/1,2,{}3\nFINI\n", " ".repeat(2_000_000)),
+        &[(1, message), (2, "FINI")],
+    );
+    // Of a record that is too long because it goes on and on, the rest are records of their own.
+    let continued = lines(format!("KNOT/{}1\nFINI\n", "1,$\n".repeat(300_000)));
+    assert_eq!(continued[0], (1, message.to_owned()));
+    assert_eq!(continued.last(), Some(&(300_002, "FINI".to_owned())));
+}
+
+#[test]
+fn a_long_record_takes_time_in_proportion() {
+    for filler in [" ", ",", ", ", "1,", "1 ", "$$", "A,", ",TOOL", "/", "é"] {
+        for head in [
+            "NOSUCH/",
+            "TOOL PATH/",
+            "$$-> X/",
+            "REMARK -> ",
+            "CYCLE/DRILL,",
+            "KNOT/",
+            "",
+        ] {
+            let text = format!("{head}{}", filler.repeat(100_000 / filler.len()));
+            all(text.as_bytes());
+        }
+    }
+}
+
+#[test]
+fn a_failing_input_is_passed_on() {
+    struct Failing;
+    impl Read for Failing {
+        fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
+            Err(io::Error::other("the disk is gone"))
+        }
+    }
+    let input = Cursor::new("RAPID\nFINI").chain(Failing);
+    let mut reader = Reader::new(input);
+    assert!(matches!(reader.next_record(), Ok(Some(_))));
+    let error = reader
+        .next_record()
+        .expect_err("FINI may not be all of the line");
+    assert!(matches!(&error, ReadError::Io(error) if error.to_string() == "the disk is gone"));
+}
+
+const SAMPLE: &str = "\u{FEFF}PARTNO blade\r\nUNITS / MM\r\n\r\n$$-> CSYS / 1, 0, 0, 0, $\r\n 0, 1, 0, 0, $\r\n 0, 0, 1, 0\r\n\
+    GOTO / 1, 2, 3, $\n0, 0, 1\nGOTO/1,2\rRAPID\rGOTO/4.5,-.5,1.E-3\n\rCIRCLE/0,0,0,0,0,1 $$ c $\nFINI";
+
+proptest! {
+    #![proptest_config(crate::cases())]
+
+    #[test]
+    fn chunks_do_not_matter(sizes in prop::collection::vec(1..40usize, 1..6)) {
+        let trickle = Trickle { bytes: SAMPLE.as_bytes(), sizes: sizes.into_iter().cycle() };
+        prop_assert_eq!(all(trickle), all(SAMPLE.as_bytes()));
+    }
+
+    #[test]
+    fn random_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..400), sizes in prop::collection::vec(1..40usize, 1..4)) {
+        let trickle = Trickle { bytes: &bytes, sizes: sizes.into_iter().cycle() };
+        prop_assert_eq!(all(trickle), all(bytes.as_slice()));
+    }
+
+    #[test]
+    fn random_text_is_read_or_refused(
+        text in "((GOTO|CYCLE|FEDRAT|ROTABL|CUTCOM|SPINDL|LOAD|TLDATA|CIRCLE|REMARK|\\$\\$->|TOOL PATH|KNOT|DELAY|[A-Z]{1,6})?[ /]{0,2}([A-Z0-9.,+$ -]|CLW|TOOL,|INCR,|DRILL,|AAXIS,|\\$\n|\n|é){0,12}\n){0,20}",
+    ) {
+        all(text.as_bytes());
+    }
+}

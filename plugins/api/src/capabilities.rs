@@ -1,0 +1,148 @@
+//! What a dialect writes beyond moves.
+
+use std::ops::{BitOr, BitOrAssign};
+
+/// What a dialect declares to write, as a set.
+///
+/// Without declaration it is sent straight moves and the events up to [`Event::Word`](crate::Event::Word); the host
+/// turns what is not declared into those, or refuses it by name. Inverse time and the feed a revolution are declared
+/// by [`Format`](crate::Format), tool centre point control by not refusing [`Setup::tcp`](crate::Setup::tcp).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Capabilities(u64);
+
+/// A capability as the contract has it.
+#[derive(Clone, Copy, Debug)]
+pub struct CapabilitySpec {
+    /// Its name, in C behind `POST_WRITES_`.
+    pub name: &'static str,
+    /// The set with it alone.
+    pub set: Capabilities,
+    /// What the dialect writes.
+    pub doc: &'static str,
+}
+
+macro_rules! capabilities {
+    ($($(#[doc = $doc:literal])* $bit:literal $name:ident;)*) => {
+        impl Capabilities {
+            $(
+                $(#[doc = $doc])*
+                pub const $name: Capabilities = Capabilities(1 << $bit);
+            )*
+        }
+
+        /// Every capability that this version knows.
+        pub const CAPABILITIES: &[CapabilitySpec] = &[$(CapabilitySpec {
+            name: stringify!($name),
+            set: Capabilities::$name,
+            doc: concat!($($doc),*),
+        }),*];
+    };
+}
+
+capabilities! {
+    /// `Arc` in the plane of X and Y (G17).
+    0 ARC_XY;
+    /// `Arc` in the plane of Z and X (G18).
+    1 ARC_ZX;
+    /// `Arc` in the plane of Y and Z (G19).
+    2 ARC_YZ;
+    /// `Arc` about any direction.
+    3 ARC_ANY;
+    /// `Arc` that ends off the plane of its start, in the planes declared.
+    4 HELIX;
+    /// `Arc` also while tool centre point control is on.
+    5 ARC_TCP;
+    /// `Spline`.
+    6 SPLINE;
+    /// `Plane` and `PlaneOff`.
+    7 PLANE;
+    /// Cycles and arcs inside a `Plane`.
+    8 CYCLE_IN_PLANE;
+    /// Cycles along any tool axis, without a `Plane`.
+    9 CYCLE_ANY_AXIS;
+    /// `Cycle` of kind `Drill`.
+    10 CYCLE_DRILL;
+    /// `Cycle` of kind `Deep`.
+    11 CYCLE_DEEP;
+    /// `Cycle` of kind `BreakChip`.
+    12 CYCLE_BREAK_CHIP;
+    /// `Cycle` of kind `Tap`.
+    13 CYCLE_TAP;
+    /// `Cycle` of kind `TapLeft`.
+    14 CYCLE_TAP_LEFT;
+    /// `Cycle` of kind `Ream`.
+    15 CYCLE_REAM;
+    /// `Cycle` of kind `Bore`.
+    16 CYCLE_BORE;
+    /// `Cycle` of kind `BoreFine`.
+    17 CYCLE_BORE_FINE;
+    /// `Cycle` of kind `BoreBack`.
+    18 CYCLE_BORE_BACK;
+    /// `Smoothing` and `SmoothingOff`.
+    19 SMOOTHING;
+    /// `Tcp`.
+    20 TCP_SWITCH;
+    /// The tool vector of a move instead of its rotary words.
+    21 TOOL_VECTOR;
+    /// `Operation` and `OperationEnd`.
+    22 OPERATION;
+    /// `Message`.
+    23 MESSAGE;
+    /// `Units`.
+    24 UNITS;
+    /// `WorkOffset`.
+    25 WORK_OFFSET;
+    /// `Offsets`.
+    26 OFFSETS;
+    /// `SurfaceSpeed`.
+    27 SURFACE_SPEED;
+    /// `Clamp`.
+    28 CLAMP;
+    /// `Surface`.
+    29 SURFACE;
+    /// `Compensate3d`.
+    30 COMPENSATE_3D;
+    /// `Subprogram`.
+    31 SUBPROGRAM;
+    /// `Probe`.
+    32 PROBE;
+}
+
+impl Capabilities {
+    /// None of them.
+    pub const NONE: Capabilities = Capabilities(0);
+
+    /// All of `others` are in it.
+    pub const fn has(self, others: Capabilities) -> bool {
+        self.0 & others.0 == others.0
+    }
+
+    /// It and `others`, in a constant; elsewhere `|` does the same.
+    pub const fn and(self, others: Capabilities) -> Capabilities {
+        Capabilities(self.0 | others.0)
+    }
+
+    /// The set in the contract. Bits that this version does not know stay.
+    pub const fn bits(self) -> u64 {
+        self.0
+    }
+
+    /// The set of these bits.
+    pub const fn from_bits(bits: u64) -> Capabilities {
+        Capabilities(bits)
+    }
+}
+
+impl BitOr for Capabilities {
+    type Output = Capabilities;
+
+    fn bitor(self, others: Capabilities) -> Capabilities {
+        self.and(others)
+    }
+}
+
+impl BitOrAssign for Capabilities {
+    fn bitor_assign(&mut self, others: Capabilities) {
+        *self = self.and(others);
+    }
+}

@@ -1,0 +1,180 @@
+//! Events as they cross the border, and back.
+
+#![allow(unsafe_code)]
+
+use super::{PostEvent, PostText, slice};
+use crate::field::{MAX_TEXTS, Reader};
+use crate::{Batch, Event};
+
+/// The first `count` events of `batch` in their raw form; they borrow from it without the compiler's help, so both
+/// vectors must be emptied before the batch changes.
+pub fn events(batch: &Batch, count: usize, events: &mut Vec<PostEvent>, texts: &mut Vec<PostText>) {
+    events.clear();
+    texts.clear();
+    for index in 0..count {
+        texts.extend(batch.texts(index).map(PostText::new));
+    }
+    let mut texts = texts.as_slice();
+    for index in 0..count {
+        let (stored, numbers) = batch.stored(index);
+        let (own, rest) = texts.split_at(batch.texts(index).count());
+        texts = rest;
+        events.push(PostEvent {
+            kind: stored.kind,
+            texts_len: own.len() as u32,
+            line: stored.line,
+            numbers: numbers.as_ptr(),
+            numbers_len: numbers.len(),
+            texts: own.as_ptr(),
+        });
+    }
+}
+
+impl PostEvent {
+    /// The event in its safe form. A kind that is not known, or one with a code that is not, comes out as
+    /// [`Event::Unknown`]; none if a text is not valid UTF-8.
+    ///
+    /// # Safety
+    /// Every pointer in it is valid for `'a`.
+    #[inline]
+    pub unsafe fn get<'a>(&self) -> Option<Event<'a>> {
+        // SAFETY: handed on to the caller, here and for the texts.
+        let numbers = unsafe { slice(self.numbers, self.numbers_len) };
+        let mut texts = [""; MAX_TEXTS];
+        let raw = unsafe { slice(self.texts, self.texts_len as usize) };
+        for (raw, text) in raw.iter().zip(&mut texts) {
+            *text = unsafe { raw.get() }?;
+        }
+        let unknown = Event::Unknown { kind: self.kind };
+        Some(Event::get(self.kind, &mut Reader::new(numbers, texts)).unwrap_or(unknown))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Compensation, Coolant, EVENTS, Feed, List, Spindle, SpindleSense, ToolPose, Units,
+    };
+
+    /// What becomes of events that go into a batch, into their raw form, and back.
+    fn round(given: &[Event<'_>], check: impl Fn(usize, Event<'_>)) {
+        let mut batch = Batch::default();
+        for (line, event) in (7..).zip(given) {
+            batch.push(line, *event);
+        }
+        let (mut raw, mut texts) = (Vec::new(), Vec::new());
+        events(&batch, batch.len(), &mut raw, &mut texts);
+        assert_eq!(raw.len(), given.len());
+        for (index, raw) in raw.iter().enumerate() {
+            assert_eq!(raw.line, index as u64 + 7);
+            check(index, batch.event(index));
+            // SAFETY: what the raw event points to outlives it.
+            check(index, unsafe { raw.get() }.unwrap());
+        }
+    }
+
+    #[test]
+    fn every_event_comes_back_as_it_went() {
+        let mut given = Event::samples();
+        assert_eq!(given.len(), EVENTS.len());
+        let words = [1.0, -2.5];
+        for feed in [
+            Feed::PerMinute(100.0),
+            Feed::InverseTime(2.5),
+            Feed::PerRevolution(0.1),
+        ] {
+            given.push(Event::linear(&words, feed));
+            given.push(Event::position(&words, Some(feed)));
+        }
+        for coolant in [
+            Coolant::Off,
+            Coolant::Flood,
+            Coolant::Mist,
+            Coolant::Through,
+            Coolant::Air,
+        ] {
+            given.push(Event::Coolant(coolant));
+        }
+        for register in [0, u32::MAX] {
+            given.push(Event::Compensate(Compensation::Right { register }));
+        }
+        let sense = SpindleSense::CounterClockwise;
+        given.extend([
+            Event::Compensate(Compensation::Off),
+            Event::Spindle(Spindle::Off),
+            Event::Spindle(Spindle::Orient),
+            Event::Spindle(Spindle::On { rpm: 0.0, sense }),
+            Event::Units(Units::Inch),
+            Event::position(&words, None),
+            Event::rapid(&[]),
+            Event::Comment { text: "a µ" },
+            Event::Literal { text: "" },
+            Event::tool_change(3, 4, "ball 10"),
+            Event::Spline {
+                feed: Feed::PerMinute(1.0),
+                degree: 3,
+                knots: List(&[]),
+                weights: List(&[1.0]),
+                points: List(&words),
+            },
+            Event::Unknown { kind: 4711 },
+        ]);
+        round(&given, |index, event| assert_eq!(event, given[index]));
+    }
+
+    /// The same event with other numbers.
+    fn read(kind: u32, numbers: &[f64]) -> Event<'_> {
+        let raw = PostEvent {
+            kind,
+            texts_len: 0,
+            line: 1,
+            numbers: numbers.as_ptr(),
+            numbers_len: numbers.len(),
+            texts: std::ptr::null(),
+        };
+        // SAFETY: it has these numbers and no texts.
+        unsafe { raw.get() }.unwrap()
+    }
+
+    #[test]
+    fn an_event_may_have_more_numbers_than_are_known_and_fewer() {
+        let dwell = Event::Dwell { seconds: 2.0 }.kind();
+        assert_eq!(read(dwell, &[2.0, 9.0, 9.0]), Event::Dwell { seconds: 2.0 });
+        assert_eq!(read(dwell, &[]), Event::Dwell { seconds: 0.0 });
+        let rapid = Event::rapid(&[]).kind();
+        let numbers = [1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 2.0, 10.0, 20.0, 99.0];
+        let tool = Some(ToolPose {
+            tip: [1.0, 2.0, 3.0],
+            axis: [0.0, 0.0, 1.0],
+        });
+        let words = &[10.0, 20.0];
+        assert_eq!(read(rapid, &numbers), Event::Rapid { tool, words });
+        assert_eq!(
+            read(Event::tool_change(0, 0, "").kind(), &[5.0]),
+            Event::tool_change(5, 0, "")
+        );
+    }
+
+    #[test]
+    fn a_number_that_is_not_known_makes_the_event_unknown() {
+        for (kind, numbers) in [
+            (Event::Coolant(Coolant::Off).kind(), &[99.0] as &[f64]),
+            (Event::Preselect { number: 1 }.kind(), &[1.5]),
+            (Event::Preselect { number: 1 }.kind(), &[-1.0]),
+            (Event::Preselect { number: 1 }.kind(), &[f64::NAN]),
+            // A list that says it is longer than it is, and a feed that is none.
+            (
+                Event::rapid(&[]).kind(),
+                &[f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0, 1e9, 1.0],
+            ),
+            (
+                Event::rapid(&[]).kind(),
+                &[f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0, f64::INFINITY],
+            ),
+            (Event::linear(&[], Feed::PerMinute(1.0)).kind(), &[]),
+        ] {
+            assert_eq!(read(kind, numbers), Event::Unknown { kind });
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Tests of the contract between the command and its plugins.
+
+mod header;

@@ -1,0 +1,57 @@
+//! The guide shows what is built and tested here, and lists the options that there are.
+
+use post_host::Plugin;
+use post_plugin::{Linked, OptionKind, Value};
+
+const GUIDE: &str = include_str!("../../../README.md");
+
+#[test]
+fn the_guide_shows_the_example() {
+    let example = include_str!("../../examples/post_tiny.rs");
+    assert!(
+        GUIDE.contains(example),
+        "plugins/README.md must show examples/post_tiny.rs as it is"
+    );
+}
+
+#[test]
+fn the_guide_lists_the_options_of_the_stock_plugins() {
+    let stock: [Linked; 6] = [
+        post_fanuc::plugin(),
+        post_linuxcnc::plugin(),
+        post_heidenhain::plugin(),
+        post_harmonic::plugin(),
+        post_parabolic::plugin(),
+        post_sampled::plugin(),
+    ];
+    for linked in stock {
+        let plugin = Plugin::linked(linked).unwrap();
+        if plugin.options().is_empty() {
+            continue;
+        }
+        let mut table =
+            String::from("| option | takes | default | what it does |\n|---|---|---|---|\n");
+        for spec in plugin.options() {
+            let takes = match spec.kind {
+                OptionKind::Flag => "true, false".to_owned(),
+                OptionKind::Integer { min, max } => format!("{min} to {max}"),
+                OptionKind::Number { min, max } => format!("{min} to {max}, any number"),
+                OptionKind::Text => "text".to_owned(),
+                OptionKind::Choice(choices) => choices.join(", "),
+            };
+            let default = match spec.default {
+                Value::Flag(flag) => flag.to_string(),
+                Value::Integer(integer) => integer.to_string(),
+                Value::Number(number) => number.to_string(),
+                Value::Text(text) => format!("\"{text}\""),
+            };
+            let (key, help) = (spec.key, spec.help);
+            table.push_str(&format!("| `{key}` | {takes} | {default} | {help} |\n"));
+        }
+        let name = plugin.name();
+        assert!(
+            GUIDE.contains(&table),
+            "plugins/README.md must list the options of `{name}`:\n\n{table}"
+        );
+    }
+}

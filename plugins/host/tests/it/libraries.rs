@@ -1,0 +1,502 @@
+//! Real shared libraries: the stock plugins, plugins in Rust and in C, and hostile ones.
+
+// Clippy lets test functions unwrap, but not the helpers beside them.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use post_host::{Finder, GivenValue, Kind, Plugin, PluginFault, ProgramSetup, ProgramWord, Reason};
+use post_plugin::{
+    Batch, Coolant, Deviation, DialectSession, Event, Feed, ModelSession, Spindle, SpindleSense,
+    Tolerance,
+};
+
+/// The folder of this test's executable, where cargo also puts the libraries of its dependencies.
+fn deps() -> PathBuf {
+    let this = std::env::current_exe().unwrap();
+    this.parent().unwrap().to_owned()
+}
+
+fn library(folder: &Path, name: &str) -> PathBuf {
+    use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+    folder.join(format!("{DLL_PREFIX}post_{name}{DLL_SUFFIX}"))
+}
+
+/// An example of this crate, built by `cargo test -p post-host`.
+fn example(name: &str) -> PathBuf {
+    library(&deps().parent().unwrap().join("examples"), name)
+}
+
+/// Compiles a C file of `tests/c` to a plugin in `folder`.
+fn compile(folder: &Path, source: &str, name: &str, flags: &[&str]) -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let target = library(folder, name);
+    let output = Command::new("cc")
+        .args(["-O2", "-shared", "-fPIC", "-Wall", "-Wextra", "-Werror"])
+        .args([
+            "-Wno-unused-function",
+            "-Wno-unused-const-variable",
+            "-Wno-unused-variable",
+        ])
+        .args(flags)
+        .arg("-I")
+        .arg(here.join("../api/include"))
+        .arg(here.join("tests/c").join(source))
+        .arg("-o")
+        .arg(&target)
+        .output()
+        .expect("a C compiler called cc");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{message}");
+    target
+}
+
+fn setup(words: &[&str]) -> ProgramSetup {
+    ProgramSetup {
+        program: "bracket".to_owned(),
+        machine: "test".to_owned(),
+        words: words
+            .iter()
+            .map(|name| ProgramWord {
+                name: (*name).to_owned(),
+                rotary: matches!(*name, "A" | "B" | "C"),
+                depth: *name == "Z",
+                ..ProgramWord::default()
+            })
+            .collect(),
+        ..ProgramSetup::default()
+    }
+}
+
+fn five_axes() -> ProgramSetup {
+    setup(&["X", "Y", "Z", "A", "C"])
+}
+
+fn job() -> Batch {
+    let mut batch = Batch::default();
+    let mut line = 0;
+    let mut push = |event: Event<'_>| {
+        line += 1;
+        batch.push(line, event);
+    };
+    push(Event::Start);
+    push(Event::Comment {
+        text: "naïve (µ)"
+    });
+    push(Event::tool_change(1, 2, "ball"));
+    push(Event::Spindle(Spindle::On {
+        rpm: 3000.0,
+        sense: SpindleSense::CounterClockwise,
+    }));
+    push(Event::Coolant(Coolant::Flood));
+    push(Event::position(&[0.0, 0.0, 100.0, 0.0, 0.0], None));
+    for step in 0..200 {
+        let x = f64::from(step) / 8.0;
+        push(Event::linear(
+            &[x, -x, 3.0, x / 2.0, 10.0],
+            Feed::PerMinute(500.0),
+        ));
+    }
+    push(Event::Dwell { seconds: 0.25 });
+    push(Event::Release);
+    push(Event::Home);
+    push(Event::End);
+    batch
+}
+
+fn write(plugin: &Plugin, batch: &Batch) -> (String, Vec<usize>) {
+    let mut session = plugin.dialect(&five_axes()).unwrap();
+    let (mut out, mut ends) = (String::new(), Vec::new());
+    session.write_batch(batch, &mut out, &mut ends).unwrap();
+    (out, ends)
+}
+
+#[test]
+fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
+    let linked = [
+        post_fanuc::plugin(),
+        post_linuxcnc::plugin(),
+        post_heidenhain::plugin(),
+    ];
+    for linked in linked {
+        let linked = Plugin::linked(linked).unwrap();
+        assert_eq!((linked.path(), linked.hash()), (None, None));
+        let opened = Plugin::open(&library(&deps(), linked.name())).unwrap();
+        assert_eq!(opened.name(), linked.name());
+        assert_eq!(opened.version(), linked.version());
+        assert_eq!(opened.kind(), Kind::Dialect);
+        assert_eq!(opened.hash().unwrap().len(), 64);
+        let keys = |plugin: &Plugin| -> Vec<&str> {
+            plugin.options().iter().map(|spec| spec.key).collect()
+        };
+        assert_eq!(keys(&opened), keys(&linked));
+        let batch = job();
+        let (text, ends) = write(&opened, &batch);
+        assert_eq!((text.clone(), ends.clone()), write(&linked, &batch));
+        assert_eq!(ends.len(), batch.len());
+        assert_eq!(ends.last(), Some(&text.len()));
+        assert!(text.lines().count() > 200);
+        // Cut into single events it is the same program.
+        let mut session = opened.dialect(&five_axes()).unwrap();
+        let mut out = String::new();
+        for event in batch.iter() {
+            let mut single = Batch::default();
+            single.push(1, event);
+            session
+                .write_batch(&single, &mut out, &mut Vec::new())
+                .unwrap();
+        }
+        assert_eq!(out, text);
+    }
+}
+
+#[test]
+fn the_stock_error_model_answers_the_same_from_a_file_and_linked_in() {
+    let linked = Plugin::linked(post_sampled::plugin()).unwrap();
+    let opened = Plugin::open(&library(&deps(), "sampled")).unwrap();
+    let answers = [linked, opened].map(|plugin| {
+        assert_eq!(plugin.kind(), Kind::ErrorModel);
+        assert!(plugin.dialect(&five_axes()).is_err());
+        let options = [("accuracy".to_owned(), GivenValue::Number(0.001))];
+        let mut session = plugin.error_model(&options).unwrap();
+        let tolerance = Tolerance {
+            tip: 0.005,
+            axis: 0.05,
+        };
+        let curve = session.fit(&tolerance, &mut |ts, out| {
+            for (t, out) in ts.iter().zip(out) {
+                out.tip[0] = t * (1.0 - t);
+            }
+        });
+        let curve = curve.unwrap();
+        assert!((curve.tip_peak - 0.25).abs() < 0.001);
+        assert!((session.value(&curve, 0.3).tip[0] - 0.21).abs() < 1e-12);
+        assert_eq!(session.fault(), None);
+        let broken = session.fit(&tolerance, &mut |_, out| out[0].tip[0] = f64::INFINITY);
+        assert!(broken.unwrap_err().starts_with("error model `sampled`: "));
+        curve
+    });
+    assert_eq!(answers[0], answers[1]);
+}
+
+#[test]
+fn a_panic_of_the_host_passes_through_a_model_unharmed() {
+    let plugin = Plugin::open(&library(&deps(), "sampled")).unwrap();
+    let mut session = plugin.error_model(&[]).unwrap();
+    let tolerance = Tolerance {
+        tip: 0.005,
+        axis: 0.05,
+    };
+    let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        session.fit(&tolerance, &mut |_: &[f64], _: &mut [Deviation]| {
+            std::panic::panic_any("mine")
+        })
+    }));
+    assert_eq!(caught.unwrap_err().downcast_ref::<&str>(), Some(&"mine"));
+    assert!(session.fit(&tolerance, &mut |_, _| ()).is_ok());
+}
+
+#[test]
+fn a_dialect_in_thirty_lines_of_rust() {
+    let plugin = Plugin::open(&example("tiny")).unwrap();
+    let mut session = plugin.dialect(&setup(&["X", "C"])).unwrap();
+    let mut batch = Batch::default();
+    batch.push(1, Event::Start);
+    batch.push(2, Event::rapid(&[1.5, 90.0]));
+    batch.push(3, Event::linear(&[-2.0, 90.0], Feed::PerMinute(250.0)));
+    batch.push(4, Event::Stop);
+    let (mut out, mut ends) = (String::new(), Vec::new());
+    let fault = session
+        .write_batch(&batch, &mut out, &mut ends)
+        .unwrap_err();
+    assert_eq!(
+        out,
+        "G21 G90 G94\nG0 X1.500 C90.000\nG1 X-2.000 C90.000 F250.0\n"
+    );
+    assert_eq!((ends.len(), fault.index), (3, 3));
+    assert_eq!(
+        fault.message,
+        "dialect `tiny`, event Stop: this dialect has no words for a stop"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_dialect_in_c() {
+    let folder = tempfile::tempdir().unwrap();
+    let plugin = Plugin::open(&compile(folder.path(), "minimal.c", "minimal", &[])).unwrap();
+    assert_eq!((plugin.name(), plugin.version()), ("minimal", "1.0"));
+    let mut setup = setup(&["X", "C"]);
+    setup.options = vec![("decimals".to_owned(), GivenValue::Integer(2))];
+    let mut session = plugin.dialect(&setup).unwrap();
+    assert_eq!(session.format().words, [2, 2]);
+    assert_eq!(session.format().inverse_time, None);
+    assert_eq!(session.format().extension, "tap");
+    let mut batch = Batch::default();
+    batch.push(1, Event::Start);
+    batch.push(2, Event::rapid(&[1.5, 90.0]));
+    batch.push(3, Event::Unknown { kind: 4711 });
+    let mut out = "before\n".to_owned();
+    let mut ends = Vec::new();
+    let fault = session
+        .write_batch(&batch, &mut out, &mut ends)
+        .unwrap_err();
+    assert_eq!(out, "before\nG21 G90 G94\nG0 X1.50 C90.00\n");
+    assert_eq!(ends, [19, 35]);
+    assert_eq!(
+        fault.message,
+        "dialect `minimal`, event Unknown: it has no words for kind 4711"
+    );
+    setup.tcp = true;
+    let refused = plugin.dialect(&setup).unwrap_err();
+    assert!(refused.to_string().ends_with("this control has no TCP"));
+    setup.options = vec![("decimals".to_owned(), GivenValue::Integer(7))];
+    let refused = plugin.dialect(&setup).unwrap_err();
+    assert!(refused.to_string().contains("7 is not between 1 and 6"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_library_that_is_no_plugin_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let refusal = |flag: &str| -> String {
+        // Its own folder each: a library that is open already would be handed out again.
+        let own = folder.path().join(flag);
+        std::fs::create_dir(&own).unwrap();
+        let path = compile(&own, "hostile.c", "hostile", &[&format!("-DFAULT_{flag}")]);
+        let fault: PluginFault = Plugin::open(&path).unwrap_err();
+        assert_eq!(fault.path.as_deref(), Some(path.as_path()));
+        assert!(!fault.help().is_empty());
+        let text = fault.to_string();
+        text.split_once("): ").unwrap().1.to_owned()
+    };
+    assert_eq!(refusal("MAGIC"), "what it exports is not a plugin of post");
+    assert_eq!(
+        refusal("ABI"),
+        "it was built for version 10 of the plugin contract, this is version 2"
+    );
+    assert!(refusal("LAYOUT").starts_with("it was built against other structs"));
+    assert_eq!(
+        refusal("SIZE"),
+        "its PostPlugin has 4000000000 bytes, at least 96 are needed"
+    );
+    assert_eq!(
+        refusal("TABLE_SIZE"),
+        "its PostDialect has 32 bytes, at least 40 are needed"
+    );
+    assert_eq!(refusal("NULL_WRITE"), "its `write` is null");
+    assert_eq!(refusal("NULL_TABLE"), "its `dialect` is null");
+    assert_eq!(refusal("NULL_NAME"), "its `name` is null");
+    assert_eq!(refusal("NAME"), "it calls itself `friendly`");
+    assert_eq!(
+        refusal("KIND"),
+        "its kind 77 is neither a dialect nor an error model"
+    );
+    assert_eq!(
+        refusal("SYMBOL"),
+        "it does not export `post_plugin_hostile`"
+    );
+    assert!(refusal("DEFAULT").contains("7 is not between 0 and 1"));
+}
+
+#[cfg(unix)]
+#[test]
+fn what_a_plugin_says_is_not_believed() {
+    let folder = tempfile::tempdir().unwrap();
+    let open = |flag: &str| {
+        let own = folder.path().join(flag);
+        std::fs::create_dir(&own).unwrap();
+        let path = compile(&own, "hostile.c", "hostile", &[&format!("-DFAULT_{flag}")]);
+        Plugin::open(&path).unwrap().dialect(&setup(&["X"]))
+    };
+    for (flag, message) in [
+        ("OPEN", "it gives no reason"),
+        ("WORDS", "has 4000000000 axis words, the program has 1"),
+        ("DECIMALS", "asks for 200 decimals"),
+        ("EXTENSION", "its file extension is not letters and digits"),
+    ] {
+        let fault = open(flag).unwrap_err().to_string();
+        assert!(fault.contains(message), "{flag}: {fault}");
+    }
+    for (flag, message) in [
+        ("NAN", "no number: G0 X-nan"),
+        ("UTF8", "not UTF-8"),
+        ("CONTROL", "control character 27"),
+        ("LINE", "does not end with a line feed"),
+        ("ENDS", "not where it says"),
+        ("BACK", "not where it says"),
+        ("NO_ENDS", "belongs to no event"),
+        ("COUNT", "it wrote 3 events of 2"),
+    ] {
+        let mut batch = Batch::default();
+        batch.push(1, Event::rapid(&[1.0]));
+        batch.push(2, Event::rapid(&[1.0]));
+        let mut out = "x".to_owned();
+        let written = open(flag)
+            .unwrap()
+            .write_batch(&batch, &mut out, &mut Vec::new());
+        let fault = written.unwrap_err().message;
+        assert!(
+            fault.starts_with("dialect `hostile`, event Rapid: "),
+            "{fault}"
+        );
+        assert!(fault.contains(message), "{flag}: {fault}");
+    }
+}
+
+#[test]
+fn a_plugin_that_panics_does_not_take_the_host_with_it() {
+    let plugin = Plugin::open(&example("panics")).unwrap();
+    let mut setup = setup(&["X"]);
+    let mut session = plugin.dialect(&setup).unwrap();
+    let mut batch = Batch::default();
+    batch.push(1, Event::Start);
+    batch.push(2, Event::Home);
+    let (mut out, mut ends) = (String::new(), Vec::new());
+    let fault = session
+        .write_batch(&batch, &mut out, &mut ends)
+        .unwrap_err();
+    assert_eq!(fault.index, 1);
+    let message = &fault.message;
+    assert!(
+        message.starts_with(
+            "dialect `panics`, event Home: the plugin panicked: the sky fell on Home ("
+        ) && message.contains("post_panics.rs:"),
+        "{message}"
+    );
+    assert_eq!(out, "half a line\n");
+    // It is not asked again, and says why.
+    let again = session
+        .write_batch(&batch, &mut out, &mut ends)
+        .unwrap_err();
+    assert!(again.message.contains("the sky fell"), "{}", again.message);
+
+    let mut batch = Batch::default();
+    batch.push(1, Event::End);
+    let mut session = plugin.dialect(&setup).unwrap();
+    let fault = session
+        .write_batch(&batch, &mut out, &mut ends)
+        .unwrap_err();
+    assert!(fault.message.contains("without a message"));
+
+    setup.program = "open".to_owned();
+    let fault = plugin.dialect(&setup).unwrap_err();
+    assert!(fault.to_string().contains("no such program"), "{fault}");
+}
+
+#[test]
+fn files_that_are_no_libraries_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = library(folder.path(), "text");
+    std::fs::write(&text, "G0 X0\n").unwrap();
+    let reason = |path: &Path| Plugin::open(path).unwrap_err().reason;
+    assert!(matches!(reason(&text), Reason::Open { .. }));
+    let missing = library(folder.path(), "missing");
+    assert!(matches!(reason(&missing), Reason::Open { .. }));
+    assert!(matches!(
+        reason(Path::new("/lib/libm.so.6")),
+        Reason::FileName { .. }
+    ));
+    assert!(matches!(
+        reason(&folder.path().join("../post_x")),
+        Reason::FileName { .. }
+    ));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_system_library_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let candidates = [
+        "/lib/x86_64-linux-gnu",
+        "/lib/aarch64-linux-gnu",
+        "/lib64",
+        "/lib",
+    ];
+    let libm = candidates
+        .iter()
+        .map(|place| Path::new(place).join("libm.so.6"))
+        .find(|path| path.exists());
+    let Some(libm) = libm else { return };
+    let copy = library(folder.path(), "m");
+    std::fs::copy(libm, &copy).unwrap();
+    assert_eq!(
+        Plugin::open(&copy).unwrap_err().reason,
+        Reason::NoSymbol {
+            symbol: "post_plugin_m".to_owned()
+        }
+    );
+}
+
+#[test]
+fn a_name_is_looked_for_in_the_folders_and_then_among_the_linked_in() {
+    let linked = vec![Plugin::linked(post_fanuc::plugin()).unwrap()];
+    let mut finder = Finder {
+        folders: Vec::new(),
+        linked,
+    };
+    assert_eq!(finder.find("fanuc").unwrap().path(), None);
+    let fault = finder.find("fanuk").unwrap_err();
+    assert_eq!(fault.to_string(), "plugin `fanuk`: there is no such plugin");
+    assert!(
+        fault.help().starts_with("built in are fanuc"),
+        "{}",
+        fault.help()
+    );
+    assert!(finder.find("../fanuc").is_err());
+
+    let empty = tempfile::tempdir().unwrap();
+    finder.folders = vec![empty.path().to_owned(), deps()];
+    let found = finder.find("fanuc").unwrap();
+    assert_eq!(found.path(), Some(library(&deps(), "fanuc").as_path()));
+    // A broken file in a named folder is not passed over.
+    std::fs::write(library(empty.path(), "fanuc"), "").unwrap();
+    assert!(finder.find("fanuc").is_err());
+}
+
+#[test]
+fn promises_to_plugins_are_kept() {
+    let plugin = Plugin::linked(post_heidenhain::plugin()).unwrap();
+    let bad: &[(Event<'_>, &str)] = &[
+        (Event::rapid(&[f64::NAN, 0.0]), "an axis word is NaN"),
+        (Event::rapid(&[0.0]), "1 axis words instead of 2"),
+        (Event::Dwell { seconds: -1.0 }, "its number is -1"),
+        (
+            Event::linear(&[0.0, 0.0], Feed::PerMinute(0.0)),
+            "the feed is 0",
+        ),
+        (
+            Event::linear(&[0.0, 0.0], Feed::InverseTime(1.0)),
+            "no inverse-time feed",
+        ),
+    ];
+    for (event, message) in bad {
+        let mut session = plugin.dialect(&setup(&["X", "C"])).unwrap();
+        let mut batch = Batch::default();
+        batch.push(1, Event::Stop);
+        batch.push(2, *event);
+        let (mut out, mut ends) = (String::new(), Vec::new());
+        let fault = session
+            .write_batch(&batch, &mut out, &mut ends)
+            .unwrap_err();
+        assert_eq!((fault.index, out.as_str()), (1, "0 M0\n"));
+        assert!(fault.message.contains(message), "{}", fault.message);
+    }
+}
+
+#[test]
+fn sessions_go_to_the_threads_that_use_them() {
+    let plugin = Plugin::open(&library(&deps(), "fanuc")).unwrap();
+    let batch = job();
+    let texts: Vec<String> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..4)
+            .map(|_| scope.spawn(|| write(&plugin, &batch).0))
+            .collect();
+        threads
+            .into_iter()
+            .map(|thread| thread.join().unwrap())
+            .collect()
+    });
+    assert!(texts.windows(2).all(|pair| pair[0] == pair[1]));
+}

@@ -1,0 +1,6 @@
+//! Tests of the host, with plugins linked in, opened as libraries, and hostile ones.
+
+mod conformance;
+mod guide;
+mod libraries;
+mod papers;

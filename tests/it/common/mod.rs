@@ -1,0 +1,172 @@
+//! What the tests of the command share: running it, and which machine makes which sample.
+
+#![allow(dead_code, reason = "every test program uses a part of it")]
+#![allow(
+    clippy::unwrap_used,
+    reason = "clippy lets tests unwrap, but not the helpers beside them"
+)]
+
+use std::ffi::OsStr;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+/// A sample on a machine that can make it.
+pub struct Case {
+    pub machine: &'static str,
+    pub sample: &'static str,
+    /// Further arguments.
+    pub with: &'static [&'static str],
+}
+
+const fn case(machine: &'static str, sample: &'static str, with: &'static [&'static str]) -> Case {
+    Case {
+        machine,
+        sample,
+        with,
+    }
+}
+
+const LENGTH: &[&str] = &["--tool-length", "120"];
+
+/// The first machines, each with every sample that it can make, and both ways of keeping the tip for every
+/// dialect. `tests/it/library.rs` has a program for every machine.
+pub const CASES: &[Case] = &[
+    case("ac-trunnion", "blade.cls", &[]),
+    case("ac-trunnion", "blade.cls", &["--tcp", "control"]),
+    case("ac-trunnion", "facets.apt", &[]),
+    case("ac-trunnion", "plate.ncl", &[]),
+    case("disc-cutter", "blade.cls", LENGTH),
+    case("disc-cutter", "disc-blade.cls", &[]),
+    case("disc-cutter", "facets.apt", LENGTH),
+    case("disc-cutter", "knife.ncl", &[]),
+    case("disc-cutter", "knife.ncl", &["--tcp", "control"]),
+    case("disc-cutter", "plate.ncl", LENGTH),
+    case("dmu50", "blade.cls", &[]),
+    case("dmu50", "blade.cls", &["--tcp", "post"]),
+    case("dmu50", "facets.apt", &[]),
+    case("dmu50", "knife.ncl", &[]),
+    case("dmu50", "plate.ncl", &["--mount", "0,0,40"]),
+    case("head-head", "blade.cls", LENGTH),
+    case("head-head", "facets.apt", LENGTH),
+    case("head-head", "knife.ncl", LENGTH),
+    case("head-head", "plate.ncl", LENGTH),
+    case("head-head-360", "blade.cls", LENGTH),
+    case("head-head-360", "facets.apt", LENGTH),
+    case("head-head-360", "knife.ncl", LENGTH),
+    case("head-head-360", "plate.ncl", LENGTH),
+    case("nutating-head", "blade.cls", &[]),
+    case(
+        "nutating-head",
+        "blade.cls",
+        &["--tcp", "post", "--tool-length", "120"],
+    ),
+    case("nutating-head", "facets.apt", &[]),
+    case("nutating-head", "knife.ncl", &[]),
+    case("nutating-head", "plate.ncl", &[]),
+    case("vmc", "plate.ncl", &[]),
+];
+
+impl Case {
+    /// `blade_ac-trunnion`, and `_post` or `_control` where the machine file is overruled.
+    pub fn name(&self) -> String {
+        let sample = Path::new(self.sample).file_stem().unwrap();
+        let mut name = format!("{}_{}", sample.display(), self.machine);
+        if let Some(at) = self.with.iter().position(|word| *word == "--tcp") {
+            name.push('_');
+            name.push_str(self.with[at + 1]);
+        }
+        name
+    }
+
+    /// Posts it to standard output, with more arguments; must succeed. The program and the summary.
+    pub fn post(&self, more: &[&str]) -> (Run, Value) {
+        let folder = tempfile::tempdir().unwrap();
+        let json = folder.path().join("summary.json");
+        let mut arguments = vec!["--machine", self.machine, "-o", "-", "--summary"];
+        arguments.push(json.to_str().unwrap());
+        arguments.extend(self.with);
+        arguments.extend(more);
+        let sample = sample(self.sample);
+        arguments.push(sample.to_str().unwrap());
+        let run = post(&arguments);
+        assert_eq!(run.code, 0, "{}:\n{}", self.name(), run.err);
+        (run, read_json(&json))
+    }
+}
+
+/// What a run of the command left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    pub code: i32,
+    pub out: String,
+    pub err: String,
+}
+
+/// The project's folder.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+pub fn sample(name: &str) -> PathBuf {
+    Path::new("tests/samples").join(name)
+}
+
+/// The command, run in the project's folder without the user's settings.
+pub fn command() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_post"));
+    command
+        .current_dir(root())
+        .env_remove("POST_MACHINES")
+        .env_remove("POST_PLUGINS");
+    command
+}
+
+pub fn post<S: AsRef<OsStr>>(arguments: &[S]) -> Run {
+    run(command().args(arguments), b"")
+}
+
+/// Runs a command with `input` as its standard input.
+pub fn run(command: &mut Command, input: &[u8]) -> Run {
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let input = input.to_owned();
+    // The command may write before it has read all, or end without reading.
+    let feeder = std::thread::spawn(move || {
+        let _ = stdin.write_all(&input);
+    });
+    let output = child.wait_with_output().unwrap();
+    feeder.join().unwrap();
+    Run {
+        code: output.status.code().unwrap(),
+        out: String::from_utf8(output.stdout).unwrap(),
+        err: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+pub fn read_json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+/// Numbers that no control reads.
+pub fn check_numbers(program: &str) {
+    for (index, line) in program.lines().enumerate() {
+        let code = line.split(['(', ';']).next().unwrap();
+        for word in code.split_whitespace() {
+            let number = word.trim_start_matches(|c: char| c.is_ascii_alphabetic());
+            let zero = number.starts_with('-')
+                && number.bytes().any(|byte| byte == b'0')
+                && number.bytes().all(|byte| b"-0.".contains(&byte));
+            let lower = word.to_ascii_lowercase();
+            let odd = lower.ends_with("nan") || lower.ends_with("inf");
+            assert!(!zero && !odd, "line {}: {line}", index + 1);
+        }
+    }
+}

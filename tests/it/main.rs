@@ -1,0 +1,19 @@
+//! Tests of the command as its users run it.
+
+mod axes;
+mod check;
+mod command;
+mod common;
+mod library;
+#[cfg(target_os = "linux")]
+mod memory;
+mod new;
+mod plugins;
+mod real_files;
+mod schema;
+mod snapshots;
+mod study;
+
+#[path = "../bench/generate.rs"]
+#[expect(dead_code, reason = "its `main` is that of the example")]
+mod generate;

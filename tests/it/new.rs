@@ -1,0 +1,299 @@
+//! `post new`: files that the loader and the check accept, from flags and from answers.
+
+// Clippy lets test functions unwrap, but not the helpers beside them.
+#![allow(clippy::unwrap_used)]
+
+use crate::common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{Run, command, read_json, run};
+use tempfile::TempDir;
+
+const CLASSES: &[&str] = &[
+    "three-axis",
+    "four-axis-a",
+    "four-axis-b",
+    "table-table-ac",
+    "table-table-bc",
+    "table-table-nutating",
+    "head-head-ac",
+    "head-head-bc",
+    "head-table-bc",
+    "head-table-ba",
+    "nutating-head",
+];
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn post_in(folder: &Path, arguments: &[&str], answers: &str) -> Run {
+    run(
+        command().current_dir(folder).args(arguments),
+        answers.as_bytes(),
+    )
+}
+
+/// A small job that every class can make: the tool upright.
+const JOB: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/100,MMPM\nGOTO/0,0,10\nGOTO/20,5,10\nEND\nFINI\n";
+
+#[test]
+fn every_class_passes_the_check_and_makes_a_program() {
+    let help = post_in(folder().path(), &["new", "--help"], "").out;
+    for class in CLASSES {
+        assert!(
+            help.contains(&format!("{class}:")),
+            "{class} is not in:\n{help}"
+        );
+        let folder = folder();
+        let new = post_in(folder.path(), &["new", "mill", "--class", class], "");
+        assert_eq!((new.code, new.err.as_str()), (0, ""), "{class}");
+        let check = post_in(folder.path(), &["check", "mill.toml"], "");
+        assert_eq!((check.code, check.err.as_str()), (0, ""), "{class}");
+        assert!(
+            check.out.contains("warnings          none"),
+            "{}",
+            check.out
+        );
+        let kind = class.replace("four-axis-a", "rotary table A");
+        let kind = kind.replace("four-axis-b", "rotary table B");
+        let kind = kind
+            .replace("nutating-head", "nutating")
+            .replace("table-table-nutating", "nutating");
+        let kind = ["-ac", "-bc", "-ba"]
+            .iter()
+            .fold(kind, |kind, end| kind.replace(end, ""));
+        assert!(
+            check.out.contains(&kind),
+            "{kind} is not in:\n{}",
+            check.out
+        );
+        fs::write(folder.path().join("part.cls"), JOB).unwrap();
+        let posted = post_in(
+            folder.path(),
+            &[
+                "-q",
+                "-m",
+                "mill.toml",
+                "--tool-length",
+                "80",
+                "part.cls",
+                "-o",
+                "-",
+            ],
+            "",
+        );
+        assert_eq!(posted.code, 0, "{class}: {}", posted.err);
+    }
+    assert_eq!(help.matches("    - ").count(), CLASSES.len(), "{help}");
+}
+
+#[test]
+fn flags_say_everything() {
+    let folder = folder();
+    let new = post_in(
+        folder.path(),
+        &[
+            "new",
+            "mill",
+            "--class",
+            "table-table-ac",
+            "--dialect",
+            "linuxcnc",
+            "--tcp",
+            "control",
+            "--units",
+            "inch",
+            "--title",
+            "My \"mill\"",
+            "--travel",
+            "X=-200:210.5",
+            "--travel",
+            "a=-95:20",
+            "--travel",
+            "C=-360:360",
+            "--reversed",
+            "C",
+            "--max-feed",
+            "C=1200",
+            "--point",
+            "A=0,0.02,-35.5",
+            "--gauge",
+            "420",
+            "--tilt",
+            "-35.5",
+            "--tolerance",
+            "0.01",
+        ],
+        "",
+    );
+    assert_eq!(new.code, 0, "{}", new.err);
+    let text = fs::read_to_string(folder.path().join("mill.toml")).unwrap();
+    for line in [
+        "name  = \"My \\\"mill\\\"\"",
+        "travel   = [-200, 210.5]",
+        "travel   = [-95, 20]",
+        "travel   = [-360, 360]",
+        "reversed = true",
+        "max_feed = 1200",
+        "point    = [0, 0.02, -35.5]",
+        "dialect = \"linuxcnc\"",
+        "tcp     = \"control\"",
+        "units   = \"inch\"",
+        "tolerance = 0.01",
+    ] {
+        assert!(text.contains(line), "{line} is not in:\n{text}");
+    }
+    let check = post_in(
+        folder.path(),
+        &["check", "mill.toml", "--json", "c.json"],
+        "",
+    );
+    assert_eq!(check.code, 0, "{}", check.err);
+    let check = read_json(&folder.path().join("c.json"));
+    assert_eq!(check["machine"], "My \"mill\"");
+    assert_eq!(check["volume"]["most"][2], 420.0);
+    // Reversed: C plus turns the tool the other way.
+    assert_eq!(check["signs"][0]["tool"], "goes round from +X to -Y");
+}
+
+#[test]
+fn answers_through_a_pipe_write_the_same_as_flags() {
+    let folder = folder();
+    let asked = post_in(
+        folder.path(),
+        &["new", "asked"],
+        "nonsense\nhead-head-ac\nheidenhain\ncontrol\n600\n312.4\n-900:900\n\n\n-360:360\n-100:100\n",
+    );
+    assert_eq!(asked.code, 0, "{}", asked.err);
+    assert!(asked.err.contains("head-table-bc"), "{}", asked.err);
+    let told = post_in(
+        folder.path(),
+        &[
+            "new",
+            "told",
+            "--title",
+            "asked",
+            "--class",
+            "head-head-ac",
+            "--dialect",
+            "heidenhain",
+            "--tcp",
+            "control",
+            "--gauge",
+            "600",
+            "--pivot",
+            "312.4",
+            "--travel",
+            "X=-900:900",
+            "--travel",
+            "A=-100:100",
+        ],
+        "",
+    );
+    assert_eq!(told.code, 0, "{}", told.err);
+    let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(text("asked.toml"), text("told.toml"));
+}
+
+#[test]
+fn empty_answers_take_the_defaults_and_a_silent_pipe_is_refused() {
+    let folder = folder();
+    let asked = post_in(folder.path(), &["new", "asked"], "table-table-bc\n");
+    assert_eq!(asked.code, 0, "{}", asked.err);
+    let silent = post_in(folder.path(), &["new", "silent"], "");
+    assert_eq!(silent.code, 1);
+    assert!(silent.err.contains("--class"), "{}", silent.err);
+    assert!(!folder.path().join("silent.toml").exists());
+}
+
+#[test]
+fn a_file_that_is_there_stays() {
+    let folder = folder();
+    let path = folder.path().join("mill.toml");
+    fs::write(&path, "mine").unwrap();
+    let refused = post_in(folder.path(), &["new", "mill", "--class", "three-axis"], "");
+    assert_eq!(refused.code, 1);
+    assert!(refused.err.contains("--force"), "{}", refused.err);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
+    let forced = post_in(
+        folder.path(),
+        &["new", "mill.toml", "--class", "three-axis", "--force"],
+        "",
+    );
+    assert_eq!(forced.code, 0, "{}", forced.err);
+    assert!(
+        fs::read_to_string(&path)
+            .unwrap()
+            .contains("[w Y' X' b Z (S) t]")
+    );
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let folder = folder();
+    for (arguments, code, message) in [
+        (
+            vec!["--class", "three-axis", "--travel", "A=-10:10"],
+            1,
+            "has no such axis",
+        ),
+        (
+            vec!["--class", "three-axis", "--travel", "X=10:-10"],
+            2,
+            "the first must be the smaller",
+        ),
+        (
+            vec!["--class", "three-axis", "--travel", "X=10"],
+            2,
+            "is no travel",
+        ),
+        (
+            vec!["--class", "table-table-ac", "--max-feed", "C=0"],
+            2,
+            "not above zero",
+        ),
+        (
+            vec![
+                "--class",
+                "table-table-ac",
+                "--travel",
+                "C=0:90",
+                "--cyclic",
+                "C",
+            ],
+            1,
+            "which of the two",
+        ),
+        (
+            vec!["--class", "three-axis", "--dialect", "a\"b"],
+            2,
+            "letters and digits",
+        ),
+        (vec!["--class", "hexapod"], 2, "possible values"),
+    ] {
+        let mut all = vec!["new", "mill"];
+        all.extend(&arguments);
+        let refused = post_in(folder.path(), &all, "");
+        assert_eq!(refused.code, code, "{arguments:?}: {}", refused.err);
+        assert!(
+            refused.err.contains(message),
+            "{arguments:?}: {}",
+            refused.err
+        );
+    }
+    let nowhere = post_in(
+        folder.path(),
+        &["new", "no/such/mill", "--class", "three-axis"],
+        "",
+    );
+    assert_eq!(nowhere.code, 1);
+    assert!(
+        nowhere.err.contains("there is no folder"),
+        "{}",
+        nowhere.err
+    );
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}

@@ -1,17 +1,16 @@
-//! `post words`: every word of a CL file, how often, and what becomes of it.
+//! `post words`: every word of a CL file, or every word that is known, and what becomes of it.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use clap::Args;
-use post_grammar::{ReadError, Reader};
+use post_grammar::{MajorWord, ReadError, Reader, Usage};
 use post_machine::diagnostic::unreadable;
-use post_posting::program::{Usage, usage};
 
 use crate::failure::Failure;
 use crate::files::{ClInput, FileFault, PathArg};
 
-/// Prints every word of a CL file: how often, and what becomes of it.
+/// Prints every word of a CL file: how often, and what becomes of it; without a file every word that is known.
 ///
 /// used: it has its effect on the program; passed on: its text goes into the program; ignored: it says
 /// nothing to a machine; refused: it changes where the tool goes, and post does not know how; unknown:
@@ -20,16 +19,20 @@ use crate::files::{ClInput, FileFault, PathArg};
 pub struct WordsArguments {
     /// The CL file, `-` for standard input.
     #[arg(value_parser = PathArg::parser())]
-    file: PathArg,
+    file: Option<PathArg>,
 
     /// Only words that are refused or unknown.
-    #[arg(long)]
+    #[arg(long, requires = "file")]
     unknown_only: bool,
 }
 
 /// Prints the table.
 pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
-    let input = ClInput::open(&arguments.file)?;
+    let Some(file) = &arguments.file else {
+        print_all();
+        return Ok(());
+    };
+    let input = ClInput::open(file)?;
     let name = input.name;
     let mut reader = Reader::new(input.bytes);
     let mut words: BTreeMap<String, (u64, u64, Usage)> = BTreeMap::new();
@@ -39,7 +42,7 @@ pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
             Ok(None) => break,
             Ok(Some(record)) => {
                 let word = record.statement.word();
-                let usage = usage(&record.statement);
+                let usage = record.statement.usage();
                 if let Some((count, _, known)) = words.get_mut(word) {
                     *count += 1;
                     // Of several forms the one without effect is told.
@@ -56,11 +59,6 @@ pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
     }
     let mut rows: Vec<_> = words.into_iter().collect();
     rows.sort_by(|a, b| b.1.0.cmp(&a.1.0).then_with(|| a.0.cmp(&b.0)));
-    let mut stdout = io::stdout().lock();
-    let mut line = |text: String| {
-        // A reader that has seen enough closes the pipe.
-        let _ = writeln!(stdout, "{}", text.trim_end());
-    };
     line(format!(
         "{:<26} {:>9}  {:<10} {}",
         "word", "times", "becomes", "first on line"
@@ -69,13 +67,7 @@ pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
         if arguments.unknown_only && !matches!(usage, Usage::Unknown | Usage::Refused) {
             continue;
         }
-        let becomes = match usage {
-            Usage::Used => "used",
-            Usage::Passed => "passed on",
-            Usage::Ignored => "ignored",
-            Usage::Refused => "refused",
-            Usage::Unknown => "unknown",
-        };
+        let becomes = usage.name();
         line(format!("{word:<26} {count:>9}  {becomes:<10} {first}"));
     }
     if faults.is_empty() {
@@ -83,4 +75,19 @@ pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
     } else {
         Err(faults.into())
     }
+}
+
+/// Prints every word that is known, with its spellings.
+fn print_all() {
+    line(format!("{:<32} {:<10} {}", "word", "becomes", "meaning"));
+    for word in MajorWord::all() {
+        let spellings = word.spellings.join(" = ");
+        let becomes = word.usage.name();
+        line(format!("{spellings:<32} {becomes:<10} {}", word.meaning));
+    }
+}
+
+fn line(text: String) {
+    // A reader that has seen enough closes the pipe.
+    let _ = writeln!(io::stdout(), "{}", text.trim_end());
 }

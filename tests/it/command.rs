@@ -421,7 +421,7 @@ fn a_wrong_command_line_is_usage() {
         &["-m", "vmc", BLADE, "--tool", "-1"],
         &["-m", "vmc", BLADE, "--frobnicate"],
         &["-m", "vmc", BLADE, PLATE],
-        &["words"],
+        &["words", "--unknown-only"],
     ] {
         let done = post(arguments);
         assert_eq!((done.code, done.out.as_str()), (2, ""), "{arguments:?}");
@@ -689,6 +689,22 @@ fn words_lists_what_becomes_of_each_word() {
         text.as_bytes(),
     );
     assert_eq!(unknown.out.lines().count(), 3, "{}", unknown.out);
+}
+
+#[test]
+fn words_without_a_file_lists_those_that_are_known() {
+    let listed = run(command().arg("words"), b"");
+    assert_eq!((listed.code, listed.err.as_str()), (0, ""));
+    let words = post_grammar::MajorWord::all();
+    assert_eq!(listed.out.lines().count(), 1 + words.len());
+    assert_contains(
+        &listed.out,
+        &[
+            "LOADTL = LOAD = TURRET = TOOLNO",
+            "FEDRAT",
+            "refused    repeats moves",
+        ],
+    );
 }
 
 #[test]

@@ -22,7 +22,7 @@ fn word(text: &str) -> Argument {
 
 fn other(word: &str, arguments: &[Argument], directive: bool) -> Statement {
     Statement::Other {
-        word: word.to_owned(),
+        word: word.to_owned().into(),
         arguments: arguments.to_vec(),
         directive,
     }
@@ -654,20 +654,83 @@ fn words_without_a_statement() {
 }
 
 #[test]
-fn canonical_words_are_in_the_vocabulary() {
-    assert!(vocabulary().is_sorted());
-    for (text, expected) in [
-        ("UNIT/MM", "UNITS"),
-        ("LOAD/TOOL,1", "LOADTL"),
-        ("SELCTL/1", "SELECT"),
-        ("$$ x", "REMARK"),
-        ("END", "FINI"),
-        ("TOOL PATH/x", "TOOL PATH"),
-    ] {
-        assert_eq!(read(text).word(), expected);
-        assert!(vocabulary().contains(&expected));
+fn each_word_has_one_row_and_each_statement_the_name_of_its_row() {
+    let words = MajorWord::all();
+    assert!(words.is_sorted_by_key(|word| word.name()));
+    let mut spellings: Vec<&str> = words
+        .iter()
+        .flat_map(|word| word.spellings)
+        .copied()
+        .collect();
+    spellings.sort_unstable();
+    assert!(spellings.windows(2).all(|pair| pair[0] != pair[1]));
+    for word in words {
+        assert!(!word.meaning.is_empty(), "{word:?}");
+        for spelling in word.spellings {
+            let found = MajorWord::find(&spelling.to_lowercase()).unwrap();
+            assert_eq!(found.name(), word.name());
+        }
+        if word.example.is_empty() {
+            // Without a statement of its own, the record comes as it stands.
+            let kept = read(&format!("{}/1,A", word.name()));
+            assert_eq!(
+                kept,
+                other(word.name(), &[number(1.0), self::word("A")], false)
+            );
+            assert_eq!(kept.usage(), word.usage);
+            assert!(
+                !matches!(word.usage, Usage::Used | Usage::Passed),
+                "{word:?}"
+            );
+        } else {
+            let statement = read(word.example);
+            assert_eq!(
+                (statement.word(), statement.usage()),
+                (word.name(), word.usage)
+            );
+        }
     }
+    assert!(MajorWord::find("NOSUCH").is_none());
     assert_eq!(read("nosuch/1").word(), "NOSUCH");
+}
+
+#[test]
+fn what_becomes_of_a_record_depends_on_its_form() {
+    for (text, usage) in [
+        ("NOSUCH/1", Usage::Unknown),
+        ("COOLNT/SUPER", Usage::Unknown),
+        ("SELECT/WIRE,1", Usage::Unknown),
+        ("LOAD/WIRE,1", Usage::Refused),
+        ("CUTCOM/MAYBE", Usage::Refused),
+        ("TLAXIS/NORMAL", Usage::Refused),
+        ("$$-> NOSUCH / 1", Usage::Ignored),
+        ("$$-> GOTO / 1", Usage::Ignored),
+        ("$$-> TRACUT / 1", Usage::Refused),
+        ("$$-> CUTTER / 1", Usage::Used),
+        ("$$ any remark", Usage::Ignored),
+    ] {
+        assert_eq!(read(text).usage(), usage, "{text}");
+    }
+}
+
+/// The README lists the words by what becomes of them.
+#[test]
+fn the_readme_lists_the_words_of_the_table() {
+    let readme = include_str!("../../../README.md");
+    for usage in [
+        Usage::Used,
+        Usage::Passed,
+        Usage::Ignored,
+        Usage::Refused,
+        Usage::Unknown,
+    ] {
+        let spellings = MajorWord::all().iter().filter(|word| word.usage == usage);
+        let listed: Vec<String> = spellings
+            .map(|word| format!("`{}`", word.spellings.join("` = `")))
+            .collect();
+        let row = format!("| {} | {} |", usage.name(), listed.join(", "));
+        assert!(readme.contains(&row), "README.md lacks this line:\n{row}");
+    }
 }
 
 /// The part of the text that is marked, and the message.

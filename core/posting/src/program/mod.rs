@@ -4,15 +4,13 @@ mod arc;
 mod cycle;
 mod frame;
 mod interpret;
-mod met;
 mod spline;
 mod step;
-mod words;
+mod word_census;
 
 pub use arc::Arc;
 pub use cycle::{DrillCycle, Leg};
 pub use interpret::{Interpreter, Reading};
-pub use met::Unknown;
 pub use spline::Spline;
 pub use step::{ArcStep, Command, CycleStep, Motion, Pace, PlaneStep, SplineStep, Step, Tool};
-pub use words::{Usage, usage};
+pub use word_census::Unknown;

@@ -6,12 +6,13 @@ mod feeds;
 mod tools;
 
 use nalgebra::Vector3;
-use post_grammar::{Circle, Coolant as CoolantWord, Delay, Delta, Record, Side, Statement, Units};
+use post_grammar::{
+    Circle, Coolant as CoolantWord, Delay, Delta, Record, Side, Statement, Units, Usage,
+};
 use post_plugin::{Coolant, SpindleSense};
 
 use super::frame::Frame;
-use super::met::{Unknown, WordsMet};
-use super::words::{Usage, usage};
+use super::word_census::{Unknown, WordCensus};
 use super::{Command, DrillCycle, Motion, Pace, PlaneStep, Step};
 use post_machine::description::{Insert, ToolLength};
 use post_machine::diagnostic::{Diagnostic, Place};
@@ -86,7 +87,7 @@ pub struct Interpreter {
     cutter_length: Option<f64>,
     finished: bool,
     findings: Vec<Diagnostic>,
-    met: WordsMet,
+    census: WordCensus,
 }
 
 /// A feed as the file has it; one a revolution waits for the speed of the spindle at the move.
@@ -145,7 +146,7 @@ impl Interpreter {
             cutter_length: None,
             finished: false,
             findings: Vec::new(),
-            met: WordsMet::default(),
+            census: WordCensus::default(),
         }
     }
 
@@ -167,7 +168,7 @@ impl Interpreter {
 
     /// Words that were ignored, and how often.
     pub fn ignored(&self) -> impl Iterator<Item = (&str, u64)> {
-        self.met.ignored()
+        self.census.ignored()
     }
 
     /// Takes one record and gives the steps it means to `emit`, in order.
@@ -213,14 +214,15 @@ impl Interpreter {
                 ),
             }
         }
-        self.findings.extend(self.met.unknown(self.reading.unknown));
+        self.findings
+            .extend(self.census.unknown(self.reading.unknown));
     }
 
     fn other(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
         if self.finished {
             if !matches!(record.statement, Statement::Remark(_) | Statement::Fini) {
                 self.count("FINI", record, Usage::Used);
-                if self.met.times("FINI") == 2 {
+                if self.census.times("FINI") == 2 {
                     self.warn(
                         record,
                         "after-fini",
@@ -460,7 +462,7 @@ impl Interpreter {
                 self.count("FINI", record, Usage::Used);
             }
             Statement::Other { word, .. } => {
-                let usage = usage(&record.statement);
+                let usage = record.statement.usage();
                 self.count(word, record, usage);
                 if usage == Usage::Refused {
                     self.fault(
@@ -638,7 +640,7 @@ impl Interpreter {
     }
 
     fn count(&mut self, word: &str, record: &Record<'_>, usage: Usage) {
-        self.met
+        self.census
             .count(word, usage, || record_place(&self.reading.file, record));
     }
 

@@ -149,12 +149,56 @@ pub enum Statement {
     /// Directives (`$$-> FEATNO / 32`, `REMARK -> …`) come as their word, with `directive` set.
     Other {
         /// The major word in capitals.
-        word: String,
+        word: Cow<'static, str>,
         /// What stands behind the slash.
         arguments: Vec<Argument>,
         /// It stood behind `$$->` or `REMARK ->`: meant for a program, but a remark to others.
         directive: bool,
     },
+}
+
+impl Statement {
+    /// The major word's name: of the spellings that mean the same (`UNIT` and `UNITS`) always the same one.
+    pub fn word(&self) -> &str {
+        match self {
+            Self::Goto { .. } | Self::GotoEdge { .. } => "GOTO",
+            Self::Head(_) => "HEAD",
+            Self::Godlta(_) => "GODLTA",
+            Self::From { .. } => "FROM",
+            Self::Gohome(_) => "GOHOME",
+            Self::Rapid => "RAPID",
+            Self::Feed(_) => "FEDRAT",
+            Self::Spindle(_) => "SPINDL",
+            Self::Coolant(_) => "COOLNT",
+            Self::LoadTool(_) => "LOADTL",
+            Self::SelectTool(_) => "SELECT",
+            Self::ToolData { .. } => "TLDATA",
+            Self::Cutter(_) => "CUTTER",
+            Self::Units(_) => "UNITS",
+            Self::Multax(_) => "MULTAX",
+            Self::Msys { .. } => "MSYS",
+            Self::Csys(_) => "CSYS",
+            Self::Circle(_) => "CIRCLE",
+            Self::Nurbs => "NURBS",
+            Self::Knot(_) => "KNOT",
+            Self::Control { .. } => "CNTRL",
+            Self::Cycle(_) => "CYCLE",
+            Self::Cutcom(_) => "CUTCOM",
+            Self::Rotate(_) => "ROTABL",
+            Self::ToolAxis(_) => "TLAXIS",
+            Self::Delay(_) => "DELAY",
+            Self::Stop => "STOP",
+            Self::OptionalStop => "OPSTOP",
+            Self::ToolPath { .. } => "TOOL PATH",
+            Self::EndOfPath => "END-OF-PATH",
+            Self::PartName(_) => "PARTNO",
+            Self::Print(_) => "PPRINT",
+            Self::Insert(_) => "INSERT",
+            Self::Remark(_) => "REMARK",
+            Self::Fini => "FINI",
+            Self::Other { word, .. } => word,
+        }
+    }
 }
 
 /// One item behind the slash.

@@ -1,8 +1,8 @@
-//! Words that were met and had no effect: counted, so that nothing is dropped in silence.
+//! The census of words that had no effect: counted, so that nothing is dropped in silence.
 
 use std::collections::BTreeMap;
 
-use super::words::Usage;
+use post_grammar::{MajorWord, Usage};
 use post_machine::diagnostic::{Diagnostic, Place};
 
 /// What to do with a word that is not known.
@@ -19,7 +19,7 @@ pub enum Unknown {
 
 /// Counts of words by name.
 #[derive(Debug, Default)]
-pub(crate) struct WordsMet {
+pub(crate) struct WordCensus {
     counts: BTreeMap<String, WordCount>,
 }
 
@@ -31,7 +31,7 @@ struct WordCount {
     first: Place,
 }
 
-impl WordsMet {
+impl WordCensus {
     /// Counts a word; `place` is asked for its first occurrence alone.
     pub(crate) fn count(&mut self, word: &str, usage: Usage, place: impl FnOnce() -> Place) {
         if let Some(count) = self.counts.get_mut(word) {
@@ -65,7 +65,7 @@ impl WordsMet {
             .iter()
             .filter(|(_, count)| count.usage == Usage::Unknown)
             .map(move |(word, count)| {
-                let what = if post_grammar::vocabulary().contains(&word.as_str()) {
+                let what = if MajorWord::find(word).is_some() {
                     "is not supported"
                 } else {
                     "is not a word that post knows"

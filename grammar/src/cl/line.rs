@@ -1,16 +1,18 @@
 //! One logical line of a cutter-location file to a [`Statement`], by pest.
 
+use super::record::{Argument, Statement};
+use super::statements;
+use super::vocabulary::{self, Behind, MajorWord};
 use crate::fault::SyntaxFault;
-use crate::record::{Argument, Statement};
-use crate::words;
 use pest::Parser;
 use pest::error::InputLocation;
 use pest::iterators::Pair;
 use pest_derive::Parser;
+use std::borrow::Cow;
 use std::ops::Range;
 
 #[derive(Parser)]
-#[grammar = "cl.pest"]
+#[grammar = "cl/line.pest"]
 struct Grammar;
 
 /// Whether a line's text is free: then a `$` at its end is text, not a continuation, and `$$` in it is no comment.
@@ -27,12 +29,21 @@ pub(crate) fn is_free_text(line: &[u8]) -> bool {
         .unwrap_or(line.len());
     let (word, rest) = line.split_at(end);
     let rest = rest.trim_ascii_start();
-    match word.to_ascii_uppercase().as_slice() {
-        b"PARTNO" | b"PPRINT" | b"INSERT" | b"OPFEATSTART" | b"OPFEATEND" => true,
-        b"REMARK" => !rest.starts_with(b"->"),
-        b"TOOL" => rest.len() >= 4 && rest[..4].eq_ignore_ascii_case(b"PATH"),
-        _ => false,
+    if word.eq_ignore_ascii_case(b"TOOL") {
+        return rest.len() >= 4 && rest[..4].eq_ignore_ascii_case(b"PATH");
     }
+    std::str::from_utf8(word).is_ok_and(is_text_word) && !is_directive(word, rest)
+}
+
+/// Whether any text may stand behind the word.
+fn is_text_word(word: &str) -> bool {
+    let known = MajorWord::find(word);
+    known.is_some_and(|known| matches!(known.behind, Behind::Text(_)))
+}
+
+/// `REMARK ->`, the form of a directive that is no comment to APT.
+fn is_directive(word: &[u8], rest: &[u8]) -> bool {
+    word.eq_ignore_ascii_case(b"REMARK") && rest.starts_with(b"->")
 }
 
 /// One item behind the slash.
@@ -65,7 +76,9 @@ pub(crate) struct Line<'t> {
     /// The whole line.
     pub text: &'t str,
     /// The major word in capitals.
-    pub word: String,
+    pub word: Cow<'static, str>,
+    /// Its row, if it has one.
+    pub known: Option<&'static MajorWord>,
     /// Where it stands.
     pub word_span: Range<usize>,
     /// A slash stands behind it.
@@ -115,10 +128,10 @@ pub fn parse_record(text: &str) -> Result<Statement, SyntaxFault> {
                 .into_inner()
                 .next()
                 .expect("a directive holds a statement");
-            let read = line(text, statement).and_then(|line| words::directive(&line));
+            let read = line(text, statement).and_then(|line| statements::directive(&line));
             Ok(read.unwrap_or_else(|_| Statement::Remark(remark.trim().to_owned())))
         }
-        _ => words::statement(&line(text, inner)?),
+        _ => statements::statement(&line(text, inner)?),
     }
 }
 
@@ -152,25 +165,13 @@ fn trimmed(pair: Pair<'_, Rule>) -> String {
 
 fn free_text(pair: Pair<'_, Rule>) -> Statement {
     let mut parts = pair.into_inner();
-    let word = parts
-        .next()
-        .map(|word| word.as_str().to_ascii_uppercase())
-        .unwrap_or_default();
+    let word = parts.next().map_or("", |word| word.as_str());
     let text = parts.next().map(trimmed).unwrap_or_default();
-    match word.as_str() {
-        "PARTNO" => Statement::PartName(text),
-        "PPRINT" => Statement::Print(text),
-        "INSERT" => Statement::Insert(text),
-        "REMARK" => Statement::Remark(text),
-        _ => Statement::Other {
-            word,
-            arguments: if text.is_empty() {
-                Vec::new()
-            } else {
-                vec![Argument::Word(text)]
-            },
-            directive: false,
-        },
+    match vocabulary::find(word) {
+        Some((spelling, known)) if let Behind::Text(read) = known.behind => read(spelling, text),
+        _ => unreachable!(
+            "`free_word` of line.pest and the words of the table with a text are the same"
+        ),
     }
 }
 
@@ -178,7 +179,8 @@ fn free_text(pair: Pair<'_, Rule>) -> Statement {
 fn line<'t>(text: &'t str, statement: Pair<'t, Rule>) -> Result<Line<'t>, SyntaxFault> {
     let mut line = Line {
         text,
-        word: String::new(),
+        word: Cow::Borrowed(""),
+        known: None,
         word_span: 0..0,
         slash: false,
         items: Vec::new(),
@@ -189,7 +191,13 @@ fn line<'t>(text: &'t str, statement: Pair<'t, Rule>) -> Result<Line<'t>, Syntax
         let span = pair.as_span();
         match pair.as_rule() {
             Rule::word => {
-                line.word = pair.as_str().to_ascii_uppercase();
+                match vocabulary::find(pair.as_str()) {
+                    Some((spelling, known)) => {
+                        line.word = Cow::Borrowed(spelling);
+                        line.known = Some(known);
+                    }
+                    None => line.word = Cow::Owned(pair.as_str().to_ascii_uppercase()),
+                }
                 line.word_span = span.start()..span.end();
             }
             Rule::slash => line.slash = true,

@@ -8,10 +8,10 @@
 //! - in a free text (`PPRINT`, `INSERT`, a comment, …) both are text: a remark that happens to end in `$`
 //!   must not swallow the move after it.
 
-use crate::cl::{is_free_text, parse_record};
+use super::line::{is_free_text, parse_record};
+use super::record::Record;
+use super::scan::{self, Plain};
 use crate::fault::{ReadError, SyntaxFault};
-use crate::record::{Record, Statement};
-use crate::scan;
 use memchr::{memchr2, memmem};
 use std::borrow::Cow;
 use std::io::{self, ErrorKind, Read};
@@ -80,25 +80,27 @@ impl<R: Read> Reader<R> {
     ///
     /// After a [`ReadError::Syntax`] the next call goes on with the next line.
     pub fn next_record(&mut self) -> Result<Option<Record<'_>>, ReadError> {
+        if let Some((plain, next)) = self.plain() {
+            return Ok(Some(self.take_plain(&plain, next)));
+        }
         while let Some(physical) = self.physical(0)? {
             let line = self.line;
             let raw = self.start..self.start + physical.end;
             let text = &self.buffer[raw.clone()];
-            let whole = !physical.overlong && !text.ends_with(b"$");
-            if whole && let Some((point, axis)) = scan::goto(text) {
+            // A `$` at the end may mean that the record goes on.
+            let whole = !physical.overlong && !text.trim_ascii_end().ends_with(b"$");
+            if whole && let Some(statement) = scan::record(text) {
                 self.consume(&physical, 1);
-                let raw = &self.buffer[raw];
-                let statement = Statement::Goto { point, axis };
                 return Ok(Some(Record {
                     line,
-                    raw,
+                    raw: &self.buffer[raw],
                     statement,
                 }));
             }
             if let Some(raw) = self.logical(physical)? {
                 let raw = &self.buffer[raw];
-                let statement = match scan::goto(raw) {
-                    Some((point, axis)) => Statement::Goto { point, axis },
+                let statement = match scan::record(raw) {
+                    Some(statement) => statement,
                     None => {
                         parse_record(&decode(raw)).map_err(|fault| SyntaxFault { line, ..fault })?
                     }
@@ -111,6 +113,35 @@ impl<R: Read> Reader<R> {
             }
         }
         Ok(None)
+    }
+
+    /// The plain `GOTO` that begins here, and where the next line begins; `None` if there is none, or if more of the
+    /// file must be read to know where it ends.
+    #[inline(always)]
+    fn plain(&self) -> Option<(Plain, usize)> {
+        let pending = self.pending();
+        let plain = scan::plain_goto(pending)?;
+        let next = match pending[plain.end..] {
+            [b'\r', b'\n', ..] => plain.end + 2,
+            [b'\r'] if !self.ended => return None,
+            [_, ..] => plain.end + 1,
+            [] if self.ended => plain.end,
+            [] => return None,
+        };
+        (plain.end <= LONGEST).then_some((plain, next))
+    }
+
+    /// Consumes the plain `GOTO` that begins here.
+    #[inline(always)]
+    fn take_plain(&mut self, plain: &Plain, next: usize) -> Record<'_> {
+        let (start, line) = (self.start, self.line);
+        self.start += next;
+        self.line += 1;
+        Record {
+            line,
+            raw: &self.buffer[start..start + plain.end],
+            statement: plain.statement(),
+        }
     }
 
     /// Consumes the logical line that begins with `first`, and gives its place in the buffer; `None` if it is blank.

@@ -1,0 +1,401 @@
+//! The fast way to a record, by hand: bit for bit what pest makes of the line.
+//!
+//! It takes only what it is sure of. All else is left to pest, which reads it or says what is wrong.
+
+use std::borrow::Cow;
+
+use super::line::{Item, Line};
+use super::number::number;
+use super::record::Statement;
+use super::statements::statement;
+use super::vocabulary::{self, Behind};
+
+/// A `GOTO` with three or six numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Plain {
+    /// The point and, if `has_axis`, the tool axis; else zeros.
+    pub values: [f64; 6],
+    /// Six numbers are given.
+    pub has_axis: bool,
+    /// Where the line ends, in bytes.
+    pub end: usize,
+}
+
+impl Plain {
+    pub fn statement(&self) -> Statement {
+        let [x, y, z, i, j, k] = self.values;
+        Statement::Goto {
+            point: [x, y, z],
+            axis: self.has_axis.then_some([i, j, k]),
+        }
+    }
+}
+
+/// The plain `GOTO` at the start of `text`, which may run on behind the line; `None` if the line is anything else
+/// or in any way unusual.
+#[inline(always)]
+pub(super) fn plain_goto(text: &[u8]) -> Option<Plain> {
+    let mut at = skip_blanks(text, 0);
+    if text.get(at..at + 4) != Some(b"GOTO") {
+        return None;
+    }
+    at = skip_blanks(text, at + 4);
+    if text.get(at) != Some(&b'/') {
+        return None;
+    }
+    let mut values = [0.0; 6];
+    for count in 0..6 {
+        // Behind the slash or the comma.
+        at = skip_blanks(text, at + 1);
+        let (value, length) = number(&text[at..])?;
+        values[count] = value;
+        at = skip_blanks(text, at + length);
+        match text.get(at) {
+            Some(b',') if count < 5 => {}
+            None | Some(b'\n' | b'\r') if count == 2 || count == 5 => {
+                return Some(Plain {
+                    values,
+                    has_axis: count == 5,
+                    end: at,
+                });
+            }
+            _ => return None,
+        }
+    }
+    None
+}
+
+/// What a logical line says; `None` if it is unusual, or wrong.
+pub(super) fn record(raw: &[u8]) -> Option<Statement> {
+    if let Some(plain) = plain_goto(raw).filter(|plain| plain.end == raw.len()) {
+        return Some(plain.statement());
+    }
+    let text = std::str::from_utf8(raw).ok()?;
+    // Every byte is looked at: faster than looking for the first.
+    if raw
+        .iter()
+        .fold(false, |control, &byte| control | !is_text(byte))
+    {
+        return None;
+    }
+    let at = skip_blanks(raw, 0);
+    if raw[at..].starts_with(b"$$") {
+        let remark = text[at + 2..].trim();
+        // `$$->` begins a directive.
+        return (!remark.starts_with("->")).then(|| Statement::Remark(remark.to_owned()));
+    }
+    let end = at
+        + raw[at..]
+            .iter()
+            .take_while(|&&byte| is_in_free_word(byte))
+            .count();
+    if !raw.get(at).is_some_and(u8::is_ascii_alphabetic)
+        || raw[at..end].eq_ignore_ascii_case(b"TOOL")
+    {
+        return None;
+    }
+    let mut known = vocabulary::find(&text[at..end]);
+    if let Some((spelling, word)) = known
+        && let Behind::Text(read) = word.behind
+    {
+        let text = text[end..].trim_start_matches([' ', '\t']);
+        let text = text.strip_prefix('/').unwrap_or(text).trim();
+        let directive = spelling == "REMARK" && text.starts_with("->");
+        return (!directive).then(|| read(spelling, text.to_owned()));
+    }
+    if !raw.is_ascii() {
+        return None;
+    }
+    let rest = raw[end..]
+        .iter()
+        .take_while(|&&byte| is_in_word(byte))
+        .count();
+    let word_span = at..end + rest;
+    if rest > 0 {
+        known = vocabulary::find(&text[word_span.clone()]);
+    }
+    let behind = skip_blanks(raw, word_span.end);
+    let slash = raw.get(behind) == Some(&b'/');
+    let begin = behind + usize::from(slash);
+    let parted = begin > word_span.end || ends(raw, begin);
+    let line = Line {
+        text,
+        word: match known {
+            Some((spelling, _)) => Cow::Borrowed(spelling),
+            None => Cow::Owned(text[word_span.clone()].to_ascii_uppercase()),
+        },
+        known: known.map(|(_, word)| word),
+        word_span,
+        slash,
+        items: items(text, begin)?,
+    };
+    // Pest says of a faulty one what is wrong.
+    parted.then(|| statement(&line).ok()).flatten()
+}
+
+/// The items from `at` to the end of the statement.
+fn items(text: &str, mut at: usize) -> Option<Vec<Item<'_>>> {
+    let bytes = text.as_bytes();
+    let mut items = Vec::new();
+    // Whether an item is due: at the beginning and behind a comma.
+    let mut due = true;
+    loop {
+        at = skip_blanks(bytes, at);
+        if ends(bytes, at) {
+            return Some(items);
+        }
+        let mut item = Item {
+            text: "",
+            start: at,
+            value: None,
+            comma_missing: false,
+        };
+        if bytes[at] == b',' {
+            if due {
+                items.push(item);
+            }
+            due = true;
+            at += 1;
+            continue;
+        }
+        let mut end = at;
+        if matches!(bytes[at], b'0'..=b'9' | b'.' | b'+' | b'-') {
+            let (value, length) = number(&bytes[at..])?;
+            end += length;
+            item.value = Some(value);
+        }
+        if !ends_item(bytes, end) {
+            item.value = None;
+            while !ends_item(bytes, end) {
+                // A `$` may mean that the record goes on.
+                if bytes[end] == b'$' {
+                    return None;
+                }
+                end += 1;
+            }
+        }
+        item.text = &text[at..end];
+        item.comma_missing = !due;
+        due = false;
+        if items.is_empty() {
+            items.reserve(12);
+        }
+        items.push(item);
+        at = end;
+    }
+}
+
+/// The statement ends here: at the end of the text or at a comment.
+fn ends(text: &[u8], at: usize) -> bool {
+    at >= text.len() || text[at..].starts_with(b"$$")
+}
+
+fn ends_item(text: &[u8], at: usize) -> bool {
+    match text.get(at) {
+        None | Some(b',' | b' ' | b'\t') => true,
+        Some(b'$') => text.get(at + 1) == Some(&b'$'),
+        Some(_) => false,
+    }
+}
+
+/// A byte of a text: no control character but the tab.
+fn is_text(byte: u8) -> bool {
+    (byte >= b' ' && byte != 0x7F) || byte == b'\t'
+}
+
+/// A character that a word with free text behind it may hold.
+fn is_in_free_word(byte: u8) -> bool {
+    byte.is_ascii_alphanumeric() || byte == b'_'
+}
+
+/// A character of a major word.
+fn is_in_word(byte: u8) -> bool {
+    is_in_free_word(byte) || byte == b'-' || byte == b'.'
+}
+
+#[inline(always)]
+fn skip_blanks(text: &[u8], mut at: usize) -> usize {
+    while let Some(b' ' | b'\t') = text.get(at) {
+        at += 1;
+    }
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MajorWord, Reader, parse_record};
+    use proptest::prelude::*;
+    use std::collections::BTreeMap;
+    use std::fmt::Write;
+
+    #[test]
+    fn unsure_lines_are_left_to_pest() {
+        for line in [
+            "GOTO/1,2",
+            "GOTO/1,2,3,4",
+            "GOTO/1,2,3,4,5,6,7",
+            "GOTO/1 2 3",
+            "GOTO/1,2,1e400",
+            "GOTO/1,2,3x",
+            "GOTO/1,2,3,4,5,6x",
+            "GOTO 1,2,3",
+            "GOTO/1,2,3$",
+            "GOTO/1,2,3 $ $$ x",
+            "GOTO/1,2,\u{A0}3",
+            "GOTO/1,2,3\n",
+            "PPRINT \x07",
+            "RAPID,1",
+            "FEDRAT/MMPM",
+            "NOSUCH/\u{E4}",
+            "TOOL PATH/x",
+            "TOOL/1",
+            "$$-> FEATNO / 1",
+            "REMARK -> FEATNO / 1",
+            "1,2,3",
+            "",
+        ] {
+            assert_eq!(record(line.as_bytes()), None, "{line}");
+        }
+        let plain =
+            |text: &[u8]| plain_goto(text).map(|plain| (plain.values, plain.has_axis, plain.end));
+        assert_eq!(
+            plain(b" GOTO  /  1. ,-.5,+3 "),
+            Some(([1.0, -0.5, 3.0, 0.0, 0.0, 0.0], false, 21))
+        );
+        assert_eq!(
+            plain(b"GOTO/1,2,3,4,5,6\r\nGOTO/1"),
+            Some(([1.0, 2.0, 3.0, 4.0, 5.0, 6.0], true, 16))
+        );
+        for line in [
+            "goto/1,2,3",
+            "GOTO/1,2,3 $$ x",
+            "GOTO/1,2\n,3",
+            "GOTOX/1,2,3",
+            "GODLTA/1,2,3",
+        ] {
+            assert_eq!(plain_goto(line.as_bytes()), None, "{line}");
+        }
+    }
+
+    /// Bit for bit: `-0.0` is not `0.0`.
+    fn told(statement: &Statement) -> String {
+        let mut told = String::new();
+        write!(told, "{statement:?}").expect("a string");
+        told
+    }
+
+    #[test]
+    fn the_scanner_takes_nearly_every_record_of_the_real_files() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/cl");
+        let Ok(files) = std::fs::read_dir(folder) else {
+            assert!(std::env::var_os("CI").is_none(), "{folder} is missing");
+            eprintln!("skipped: {folder} is missing");
+            return;
+        };
+        let mut left = BTreeMap::new();
+        let (mut points, mut others) = (0, 0);
+        for file in files {
+            let mut reader = Reader::new(std::fs::File::open(file.unwrap().path()).unwrap());
+            while let Some(read) = reader.next_record().unwrap() {
+                let word = read.statement.word().to_owned();
+                match record(read.raw) {
+                    Some(scanned) => {
+                        let expected = parse_record(&read.text()).unwrap();
+                        assert_eq!(told(&scanned), told(&expected), "{}", read.text());
+                        *(if word == "GOTO" {
+                            &mut points
+                        } else {
+                            &mut others
+                        }) += 1;
+                    }
+                    None => *left.entry(word).or_insert(0) += 1,
+                }
+            }
+        }
+        assert!(points >= 67_916 && others >= 8_000, "{points}, {others}");
+        // Directives and operations' names.
+        assert!(
+            !left.contains_key("GOTO") && left.values().sum::<i32>() < 40,
+            "{left:?}"
+        );
+    }
+
+    const NUMBER: &str = "[+-]?([0-9]{1,4}|[0-9]{1,4}\\.[0-9]{0,10}|\\.[0-9]{1,18}|[0-9]{10,24}\\.?|[0-9]\\.[0-9]{1,6}[eE][+-]?[0-9]{1,3})";
+    const BLANKS: &str = "[ \t]{0,2}";
+
+    /// Words of the table in any letters, words with something behind them, and words that nobody knows.
+    fn word() -> impl Strategy<Value = String> {
+        let spellings: Vec<&str> = MajorWord::all()
+            .iter()
+            .flat_map(|word| word.spellings)
+            .copied()
+            .collect();
+        let known = prop::sample::select(spellings);
+        prop_oneof![
+            6 => known.clone().prop_map(str::to_owned),
+            1 => known.clone().prop_map(str::to_lowercase),
+            1 => (known, "[A-Z._-]").prop_map(|(word, more)| word.to_owned() + &more),
+            1 => "[A-Za-z$][A-Z0-9_.-]{0,9}",
+            1 => Just("$$".to_owned()),
+            1 => Just("REMARK ->FEATNO".to_owned()),
+        ]
+    }
+
+    /// Words behind the slash.
+    const NAMES: [&str; 44] = [
+        "MMPM", "IPM", "MMPR", "INVERS", "RAPID", "rpm", "RPM", "SFM", "CLW", "CCLW", "ON", "OFF",
+        "on", "FLOOD", "MIST", "TOOL", "ADJUST", "LENGTH", "LEFT", "RIGHT", "XYPLAN", "ZXPLAN",
+        "AAXIS", "TABLE", "INCR", "ATANGL", "TIMES", "DRILL", "DEEP", "TAP", "FEDTO", "RAPTO",
+        "RTRCTO", "STEP", "DWELL", "REV", "MM", "INCH", "MILL", "COLOR", "a/b", "1x", "-", "1e",
+    ];
+
+    fn item() -> impl Strategy<Value = String> {
+        prop_oneof![
+            8 => NUMBER,
+            6 => prop::sample::select(&NAMES[..]).prop_map(str::to_owned),
+            1 => "[ -~]{0,3}",
+            1 => "[\u{1}-\u{FF}]",
+            1 => Just(String::new()),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2048))]
+
+        /// Whatever the scanner takes, pest reads the same; what it leaves is for pest alone to say.
+        #[test]
+        fn scanner_and_pest_agree(
+            word in word(),
+            items in prop::collection::vec((BLANKS, item(), BLANKS, "(,|,|,|,|,| )"), 0..12),
+            (before, between, slash, tail) in (BLANKS, BLANKS, "(/|/|/|/|)", "(|||,| ,| \\$\\$ x|\\$\\$|\\$|x)"),
+        ) {
+            let mut line = format!("{before}{word}{between}{slash}");
+            for (index, (a, item, b, comma)) in items.iter().enumerate() {
+                line += &format!("{a}{item}{b}");
+                if index + 1 < items.len() {
+                    line += comma;
+                }
+            }
+            line += &tail;
+            if let Some(scanned) = record(line.as_bytes()) {
+                let expected = parse_record(&line).map(|statement| told(&statement));
+                prop_assert_eq!(Ok(told(&scanned)), expected, "{}", line);
+            }
+        }
+
+        #[test]
+        fn points_are_taken_whatever_blanks_and_numbers(
+            numbers in prop::collection::vec((BLANKS, NUMBER, BLANKS), 1..8),
+            (before, between, tail) in (BLANKS, BLANKS, "(|,| ,| \\$\\$ x|x|,A)"),
+        ) {
+            let numbers: Vec<String> = numbers.into_iter().map(|(a, number, b)| format!("{a}{number}{b}")).collect();
+            let line = format!("{before}GOTO{between}/{}{tail}", numbers.join(","));
+            let expected = parse_record(&line);
+            match record(line.as_bytes()) {
+                Some(scanned) => prop_assert_eq!(Ok(told(&scanned)), expected.map(|found| told(&found)), "{}", line),
+                None => prop_assert!(!matches!(expected, Ok(Statement::Goto { .. })), "{}", line),
+            }
+        }
+    }
+}

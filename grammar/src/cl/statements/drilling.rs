@@ -1,0 +1,84 @@
+//! Cycles.
+
+use super::Read;
+use super::items::{Items, word};
+use super::technology::feed_unit;
+use crate::cl::line::Item;
+use crate::cl::record::{Argument, Cycle, CycleDefinition, FeedRate, Statement};
+
+/// Labelled numbers (NX, Creo, SolidWorks CAM) go to their field; bare ones to the first free one of depth,
+/// clearance and return level, which is the order of APT (`CYCLE/DRILL,depth,IPM,feed,clearance`) and of CAMWorks.
+pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
+    const FORM: &str =
+        "CYCLE/OFF, CYCLE/ON or CYCLE/DRILL,FEDTO,depth,MMPM,feed,RAPTO,clearance,...";
+    if let [item] = items.line.items.as_slice() {
+        match word(item).as_ref() {
+            "OFF" | "NOMORE" => return Ok(Statement::Cycle(Cycle::Off)),
+            "ON" | "INIT" => return Ok(Statement::Cycle(Cycle::On)),
+            _ => {}
+        }
+    }
+    let mut cycle = CycleDefinition::default();
+    // The kind's words stand first; a word further on is an option.
+    let mut kinds_end = false;
+    while let Some(item) = items.take() {
+        let name = word(item);
+        let mut labelled = true;
+        match name.as_ref() {
+            "FEDTO" | "DEPTH" => cycle.depth = Some(items.number(&name, FORM)?),
+            "RAPTO" | "CLEAR" => cycle.clearance = Some(items.number(&name, FORM)?),
+            "STEP" => cycle.step = Some(items.number(&name, FORM)?),
+            // CAMWorks gives the first peck and those that follow.
+            "PECKING" => {
+                cycle.step = Some(items.number(&name, FORM)?);
+                cycle.rest.extend(items.take_number().map(Argument::Number));
+            }
+            "RTRCTO" | "RETURN" | "DWELL" => match (items.take_number(), name.as_ref()) {
+                (Some(value), "DWELL") => cycle.dwell = Some(value),
+                (Some(value), _) => cycle.retract = Some(value),
+                // `RTRCTO,AUTO`, `DWELL,REV,2`
+                (None, _) => {
+                    cycle.rest.push(item.argument());
+                    cycle.rest.extend(items.take().map(Item::argument));
+                    cycle.rest.extend(items.take_number().map(Argument::Number));
+                }
+            },
+            _ if feed_unit(&name).is_some() => {
+                cycle.feed = Some(FeedRate {
+                    value: Some(items.number(&name, FORM)?),
+                    unit: feed_unit(&name),
+                });
+            }
+            _ => labelled = false,
+        }
+        kinds_end |= labelled || item.value.is_some();
+        if labelled {
+            continue;
+        }
+        match item.value {
+            Some(value) => match [&mut cycle.depth, &mut cycle.clearance, &mut cycle.retract]
+                .into_iter()
+                .find(|field| field.is_none())
+            {
+                Some(field) => *field = Some(value),
+                None => cycle.rest.push(Argument::Number(value)),
+            },
+            None if name.is_empty() => {
+                return Err(items.unexpected(item, "a word or a number is expected", FORM));
+            }
+            None if kinds_end || matches!(name.as_ref(), "G98" | "G99") => {
+                cycle.rest.push(item.argument())
+            }
+            None => cycle.kinds.push(name.into_owned()),
+        }
+    }
+    if cycle.kinds.is_empty() {
+        let span = items
+            .line
+            .items
+            .first()
+            .map_or_else(|| items.rest(), Item::span);
+        return Err(items.fault(span, "CYCLE needs the kind of cycle", FORM));
+    }
+    Ok(Statement::Cycle(Cycle::Define(cycle)))
+}

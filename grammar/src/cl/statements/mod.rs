@@ -1,0 +1,64 @@
+//! What stands behind a major word: items to a typed [`Statement`].
+//!
+//! A known word with wrong content is a fault. Where the first item is a word without a meaning here
+//! (`COOLNT/SUPER`, `LOAD/WIRE`, `CUTTER/DISPLY`), the record comes through as [`Statement::Other`],
+//! so that it is reported and not guessed at.
+
+pub(super) mod drilling;
+pub(super) mod geometry;
+mod items;
+pub(super) mod technology;
+pub(super) mod tooling;
+
+use super::line::{Item, Line};
+use super::record::Statement;
+use super::vocabulary::Behind;
+use crate::fault::SyntaxFault;
+use items::Items;
+
+type Read<T> = Result<T, SyntaxFault>;
+
+/// Reads the items of one word.
+pub(super) type ReadItems = fn(&mut Items<'_, '_>) -> Read<Statement>;
+
+/// Takes the text behind one word: its spelling in capitals, the text without blanks around it.
+pub(super) type ReadText = fn(&'static str, String) -> Statement;
+
+/// A directive. Only the two that carry facts are typed; the rest is meant for one program and comes as it stands.
+pub(super) fn directive(line: &Line<'_>) -> Read<Statement> {
+    match line.word.as_ref() {
+        "CUTTER" | "CSYS" => match statement(line)? {
+            Statement::Other { .. } => Ok(other(line, true)),
+            statement => Ok(statement),
+        },
+        _ => Ok(other(line, true)),
+    }
+}
+
+/// A statement of its own.
+pub(super) fn statement(line: &Line<'_>) -> Read<Statement> {
+    let Some(Behind::Items(read)) = line.known.map(|word| word.behind) else {
+        return Ok(other(line, false));
+    };
+    if let Some(first) = line.items.first().filter(|_| !line.slash) {
+        let message = format!("a `/` must stand between {} and what follows it", line.word);
+        let span = line.word_span.end..first.start;
+        return Err(SyntaxFault::new(line.text, span, message));
+    }
+    // CAMWorks leaves a comma out in CYCLE; anywhere else a blank between two numbers is a slip.
+    if line.word != "CYCLE"
+        && let Some(item) = line.items.iter().find(|item| item.comma_missing)
+    {
+        let span = item.start..item.start;
+        return Err(SyntaxFault::new(line.text, span, "a comma is missing here"));
+    }
+    read(&mut Items { line, next: 0 })
+}
+
+fn other(line: &Line<'_>, directive: bool) -> Statement {
+    Statement::Other {
+        word: line.word.clone(),
+        arguments: line.items.iter().map(Item::argument).collect(),
+        directive,
+    }
+}

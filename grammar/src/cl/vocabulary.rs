@@ -1,0 +1,307 @@
+//! The table of major words: how each is spelt, what reads it, and what becomes of it.
+//!
+//! A word is added by a row here, a reader in `statements/` and, where it has an effect, a [`Statement`] and its
+//! meaning in the interpreter of `core/posting`. A word that has no row may be misspelt, and is reported as such.
+
+use std::borrow::Cow;
+use std::sync::LazyLock;
+
+use super::record::{Argument, Statement};
+use super::statements::drilling::cycle;
+use super::statements::geometry::{
+    circle, cntrl, csys, from, godlta, gohome, goto, head, knot, msys, multax, nurbs, rotate,
+    tlaxis,
+};
+use super::statements::technology::{
+    coolnt, delay, end_of_path, fedrat, fini, opstop, rapid, spindl, stop, units,
+};
+use super::statements::tooling::{cutcom, cutter, load_tool, select_tool, tldata};
+use super::statements::{ReadItems, ReadText};
+
+/// What `post` does with a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Usage {
+    /// It has its effect on the program.
+    Used,
+    /// Its text goes into the program.
+    Passed,
+    /// It says nothing that an NC program could hold (display, names of features, the CAM system's own data).
+    Ignored,
+    /// It changes where the tool goes, and `post` does not know how: the file is refused.
+    Refused,
+    /// `post` does nothing with it, and says so.
+    Unknown,
+}
+
+impl Usage {
+    /// As tables have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Used => "used",
+            Self::Passed => "passed on",
+            Self::Ignored => "ignored",
+            Self::Refused => "refused",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// What stands behind the word, and what takes it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Behind {
+    /// Items between commas, for a statement of its own.
+    Items(ReadItems),
+    /// Any text.
+    Text(ReadText),
+    /// The whole line has a form of its own, which `line.pest` takes apart.
+    Line,
+    /// Items, kept as they stand in [`Statement::Other`].
+    Kept,
+}
+
+/// A major word.
+#[derive(Clone, Copy, Debug)]
+pub struct MajorWord {
+    /// All spellings, in capitals; the first is the word's name.
+    pub spellings: &'static [&'static str],
+    /// What becomes of it, in a form that is known.
+    pub usage: Usage,
+    /// A record that it stands in; empty for a word without a statement of its own.
+    pub example: &'static str,
+    /// What it means to `post`, or why nothing.
+    pub meaning: &'static str,
+    pub(super) behind: Behind,
+    /// What becomes of it in a form that is not known: refused where the tool would end up in the wrong place.
+    otherwise: Usage,
+}
+
+impl MajorWord {
+    /// Every word, by name.
+    pub fn all() -> &'static [Self] {
+        WORDS
+    }
+
+    /// The word that is spelt so; `None` if no row has that spelling. Capitals or not.
+    pub fn find(spelling: &str) -> Option<&'static Self> {
+        find(spelling).map(|(_, word)| word)
+    }
+
+    /// The spelling that messages and tables use.
+    pub fn name(&self) -> &'static str {
+        self.spellings[0]
+    }
+
+    const fn else_refused(mut self) -> Self {
+        self.otherwise = Usage::Refused;
+        self
+    }
+}
+
+/// The word that is spelt so, with that spelling in capitals.
+pub(super) fn find(spelling: &str) -> Option<(&'static str, &'static MajorWord)> {
+    static SPELLINGS: LazyLock<Vec<(u64, &str, &MajorWord)>> = LazyLock::new(|| {
+        let mut spellings = Vec::new();
+        for word in WORDS {
+            spellings.extend(word.spellings.iter().map(|name| (key(name), *name, word)));
+        }
+        spellings.sort_by_key(|(key, ..)| *key);
+        spellings
+    });
+    let wanted = key(spelling);
+    let from = SPELLINGS.partition_point(|(key, ..)| *key < wanted);
+    SPELLINGS[from..]
+        .iter()
+        .take_while(|(key, ..)| *key == wanted)
+        .find(|(_, name, _)| name.eq_ignore_ascii_case(spelling))
+        .map(|&(_, name, word)| (name, word))
+}
+
+/// The first eight characters, in capitals: enough to tell nearly all words apart.
+fn key(spelling: &str) -> u64 {
+    let mut bytes = [0; 8];
+    for (byte, character) in bytes.iter_mut().zip(spelling.bytes()) {
+        *byte = character.to_ascii_uppercase();
+    }
+    u64::from_be_bytes(bytes)
+}
+
+impl Statement {
+    /// What becomes of it.
+    pub fn usage(&self) -> Usage {
+        let word = MajorWord::find(self.word());
+        let listed = word.map_or(Usage::Unknown, |word| word.usage);
+        let Self::Other { directive, .. } = self else {
+            return listed;
+        };
+        match listed {
+            // A directive is a remark to all but the program it is meant for.
+            Usage::Unknown | Usage::Used | Usage::Passed if *directive => Usage::Ignored,
+            // A known word in a form that has no statement.
+            Usage::Used | Usage::Passed => word.map_or(Usage::Unknown, |word| word.otherwise),
+            usage => usage,
+        }
+    }
+}
+
+const fn row(
+    spellings: &'static [&'static str],
+    usage: Usage,
+    behind: Behind,
+    [example, meaning]: [&'static str; 2],
+) -> MajorWord {
+    MajorWord {
+        spellings,
+        usage,
+        example,
+        meaning,
+        behind,
+        otherwise: Usage::Unknown,
+    }
+}
+
+const fn used(
+    spellings: &'static [&'static str],
+    read: ReadItems,
+    told: [&'static str; 2],
+) -> MajorWord {
+    row(spellings, Usage::Used, Behind::Items(read), told)
+}
+
+const fn passed(
+    spellings: &'static [&'static str],
+    behind: Behind,
+    told: [&'static str; 2],
+) -> MajorWord {
+    row(spellings, Usage::Passed, behind, told)
+}
+
+const fn ignored(spellings: &'static [&'static str], why: &'static str) -> MajorWord {
+    row(spellings, Usage::Ignored, Behind::Kept, ["", why])
+}
+
+/// As [`ignored`], but the record is read.
+const fn ignored_as(
+    spellings: &'static [&'static str],
+    behind: Behind,
+    told: [&'static str; 2],
+) -> MajorWord {
+    row(spellings, Usage::Ignored, behind, told)
+}
+
+const fn refused(spellings: &'static [&'static str], why: &'static str) -> MajorWord {
+    row(spellings, Usage::Refused, Behind::Kept, ["", why])
+}
+
+/// Known by name, and left out with a warning.
+const fn unsupported(spellings: &'static [&'static str], meaning: &'static str) -> MajorWord {
+    row(spellings, Usage::Unknown, Behind::Kept, ["", meaning])
+}
+
+/// A text without a statement of its own.
+fn feature(word: &'static str, text: String) -> Statement {
+    let argument = (!text.is_empty()).then_some(Argument::Word(text));
+    Statement::Other {
+        word: Cow::Borrowed(word),
+        arguments: argument.into_iter().collect(),
+        directive: false,
+    }
+}
+
+/// The words that have a statement of their own, those of ISO 4343 and PostWorks that have none, and those that
+/// CAM systems add; in alphabetical order.
+#[rustfmt::skip]
+static WORDS: &[MajorWord] = &[
+    unsupported(&["ARCSLP"], "slope of a helix"),
+    unsupported(&["AUXFUN"], "an M function by its number"),
+    ignored(&["BOX"], "the blank"),
+    unsupported(&["BREAK"], "a break in the tape"),
+    refused(&["CALL"], "runs a macro"),
+    ignored(&["CAMERA"], "display"),
+    unsupported(&["CHECK"], "limits of the axes to be watched"),
+    used(&["CIRCLE"], circle, ["CIRCLE/0,0,0,0,0,1,10", "arc to the next GOTO: centre, axis, radius"]).else_refused(),
+    unsupported(&["CLAMP"], "clamps an axis"),
+    refused(&["CLEARP"], "clearance plane, to which RETRCT goes"),
+    refused(&["CLRSRF"], "clearance plane, to which RETRCT goes"),
+    used(&["CNTRL"], cntrl, ["CNTRL/1,2,3", "control point of a spline"]),
+    used(&["COOLNT"], coolnt, ["COOLNT/FLOOD", "coolant"]),
+    refused(&["COPY"], "repeats moves"),
+    refused(&["COUPLE"], "couples the spindle with an axis"),
+    ignored(&["CSI_SET_EXTENSION_LENGTH"], "the tool in the CAM system's library"),
+    ignored(&["CSI_SET_FLUTE_LENGTH"], "the tool in the CAM system's library"),
+    ignored_as(&["CSYS"], Behind::Items(csys), ["CSYS/1,0,0,0,0,1,0,0,0,0,1,0", "the CAM system's frame; points are meant in the part's"]),
+    used(&["CUTCOM"], cutcom, ["CUTCOM/LEFT,XYPLAN", "cutter radius compensation"]).else_refused(),
+    ignored(&["CUTCOM_GEOMETRY_TYPE"], "how the CAM system computed the path"),
+    used(&["CUTTER"], cutter, ["CUTTER/10,1", "the cutter: diameter, corner radius"]),
+    used(&["CYCLE"], cycle, ["CYCLE/DRILL,FEDTO,-10,MMPM,200,RAPTO,3", "cycle at the points that follow"]).else_refused(),
+    used(&["DELAY", "DWELL"], delay, ["DELAY/2", "waits: seconds, or turns with REV"]),
+    ignored(&["DISPLY"], "display"),
+    ignored(&["DRAFT"], "plotter"),
+    used(&["END-OF-PATH"], end_of_path, ["END-OF-PATH", "end of an operation (NX)"]),
+    ignored(&["FEATNO"], "number of a feature"),
+    used(&["FEDRAT"], fedrat, ["FEDRAT/MMPM,250", "feed of the cuts that follow"]),
+    used(&["FINI", "END"], fini, ["FINI", "end of the file"]),
+    used(&["FROM"], from, ["FROM/0,0,100", "where the tool stands; no move"]),
+    used(&["GODLTA"], godlta, ["GODLTA/0,0,5", "move by a step, or along the tool axis"]),
+    refused(&["GOFWD"], "a move along a surface, which only the APT processor can compute"),
+    used(&["GOHOME"], gohome, ["GOHOME", "to the reference, or to a point at rapid"]),
+    used(&["GOTO"], goto, ["GOTO/1,2,3,0,0,1", "move to a point, with tool axis and edge as given"]),
+    used(&["HEAD"], head, ["HEAD/V1", "the head that works from here on"]).else_refused(),
+    refused(&["INDEX"], "repeats moves"),
+    refused(&["INDIRV"], "a direction for the APT processor's moves along surfaces"),
+    passed(&["INSERT"], Behind::Text(|_, text| Statement::Insert(text)), ["INSERT M8", "a line of the program, or a comment ([control] insert)"]),
+    used(&["KNOT"], knot, ["KNOT/0,1", "knots of a spline"]),
+    ignored(&["LEADER"], "blank tape"),
+    ignored(&["LINTOL"], "tolerance; the machine file states ours"),
+    used(&["LOADTL", "LOAD", "TURRET", "TOOLNO"], load_tool, ["LOADTL/3,LENGTH,120", "tool change; LOAD with TOOL"]).else_refused(),
+    ignored(&["MACHIN"], "the machine that the CAM system was told; ours is --machine"),
+    refused(&["MACRO"], "defines a macro"),
+    ignored(&["MCHTOL"], "tolerance; the machine file states ours"),
+    ignored(&["MFGNO"], "number of an operation"),
+    refused(&["MODE"], "how the coordinates that follow are meant"),
+    ignored(&["MOVE_ATTRIB"], "lead in, link, lead out"),
+    used(&["MSYS"], msys, ["MSYS/0,0,0,1,0,0,0,1,0", "frame of the operation (--msys)"]).else_refused(),
+    used(&["MULTAX"], multax, ["MULTAX/ON", "tool axis with the points; OFF: Z"]),
+    used(&["NURBS"], nurbs, ["NURBS/", "a spline begins"]),
+    ignored_as(&["OPFEATEND"], Behind::Text(feature), ["OPFEATEND/Hole1", "name of a feature"]),
+    ignored_as(&["OPFEATSTART"], Behind::Text(feature), ["OPFEATSTART/Hole1", "name of a feature"]),
+    unsupported(&["OPSKIP"], "blocks that the operator may skip"),
+    used(&["OPSTOP"], opstop, ["OPSTOP", "optional stop"]),
+    refused(&["ORIGIN"], "moves the origin"),
+    ignored(&["PAINT"], "display"),
+    passed(&["PARTNO"], Behind::Text(|_, text| Statement::PartName(text)), ["PARTNO blade", "name of the part, as a comment"]),
+    refused(&["PIVOTZ"], "how far the head's pivot is; the machine file says it"),
+    refused(&["PLUNGE"], "a move that the control computes"),
+    refused(&["POSITN"], "a move in machine coordinates"),
+    refused(&["POSTN"], "moves the origin"),
+    passed(&["PPRINT"], Behind::Text(|_, text| Statement::Print(text)), ["PPRINT check clamps", "a remark for the operator"]),
+    ignored(&["PPTOL"], "tolerance; the machine file states ours"),
+    ignored(&["PPWORD"], "a word of another post-processor"),
+    unsupported(&["PREFUN"], "a G function by its number"),
+    unsupported(&["PROBE"], "probing"),
+    refused(&["PSIS"], "a surface for the APT processor's moves"),
+    used(&["RAPID"], rapid, ["RAPID", "the next move is at rapid"]),
+    refused(&["READ"], "goes on in another file"),
+    ignored_as(&["REMARK"], Behind::Text(|_, text| Statement::Remark(text)), ["REMARK roughing", "a remark"]),
+    refused(&["RETRCT"], "retracts to a plane that other words set"),
+    ignored(&["REWIND"], "winds the tape back"),
+    used(&["ROTABL", "ROTATE"], rotate, ["ROTABL/BAXIS,90,CLW", "turns an index axis"]).else_refused(),
+    refused(&["ROTHED"], "turns the head by an angle"),
+    ignored(&["SAFETY"], "how the CAM system kept clear"),
+    used(&["SELECT", "SELCTL"], select_tool, ["SELECT/TOOL,4", "makes the next tool ready; SELECT with TOOL"]),
+    ignored(&["SEQNO"], "block numbers; the machine file states ours"),
+    unsupported(&["SLOWDN"], "slows down before corners"),
+    used(&["SPINDL"], spindl, ["SPINDL/RPM,9000,CLW", "spindle"]),
+    used(&["STOP"], stop, ["STOP", "stop"]),
+    refused(&["TERMAC"], "ends a macro"),
+    refused(&["THREAD"], "cuts a thread"),
+    used(&["TLAXIS"], tlaxis, ["TLAXIS/0,0,1", "tool axis of the moves that follow"]).else_refused(),
+    used(&["TLDATA"], tldata, ["TLDATA/MILL,10,1,75,0,0", "the cutter (NX)"]),
+    refused(&["TLON"], "puts the tool on a curve, which only the APT processor can do"),
+    ignored(&["TMARK"], "mark on the tape"),
+    passed(&["TOOL PATH"], Behind::Line, ["TOOL PATH/ROUGH,TOOL,MILL_10", "an operation begins (NX); its name, as a comment"]),
+    refused(&["TRACUT"], "moves the points by a matrix"),
+    refused(&["TRANS"], "moves the points by a step"),
+    ignored(&["TRNTYP"], "how the CAM system moved the points"),
+    used(&["UNITS", "UNIT"], units, ["UNITS/MM", "units of the lengths"]),
+    unsupported(&["UNLOAD"], "puts the tool away"),
+];

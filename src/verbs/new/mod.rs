@@ -297,14 +297,10 @@ fn feed(text: &str) -> Result<Given<f64>, String> {
 
 fn point(text: &str) -> Result<Given<[f64; 3]>, String> {
     let (axis, value) = split(text)?;
-    let numbers = value
-        .split(',')
-        .map(|number| finite(number.trim()))
-        .collect::<Result<Vec<f64>, String>>()?;
-    let value = numbers
-        .try_into()
-        .map_err(|_| "three numbers are needed, X,Y,Z".to_owned())?;
-    Ok(Given { axis, value })
+    Ok(Given {
+        axis,
+        value: flag_values::point(value)?,
+    })
 }
 
 impl Class {

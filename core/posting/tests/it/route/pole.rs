@@ -1,5 +1,8 @@
 //! Cuts over the pole and beside it.
 
+use std::ops::Range;
+use std::sync::OnceLock;
+
 use super::*;
 
 /// Points along a great circle that passes the pole at `beside` degrees, from 5° before to 5° behind it.
@@ -189,7 +192,13 @@ fn close_to_the_pole_axes_are_spared_within_tolerance() {
 }
 
 /// The same on machines whose tilting axis ends at the pole, or a little behind it.
-fn one_side() -> Faults {
+fn one_side() -> &'static Faults {
+    // Three tests look at the same runs.
+    static FOUND: OnceLock<Faults> = OnceLock::new();
+    FOUND.get_or_init(pass_on_one_side)
+}
+
+fn pass_on_one_side() -> Faults {
     let mut faults = Faults::default();
     for class in [&CLASSES[0], &CLASSES[1], &CLASSES[2], &CLASSES[3]] {
         for tcp in ["post", "control"] {
@@ -267,8 +276,14 @@ fn a_tilt_that_ends_at_the_pole_rests_there() {
 
 /// Random walks close to the pole, cuts and rapids, on machines with all kinds of travel: whatever is posted keeps
 /// tip, axis and travel; what is refused is refused for a jump or for travel.
-fn walks() -> Faults {
-    let (rounds, mut rng) = randomised(1_200, 41);
+fn walks() -> &'static Faults {
+    // Two tests look at the same runs.
+    static FOUND: OnceLock<Faults> = OnceLock::new();
+    let (rounds, rng) = randomised(1_200, 41);
+    FOUND.get_or_init(|| walk(rounds, rng))
+}
+
+fn walk(rounds: Range<usize>, mut rng: Rng) -> Faults {
     let mut refused = 0;
     let mut faults = Faults::default();
     for round in rounds {

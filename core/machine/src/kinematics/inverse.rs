@@ -57,8 +57,11 @@ enum Form {
         idle: u8,
         linear: Linear,
     },
-    /// All joints that move.
-    Numeric { free: Vec<usize> },
+    /// All joints that move, and the linear ones among them.
+    Numeric {
+        free: Vec<usize>,
+        linear: Vec<usize>,
+    },
 }
 
 impl Solver {
@@ -94,7 +97,7 @@ impl Solver {
             Err(NoClosedForm::LinearAxes { count })
                 if count < 3 && count + freedom.rotary.len() >= 3 && freedom.seconds.is_empty() =>
             {
-                let free = (0..chain.joints().len())
+                let free: Vec<usize> = (0..chain.joints().len())
                     .filter(|joint| {
                         if chain.joints()[*joint].rotary {
                             freedom.rotary.contains(joint)
@@ -103,7 +106,11 @@ impl Solver {
                         }
                     })
                     .collect();
-                Form::Numeric { free }
+                let slides = |joint: &usize| !chain.joints()[*joint].rotary;
+                Form::Numeric {
+                    linear: free.iter().copied().filter(slides).collect(),
+                    free,
+                }
             }
             Err(lack) => return Err(lack),
         };
@@ -165,7 +172,7 @@ impl Solver {
     pub fn last_rotary(&self) -> usize {
         match &self.form {
             Form::Closed { orientation, .. } => orientation.last(),
-            Form::Numeric { free } => free.last().copied().unwrap_or(0),
+            Form::Numeric { free, .. } => free.last().copied().unwrap_or(0),
         }
     }
 
@@ -208,14 +215,9 @@ impl Solver {
     ) -> Result<(), Unreachable> {
         match &self.form {
             Form::Closed { linear, .. } => linear.place(&self.chain, tip, joints, turns),
-            Form::Numeric { free } => {
+            Form::Numeric { linear, .. } => {
                 // There are too few of them to reach the tip alone; they make up for what they can.
-                let linear: Vec<usize> = free
-                    .iter()
-                    .copied()
-                    .filter(|joint| !self.chain.joints()[*joint].rotary)
-                    .collect();
-                numeric::approach(&self.chain, &linear, tip, joints);
+                numeric::approach(&self.chain, linear, tip, joints);
                 Ok(())
             }
         }
@@ -236,7 +238,7 @@ impl Solver {
         from: &Joints,
         tolerance: f64,
     ) -> Result<Joints, Unreachable> {
-        let Form::Numeric { free } = &self.form else {
+        let Form::Numeric { free, .. } = &self.form else {
             return Err(Unreachable::Linear);
         };
         let mut start = self.held;
@@ -258,7 +260,7 @@ impl Solver {
         last: &Joints,
         tolerance: f64,
     ) -> Result<Vec<Joints>, Unreachable> {
-        let Form::Numeric { free } = &self.form else {
+        let Form::Numeric { free, .. } = &self.form else {
             return Err(Unreachable::Linear);
         };
         let rotary: Vec<usize> = free

@@ -68,6 +68,9 @@ pub(super) fn solve(chain: &Chain, free: &[usize], pose: &Pose, start: &Joints) 
 /// Puts the linear joints of `linear` (fewer than three) where the tip comes closest to `tip`: least squares,
 /// exact in one step since the tip is linear in them.
 pub(super) fn approach(chain: &Chain, linear: &[usize], tip: Vector3<f64>, joints: &mut Joints) {
+    if linear.is_empty() {
+        return;
+    }
     let from = chain.forward(joints).tip;
     let mut columns = [Vector3::zeros(); MAX_AXES];
     for (column, joint) in columns.iter_mut().zip(linear) {
@@ -99,53 +102,67 @@ pub(super) fn approach(chain: &Chain, linear: &[usize], tip: Vector3<f64>, joint
 }
 
 /// Residual at `joints`, and how it changes with each free joint.
+///
+/// One way along the chain, from the workpiece to the tool, takes the frame of each joint to the part: a joint turns
+/// all that lies behind it about its line as it stands there.
 fn linearised(
     chain: &Chain,
     free: &[usize],
     pose: &Pose,
     joints: &Joints,
 ) -> (Rows, SMatrix<f64, 9, MAX_AXES>) {
-    let reached = chain.forward(joints);
-    let wanted_edge = chain.edge().is_some();
+    let mut frame = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let mut origin = -chain.mount();
+    let out = |frame: &[Vector3<f64>; 3], v: Vector3<f64>| {
+        frame[0] * v.x + frame[1] * v.y + frame[2] * v.z
+    };
+    // Of each joint a point of its line and its direction, part frame.
+    let mut lines = [(Vector3::zeros(), Vector3::zeros()); MAX_AXES];
+    for ((joint, line), value) in chain.joints().iter().zip(&mut lines).zip(joints) {
+        let k = out(&frame, joint.direction);
+        if !joint.rotary {
+            *line = (origin, k);
+            origin += k * *value;
+            continue;
+        }
+        let point = origin + out(&frame, joint.point);
+        *line = (point, k);
+        let (sine, cosine) = libm::sincos(*value);
+        for column in &mut frame {
+            *column = turn(*column, k, sine, cosine);
+        }
+        origin = point + turn(origin - point, k, sine, cosine);
+    }
+    let reached = Pose {
+        tip: origin + out(&frame, chain.tip()),
+        axis: out(&frame, chain.axis()),
+        edge: chain
+            .edge()
+            .map_or_else(Vector3::zeros, |edge| out(&frame, edge)),
+    };
+    let edged = chain.edge().is_some();
     let mut residual = Rows::zeros();
+    let mut jacobian = SMatrix::<f64, 9, MAX_AXES>::zeros();
     let tip = reached.tip - pose.tip;
     let axis = (reached.axis - pose.axis) * ARM;
     residual.fixed_rows_mut::<3>(0).copy_from(&tip);
     residual.fixed_rows_mut::<3>(3).copy_from(&axis);
-    if wanted_edge {
+    if edged {
         let edge = (reached.edge - pose.edge) * ARM;
         residual.fixed_rows_mut::<3>(6).copy_from(&edge);
     }
-    let mut jacobian = SMatrix::<f64, 9, MAX_AXES>::zeros();
-    let turns = chain.turns(joints);
-    // A point and a direction of the chain as joint `index` finds them, taken to the part frame.
-    let out = |index: usize, mut point: Vector3<f64>, mut direction: Vector3<f64>| {
-        for (before, joint) in chain.joints()[..index].iter().enumerate().rev() {
-            if joint.rotary {
-                let (sine, cosine) = turns.of(before);
-                point = joint.point + turn(point - joint.point, joint.direction, sine, cosine);
-                direction = turn(direction, joint.direction, sine, cosine);
-            } else {
-                point += joint.direction * joints[before];
-            }
-        }
-        (point - chain.mount(), direction)
-    };
     for (column, index) in free.iter().enumerate() {
-        let joint = &chain.joints()[*index];
-        let (point, direction) = out(*index, joint.point, joint.direction);
-        let (tip, axis, edge) = if joint.rotary {
-            (
-                direction.cross(&(reached.tip - point)),
-                direction.cross(&reached.axis) * ARM,
-                direction.cross(&reached.edge) * ARM,
-            )
-        } else {
-            (direction, Vector3::zeros(), Vector3::zeros())
-        };
+        let (point, k) = lines[*index];
+        if !chain.joints()[*index].rotary {
+            jacobian.fixed_view_mut::<3, 1>(0, column).copy_from(&k);
+            continue;
+        }
+        let tip = k.cross(&(reached.tip - point));
+        let axis = k.cross(&reached.axis) * ARM;
         jacobian.fixed_view_mut::<3, 1>(0, column).copy_from(&tip);
         jacobian.fixed_view_mut::<3, 1>(3, column).copy_from(&axis);
-        if wanted_edge {
+        if edged {
+            let edge = k.cross(&reached.edge) * ARM;
             jacobian.fixed_view_mut::<3, 1>(6, column).copy_from(&edge);
         }
     }

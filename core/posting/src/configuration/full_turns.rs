@@ -63,6 +63,21 @@ impl Axes {
         })
     }
 
+    /// The full turns of pointing axes that lead from one set of joints to another, radians, if nothing else does.
+    pub(crate) fn whole_turns(&self, from: &Joints, to: &Joints) -> Option<Joints> {
+        let mut turns = Joints::default();
+        for (joint, (from, to)) in from.iter().zip(to).enumerate() {
+            let away = to - from;
+            if self.turning.iter().any(|axis| axis.joint == joint) {
+                turns[joint] = TAU * f64::round(away / TAU);
+            }
+            if (away - turns[joint]).abs() >= SAME {
+                return None;
+            }
+        }
+        Some(turns)
+    }
+
     /// Is an axis that tilts closer to an end of its travel than `way`, at one of two points?
     #[inline]
     pub(crate) fn near_end(&self, from: &Joints, to: &Joints, way: f64) -> bool {

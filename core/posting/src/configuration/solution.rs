@@ -78,6 +78,17 @@ pub(crate) struct Found {
     pub over: Option<OverTravel>,
 }
 
+impl Found {
+    /// So many solutions of a chain without a closed form, whose poles are not known.
+    pub(super) fn by_search(solutions: usize) -> Self {
+        Self {
+            latitude: (1.0, 0.0),
+            solutions,
+            over: None,
+        }
+    }
+}
+
 /// A cosine beyond this is that of a pole.
 const AT_POLE: f64 = 1.0 - 1e-12;
 
@@ -266,11 +277,7 @@ impl Axes {
         stands: &mut Vec<Stand>,
     ) -> Result<Found, Unreachable> {
         let solutions = solver.inverse(pose, last, self.axis_tolerance)?;
-        let mut found = Found {
-            latitude: (1.0, 0.0),
-            solutions: solutions.len(),
-            over: None,
-        };
+        let mut found = Found::by_search(solutions.len());
         for (branch, mut joints) in solutions.into_iter().enumerate() {
             let over = match self.at_rest(&mut joints) {
                 Ok(()) => self.beyond(&joints),
@@ -337,7 +344,7 @@ impl Axes {
     }
 
     /// Every axis may stand there.
-    fn reaches(&self, joints: &Joints) -> bool {
+    pub(super) fn reaches(&self, joints: &Joints) -> bool {
         let mut turning = self.turning.iter();
         turning.all(|axis| axis.allows(joints[axis.joint])) && self.beyond(joints).is_none()
     }
@@ -430,10 +437,9 @@ impl Axes {
         self.reaches(&joints).then_some(stand)
     }
 
-    /// Where there is no closed form: the solution next to `last`, if it is inside travel.
-    pub(crate) fn followed(&self, solver: &Solver, pose: &Pose, last: &Joints) -> Option<Joints> {
-        let joints = solver.search(pose, last, self.axis_tolerance).ok()?;
-        self.reaches(&joints).then_some(joints)
+    /// Where there is no closed form: the solution next to `last`, inside travel or not.
+    pub(crate) fn next(&self, solver: &Solver, pose: &Pose, last: &Joints) -> Option<Joints> {
+        solver.search(pose, last, self.axis_tolerance).ok()
     }
 
     /// Travel of a rotary axis that is solved for.

@@ -121,6 +121,8 @@ pub(crate) struct Lattice {
     pub layers: Vec<Layer>,
     pub states: Vec<State>,
     stands: Vec<Stand>,
+    /// Without a closed form: where searches at the newest point began, and what they found.
+    searched: Vec<(Joints, Option<Joints>)>,
     /// Tool axes closer to the pole than this (sine) leave the pole joint free.
     pub cone: f64,
     /// What a pole joint may be off by, as an angle of the tool axis, radians.
@@ -151,6 +153,7 @@ impl Lattice {
             layers: Vec::new(),
             states: Vec::new(),
             stands: Vec::new(),
+            searched: Vec::new(),
             cone: libm::sin(freedom).max(post_machine::kinematics::POLE),
             freedom,
         }
@@ -192,11 +195,19 @@ impl Lattice {
             .clone()
             .and_then(|range| self.states.get(range.start))
             .map_or(*near, |state| state.joints);
+        let first = self.states.len();
         let ways = self.ways(&target, kind);
-        let going = |branches: &Branches| ways.going(&self.axes, branches);
-        let found = self
-            .axes
-            .stands(placer.solver(), &target, &last, &going, &mut stands);
+        if kind == Kind::Cut && !placer.solver().closed_form() {
+            self.search_on(placer, &target, before.clone().unwrap_or(0..0));
+        }
+        let found = if self.states.len() > first {
+            // What other solutions there are is nothing to a cut, and costly to find out.
+            Ok(Found::by_search(1))
+        } else {
+            let going = |branches: &Branches| ways.going(&self.axes, branches);
+            self.axes
+                .stands(placer.solver(), &target, &last, &going, &mut stands)
+        };
         let found = match found {
             Ok(found) => found,
             Err(unreachable) => {
@@ -204,7 +215,6 @@ impl Lattice {
                 return Err(unreachable);
             }
         };
-        let first = self.states.len();
         let on_pole = found.latitude.0 <= self.cone && placer.solver().pole_joint().is_some();
         if kind != Kind::Cut {
             // A tie goes to the larger value of the axis nearest to the tool.
@@ -230,8 +240,6 @@ impl Lattice {
                             arc: ways.arc,
                         };
                         self.go_on(placer, motion, &stands, &passage, range, judge);
-                    } else {
-                        self.search_on(placer, &target, range);
                     }
                 }
             }
@@ -523,16 +531,31 @@ impl Lattice {
         }
     }
 
-    /// In a cut without a closed form each state goes on to the solution next to it.
+    /// In a cut without a closed form each state goes on to the solution next to it. From states that differ by
+    /// full turns that is the same but for these turns.
     fn search_on(&mut self, placer: &Placer, target: &Pose, before: std::ops::Range<usize>) {
         let first = self.states.len();
+        let mut searched = std::mem::take(&mut self.searched);
+        searched.clear();
         for index in before {
             let state = self.states[index];
             if !state.cost.is_way() {
                 continue;
             }
-            let followed = self.axes.followed(placer.solver(), target, &state.joints);
-            let Some(mut joints) = followed else {
+            let known = searched
+                .iter()
+                .find_map(|(from, to)| Some((self.axes.whole_turns(from, &state.joints)?, *to)));
+            let next = match known {
+                Some((turns, to)) => {
+                    to.map(|to| std::array::from_fn(|joint| to[joint] + turns[joint]))
+                }
+                None => {
+                    let next = self.axes.next(placer.solver(), target, &state.joints);
+                    searched.push((state.joints, next));
+                    next
+                }
+            };
+            let Some(mut joints) = next.filter(|joints| self.axes.reaches(joints)) else {
                 continue;
             };
             if !self.axes.stand_still(&state.joints, &mut joints) {
@@ -541,6 +564,7 @@ impl Lattice {
             let new = self.after(index, joints, state.branch);
             self.keep(first, new);
         }
+        self.searched = searched;
     }
 
     /// Keeps the cheapest states of the newest layer, if there are too many.

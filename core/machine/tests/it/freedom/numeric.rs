@@ -96,6 +96,60 @@ fn chains_without_a_closed_form_are_solved_and_verified() {
     }
 }
 
+/// Along a walk of six rotary axes under a tool frame, the search that begins at the last solution follows the values
+/// that the poses were made with: forward and inverse undo each other. What is found is never wrong, and a walk is
+/// left only where it passes a singular place.
+#[test]
+fn a_walk_of_six_rotary_axes_is_followed() {
+    let mut rng = Rng(19);
+    let (mut steps, mut followed, mut refused) = (0, 0, 0);
+    let mut tip = 0.0f64;
+    for _ in 0..60 {
+        let machine = Random::of(&mut rng, &[Kind::Free; 6]);
+        let reference = &machine.reference;
+        let edge_at_zero = across(&mut rng, reference.axis);
+        let solver = Solver::new(
+            reference.chain().with_edge(Some(edge_at_zero)),
+            &machine.free,
+            machine.held,
+        )
+        .expect("a numeric form");
+        let mut q = machine.values(&mut rng);
+        let rates: Joints = std::array::from_fn(|_| rng.range(-0.01, 0.01));
+        let mut last = q;
+        for _ in 0..100 {
+            for (value, rate) in q.iter_mut().zip(&rates).take(reference.joints.len()) {
+                *value += rate;
+            }
+            let (wanted, axis) = reference.forward(&q);
+            let edge = reference.taken(&q, edge_at_zero);
+            let pose = Pose {
+                tip: wanted,
+                axis,
+                edge,
+            };
+            steps += 1;
+            let Ok(solution) = solver.search(&pose, &last, 1e-9) else {
+                refused += 1;
+                last = q;
+                continue;
+            };
+            let reached = reference.forward(&solution);
+            tip = tip.max((reached.0 - wanted).norm());
+            assert!(angle(reached.1, axis) < 2e-9 && (reached.0 - wanted).norm() < 5e-9);
+            assert!(angle(reference.taken(&solution, edge_at_zero), edge) < 2e-9);
+            if apart(&machine, &solution, &q) < 1e-3 {
+                followed += 1;
+                last = solution;
+            } else {
+                last = q;
+            }
+        }
+    }
+    println!("of {steps} steps {followed} followed, {refused} refused; tip {tip:.1e} mm");
+    assert!(followed * 1000 >= steps * 995, "{followed} of {steps}");
+}
+
 /// What no values reach is refused, and by about as much as it is missed.
 #[test]
 fn a_numeric_chain_refuses_what_it_cannot_reach() {

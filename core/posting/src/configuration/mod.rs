@@ -154,7 +154,14 @@ impl<'a> Configuration<'a> {
     fn point(&mut self, at: &Line, out: &mut Out<'_>, findings: &Findings) {
         self.moves += 1;
         let line = at.line;
-        match self.route.add(line, &self.guided(at.motion)) {
+        let motion = self.guided(at.motion);
+        if self.waiting.is_empty()
+            && let Some(chosen) = self.route.step(line, &motion)
+        {
+            self.hand_on(chosen, out);
+            return;
+        }
+        match self.route.add(line, &motion) {
             Ok(()) => match self.waiting.back_mut() {
                 Some(Waiting::Points(count)) => *count += 1,
                 _ => self.waiting.push_back(Waiting::Points(1)),
@@ -204,18 +211,24 @@ impl<'a> Configuration<'a> {
         let mut chosen = std::mem::take(&mut self.chosen);
         self.route.take_chosen(&mut chosen);
         for next in chosen.drain(..) {
-            if self.setting != Some(next.setting) {
-                self.setting = Some(next.setting);
-                let placer = Rc::clone(self.route.placer(next.setting));
-                out.push(Flow::Point(Configured::Placer(placer)));
-            }
             let arrives = next.arrives;
-            out.push(Flow::Point(Configured::Point(next)));
+            self.hand_on(next, out);
             if arrives {
                 self.arrived(out, findings);
             }
         }
         self.chosen = chosen;
+    }
+
+    /// A point that is decided, behind what solves it.
+    #[inline]
+    fn hand_on(&mut self, next: Chosen, out: &mut Out<'_>) {
+        if self.setting != Some(next.setting) {
+            self.setting = Some(next.setting);
+            let placer = Rc::clone(self.route.placer(next.setting));
+            out.push(Flow::Point(Configured::Placer(placer)));
+        }
+        out.push(Flow::Point(Configured::Point(next)));
     }
 
     /// One more point is decided: the commands behind it follow.

@@ -35,7 +35,7 @@ pub(crate) struct Chosen {
     /// Rotary values; the linear ones follow from their printed values.
     pub joints: Joints,
     /// At this point the tool is drawn back, turned to these values, and brought back.
-    pub rewind: Option<Joints>,
+    pub rewind: Option<Box<Joints>>,
     /// Branch or full turn differ from what going on would have given.
     pub changed: bool,
     /// The pole joint does not stand where the CL point alone would put it.
@@ -256,6 +256,27 @@ impl<'a> Route<'a> {
         let placer = Placer::for_machine(self.machine, &self.format, self.tool_length, held)?;
         self.settings.push((*held, Rc::new(placer)));
         Ok(self.settings.len() - 1)
+    }
+
+    /// Takes the next point where one state lives and goes on as it is: decided at once. None, and nothing taken, on
+    /// any doubt; [`Route::add`] knows what to do then.
+    #[inline]
+    pub(crate) fn step(&mut self, line: u64, motion: &Motion) -> Option<Chosen> {
+        if !self.anchored || self.tries_positions {
+            return None;
+        }
+        let placer = &self.settings[self.setting].1;
+        let joints = self.lattice.step(line, motion, self.setting, placer)?;
+        Some(Chosen {
+            line,
+            motion: *motion,
+            setting: self.setting,
+            arrives: true,
+            joints,
+            rewind: None,
+            changed: false,
+            eased: false,
+        })
     }
 
     /// Takes the next point. What is decided by it waits in [`Route::take_chosen`].

@@ -8,10 +8,6 @@ use crate::program::{Motion, Pace};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::POLE;
 
-/// A pole joint is eased where the tolerance leaves it more than this, radians (2°): elsewhere little would be
-/// gained, and the points stay exact.
-const WORTH: f64 = 0.034_906_585_039_886_59;
-
 /// Values that differ by less are the same, radians.
 const SAME: f64 = 1e-9;
 
@@ -50,7 +46,7 @@ impl Route<'_> {
         };
         let waiting = layers.len() - usize::from(self.anchored);
         let look_ahead = self.machine.solution.look_ahead;
-        if layer.count == 1 && !self.eased(layer.latitude.0) && !self.tries_positions {
+        if layer.count == 1 && !self.lattice.eased(layer.latitude.0) && !self.tries_positions {
             if self.anchored && layers.len() == 2 {
                 self.settle_only();
             } else {
@@ -111,11 +107,6 @@ impl Route<'_> {
         }
     }
 
-    /// So close to the pole that its joint has room.
-    fn eased(&self, sine: f64) -> bool {
-        sine * WORTH < self.lattice.freedom || sine <= self.lattice.cone
-    }
-
     /// Settles the points up to `upto`; the best way to the newest point decides.
     fn settle(&mut self, upto: usize) {
         let Some(best) = self.lattice.best() else {
@@ -149,7 +140,7 @@ impl Route<'_> {
         };
         let state = |way: &Way, layer: usize| lattice.states[way.states[layer]];
         let roomy = |way: &Way, layer: usize| {
-            self.eased(layers[layer].latitude.0) && state(way, layer).rewind.is_none()
+            self.lattice.eased(layers[layer].latitude.0) && state(way, layer).rewind.is_none()
         };
         let mut at = usize::from(self.anchored);
         while at < layers.len() {
@@ -247,7 +238,7 @@ impl Route<'_> {
                     setting: at.setting,
                     arrives: !settled,
                     joints: before.unwrap_or(joints),
-                    rewind: before.map(|_| joints),
+                    rewind: before.map(|_| Box::new(joints)),
                     changed: last.is_some_and(|(branch, last)| {
                         lattice.has_changed((branch, &last), (state.branch, &joints))
                     }),

@@ -268,6 +268,38 @@ impl Axes {
         }
     }
 
+    /// Where the axes stand at `pose` on one branch, going on from `last` in a cut that turns the tool axis by no more
+    /// than half of `way`. None on any doubt: an angle that is free, an axis beyond its travel or near its end, an
+    /// index axis that would have to move.
+    #[inline]
+    pub(crate) fn carried_on(
+        &self,
+        solver: &Solver,
+        pose: &Pose,
+        (branches, branch): (&Branches, u8),
+        last: &Joints,
+        way: f64,
+    ) -> Option<Joints> {
+        let mut set = solver.angles(branches, usize::from(branch));
+        if set.free != 0 {
+            return None;
+        }
+        self.at_rest(&mut set.joints).ok()?;
+        let turns = solver.turns(&set);
+        let mut stand = Stand {
+            joints: set.joints,
+            branch,
+            free: 0,
+        };
+        solver.place(pose.tip, &mut stand.joints, &turns).ok()?;
+        if self.beyond(&stand.joints).is_some() {
+            return None;
+        }
+        let mut joints = self.carried(&stand, last).ok()?;
+        let still = !self.near_end(last, &joints, way) && self.stand_still(last, &mut joints);
+        still.then_some(joints)
+    }
+
     /// The stands of a chain without a closed form.
     fn searched(
         &self,

@@ -58,6 +58,10 @@ pub(crate) const HELD: u8 = u8::MAX;
 /// More states than this at one point are not followed: the cheapest of them are.
 const MOST_STATES: usize = 64;
 
+/// A pole joint is eased where the tolerance leaves it more than this, radians (2°): elsewhere little would be
+/// gained, and the points stay exact.
+const WORTH: f64 = 0.034_906_585_039_886_59;
+
 /// Of the tool axis' tolerance so much may be used close to a pole; the rest is for what happens between points.
 const SHARE: f64 = 0.75;
 
@@ -256,6 +260,50 @@ impl Lattice {
             latitude: found.latitude,
         });
         Ok(found)
+    }
+
+    /// The step of a path of which one state lives, in a cut on its branch: what [`Lattice::push`] and settling the
+    /// only state would give, without a trellis. None, and nothing changed, on any doubt.
+    #[inline]
+    pub(crate) fn step(
+        &mut self,
+        line: u64,
+        motion: &Motion,
+        setting: usize,
+        placer: &Placer,
+    ) -> Option<Joints> {
+        let ([_], [state]) = (self.layers.as_slice(), self.states.as_slice()) else {
+            return None;
+        };
+        let solver = placer.solver();
+        if motion.pace == Pace::Rapid || state.branch == HELD || !solver.closed_form() {
+            return None;
+        }
+        let target = pose(motion);
+        let ways = self.ways(&target, Kind::Cut);
+        let branches = solver.orient(&target, self.axes.axis_tolerance).ok()?;
+        let latitude = branches.latitude();
+        if branches.count() == 1 || self.eased(latitude.0) || ways.meet(&self.axes, latitude) {
+            return None;
+        }
+        let at = (&branches, state.branch);
+        let way = 2.0 * ways.arc;
+        let joints = self
+            .axes
+            .carried_on(solver, &target, at, &state.joints, way)?;
+        self.states[0].joints = joints;
+        let layer = &mut self.layers[0];
+        layer.line = line;
+        layer.motion = *motion;
+        layer.kind = Kind::Cut;
+        layer.setting = setting;
+        layer.latitude = latitude;
+        Some(joints)
+    }
+
+    /// So close to the pole that its joint has room.
+    pub(super) fn eased(&self, sine: f64) -> bool {
+        sine * WORTH < self.freedom || sine <= self.cone
     }
 
     /// What the states of the newest layer can go on to.

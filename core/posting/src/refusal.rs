@@ -5,6 +5,7 @@ use crate::program::Motion;
 use post_machine::description::{Axis, Machine, Positions};
 use post_machine::diagnostic::{Diagnostic, Extreme};
 use post_machine::kinematics::choose::OverTravel;
+use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, Unreachable};
 
 /// Why a point has no axis values.
@@ -92,10 +93,7 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
 /// An index axis that has no position there, inside its travel.
 fn no_position(machine: &Machine, over: OverTravel) -> bool {
     let axis = &machine.axes[over.joint];
-    let inside = axis
-        .travel
-        .is_none_or(|[least, most]| (least..=most).contains(&over.value));
-    inside
+    passed(axis.travel, over.value, 0.0).is_none()
         && axis
             .indexed
             .as_ref()
@@ -105,9 +103,9 @@ fn no_position(machine: &Machine, over: OverTravel) -> bool {
 /// Inside its travel, on the side of zero that the machine file forbids.
 fn forbidden(machine: &Machine, over: &OverTravel) -> bool {
     let travel = machine.axes[over.joint].travel;
-    let inside = travel.is_none_or(|[least, most]| (least..=most).contains(&over.value));
     let require = &machine.solution.require;
-    inside && require.iter().any(|(joint, _)| *joint == over.joint)
+    passed(travel, over.value, 0.0).is_none()
+        && require.iter().any(|(joint, _)| *joint == over.joint)
 }
 
 /// An indexed axis that stands differently.

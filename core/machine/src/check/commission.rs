@@ -3,6 +3,7 @@
 use super::probe::Probe;
 use super::signs::{Sign, room, sign};
 use crate::kinematics::Joints;
+use crate::kinematics::travel::passed;
 
 /// The longest way of a linear axis, mm, and the share of its travel that is enough.
 const WAY: f64 = 50.0;
@@ -77,9 +78,7 @@ impl Commission {
                     to = indexed.positions.nearest(to, axis.travel.is_none());
                 }
                 let by = to - start[place];
-                let inside = axis
-                    .travel
-                    .is_none_or(|[least, most]| (least..=most).contains(&to));
+                let inside = passed(axis.travel, to, 0.0).is_none();
                 if by * sense < 1e-3 || !inside {
                     continue;
                 }

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 
 use crate::description::Machine;
+use crate::kinematics::travel::passed;
 use crate::kinematics::{Chain, Joint, Joints, MAX_AXES, NoClosedForm, Pose, Solver, Unreachable};
 
 /// A value is inside travel if it passes an end by no more than this, mm or radians.
@@ -132,11 +133,8 @@ impl<'a> Probe<'a> {
         for place in self.free() {
             let home = self.home[place];
             let nearest = joints[place] - TAU * libm::rint((joints[place] - home) / TAU);
-            let within = |value: f64| {
-                self.machine.axes[place]
-                    .travel
-                    .is_none_or(|[least, most]| (least - GRACE..=most + GRACE).contains(&value))
-            };
+            let travel = self.machine.axes[place].travel;
+            let within = |value: f64| passed(travel, value, GRACE).is_none();
             inside[place] = [nearest, nearest + TAU, nearest - TAU]
                 .into_iter()
                 .find(|value| within(*value))?;

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::pointing::Reading;
 use super::probe::Probe;
 use crate::kinematics::Joints;
+use crate::kinematics::travel::passed;
 
 /// The box of tips, part frame.
 #[derive(Clone, Debug, Serialize)]
@@ -66,7 +67,7 @@ impl Volume {
                 let axis = &machine.axes[*place];
                 let [least, most] = axis.travel?;
                 let value = at_origin[*place];
-                (value < least - 1e-6 || value > most + 1e-6).then(|| Out {
+                passed(axis.travel, value, 1e-6).map(|_| Out {
                     axis: axis.name.clone(),
                     value: axis.reading(value),
                     travel: [axis.reading(least), axis.reading(most)],

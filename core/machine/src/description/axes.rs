@@ -9,6 +9,7 @@ use toml::Spanned;
 use super::build::Builder;
 use super::file::{AxisFile, MachineFile, Quantity};
 use super::{Axis, Clamp, Indexed, Positions};
+use crate::kinematics::travel::{AT_END, passed};
 use crate::kinematics::{Joint, MAX_AXES, Second};
 
 /// The largest value of a rotary axis, degrees.
@@ -225,9 +226,8 @@ impl Builder<'_> {
             value * unit
         };
         let max_feed = rate(self, "max_feed", &axis.max_feed);
-        // Acceleration and jerk are checked now and used by the feed planner.
-        rate(self, "max_accel", &axis.max_accel);
-        rate(self, "max_jerk", &axis.max_jerk);
+        let max_accel = rate(self, "max_accel", &axis.max_accel);
+        let max_jerk = rate(self, "max_jerk", &axis.max_jerk);
         let indexed = self.indexed(name, spanned, zero, unit, travel);
         let clamp = self.clamp(name, spanned);
         let range = self.range(name, spanned, unit);
@@ -246,6 +246,8 @@ impl Builder<'_> {
             second: None,
             clamp,
             max_feed,
+            max_accel,
+            max_jerk,
         })
     }
 
@@ -276,9 +278,7 @@ impl Builder<'_> {
             return None;
         };
         let value = (self.number(start) - zero) * unit;
-        let inside = |value: f64| {
-            travel.is_none_or(|[least, most]| (least - 1e-9..=most + 1e-9).contains(&value))
-        };
+        let inside = |value: f64| passed(travel, value, AT_END).is_none();
         if !inside(value) {
             self.fault(
                 "machine-travel",

@@ -6,6 +6,7 @@ use super::Axis;
 use super::build::Builder;
 use super::file::{EdgeSource, MachineFile, Pole, Quantity, RewindFile, Side};
 use crate::kinematics::Joints;
+use crate::kinematics::travel::passed;
 
 /// Which of several solutions is taken.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,10 +114,7 @@ impl Builder<'_> {
             let axis = &axes[place];
             let unit = axis.unit();
             let value = self.number(value) * unit - axis.zero;
-            if axis
-                .travel
-                .is_some_and(|[least, most]| value < least || value > most)
-            {
+            if passed(axis.travel, value, 0.0).is_some() {
                 self.fault(
                     "machine-travel",
                     name.span(),

@@ -102,6 +102,10 @@ pub struct Axis {
     pub clamp: Option<Clamp>,
     /// Largest feed, mm/min or rad/min; infinite if the file does not say.
     pub max_feed: f64,
+    /// Largest acceleration, mm/s² or rad/s²; infinite if the file does not say.
+    pub max_accel: f64,
+    /// Largest jerk, mm/s³ or rad/s³; infinite if the file does not say.
+    pub max_jerk: f64,
 }
 
 /// An axis that moves off the part alone.

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use super::chain::Joints;
 use super::inverse::Solver;
 use super::orientation::{Branches, RotarySet};
+use super::travel::passed;
 
 /// What the choice needs to know of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -177,7 +178,7 @@ fn near(
         } else if value < least {
             value += TAU * f64::ceil((least - value) / TAU);
         }
-        if value > most || value < least {
+        if passed(Some(limit.travel), value, 0.0).is_some() {
             let asked = unwound(joints[joint], (least + most) / 2.0);
             return Err(OverTravel {
                 joint,

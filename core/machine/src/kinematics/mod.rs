@@ -8,8 +8,9 @@ pub mod inverse;
 mod linear;
 mod numeric;
 pub mod orientation;
+pub mod travel;
 
-pub use chain::{Chain, Joint, Joints, MAX_AXES, Pose, Trace};
+pub use chain::{Chain, Joint, Joints, KnownTurn, MAX_AXES, Pose, Trace};
 pub use fault::{NoClosedForm, POLE, Unreachable};
 pub use inverse::{Freedom, Solver};
 pub use linear::Second;

@@ -12,7 +12,8 @@ use post_machine::axis_words::{WordValues, Words};
 use post_machine::description::{ControlPoint, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::choose::{Limit, OverTravel, Turning};
-use post_machine::kinematics::{Joints, Pose, Solver, Trace, Unreachable};
+use post_machine::kinematics::travel::{AT_END, over, passed};
+use post_machine::kinematics::{Joints, KnownTurn, Pose, Solver, Trace, Unreachable};
 
 /// A point of the path, solved and rounded.
 #[derive(Clone, Copy, Debug, Default)]
@@ -90,9 +91,6 @@ pub struct Placer {
     axis_rounding: f64,
 }
 
-/// Positions at the very end of travel come out a rounding error beyond it, mm.
-const SLACK: f64 = 1e-9;
-
 impl Placer {
     /// For a machine with a tool of `length` mm in it, its redundant axes held at the values of `held`.
     ///
@@ -140,7 +138,7 @@ impl Placer {
                         travel: if rotary {
                             words.printed_travel(joint, travel)
                         } else {
-                            [travel[0] - SLACK, travel[1] + SLACK]
+                            travel
                         },
                     })
                 })
@@ -231,10 +229,11 @@ impl Placer {
                 joints[joint] += TAU * turns;
             }
         }
-        let inside = self.turning.limits.iter().all(|limit| {
-            let [least, most] = limit.travel;
-            (least..=most).contains(&joints[limit.joint])
-        });
+        let inside = self
+            .turning
+            .limits
+            .iter()
+            .all(|limit| passed(Some(limit.travel), joints[limit.joint], 0.0).is_none());
         if !inside {
             return None;
         }
@@ -281,7 +280,22 @@ impl Placer {
         t: f64,
         rotary: &Joints,
     ) -> Result<(), Refused> {
-        self.settle_at(node, target, target.tip, t, rotary)
+        self.settle_at(node, target, target.tip, t, (rotary, None))
+    }
+
+    /// [`Placer::settle`] where sines and cosines of the rotary values may be known.
+    ///
+    /// # Errors
+    /// Why there is none.
+    #[inline]
+    pub(crate) fn settle_beside(
+        &self,
+        node: &mut Node,
+        target: Pose,
+        rotary: &Joints,
+        known: Option<&[KnownTurn; 2]>,
+    ) -> Result<(), Refused> {
+        self.settle_at(node, target, target.tip, 1.0, (rotary, known))
     }
 
     /// [`Placer::settle`] with the tip put at `place`, off the target on purpose.
@@ -289,13 +303,13 @@ impl Placer {
     /// # Errors
     /// Why there is none.
     #[inline]
-    pub fn settle_at(
+    pub(super) fn settle_at(
         &self,
         node: &mut Node,
         target: Pose,
         place: Vector3<f64>,
         t: f64,
-        rotary: &Joints,
+        (rotary, known): (&Joints, Option<&[KnownTurn; 2]>),
     ) -> Result<(), Refused> {
         let chain = self.solver.chain();
         node.t = t;
@@ -304,7 +318,9 @@ impl Placer {
         *joints = *rotary;
         // The rotary words first: the linear axes then make up for their rounding.
         self.words.print_rotary(joints, &mut node.words);
-        node.trace.turns = chain.turns(joints);
+        node.trace.turns = known
+            .and_then(|known| chain.turns_beside(joints, known))
+            .unwrap_or_else(|| chain.turns(joints));
         let along = self.control_point.along;
         let printed = self
             .words
@@ -323,17 +339,8 @@ impl Placer {
         }
         for limit in &self.linear {
             let value = joints[limit.joint];
-            let [least, most] = limit.travel;
-            if value < least || value > most {
-                return Err(Refused::OverTravel {
-                    over: OverTravel {
-                        joint: limit.joint,
-                        value,
-                        limit: if value < least { least } else { most },
-                    },
-                    tried: 1,
-                });
-            }
+            over(limit.joint, Some(limit.travel), value, AT_END)
+                .map_err(|over| Refused::OverTravel { over, tried: 1 })?;
         }
         chain.trace(&mut node.trace);
         node.tip = node.trace.pose.tip;

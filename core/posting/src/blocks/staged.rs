@@ -52,7 +52,7 @@ impl Blocks<'_> {
         let excluded = self.excluded(from, node);
         if !excluded.is_empty() && leg.loose && self.on_part {
             // Away from the part first, as the tool stands.
-            self.stage(placer, leg, &mut at, node.target, 1.0, &first, to);
+            self.stage(placer, leg, &mut at, (node.target, 1.0), &first, to);
         }
         let turned_at = at.target;
         for moving in excluded {
@@ -77,7 +77,7 @@ impl Blocks<'_> {
             for joint in &moving[..moving.len() - 1] {
                 let mut joints = at.trace.joints;
                 joints[*joint] = last[*joint];
-                self.stage(placer, leg, &mut at, turned_at, 1.0, &joints, to);
+                self.stage(placer, leg, &mut at, (turned_at, 1.0), &joints, to);
             }
         }
         let begin = at.trace.joints;
@@ -101,7 +101,7 @@ impl Blocks<'_> {
                     .unwrap_or(node.target.axis),
                 ..node.target
             };
-            self.stage(placer, leg, &mut at, target, t, &joints, to);
+            self.stage(placer, leg, &mut at, (target, t), &joints, to);
         }
         self.cut(placer, leg, &at, node, to);
     }
@@ -112,8 +112,7 @@ impl Blocks<'_> {
         placer: &Placer,
         leg: &Leg<'_>,
         at: &mut Node,
-        target: Pose,
-        t: f64,
+        (target, t): (Pose, f64),
         joints: &Joints,
         to: &mut Surroundings<'_, '_>,
     ) {

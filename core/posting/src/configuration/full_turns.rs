@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use super::solution::{Axes, Stand};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::choose::OverTravel;
+use post_machine::kinematics::travel::over;
 
 /// Values that differ by less are the same, mm or radians.
 const SAME: f64 = 1e-9;
@@ -28,15 +29,7 @@ impl Axes {
                 joints[joint] += TAU * f64::round(away / TAU);
             }
             let value = joints[joint];
-            if let Some([least, most]) = axis.travel
-                && (value < least || value > most)
-            {
-                return Err(OverTravel {
-                    joint,
-                    value,
-                    limit: if value < least { least } else { most },
-                });
-            }
+            over(joint, axis.travel, value, 0.0)?;
             if axis.forbids(value) {
                 return Err(OverTravel {
                     joint,

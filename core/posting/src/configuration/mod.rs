@@ -19,6 +19,7 @@ use std::rc::Rc;
 use post_machine::description::{Machine, Positions, Tcp, ToolLength};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
+use post_machine::kinematics::travel::{AT_END, passed};
 use post_plugin::Format;
 
 use crate::accuracy::Placer;
@@ -32,6 +33,10 @@ pub(crate) use trellis::pose;
 
 /// What this stage hands on beside commands.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nearly all are points, and a box would cost each of them an allocation"
+)]
 pub(crate) enum Configured {
     /// A point with the axis values that were chosen for it.
     Point(Chosen),
@@ -337,9 +342,7 @@ impl<'a> Configuration<'a> {
         let positions = axis.indexed.as_ref().map(|indexed| &indexed.positions);
         let possible = positions
             .is_none_or(|positions| positions.holds(value, axis.travel.is_none()))
-            && axis
-                .travel
-                .is_none_or(|[least, most]| (least - 1e-9..=most + 1e-9).contains(&value));
+            && passed(axis.travel, value, AT_END).is_none();
         // Indices of settings may have changed.
         self.setting = None;
         match self.route.index(joint, value, possible) {

@@ -8,6 +8,7 @@ use crate::program::{Motion, Pace};
 use crate::refusal;
 use post_machine::description::Positions;
 use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::travel::{AT_END, passed};
 use post_machine::kinematics::{Joints, Unreachable};
 
 /// Positions of an index axis that are tried.
@@ -74,10 +75,7 @@ impl Route<'_> {
             let Some(indexed) = &axis.indexed else {
                 continue;
             };
-            let inside = |value: &f64| {
-                axis.travel
-                    .is_none_or(|[least, most]| (least - 1e-9..=most + 1e-9).contains(value))
-            };
+            let inside = |value: &f64| passed(axis.travel, *value, AT_END).is_none();
             let values: Vec<f64> = match &indexed.positions {
                 Positions::Any => continue,
                 Positions::List(values) => values.clone(),

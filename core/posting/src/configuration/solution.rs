@@ -7,7 +7,8 @@ use super::metric::wrong_side;
 use post_machine::description::{Machine, Positions, Side};
 use post_machine::kinematics::choose::{Limit, OverTravel};
 use post_machine::kinematics::orientation::{Branches, angle};
-use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
+use post_machine::kinematics::travel::{over, passed};
+use post_machine::kinematics::{Joints, KnownTurn, Pose, Solver, Unreachable};
 
 /// One solution, its angles on the turn around zero.
 #[derive(Clone, Copy, Debug)]
@@ -61,9 +62,7 @@ impl Turning {
     /// Inside travel, and on no side that is forbidden.
     #[inline]
     pub(super) fn allows(&self, value: f64) -> bool {
-        self.travel
-            .is_none_or(|[least, most]| (least..=most).contains(&value))
-            && !self.forbids(value)
+        passed(self.travel, value, 0.0).is_none() && !self.forbids(value)
     }
 }
 
@@ -139,12 +138,7 @@ impl Axes {
             .iter()
             .enumerate()
             .filter(|(_, axis)| !axis.joint.rotary)
-            .filter_map(|(joint, axis)| {
-                axis.travel.map(|[least, most]| Limit {
-                    joint,
-                    travel: [least - SLACK, most + SLACK],
-                })
-            })
+            .filter_map(|(joint, axis)| axis.travel.map(|travel| Limit { joint, travel }))
             .collect();
         let sides = machine.solution.prefer.iter();
         let sides = sides.chain(&machine.solution.require);
@@ -270,7 +264,7 @@ impl Axes {
 
     /// Where the axes stand at `pose` on one branch, going on from `last` in a cut that turns the tool axis by no more
     /// than half of `way`. None on any doubt: an angle that is free, an axis beyond its travel or near its end, an
-    /// index axis that would have to move.
+    /// index axis that would have to move. And, if they came with it, sines and cosines of the angles.
     #[inline]
     pub(crate) fn carried_on(
         &self,
@@ -279,7 +273,7 @@ impl Axes {
         (branches, branch): (&Branches, u8),
         last: &Joints,
         way: f64,
-    ) -> Option<Joints> {
+    ) -> Option<(Joints, Option<[KnownTurn; 2]>)> {
         let mut set = solver.angles(branches, usize::from(branch));
         if set.free != 0 {
             return None;
@@ -296,8 +290,23 @@ impl Axes {
             return None;
         }
         let mut joints = self.carried(&stand, last).ok()?;
-        let still = !self.near_end(last, &joints, way) && self.stand_still(last, &mut joints);
-        still.then_some(joints)
+        if self.near_end(last, &joints, way) || !self.stand_still(last, &mut joints) {
+            return None;
+        }
+        // An index axis may have been brought onto another angle than that of the sine.
+        let known = solver.pole_joint().filter(|_| self.indexed.is_empty());
+        let known = known.map(|first| {
+            [first, solver.last_rotary()].map(|joint| {
+                let (sine, cosine) = turns.of(joint);
+                KnownTurn {
+                    joint,
+                    angle: joints[joint],
+                    sine,
+                    cosine,
+                }
+            })
+        });
+        Some((joints, known))
     }
 
     /// The stands of a chain without a closed form.
@@ -385,17 +394,8 @@ impl Axes {
     fn beyond(&self, joints: &Joints) -> Option<OverTravel> {
         for limit in &self.linear {
             let value = joints[limit.joint];
-            let [least, most] = limit.travel;
-            if value < least || value > most {
-                return Some(OverTravel {
-                    joint: limit.joint,
-                    value,
-                    limit: if value < least {
-                        least + SLACK
-                    } else {
-                        most - SLACK
-                    },
-                });
+            if let Err(over) = over(limit.joint, Some(limit.travel), value, SLACK) {
+                return Some(over);
             }
         }
         None

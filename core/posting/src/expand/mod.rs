@@ -1,7 +1,8 @@
 //! Arcs, splines, cycles and planes become moves, unless dialect and machine take them as they are.
 //!
-//! What a dialect writes itself it declares at open ([`Capabilities`]); what the stages behind this one can carry to
-//! it is said in [`Kept`]. Everything else leaves here as straight moves and commands.
+//! What a dialect writes itself it declares at open ([`post_plugin::Capabilities`]). A step goes on in its own shape
+//! only if the stages behind can carry it there, and as yet they carry straight moves alone: everything leaves here
+//! as moves and commands.
 
 mod tangential;
 

@@ -6,6 +6,7 @@
 mod batch;
 mod block;
 mod capabilities;
+mod command;
 mod deviation;
 mod dialect;
 mod event;
@@ -21,12 +22,10 @@ mod text;
 pub use batch::Batch;
 pub use block::{Axes, Block, Group, Modal, NumberStyle};
 pub use capabilities::{CAPABILITIES, Capabilities, CapabilitySpec};
+pub use command::{CODES, Compensation, Coolant, Cycle, Feed, Spindle, SpindleSense};
 pub use deviation::{ask, length};
 pub use dialect::{Dialect, DialectSession, Format, WriteFault};
-pub use event::{
-    CODES, Compensation, Coolant, Cycle, EVENTS, Event, EventSpec, Feed, FieldSpec, Spindle,
-    SpindleSense,
-};
+pub use event::{EVENTS, Event, EventSpec, FieldSpec};
 pub use export::{Linked, LinkedDialect};
 pub use field::{Codes, List, Promise, Shape, ToolPose};
 pub use model::{Curve, Deviation, ErrorModel, ModelSession, Tolerance};

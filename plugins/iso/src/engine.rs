@@ -1,8 +1,8 @@
 //! Writes a program by a [`Table`].
 
 use post_plugin::{
-    Axes, Block, Coolant, Event, Feed, Format, Modal, NumberStyle, Setup, Spindle, SpindleSense,
-    Units,
+    Axes, Block, Compensation, Coolant, Event, Feed, Format, Modal, NumberStyle, Setup, Spindle,
+    SpindleSense, Units,
 };
 
 use crate::options::{flag, integer, text};
@@ -128,7 +128,7 @@ impl Engine {
         &self.program
     }
 
-    /// A block of these words.
+    /// A block of these words; none for no words.
     pub fn line(&mut self, words: &str, out: &mut String) {
         self.motion.line(words, out);
     }
@@ -174,7 +174,9 @@ impl Engine {
     pub fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
         match *event {
             Event::Rapid { words, .. } => self.motion.rapid(words, out),
-            Event::Linear { words, feed, .. } => self.motion.cut(words, feed, out),
+            Event::Linear { words, feed, .. } if self.motion.has(feed) => {
+                self.motion.cut(words, feed, out);
+            }
             _ => return self.command(event, out),
         }
         Ok(())
@@ -183,6 +185,17 @@ impl Engine {
     fn command(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
         let codes = &self.table.codes;
         match *event {
+            Event::Linear { feed, .. }
+            | Event::Position {
+                feed: Some(feed), ..
+            } if !self.motion.has(feed) => {
+                return Err(format!("this control has no feed like {feed:?}"));
+            }
+            Event::Compensate(Compensation::Left { .. } | Compensation::Right { .. })
+                if codes.compensation[1].is_empty() =>
+            {
+                return Err(event.refusal());
+            }
             Event::Comment { text } => self.remark(text, out),
             Event::Literal { text } => {
                 self.bare(text, out);
@@ -377,9 +390,7 @@ impl Engine {
     }
 
     fn after_retract(&mut self, out: &mut String) {
-        if !self.table.retract.after.is_empty() {
-            self.line(self.table.retract.after, out);
-        }
+        self.line(self.table.retract.after, out);
         self.motion.moved_by_line();
     }
 

@@ -79,9 +79,27 @@ impl Motion {
         self.feed_mode.set(self.codes.feed[0]);
     }
 
-    /// A block of its own.
+    /// A block of its own; none for no words.
     pub fn line(&mut self, words: &str, out: &mut String) {
-        self.block.line(words, out);
+        if !words.is_empty() {
+            self.block.line(words, out);
+        }
+    }
+
+    /// Does the control have a word for this kind of feed?
+    #[inline]
+    pub fn has(&self, feed: Feed) -> bool {
+        !self.feed_word(feed).is_empty()
+    }
+
+    #[inline]
+    fn feed_word(&self, feed: Feed) -> &'static str {
+        let [per_minute, inverse_time, per_revolution] = self.codes.feed;
+        match feed {
+            Feed::PerMinute(_) => per_minute,
+            Feed::InverseTime(_) => inverse_time,
+            Feed::PerRevolution(_) => per_revolution,
+        }
     }
 
     /// Cutter compensation, to be written with the next move.
@@ -170,12 +188,7 @@ impl Motion {
     }
 
     fn feed_mode(&mut self, feed: Feed) {
-        let [per_minute, inverse_time, per_revolution] = self.codes.feed;
-        let word = match feed {
-            Feed::PerMinute(_) => per_minute,
-            Feed::InverseTime(_) => inverse_time,
-            Feed::PerRevolution(_) => per_revolution,
-        };
+        let word = self.feed_word(feed);
         if self.feed_mode.set(word) {
             self.block.word(word);
             self.feed.forget();

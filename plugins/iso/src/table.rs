@@ -56,7 +56,7 @@ pub struct Codes {
     pub motion: [&'static str; 2],
     /// Feed a minute, inverse time, feed a revolution; empty where the control has none.
     pub feed: [&'static str; 3],
-    /// Compensation off, left, right.
+    /// Compensation off, left, right; the last two empty where the control has none.
     pub compensation: [&'static str; 3],
     /// Address of the compensation's register.
     pub radius: &'static str,

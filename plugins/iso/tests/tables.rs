@@ -1,0 +1,131 @@
+//! What a table can say, on controls that differ from those of the stock dialects.
+
+// Clippy lets test functions unwrap, but not the helpers beside them.
+#![allow(clippy::unwrap_used)]
+
+use post_iso::{Codes, Control, Dwell, Iso, Length, Retract, Step, Table, Tcp};
+use post_kit::{Bench, P1, P3, TOOL, at, cut, timed};
+use post_plugin::export::Exported;
+use post_plugin::{Compensation, Event, Feed, Linked, Setup};
+
+/// A controller of a small machine: no length, no changer, no compensation, feeds a minute alone.
+struct Small;
+
+impl Control for Small {
+    const TABLE: &'static Table = &Table {
+        percent: false,
+        codes: Codes {
+            feed: ["G94", "", ""],
+            compensation: ["G40", "", ""],
+            ..Codes::ISO
+        },
+        safe: "G17 G90 G94",
+        length: Length {
+            on: "",
+            off: "",
+            ..Table::ISO.length
+        },
+        retract: Retract {
+            words: "G53 G0",
+            after: "",
+        },
+        dwell: Dwell::Seconds("P", 2),
+        change: "",
+        ..Table::ISO
+    };
+
+    fn open(_: &Setup<'_>) -> Result<Self, String> {
+        Ok(Small)
+    }
+}
+
+/// The length by itself, before the switch of blocks; everything off the other way round.
+struct Ordered;
+
+impl Control for Ordered {
+    const TABLE: &'static Table = &Table {
+        length: Length {
+            on: "G56",
+            ..Table::ISO.length
+        },
+        tcp: Tcp::Blocks {
+            on: "M128",
+            off: "M129",
+            approach: &[Step::Turn, Step::Length, Step::Tcp],
+            release: &[Step::Tcp, Step::Length],
+        },
+        dwell: Dwell::Seconds("F", 2),
+        ..Table::ISO
+    };
+
+    fn open(_: &Setup<'_>) -> Result<Self, String> {
+        Ok(Ordered)
+    }
+
+    fn write(
+        &mut self,
+        event: &Event<'_>,
+        engine: &mut post_iso::Engine,
+        out: &mut String,
+    ) -> Result<bool, String> {
+        let Event::Message { text } = *event else {
+            return Ok(false);
+        };
+        engine.line(&format!("MSG={text}"), out);
+        Ok(true)
+    }
+}
+
+fn bench<C: Control>(exported: &'static Exported) -> Bench {
+    Bench::of(Linked::dialect::<Iso<C>>(exported, "test"))
+}
+
+fn small() -> Bench {
+    static SMALL: Exported = Exported::dialect::<Iso<Small>>("small", "1");
+    bench::<Small>(&SMALL)
+}
+
+fn ordered() -> Bench {
+    static ORDERED: Exported = Exported::dialect::<Iso<Ordered>>("ordered", "1");
+    bench::<Ordered>(&ORDERED)
+}
+
+#[test]
+fn what_a_control_has_no_word_for_is_left_out_or_refused() {
+    let text = small().write(&[
+        Event::Start,
+        TOOL,
+        at(P1),
+        cut(P3, 500.0),
+        Event::Dwell { seconds: 0.5 },
+        Event::End,
+    ]);
+    assert_eq!(
+        text.unwrap(),
+        "(BRACKET)\n(AC TRUNNION)\nG21 G17 G90 G94\nG53 G0 Z0.\n(T1 BALL D10 [R5])\nT1\nG54\n\
+         G0 A-30.000 C45.000\nX10.000 Y-20.500\nZ100.000\nG94 G1 X12.500 Z2.000 A-30.125 F500.\n\
+         G4 P0.50\nG53 G0 Z0.\nM5\nM9\nM30\n"
+    );
+    let refused = |event| small().write(&[Event::Start, event]).unwrap_err();
+    assert!(refused(timed(P1, 2.0)).contains("InverseTime"));
+    assert!(refused(Event::linear(P1, Feed::PerRevolution(0.1))).contains("PerRevolution"));
+    let left = Event::Compensate(Compensation::Left { register: 1 });
+    assert!(refused(left).ends_with("no words for cutter radius compensation"));
+    assert!(small().tcp().write(&[]).unwrap_err().contains("tcp = "));
+}
+
+#[test]
+fn the_order_of_switching_and_what_does_not_fit_are_the_dialects() {
+    let text = ordered().tcp().write(&[
+        TOOL,
+        at(P1),
+        Event::Dwell { seconds: 2.0 },
+        Event::Message { text: "HALF" },
+        Event::Release,
+    ]);
+    assert_eq!(
+        text.unwrap(),
+        "M129\nG49\nG91 G28 Z0.\nG90\n(T1 BALL D10 [R5])\nT1 M6\nG54\nG0 A-30.000 C45.000\n\
+         G56 H1\nM128\nX10.000 Y-20.500 Z100.000\nG4 F2.00\nMSG=HALF\nM129\nG49\n"
+    );
+}

@@ -41,19 +41,6 @@ pub struct Turns {
     cosines: Joints,
 }
 
-/// Sine and cosine of a rotary joint at an angle.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct KnownTurn {
-    /// Place in the chain.
-    pub joint: usize,
-    /// Radians.
-    pub angle: f64,
-    /// Its sine.
-    pub sine: f64,
-    /// Its cosine.
-    pub cosine: f64,
-}
-
 /// The forward product with what the certificate needs of it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Trace {
@@ -75,8 +62,6 @@ pub struct Trace {
 pub struct Chain {
     /// From the workpiece to the tool.
     joints: Vec<Joint>,
-    /// How many of them are rotary.
-    rotary: usize,
     /// Where the part origin sits with all axes at zero, mm, machine frame.
     mount: Vector3<f64>,
     /// Tip with all axes at zero, mm, machine frame.
@@ -128,29 +113,6 @@ impl Turns {
     }
 }
 
-/// The largest step over which sines and cosines are taken along, radians: the rounding of a printed angle is less.
-const SHORT_STEP: f64 = 1e-4;
-
-/// Sine and cosine of an angle that lies `step` beside one whose sine and cosine are known; none if it lies farther
-/// than [`SHORT_STEP`].
-///
-/// `sin δ = δ - δ³/6` and `cos δ = 1 - δ²/2 + δ⁴/24` are off by less than `δ⁵/120 < 1e-22` there, so what is off is
-/// the last bit of the sums.
-#[inline]
-pub(super) fn beside((sine, cosine): (f64, f64), step: f64) -> Option<(f64, f64)> {
-    if step.abs() > SHORT_STEP {
-        return None;
-    }
-    let square = step * step;
-    let small_sine = step - step * square * (1.0 / 6.0);
-    // Less one, so that no bits are lost.
-    let small_cosine = square * (square * (1.0 / 24.0) - 0.5);
-    Some((
-        sine + (sine * small_cosine + cosine * small_sine),
-        cosine + (cosine * small_cosine - sine * small_sine),
-    ))
-}
-
 impl Chain {
     /// A chain of at most [`MAX_AXES`] joints. `tip` and `axis` are those of the tool in use with all axes at zero.
     pub fn new(
@@ -161,7 +123,6 @@ impl Chain {
     ) -> Self {
         debug_assert!(joints.len() <= MAX_AXES);
         Self {
-            rotary: joints.iter().filter(|joint| joint.rotary).count(),
             joints,
             mount,
             tip,
@@ -220,25 +181,6 @@ impl Chain {
             }
         }
         turns
-    }
-
-    /// [`Chain::turns`] of a chain that has no rotary joints but two, from sines and cosines of angles close by; none
-    /// if it has others, or they are not close.
-    #[inline]
-    pub fn turns_beside(&self, joints: &Joints, known: &[KnownTurn; 2]) -> Option<Turns> {
-        if self.rotary != 2 {
-            return None;
-        }
-        let mut turns = Turns {
-            sines: [0.0; MAX_AXES],
-            cosines: [1.0; MAX_AXES],
-        };
-        for at in known {
-            let step = joints[at.joint] - at.angle;
-            let (sine, cosine) = beside((at.sine, at.cosine), step)?;
-            turns.set(at.joint, sine, cosine);
-        }
-        Some(turns)
     }
 
     /// Where the tool stands, seen from the part.
@@ -373,23 +315,6 @@ mod tests {
             assert!((middle.tip - wanted.tip).norm() < 1e-11, "step {step}");
             assert!((middle.axis - wanted.axis).norm() < 1e-14, "step {step}");
         }
-    }
-
-    /// Against the functions of the library, over a turn and steps of every size that is taken.
-    #[test]
-    fn a_short_step_beside_a_known_angle_is_as_good_as_the_library() {
-        let mut worst: f64 = 0.0;
-        for index in 0..20_000 {
-            let angle = f64::from(index) * 3.3e-4 - 3.2;
-            let step = SHORT_STEP * (f64::from(index % 401) - 200.0) / 200.0;
-            let (sine, cosine) = beside(libm::sincos(angle), step).expect("a short step");
-            let (right_sine, right_cosine) = libm::sincos(angle + step);
-            worst = worst
-                .max((sine - right_sine).abs())
-                .max((cosine - right_cosine).abs());
-        }
-        assert!(worst < 6e-16, "{worst:e}");
-        assert_eq!(beside((0.0, 1.0), 1.1 * SHORT_STEP), None);
     }
 
     /// Nutating head of a published layout: B about (0, 1, 1) through the pivot; B 180 lays the tool flat.

@@ -52,6 +52,6 @@ fn compensated(
     let mut node = Node::default();
     whole
         .placer
-        .settle_at(&mut node, target, place, t, (&joints, None))?;
+        .settle_at(&mut node, target, place, t, &joints)?;
     Ok(node)
 }

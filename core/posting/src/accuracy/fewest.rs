@@ -223,7 +223,7 @@ impl Stretch<'_> {
             let (target, rotary) = (to.target, to.trace.joints);
             let place = target.tip - aside * shift;
             run.placer
-                .settle_at(&mut to, target, place, end.t, (&rotary, None))
+                .settle_at(&mut to, target, place, end.t, &rotary)
                 .ok()?;
         } else {
             shift = 0.0;

@@ -13,7 +13,7 @@ use post_machine::description::{ControlPoint, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::choose::{Limit, OverTravel, Turning};
 use post_machine::kinematics::travel::{AT_END, over, passed};
-use post_machine::kinematics::{Joints, KnownTurn, Pose, Solver, Trace, Unreachable};
+use post_machine::kinematics::{Joints, Pose, Solver, Trace, Unreachable};
 
 /// A point of the path, solved and rounded.
 #[derive(Clone, Copy, Debug, Default)]
@@ -280,22 +280,7 @@ impl Placer {
         t: f64,
         rotary: &Joints,
     ) -> Result<(), Refused> {
-        self.settle_at(node, target, target.tip, t, (rotary, None))
-    }
-
-    /// [`Placer::settle`] where sines and cosines of the rotary values may be known.
-    ///
-    /// # Errors
-    /// Why there is none.
-    #[inline]
-    pub(crate) fn settle_beside(
-        &self,
-        node: &mut Node,
-        target: Pose,
-        rotary: &Joints,
-        known: Option<&[KnownTurn; 2]>,
-    ) -> Result<(), Refused> {
-        self.settle_at(node, target, target.tip, 1.0, (rotary, known))
+        self.settle_at(node, target, target.tip, t, rotary)
     }
 
     /// [`Placer::settle`] with the tip put at `place`, off the target on purpose.
@@ -309,7 +294,7 @@ impl Placer {
         target: Pose,
         place: Vector3<f64>,
         t: f64,
-        (rotary, known): (&Joints, Option<&[KnownTurn; 2]>),
+        rotary: &Joints,
     ) -> Result<(), Refused> {
         let chain = self.solver.chain();
         node.t = t;
@@ -318,9 +303,7 @@ impl Placer {
         *joints = *rotary;
         // The rotary words first: the linear axes then make up for their rounding.
         self.words.print_rotary(joints, &mut node.words);
-        node.trace.turns = known
-            .and_then(|known| chain.turns_beside(joints, known))
-            .unwrap_or_else(|| chain.turns(joints));
+        node.trace.turns = chain.turns(joints);
         let along = self.control_point.along;
         let printed = self
             .words

@@ -11,6 +11,7 @@ use std::rc::Rc;
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Joints;
 use post_machine::kinematics::orientation::angle;
 use post_plugin::{Compensation, ModelSession};
 
@@ -234,7 +235,7 @@ impl<'a> Blocks<'a> {
         if chosen.arrives {
             self.counts.branch_changes += u64::from(chosen.changed && leg.loose);
             self.counts.eased += u64::from(chosen.eased);
-            self.travel(&placer, &leg, chosen, to);
+            self.travel(&placer, &leg, &chosen.joints, to);
         }
         if let Some(joints) = &chosen.rewind {
             self.end_run(to);
@@ -247,12 +248,11 @@ impl<'a> Blocks<'a> {
         &mut self,
         placer: &Placer,
         leg: &Leg<'_>,
-        chosen: &Chosen,
+        joints: &Joints,
         to: &mut Surroundings<'_, '_>,
     ) {
         let mut node = self.spare.take().unwrap_or_default();
-        let (target, known) = (pose(leg.motion), chosen.known.as_ref());
-        if let Err(refused) = placer.settle_beside(&mut node, target, &chosen.joints, known) {
+        if let Err(refused) = placer.settle(&mut node, pose(leg.motion), 1.0, joints) {
             self.spare = Some(node);
             to.findings
                 .at(leg.line, refusal::refused(self.machine, &refused));

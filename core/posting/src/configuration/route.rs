@@ -15,7 +15,7 @@ use crate::accuracy::{Linearise, Move, Placer};
 use crate::program::{Motion, Pace};
 use post_machine::description::{Machine, Positions};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::{Joints, KnownTurn, Pose, Unreachable};
+use post_machine::kinematics::{Joints, Pose, Unreachable};
 
 use super::settle;
 use super::solution::Found;
@@ -34,8 +34,6 @@ pub(crate) struct Chosen {
     pub arrives: bool,
     /// Rotary values; the linear ones follow from their printed values.
     pub joints: Joints,
-    /// Sines and cosines of the rotary values, if they came with them.
-    pub known: Option<[KnownTurn; 2]>,
     /// At this point the tool is drawn back, turned to these values, and brought back.
     pub rewind: Option<Box<Joints>>,
     /// Branch or full turn differ from what going on would have given.
@@ -268,14 +266,13 @@ impl<'a> Route<'a> {
             return None;
         }
         let placer = &self.settings[self.setting].1;
-        let (joints, known) = self.lattice.step(line, motion, self.setting, placer)?;
+        let joints = self.lattice.step(line, motion, self.setting, placer)?;
         Some(Chosen {
             line,
             motion: *motion,
             setting: self.setting,
             arrives: true,
             joints,
-            known,
             rewind: None,
             changed: false,
             eased: false,

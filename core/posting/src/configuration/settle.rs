@@ -78,7 +78,6 @@ impl Route<'_> {
             setting: at.setting,
             arrives: true,
             joints: state.joints,
-            known: None,
             rewind: None,
             changed: lattice.has_changed(
                 (before.branch, &before.joints),
@@ -239,7 +238,6 @@ impl Route<'_> {
                     setting: at.setting,
                     arrives: !settled,
                     joints: before.unwrap_or(joints),
-                    known: None,
                     rewind: before.map(|_| Box::new(joints)),
                     changed: last.is_some_and(|(branch, last)| {
                         lattice.has_changed((branch, &last), (state.branch, &joints))

@@ -8,7 +8,7 @@ use post_machine::description::{Machine, Positions, Side};
 use post_machine::kinematics::choose::{Limit, OverTravel};
 use post_machine::kinematics::orientation::{Branches, angle};
 use post_machine::kinematics::travel::{over, passed};
-use post_machine::kinematics::{Joints, KnownTurn, Pose, Solver, Unreachable};
+use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
 
 /// One solution, its angles on the turn around zero.
 #[derive(Clone, Copy, Debug)]
@@ -264,7 +264,7 @@ impl Axes {
 
     /// Where the axes stand at `pose` on one branch, going on from `last` in a cut that turns the tool axis by no more
     /// than half of `way`. None on any doubt: an angle that is free, an axis beyond its travel or near its end, an
-    /// index axis that would have to move. And, if they came with it, sines and cosines of the angles.
+    /// index axis that would have to move.
     #[inline]
     pub(crate) fn carried_on(
         &self,
@@ -273,7 +273,7 @@ impl Axes {
         (branches, branch): (&Branches, u8),
         last: &Joints,
         way: f64,
-    ) -> Option<(Joints, Option<[KnownTurn; 2]>)> {
+    ) -> Option<Joints> {
         let mut set = solver.angles(branches, usize::from(branch));
         if set.free != 0 {
             return None;
@@ -290,23 +290,8 @@ impl Axes {
             return None;
         }
         let mut joints = self.carried(&stand, last).ok()?;
-        if self.near_end(last, &joints, way) || !self.stand_still(last, &mut joints) {
-            return None;
-        }
-        // An index axis may have been brought onto another angle than that of the sine.
-        let known = solver.pole_joint().filter(|_| self.indexed.is_empty());
-        let known = known.map(|first| {
-            [first, solver.last_rotary()].map(|joint| {
-                let (sine, cosine) = turns.of(joint);
-                KnownTurn {
-                    joint,
-                    angle: joints[joint],
-                    sine,
-                    cosine,
-                }
-            })
-        });
-        Some((joints, known))
+        let still = !self.near_end(last, &joints, way) && self.stand_still(last, &mut joints);
+        still.then_some(joints)
     }
 
     /// The stands of a chain without a closed form.

@@ -9,7 +9,7 @@ use crate::accuracy::Placer;
 use crate::program::{Motion, Pace};
 use post_machine::description::{Machine, Pole};
 use post_machine::kinematics::orientation::{Branches, angle};
-use post_machine::kinematics::{Joints, KnownTurn, Pose, Unreachable};
+use post_machine::kinematics::{Joints, Pose, Unreachable};
 
 /// One point of the path with the ways to stand there.
 #[derive(Clone, Debug)]
@@ -271,7 +271,7 @@ impl Lattice {
         motion: &Motion,
         setting: usize,
         placer: &Placer,
-    ) -> Option<(Joints, Option<[KnownTurn; 2]>)> {
+    ) -> Option<Joints> {
         let ([_], [state]) = (self.layers.as_slice(), self.states.as_slice()) else {
             return None;
         };
@@ -288,7 +288,7 @@ impl Lattice {
         }
         let at = (&branches, state.branch);
         let way = 2.0 * ways.arc;
-        let (joints, known) = self
+        let joints = self
             .axes
             .carried_on(solver, &target, at, &state.joints, way)?;
         self.states[0].joints = joints;
@@ -298,7 +298,7 @@ impl Lattice {
         layer.kind = Kind::Cut;
         layer.setting = setting;
         layer.latitude = latitude;
-        Some((joints, known))
+        Some(joints)
     }
 
     /// So close to the pole that its joint has room.

@@ -6,11 +6,11 @@ use post_machine::description::{Machine, Source, Tcp, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{
-    Batch, Curve, Deviation, DialectSession, Event, Feed, Format, ModelSession, Tolerance,
-    WriteFault,
+    Batch, Capabilities, Curve, Deviation, DialectSession, Event, Feed, Format, ModelSession,
+    Tolerance, ToolPose, WriteFault,
 };
 use post_posting::report::Report;
-use post_posting::{Job, Output, Post};
+use post_posting::{Job, Observer, Output, Post};
 
 use super::{Reference, between};
 
@@ -23,6 +23,8 @@ pub struct Asked {
     pub kind: &'static str,
     pub words: Vec<f64>,
     pub feed: Option<Feed>,
+    /// Tip (mm) and tool axis of a motion, part frame.
+    pub tool: Option<ToolPose>,
     /// Any other number it has: the seconds of a dwell, the number of a tool.
     pub value: f64,
 }
@@ -31,6 +33,8 @@ pub struct Asked {
 /// infinite one.
 pub struct Recorder {
     format: Format,
+    /// What it declares to write itself.
+    pub capabilities: Capabilities,
     pub asked: Vec<Asked>,
 }
 
@@ -45,12 +49,17 @@ impl Recorder {
                 feed_per_revolution: 4,
                 extension: "nc".to_owned(),
             },
+            capabilities: Capabilities::NONE,
             asked: Vec::new(),
         }
     }
 }
 
 impl DialectSession for Recorder {
+    fn capabilities(&self) -> Capabilities {
+        self.capabilities
+    }
+
     fn format(&self) -> &Format {
         &self.format
     }
@@ -62,13 +71,13 @@ impl DialectSession for Recorder {
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
-            let (words, feed, value) = match event {
-                Event::Position { words, feed, .. } => (words, feed, 0.0),
-                Event::Rapid { words, .. } => (words, None, 0.0),
-                Event::Linear { words, feed, .. } => (words, Some(feed), 0.0),
-                Event::Dwell { seconds } => (&[][..], None, seconds),
-                Event::ToolChange { number, .. } => (&[][..], None, f64::from(number)),
-                _ => (&[][..], None, 0.0),
+            let (words, tool, feed, value) = match event {
+                Event::Position { words, tool, feed } => (words, tool, feed, 0.0),
+                Event::Rapid { words, tool } => (words, tool, None, 0.0),
+                Event::Linear { words, tool, feed } => (words, tool, Some(feed), 0.0),
+                Event::Dwell { seconds } => (&[][..], None, None, seconds),
+                Event::ToolChange { number, .. } => (&[][..], None, None, f64::from(number)),
+                _ => (&[][..], None, None, 0.0),
             };
             for word in words {
                 assert!(
@@ -87,6 +96,7 @@ impl DialectSession for Recorder {
                 kind: event.name(),
                 words: words.to_vec(),
                 feed,
+                tool,
                 value,
             });
             out.push_str("block\n");
@@ -188,10 +198,25 @@ pub fn post(
     job: Job,
     model: &mut dyn ModelSession,
 ) -> Run {
-    let mut dialect = Recorder::new(machine, decimals);
+    let dialect = Recorder::new(machine, decimals);
+    watched(machine, dialect, cl, job, model, &mut [])
+}
+
+/// [`post`] for a recorder that may declare something, with all of `observers` looking on.
+pub fn watched(
+    machine: &Machine,
+    mut dialect: Recorder,
+    cl: &str,
+    job: Job,
+    model: &mut dyn ModelSession,
+    observers: &mut [&mut dyn Observer],
+) -> Run {
     let mut output = Nowhere;
     let mut post = Post::new(machine, job, &mut dialect, model, &mut output)
         .expect("machine and dialect agree");
+    for observer in observers {
+        post.watch(*observer);
+    }
     let mut reader = Reader::new(cl.as_bytes());
     while !post.gave_up() {
         match reader.next_record() {

@@ -6,7 +6,7 @@ mod writer;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
-use post_plugin::{Coolant, DialectSession, Event, Spindle, ToolPose};
+use post_plugin::{Capabilities, Coolant, DialectSession, Event, Spindle, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
 use crate::findings::Findings;
@@ -154,7 +154,15 @@ impl<'a> Emit<'a> {
                 Event::Coolant(*coolant)
             }
             Command::Compensate(compensation) => Event::Compensate(*compensation),
-            Command::Comment(text) => Event::Comment { text },
+            // Of a dialect that does not know operations the name is a remark.
+            Command::Operation(name) if self.writer.knows(Capabilities::OPERATION) => {
+                Event::Operation { name }
+            }
+            Command::OperationEnd if self.writer.knows(Capabilities::OPERATION) => {
+                Event::OperationEnd
+            }
+            Command::OperationEnd => return,
+            Command::Operation(text) | Command::Comment(text) => Event::Comment { text },
             Command::Literal(text) => Event::Literal { text },
             Command::Dwell(seconds) => Event::Dwell { seconds: *seconds },
             Command::Stop => Event::Stop,

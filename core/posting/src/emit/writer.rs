@@ -1,7 +1,7 @@
 //! Events on their way to the dialect, and its text on the way to the output.
 
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Batch, DialectSession, Event};
+use post_plugin::{Batch, Capabilities, DialectSession, Event};
 
 use super::extremes::Extremes;
 use crate::findings::Findings;
@@ -37,6 +37,11 @@ impl<'a> Writer<'a> {
             tool_known: false,
             broken: false,
         }
+    }
+
+    /// The dialect declared that it writes this.
+    pub(super) fn knows(&self, capability: Capabilities) -> bool {
+        self.dialect.capabilities().has(capability)
     }
 
     /// Words of a block.

@@ -56,6 +56,10 @@ pub enum Command {
     Coolant(Coolant),
     /// Cutter radius compensation.
     Compensate(Compensation),
+    /// An operation of the CAM system begins, by this name.
+    Operation(String),
+    /// The operation ends.
+    OperationEnd,
     /// A remark for the operator.
     Comment(String),
     /// A line of the program, letter for letter.

@@ -67,7 +67,7 @@ impl Run {
                 !matches!(
                     step,
                     Flow::Command {
-                        command: Command::Index { .. },
+                        command: Command::Index { .. } | Command::OperationEnd,
                         ..
                     }
                 )
@@ -143,7 +143,7 @@ fn step(step: &Flow<Line>) -> String {
         Command::Compensate(Compensation::Off) => "G40".to_owned(),
         Command::Compensate(Compensation::Left { register }) => format!("G41 {register}"),
         Command::Compensate(Compensation::Right { register }) => format!("G42 {register}"),
-        Command::Comment(text) => format!("# {text}"),
+        Command::Operation(text) | Command::Comment(text) => format!("# {text}"),
         Command::Home => "home".to_owned(),
         other => format!("{other:?}"),
     }

@@ -443,9 +443,12 @@ impl Interpreter {
                 // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
                 self.axis = Vector3::z();
                 self.tool_name = tool.clone().unwrap_or_default();
-                emit(Step::Command(Command::Comment(name.clone())));
+                emit(Step::Command(Command::Operation(name.clone())));
             }
-            Statement::EndOfPath => self.end_spline(record, emit),
+            Statement::EndOfPath => {
+                self.end_spline(record, emit);
+                emit(Step::Command(Command::OperationEnd));
+            }
             Statement::PartName(text) | Statement::Print(text) => {
                 emit(Step::Command(Command::Comment(text.clone())))
             }

@@ -1,6 +1,8 @@
 //! Cutter-location files: chunks of a file to logical lines, lines to typed records.
 
 mod line;
+mod number;
+mod points;
 mod reader;
 mod record;
 mod scan;
@@ -8,6 +10,7 @@ mod statements;
 mod vocabulary;
 
 pub use line::parse_record;
+pub use points::Points;
 pub use reader::Reader;
 pub use record::*;
 pub use vocabulary::{MajorWord, Usage};

@@ -9,8 +9,9 @@
 //!   must not swallow the move after it.
 
 use super::line::{is_free_text, parse_record};
-use super::record::{Record, Statement};
-use super::scan;
+use super::points::Points;
+use super::record::Record;
+use super::scan::{self, Plain};
 use crate::fault::{ReadError, SyntaxFault};
 use memchr::{memchr2, memmem};
 use std::borrow::Cow;
@@ -80,25 +81,27 @@ impl<R: Read> Reader<R> {
     ///
     /// After a [`ReadError::Syntax`] the next call goes on with the next line.
     pub fn next_record(&mut self) -> Result<Option<Record<'_>>, ReadError> {
+        if let Some((plain, next)) = self.plain() {
+            return Ok(Some(self.take_plain(&plain, next)));
+        }
         while let Some(physical) = self.physical(0)? {
             let line = self.line;
             let raw = self.start..self.start + physical.end;
             let text = &self.buffer[raw.clone()];
-            let whole = !physical.overlong && !text.ends_with(b"$");
-            if whole && let Some((point, axis)) = scan::goto(text) {
+            // A `$` at the end may mean that the record goes on.
+            let whole = !physical.overlong && !text.trim_ascii_end().ends_with(b"$");
+            if whole && let Some(statement) = scan::record(text) {
                 self.consume(&physical, 1);
-                let raw = &self.buffer[raw];
-                let statement = Statement::Goto { point, axis };
                 return Ok(Some(Record {
                     line,
-                    raw,
+                    raw: &self.buffer[raw],
                     statement,
                 }));
             }
             if let Some(raw) = self.logical(physical)? {
                 let raw = &self.buffer[raw];
-                let statement = match scan::goto(raw) {
-                    Some((point, axis)) => Statement::Goto { point, axis },
+                let statement = match scan::joined(raw) {
+                    Some(statement) => statement,
                     None => {
                         parse_record(&decode(raw)).map_err(|fault| SyntaxFault { line, ..fault })?
                     }
@@ -111,6 +114,70 @@ impl<R: Read> Reader<R> {
             }
         }
         Ok(None)
+    }
+
+    /// Fills `points` with the plain `GOTO/x,y,z[,i,j,k]` records that come next, line after line, at most `most` of
+    /// them: the same that [`next_record`](Self::next_record) would give one by one.
+    ///
+    /// It stops before the first line that is anything else, and where the bytes read so far end; so a run may be
+    /// shorter than the file's. With no point at all, the next record is for [`next_record`](Self::next_record).
+    pub fn next_points(&mut self, points: &mut Points, most: usize) -> io::Result<()> {
+        points.clear(most);
+        while !self.ended
+            && self.pending().len() <= LONGEST
+            && memchr2(b'\n', b'\r', self.pending()).is_none()
+        {
+            self.fill()?;
+        }
+        points.first_line = self.line;
+        while points.len() < most
+            && let Some((plain, next)) = self.plain()
+        {
+            points.push(
+                plain.values,
+                plain.has_axis,
+                self.start..self.start + plain.end,
+            );
+            self.start += next;
+            self.line += 1;
+        }
+        Ok(())
+    }
+
+    /// The text of a record of the points read last.
+    ///
+    /// Any other call that reads on may overwrite it.
+    pub fn text(&self, place: Range<usize>) -> &[u8] {
+        &self.buffer[place]
+    }
+
+    /// The plain `GOTO` that begins here, and where the next line begins; `None` if there is none, or if more of the
+    /// file must be read to know where it ends.
+    #[inline(always)]
+    fn plain(&self) -> Option<(Plain, usize)> {
+        let pending = self.pending();
+        let plain = scan::plain_goto(pending)?;
+        let next = match pending[plain.end..] {
+            [b'\r', b'\n', ..] => plain.end + 2,
+            [b'\r'] if !self.ended => return None,
+            [_, ..] => plain.end + 1,
+            [] if self.ended => plain.end,
+            [] => return None,
+        };
+        (plain.end <= LONGEST).then_some((plain, next))
+    }
+
+    /// Consumes the plain `GOTO` that begins here.
+    #[inline(always)]
+    fn take_plain(&mut self, plain: &Plain, next: usize) -> Record<'_> {
+        let (start, line) = (self.start, self.line);
+        self.start += next;
+        self.line += 1;
+        Record {
+            line,
+            raw: &self.buffer[start..start + plain.end],
+            statement: plain.statement(),
+        }
     }
 
     /// Consumes the logical line that begins with `first`, and gives its place in the buffer; `None` if it is blank.

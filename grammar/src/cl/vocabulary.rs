@@ -99,17 +99,38 @@ impl MajorWord {
 
 /// The word that is spelt so, with that spelling in capitals.
 pub(super) fn find(spelling: &str) -> Option<(&'static str, &'static MajorWord)> {
-    static SPELLINGS: LazyLock<Vec<(&str, &MajorWord)>> = LazyLock::new(|| {
-        let of = |word: &'static MajorWord| word.spellings.iter().map(move |&name| (name, word));
-        let mut spellings: Vec<_> = WORDS.iter().flat_map(of).collect();
-        spellings.sort_by_key(|(spelling, _)| *spelling);
+    static SPELLINGS: LazyLock<Vec<(u64, &str, &MajorWord)>> = LazyLock::new(|| {
+        let mut spellings = Vec::new();
+        for word in WORDS {
+            spellings.extend(word.spellings.iter().map(|name| (key(name), *name, word)));
+        }
+        spellings.sort_by_key(|(key, ..)| *key);
         spellings
     });
-    let capitals = || spelling.bytes().map(|byte| byte.to_ascii_uppercase());
-    let at = SPELLINGS
-        .binary_search_by(|(name, _)| name.bytes().cmp(capitals()))
-        .ok()?;
-    Some(SPELLINGS[at])
+    let wanted = key(spelling);
+    let from = SPELLINGS.partition_point(|(key, ..)| *key < wanted);
+    SPELLINGS[from..]
+        .iter()
+        .take_while(|(key, ..)| *key == wanted)
+        .find(|(_, name, _)| {
+            let (name, wanted) = (name.as_bytes(), spelling.as_bytes());
+            name.len() == wanted.len()
+                && name[HEAD.min(name.len())..]
+                    .eq_ignore_ascii_case(&wanted[HEAD.min(name.len())..])
+        })
+        .map(|&(_, name, word)| (name, word))
+}
+
+/// Characters of a spelling that its key holds.
+const HEAD: usize = 8;
+
+/// The first characters, in capitals: enough to tell nearly all words apart.
+fn key(spelling: &str) -> u64 {
+    let mut bytes = [0; HEAD];
+    for (byte, character) in bytes.iter_mut().zip(spelling.bytes()) {
+        *byte = character.to_ascii_uppercase();
+    }
+    u64::from_be_bytes(bytes)
 }
 
 impl Statement {

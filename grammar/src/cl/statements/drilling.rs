@@ -12,7 +12,7 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str =
         "CYCLE/OFF, CYCLE/ON or CYCLE/DRILL,FEDTO,depth,MMPM,feed,RAPTO,clearance,...";
     if let [item] = items.line.items.as_slice() {
-        match word(item).as_str() {
+        match word(item).as_ref() {
             "OFF" | "NOMORE" => return Ok(Statement::Cycle(Cycle::Off)),
             "ON" | "INIT" => return Ok(Statement::Cycle(Cycle::On)),
             _ => {}
@@ -24,7 +24,7 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
     while let Some(item) = items.take() {
         let name = word(item);
         let mut labelled = true;
-        match name.as_str() {
+        match name.as_ref() {
             "FEDTO" | "DEPTH" => cycle.depth = Some(items.number(&name, FORM)?),
             "RAPTO" | "CLEAR" => cycle.clearance = Some(items.number(&name, FORM)?),
             "STEP" => cycle.step = Some(items.number(&name, FORM)?),
@@ -33,7 +33,7 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
                 cycle.step = Some(items.number(&name, FORM)?);
                 cycle.rest.extend(items.take_number().map(Argument::Number));
             }
-            "RTRCTO" | "RETURN" | "DWELL" => match (items.take_number(), name.as_str()) {
+            "RTRCTO" | "RETURN" | "DWELL" => match (items.take_number(), name.as_ref()) {
                 (Some(value), "DWELL") => cycle.dwell = Some(value),
                 (Some(value), _) => cycle.retract = Some(value),
                 // `RTRCTO,AUTO`, `DWELL,REV,2`
@@ -66,10 +66,10 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
             None if name.is_empty() => {
                 return Err(items.unexpected(item, "a word or a number is expected", FORM));
             }
-            None if kinds_end || matches!(name.as_str(), "G98" | "G99") => {
+            None if kinds_end || matches!(name.as_ref(), "G98" | "G99") => {
                 cycle.rest.push(item.argument())
             }
-            None => cycle.kinds.push(name),
+            None => cycle.kinds.push(name.into_owned()),
         }
     }
     if cycle.kinds.is_empty() {

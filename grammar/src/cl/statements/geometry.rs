@@ -142,7 +142,7 @@ pub(crate) fn rotate(items: &mut Items<'_, '_>) -> Read<Statement> {
     let (mut incremental, mut member) = (false, false);
     for (index, item) in items.line.items.iter().enumerate() {
         let name = word(item);
-        match name.as_str() {
+        match name.as_ref() {
             "" if angle.is_none() && item.value.is_some() => angle = item.value,
             "AAXIS" | "BAXIS" | "CAXIS" if axis.is_none() => axis = name.chars().next(),
             "TABLE" | "HEAD" => member = true,

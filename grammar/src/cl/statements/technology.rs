@@ -32,7 +32,7 @@ pub(crate) fn fedrat(items: &mut Items<'_, '_>) -> Read<Statement> {
             feed.value = Some(value);
         } else if let (Some(unit), None) = (feed_unit(&name), feed.unit) {
             feed.unit = Some(unit);
-        } else if matches!(name.as_str(), "MAXIPM" | "MAXMPM" | "MAXDPM") {
+        } else if matches!(name.as_ref(), "MAXIPM" | "MAXMPM" | "MAXDPM") {
             // A limit for controls that compute the feed themselves; the machine file states ours.
             items.number(&name, FORM)?;
         } else {
@@ -56,7 +56,7 @@ pub(super) fn sense(word: &str) -> Option<Sense> {
 pub(crate) fn spindl(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "SPINDL/RPM,speed,CLW, SPINDL/speed,RPM,CLW, SPINDL/ON or SPINDL/OFF; units RPM, SFM, SMM, senses CLW, CCLW";
     if let [item] = items.line.items.as_slice() {
-        match word(item).as_str() {
+        match word(item).as_ref() {
             "OFF" => return Ok(Statement::Spindle(Spindle::Off)),
             "LOCK" | "ORIENT" => return Ok(Statement::Spindle(Spindle::Orient)),
             _ => {}
@@ -115,7 +115,7 @@ pub(crate) fn coolnt(items: &mut Items<'_, '_>) -> Read<Statement> {
             )),
         };
     };
-    Ok(Statement::Coolant(match word(item).as_str() {
+    Ok(Statement::Coolant(match word(item).as_ref() {
         "OFF" => Coolant::Off,
         "ON" => Coolant::On,
         "FLOOD" => Coolant::Flood,
@@ -131,7 +131,7 @@ pub(crate) fn units(items: &mut Items<'_, '_>) -> Read<Statement> {
     let [item] = items.line.items.as_slice() else {
         return Err(items.fault(items.rest(), "UNITS takes one word", FORM));
     };
-    Ok(Statement::Units(match word(item).as_str() {
+    Ok(Statement::Units(match word(item).as_ref() {
         "MM" => Units::Millimetre,
         "INCH" | "INCHES" | "IN" => Units::Inch,
         "CM" => Units::Centimetre,

@@ -15,7 +15,7 @@ pub(crate) fn load_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
         ..LoadTool::default()
     };
     while let Some(item) = items.take() {
-        match word(item).as_str() {
+        match word(item).as_ref() {
             name @ ("ADJUST" | "OSETNO" | "OFSTNO") if tool.register.is_none() => {
                 tool.register = Some(items.whole(name, FORM)?)
             }
@@ -53,7 +53,7 @@ pub(crate) fn tldata(items: &mut Items<'_, '_>) -> Read<Statement> {
     while let Some(item) = items.take() {
         match item.value {
             Some(value) => numbers.push(value),
-            None => kinds.push(word(item)),
+            None => kinds.push(word(item).into_owned()),
         }
     }
     if kinds.is_empty() {
@@ -80,7 +80,7 @@ pub(crate) fn cutcom(items: &mut Items<'_, '_>) -> Read<Statement> {
         "CUTCOM/LEFT, RIGHT, ON or OFF, then XYPLAN, YZPLAN or ZXPLAN and a register as needed";
     let first = items.take().map(word).unwrap_or_default();
     let mut cutcom = Cutcom {
-        side: match first.as_str() {
+        side: match first.as_ref() {
             "LEFT" => Some(Side::Left),
             "RIGHT" => Some(Side::Right),
             "OFF" => Some(Side::Off),
@@ -96,7 +96,7 @@ pub(crate) fn cutcom(items: &mut Items<'_, '_>) -> Read<Statement> {
     };
     while let Some(item) = items.peek() {
         let name = word(item);
-        let plane = match name.as_str() {
+        let plane = match name.as_ref() {
             "XYPLAN" => Some(2),
             "YZPLAN" => Some(0),
             "ZXPLAN" => Some(1),
@@ -106,7 +106,7 @@ pub(crate) fn cutcom(items: &mut Items<'_, '_>) -> Read<Statement> {
             items.next += 1;
             cutcom.plane = plane;
         } else if cutcom.register.is_none()
-            && (item.value.is_some() || matches!(name.as_str(), "ADJUST" | "OSETNO" | "OFSTNO"))
+            && (item.value.is_some() || matches!(name.as_ref(), "ADJUST" | "OSETNO" | "OFSTNO"))
         {
             items.next += usize::from(item.value.is_none());
             cutcom.register = Some(items.whole("the word of a register", FORM)?);

@@ -13,7 +13,7 @@ use super::points::Points;
 use super::record::Record;
 use super::scan::{self, Plain};
 use crate::fault::{ReadError, SyntaxFault};
-use memchr::{memchr2, memmem};
+use memchr::{memchr_iter, memchr2};
 use std::borrow::Cow;
 use std::io::{self, ErrorKind, Read};
 use std::ops::Range;
@@ -46,6 +46,8 @@ pub struct Reader<R> {
     taken: u64,
     /// Number of the line that begins at `start`.
     line: u64,
+    /// The last record was parted by a `$`; the next one is likely to be, too.
+    parted: bool,
 }
 
 /// A physical line; offsets from `start`.
@@ -69,6 +71,7 @@ impl<R: Read> Reader<R> {
             ended: false,
             taken: 0,
             line: 1,
+            parted: false,
         }
     }
 
@@ -81,7 +84,9 @@ impl<R: Read> Reader<R> {
     ///
     /// After a [`ReadError::Syntax`] the next call goes on with the next line.
     pub fn next_record(&mut self) -> Result<Option<Record<'_>>, ReadError> {
-        if let Some((plain, next)) = self.plain() {
+        if !self.parted
+            && let Some((plain, next)) = self.plain()
+        {
             return Ok(Some(self.take_plain(&plain, next)));
         }
         while let Some(physical) = self.physical(0)? {
@@ -92,6 +97,7 @@ impl<R: Read> Reader<R> {
             let whole = !physical.overlong && !text.trim_ascii_end().ends_with(b"$");
             if whole && let Some(statement) = scan::record(text) {
                 self.consume(&physical, 1);
+                self.parted = false;
                 return Ok(Some(Record {
                     line,
                     raw: &self.buffer[raw],
@@ -245,6 +251,7 @@ impl<R: Read> Reader<R> {
         }
         let raw = self.start + begin..self.start + end;
         self.consume(&last, lines);
+        self.parted = lines > 1;
         Ok((!blank).then_some(raw))
     }
 
@@ -331,7 +338,9 @@ fn continued(text: &[u8]) -> Option<usize> {
         Some(rest) if rest.trim_ascii_start().starts_with(b"->") => text.len() - rest.len(),
         _ => 0,
     };
-    let body = match memmem::find(&text[from..], b"$$") {
+    let comment =
+        memchr_iter(b'$', &text[from..]).find(|at| text.get(from + at + 1) == Some(&b'$'));
+    let body = match comment {
         Some(at) => &text[..from + at],
         None => text,
     };

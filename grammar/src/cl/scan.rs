@@ -143,10 +143,17 @@ pub(super) fn record(raw: &[u8]) -> Option<Statement> {
     parted.then(|| statement(&line).ok()).flatten()
 }
 
+/// Items that nearly every statement keeps to.
+const USUAL_ITEMS: usize = 12;
+
 /// The items from `at` to the end of the statement.
 fn items(text: &str, mut at: usize) -> Option<Vec<Item<'_>>> {
     let bytes = text.as_bytes();
-    let mut items = Vec::new();
+    at = skip_blanks(bytes, at);
+    let mut items = match ends(bytes, at) {
+        true => Vec::new(),
+        false => Vec::with_capacity(USUAL_ITEMS),
+    };
     // Whether an item is due: at the beginning and behind a comma.
     let mut due = true;
     loop {
@@ -185,9 +192,6 @@ fn items(text: &str, mut at: usize) -> Option<Vec<Item<'_>>> {
         item.text = &text[at..end];
         item.comma_missing = !due;
         due = false;
-        if items.is_empty() {
-            items.reserve(12);
-        }
         items.push(item);
         at = end;
     }

@@ -1,8 +1,9 @@
 //! Cutter-location files and the small languages of a machine file: text in, typed records out.
 //!
 //! A cutter-location file goes through [`Reader`], which splits it into logical lines in one reused buffer.
-//! Plain `GOTO/` lines, nearly all of a file, are taken by a hand-written scanner; every other line, and any
-//! `GOTO/` the scanner is not sure of, by the pest grammar `line.pest`, one line at a time.
+//! The language is that of the pest grammar `line.pest`; a hand-written scanner gives the same for every usual line
+//! and leaves the others to pest, which reads them or says what is wrong. Runs of plain `GOTO/` lines, nearly all of
+//! a file, can be had as arrays ([`Points`]).
 //! The structural code of a machine ([`parse_chain`]) and the expressions in its file ([`parse_expression`])
 //! have grammars of their own.
 

@@ -2,6 +2,7 @@
 
 mod line;
 mod number;
+mod points;
 mod reader;
 mod record;
 mod scan;
@@ -9,6 +10,7 @@ mod statements;
 mod vocabulary;
 
 pub use line::parse_record;
+pub use points::Points;
 pub use reader::Reader;
 pub use record::*;
 pub use vocabulary::{MajorWord, Usage};

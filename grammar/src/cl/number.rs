@@ -12,16 +12,72 @@ const SHIFTS: [u64; 8] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_
 /// Digits, leading zeros among them, that cannot overflow the mantissa.
 const MOST_DIGITS: usize = 19;
 
-/// The decimal number at the start of `text`, and its length in bytes; `None` if there is none, or if it is beyond
-/// any double.
+/// Eight characters `0`.
+const ZEROS: u64 = 0x3030_3030_3030_3030;
+
+/// The decimal number at `at`, and where it ends; `None` if there is none, or if it is beyond any double.
 ///
 /// A mantissa below 2⁵³ and a power of ten up to 22 are both exact as doubles, so that their quotient is rounded
 /// once, as it should be. Anything longer, or with an exponent, goes to `str::parse`.
+pub(super) fn number(text: &[u8], at: usize) -> Option<(f64, usize)> {
+    if let Some(short) = short_number(text, at) {
+        return Some(short);
+    }
+    let rest = text.get(at..)?;
+    let (value, length) = near_the_end(rest).or_else(|| general(rest))?;
+    Some((value, at + length))
+}
+
+/// A short number with less than a window behind it.
+fn near_the_end(text: &[u8]) -> Option<(f64, usize)> {
+    let mut window = [b' '; 17];
+    window.get_mut(..text.len())?.copy_from_slice(text);
+    short_number(&window, 0)
+}
+
+/// As [`number`], but only a number of up to seven digits on either side of the point, with neither `+` nor
+/// exponent, and not at the very end of the text: without a loop, and without a branch on its sign and length.
 #[inline(always)]
-pub(super) fn number(text: &[u8]) -> Option<(f64, usize)> {
-    // Signs come as they like, so there is no branch on them.
-    let negative = text.first() == Some(&b'-');
-    let begin = usize::from(negative || text.first() == Some(&b'+'));
+pub(super) fn short_number(text: &[u8], at: usize) -> Option<(f64, usize)> {
+    let window: &[u8; 17] = text.get(at..at + 17)?.try_into().ok()?;
+    let negative = window[0] == b'-';
+    let begin = usize::from(negative);
+    let all: [u8; 16] = window[begin..begin + 16].try_into().ok()?;
+    // The first character in the lowest byte.
+    let all = u128::from_le_bytes(all);
+    let [low, high] = [all as u64 ^ ZEROS, (all >> 64) as u64 ^ ZEROS];
+    let others = others(low);
+    if others == 0 {
+        return None;
+    }
+    let point = others.trailing_zeros() & 0x38;
+    let digits = (point / 8) as usize;
+    let mut mantissa = value(low << 8 << (56 - point));
+    let mut decimals = 0;
+    let mut length = digits;
+    if window[begin + digits] == b'.' {
+        // The eight characters behind the point.
+        let fraction = (low >> 8 >> point) | (high << (56 - point));
+        let others = self::others(fraction);
+        if others == 0 {
+            return None;
+        }
+        let end = others.trailing_zeros() & 0x38;
+        decimals = (end / 8) as usize;
+        mantissa = mantissa * SHIFTS[decimals] + value(fraction << 8 << (56 - end));
+        length += 1 + decimals;
+    }
+    if digits + decimals == 0 || is_exponent(window[begin + length]) {
+        return None;
+    }
+    let value = mantissa as i64 as f64 / POWERS[decimals];
+    let sign = u64::from(negative) << 63;
+    Some((f64::from_bits(value.to_bits() | sign), at + begin + length))
+}
+
+/// The number at the start of `text`, of any length, and its length.
+fn general(text: &[u8]) -> Option<(f64, usize)> {
+    let begin = usize::from(matches!(text.first(), Some(b'-' | b'+')));
     let (mut mantissa, mut end) = digits(text, begin, 0);
     let mut count = end - begin;
     let mut decimals = 0;
@@ -34,44 +90,46 @@ pub(super) fn number(text: &[u8]) -> Option<(f64, usize)> {
     if count == 0 {
         return None;
     }
-    let exponent = matches!(text.get(end), Some(b'e' | b'E'));
+    let exponent = text.get(end).is_some_and(|&byte| is_exponent(byte));
     if exponent || count > MOST_DIGITS || mantissa >= 1 << 53 {
         return long(text, end);
     }
-    let value = mantissa as i64 as f64 / POWERS[decimals];
-    let sign = u64::from(negative) << 63;
-    Some((f64::from_bits(value.to_bits() | sign), end))
+    let value = mantissa as f64 / POWERS[decimals];
+    Some((if text[0] == b'-' { -value } else { value }, end))
 }
 
 /// A number whose mantissa ends at `end`, by `str::parse`.
-#[cold]
-fn long(text: &[u8], end: usize) -> Option<(f64, usize)> {
-    let end = match text.get(end) {
-        Some(b'e' | b'E') => {
-            let sign = matches!(text.get(end + 1), Some(b'+' | b'-'));
-            let from = end + 1 + usize::from(sign);
-            let (_, end) = digits(text, from, 0);
-            if end == from {
-                return None;
-            }
-            end
+fn long(text: &[u8], mut end: usize) -> Option<(f64, usize)> {
+    if text.get(end).is_some_and(|&byte| is_exponent(byte)) {
+        let sign = matches!(text.get(end + 1), Some(b'+' | b'-'));
+        let from = end + 1 + usize::from(sign);
+        (_, end) = digits(text, from, 0);
+        if end == from {
+            return None;
         }
-        _ => end,
-    };
+    }
     let token = std::str::from_utf8(&text[..end]).ok()?;
     let value = token.parse::<f64>().ok()?;
     value.is_finite().then_some((value, end))
 }
 
-/// Appends the digits at `at` to `mantissa`, wrapping; gives also where they end.
 #[inline(always)]
+fn is_exponent(byte: u8) -> bool {
+    matches!(byte, b'e' | b'E')
+}
+
+/// Which of eight characters, less [`ZEROS`], are no digits: some bit in the upper half of the byte. Right up to the
+/// first such byte, and to the next behind a point; one above 0xF9 carries into those behind it.
+#[inline(always)]
+fn others(eight: u64) -> u64 {
+    (eight.wrapping_add(0x0606_0606_0606_0606) | eight) & 0xF0F0_F0F0_F0F0_F0F0
+}
+
+/// Appends the digits at `at` to `mantissa`, wrapping; gives also where they end.
 fn digits(text: &[u8], mut at: usize, mut mantissa: u64) -> (u64, usize) {
     while let Some(bytes) = text.get(at..at + 8) {
-        // The first digit in the lowest byte.
-        let eight = u64::from_le_bytes(bytes.try_into().expect("eight bytes"));
-        let eight = eight ^ 0x3030_3030_3030_3030;
-        // A byte above 9 carries into its own upper half; whatever it carries further is behind the first such byte.
-        let others = (eight.wrapping_add(0x0606_0606_0606_0606) | eight) & 0xF0F0_F0F0_F0F0_F0F0;
+        let eight = u64::from_le_bytes(bytes.try_into().expect("eight bytes")) ^ ZEROS;
+        let others = others(eight);
         if others == 0 {
             mantissa = mantissa
                 .wrapping_mul(100_000_000)
@@ -116,12 +174,12 @@ mod tests {
             "",
             ",",
             "\n",
-            ", 12345678",
-            "$$ 12345678",
-            "\u{FA}\u{FA}\u{FA}\u{FA}",
+            ", 12345678, 12345678",
+            "$$ 12345678 12345678",
+            "\u{FA}\u{FA}\u{FA}\u{FA}\u{FA}\u{FA}\u{FA}\u{FA}\u{FA}",
         ] {
             let line = format!("{text}{behind}");
-            let (value, length) = number(line.as_bytes()).expect(text);
+            let (value, length) = number(line.as_bytes(), 0).expect(text);
             assert_eq!(value.to_bits(), expected.to_bits(), "{line}");
             assert_eq!(length, text.len(), "{line}");
         }
@@ -164,9 +222,9 @@ mod tests {
         for text in [
             "", ".", "-", "+.", "e5", "1e", "1e+", "1e400", "--1", "inf", "nan", ":", "/",
         ] {
-            assert_eq!(number(text.as_bytes()), None, "{text}");
+            assert_eq!(number(text.as_bytes(), 0), None, "{text}");
             assert_eq!(
-                number(format!("{text}, 12345678").as_bytes()),
+                number(format!("{text}, 12345678, 12345678").as_bytes(), 0),
                 None,
                 "{text}"
             );
@@ -178,9 +236,9 @@ mod tests {
         for byte in (0..=u8::MAX).filter(|byte| !byte.is_ascii_digit() && !b".eE".contains(byte)) {
             for text in ["7", "12.5", "1234567", "1.2345678"] {
                 let mut line = text.as_bytes().to_vec();
-                line.extend([byte; 9]);
+                line.extend([byte; 17]);
                 assert_eq!(
-                    number(&line),
+                    number(&line, 0),
                     Some((text.parse().unwrap(), text.len())),
                     "{byte}"
                 );

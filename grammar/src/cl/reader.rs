@@ -9,10 +9,11 @@
 //!   must not swallow the move after it.
 
 use super::line::{is_free_text, parse_record};
+use super::points::Points;
 use super::record::Record;
 use super::scan::{self, Plain};
 use crate::fault::{ReadError, SyntaxFault};
-use memchr::{memchr2, memmem};
+use memchr::{memchr_iter, memchr2};
 use std::borrow::Cow;
 use std::io::{self, ErrorKind, Read};
 use std::ops::Range;
@@ -45,6 +46,8 @@ pub struct Reader<R> {
     taken: u64,
     /// Number of the line that begins at `start`.
     line: u64,
+    /// The last record was parted by a `$`; the next one is likely to be, too.
+    parted: bool,
 }
 
 /// A physical line; offsets from `start`.
@@ -68,6 +71,7 @@ impl<R: Read> Reader<R> {
             ended: false,
             taken: 0,
             line: 1,
+            parted: false,
         }
     }
 
@@ -80,7 +84,9 @@ impl<R: Read> Reader<R> {
     ///
     /// After a [`ReadError::Syntax`] the next call goes on with the next line.
     pub fn next_record(&mut self) -> Result<Option<Record<'_>>, ReadError> {
-        if let Some((plain, next)) = self.plain() {
+        if !self.parted
+            && let Some((plain, next)) = self.plain()
+        {
             return Ok(Some(self.take_plain(&plain, next)));
         }
         while let Some(physical) = self.physical(0)? {
@@ -91,6 +97,7 @@ impl<R: Read> Reader<R> {
             let whole = !physical.overlong && !text.trim_ascii_end().ends_with(b"$");
             if whole && let Some(statement) = scan::record(text) {
                 self.consume(&physical, 1);
+                self.parted = false;
                 return Ok(Some(Record {
                     line,
                     raw: &self.buffer[raw],
@@ -99,7 +106,7 @@ impl<R: Read> Reader<R> {
             }
             if let Some(raw) = self.logical(physical)? {
                 let raw = &self.buffer[raw];
-                let statement = match scan::record(raw) {
+                let statement = match scan::joined(raw) {
                     Some(statement) => statement,
                     None => {
                         parse_record(&decode(raw)).map_err(|fault| SyntaxFault { line, ..fault })?
@@ -113,6 +120,41 @@ impl<R: Read> Reader<R> {
             }
         }
         Ok(None)
+    }
+
+    /// Fills `points` with the plain `GOTO/x,y,z[,i,j,k]` records that come next, line after line, at most `most` of
+    /// them: the same that [`next_record`](Self::next_record) would give one by one.
+    ///
+    /// It stops before the first line that is anything else, and where the bytes read so far end; so a run may be
+    /// shorter than the file's. With no point at all, the next record is for [`next_record`](Self::next_record).
+    pub fn next_points(&mut self, points: &mut Points, most: usize) -> io::Result<()> {
+        points.clear(most);
+        while !self.ended
+            && self.pending().len() <= LONGEST
+            && memchr2(b'\n', b'\r', self.pending()).is_none()
+        {
+            self.fill()?;
+        }
+        points.first_line = self.line;
+        while points.len() < most
+            && let Some((plain, next)) = self.plain()
+        {
+            points.push(
+                plain.values,
+                plain.has_axis,
+                self.start..self.start + plain.end,
+            );
+            self.start += next;
+            self.line += 1;
+        }
+        Ok(())
+    }
+
+    /// The text of a record of the points read last.
+    ///
+    /// Any other call that reads on may overwrite it.
+    pub fn text(&self, place: Range<usize>) -> &[u8] {
+        &self.buffer[place]
     }
 
     /// The plain `GOTO` that begins here, and where the next line begins; `None` if there is none, or if more of the
@@ -209,6 +251,7 @@ impl<R: Read> Reader<R> {
         }
         let raw = self.start + begin..self.start + end;
         self.consume(&last, lines);
+        self.parted = lines > 1;
         Ok((!blank).then_some(raw))
     }
 
@@ -295,7 +338,9 @@ fn continued(text: &[u8]) -> Option<usize> {
         Some(rest) if rest.trim_ascii_start().starts_with(b"->") => text.len() - rest.len(),
         _ => 0,
     };
-    let body = match memmem::find(&text[from..], b"$$") {
+    let comment =
+        memchr_iter(b'$', &text[from..]).find(|at| text.get(from + at + 1) == Some(&b'$'));
+    let body = match comment {
         Some(at) => &text[..from + at],
         None => text,
     };

@@ -5,7 +5,7 @@
 use std::borrow::Cow;
 
 use super::line::{Item, Line};
-use super::number::number;
+use super::number::{number, short_number};
 use super::record::Statement;
 use super::statements::statement;
 use super::vocabulary::{self, Behind};
@@ -35,46 +35,63 @@ impl Plain {
 /// or in any way unusual.
 #[inline(always)]
 pub(super) fn plain_goto(text: &[u8]) -> Option<Plain> {
-    let mut at = skip_blanks(text, 0);
+    let mut at = match text.strip_prefix(b"GOTO/") {
+        Some(_) => 4,
+        None => unusual_slash(text)?,
+    };
+    let mut values = [0.0; 6];
+    let mut count = 0;
+    loop {
+        // Behind the slash or the comma.
+        at += 1;
+        (values[count], at) = match short_number(text, at) {
+            Some(found) => found,
+            None => number(text, skip_blanks(text, at))?,
+        };
+        count += 1;
+        if count == 6 {
+            break;
+        }
+        if text.get(at) != Some(&b',') {
+            at = skip_blanks(text, at);
+            if text.get(at) != Some(&b',') {
+                break;
+            }
+        }
+    }
+    at = skip_blanks(text, at);
+    let ends = matches!(text.get(at), None | Some(b'\n' | b'\r'));
+    (ends && (count == 3 || count == 6)).then_some(Plain {
+        values,
+        has_axis: count == 6,
+        end: at,
+    })
+}
+
+/// Where the slash behind `GOTO` stands, with blanks before or behind the word.
+fn unusual_slash(text: &[u8]) -> Option<usize> {
+    let at = skip_blanks(text, 0);
     if text.get(at..at + 4) != Some(b"GOTO") {
         return None;
     }
-    at = skip_blanks(text, at + 4);
-    if text.get(at) != Some(&b'/') {
-        return None;
-    }
-    let mut values = [0.0; 6];
-    for count in 0..6 {
-        // Behind the slash or the comma.
-        at = skip_blanks(text, at + 1);
-        let (value, length) = number(&text[at..])?;
-        values[count] = value;
-        at = skip_blanks(text, at + length);
-        match text.get(at) {
-            Some(b',') if count < 5 => {}
-            None | Some(b'\n' | b'\r') if count == 2 || count == 5 => {
-                return Some(Plain {
-                    values,
-                    has_axis: count == 5,
-                    end: at,
-                });
-            }
-            _ => return None,
-        }
-    }
-    None
+    let at = skip_blanks(text, at + 4);
+    (text.get(at) == Some(&b'/')).then_some(at)
+}
+
+/// What the pieces of a record say that a `$` parted; most likely a `GOTO`.
+pub(super) fn joined(raw: &[u8]) -> Option<Statement> {
+    let plain = plain_goto(raw).filter(|plain| plain.end == raw.len());
+    plain.map(|plain| plain.statement()).or_else(|| record(raw))
 }
 
 /// What a logical line says; `None` if it is unusual, or wrong.
 pub(super) fn record(raw: &[u8]) -> Option<Statement> {
-    if let Some(plain) = plain_goto(raw).filter(|plain| plain.end == raw.len()) {
-        return Some(plain.statement());
-    }
     let text = std::str::from_utf8(raw).ok()?;
-    // Every byte is looked at: faster than looking for the first.
-    if raw
-        .iter()
-        .fold(false, |control, &byte| control | !is_text(byte))
+    let plain = is_plain(raw);
+    if !plain
+        && !raw
+            .iter()
+            .all(|&byte| CLASSES[usize::from(byte)] & TEXT != 0)
     {
         return None;
     }
@@ -84,11 +101,7 @@ pub(super) fn record(raw: &[u8]) -> Option<Statement> {
         // `$$->` begins a directive.
         return (!remark.starts_with("->")).then(|| Statement::Remark(remark.to_owned()));
     }
-    let end = at
-        + raw[at..]
-            .iter()
-            .take_while(|&&byte| is_in_free_word(byte))
-            .count();
+    let end = at + run(&raw[at..], FREE_WORD);
     if !raw.get(at).is_some_and(u8::is_ascii_alphabetic)
         || raw[at..end].eq_ignore_ascii_case(b"TOOL")
     {
@@ -103,13 +116,10 @@ pub(super) fn record(raw: &[u8]) -> Option<Statement> {
         let directive = spelling == "REMARK" && text.starts_with("->");
         return (!directive).then(|| read(spelling, text.to_owned()));
     }
-    if !raw.is_ascii() {
+    if !plain && !raw.is_ascii() {
         return None;
     }
-    let rest = raw[end..]
-        .iter()
-        .take_while(|&&byte| is_in_word(byte))
-        .count();
+    let rest = run(&raw[end..], WORD);
     let word_span = at..end + rest;
     if rest > 0 {
         known = vocabulary::find(&text[word_span.clone()]);
@@ -133,10 +143,17 @@ pub(super) fn record(raw: &[u8]) -> Option<Statement> {
     parted.then(|| statement(&line).ok()).flatten()
 }
 
+/// Items that nearly every statement keeps to.
+const USUAL_ITEMS: usize = 12;
+
 /// The items from `at` to the end of the statement.
 fn items(text: &str, mut at: usize) -> Option<Vec<Item<'_>>> {
     let bytes = text.as_bytes();
-    let mut items = Vec::new();
+    at = skip_blanks(bytes, at);
+    let mut items = match ends(bytes, at) {
+        true => Vec::new(),
+        false => Vec::with_capacity(USUAL_ITEMS),
+    };
     // Whether an item is due: at the beginning and behind a comma.
     let mut due = true;
     loop {
@@ -160,26 +177,21 @@ fn items(text: &str, mut at: usize) -> Option<Vec<Item<'_>>> {
         }
         let mut end = at;
         if matches!(bytes[at], b'0'..=b'9' | b'.' | b'+' | b'-') {
-            let (value, length) = number(&bytes[at..])?;
-            end += length;
+            let (value, behind) = number(bytes, at)?;
+            end = behind;
             item.value = Some(value);
         }
         if !ends_item(bytes, end) {
             item.value = None;
-            while !ends_item(bytes, end) {
-                // A `$` may mean that the record goes on.
-                if bytes[end] == b'$' {
-                    return None;
-                }
-                end += 1;
+            end += run(&bytes[end..], NAME);
+            // A single `$` may mean that the record goes on.
+            if !ends_item(bytes, end) {
+                return None;
             }
         }
         item.text = &text[at..end];
         item.comma_missing = !due;
         due = false;
-        if items.is_empty() {
-            items.reserve(12);
-        }
         items.push(item);
         at = end;
     }
@@ -199,22 +211,70 @@ fn ends_item(text: &[u8], at: usize) -> bool {
 }
 
 /// A byte of a text: no control character but the tab.
-fn is_text(byte: u8) -> bool {
-    (byte >= b' ' && byte != 0x7F) || byte == b'\t'
-}
-
+const TEXT: u8 = 1;
 /// A character that a word with free text behind it may hold.
-fn is_in_free_word(byte: u8) -> bool {
-    byte.is_ascii_alphanumeric() || byte == b'_'
+const FREE_WORD: u8 = 2;
+/// A character of a major word.
+const WORD: u8 = 4;
+/// A character of an item; a `$` may begin a comment.
+const NAME: u8 = 8;
+
+/// What each byte may be.
+const CLASSES: [u8; 256] = {
+    let mut classes = [0; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let character = byte as u8;
+        let mut class = 0;
+        if (character >= b' ' && character != 0x7F) || character == b'\t' {
+            class |= TEXT;
+        }
+        if character.is_ascii_alphanumeric() || character == b'_' {
+            class |= FREE_WORD | WORD;
+        }
+        if character == b'-' || character == b'.' {
+            class |= WORD;
+        }
+        if !matches!(character, b',' | b' ' | b'\t' | b'$') {
+            class |= NAME;
+        }
+        classes[byte] = class;
+        byte += 1;
+    }
+    classes
+};
+
+/// How many bytes at the start are of a class.
+fn run(text: &[u8], class: u8) -> usize {
+    let end = text
+        .iter()
+        .position(|&byte| CLASSES[usize::from(byte)] & class == 0);
+    end.unwrap_or(text.len())
 }
 
-/// A character of a major word.
-fn is_in_word(byte: u8) -> bool {
-    is_in_free_word(byte) || byte == b'-' || byte == b'.'
+/// The bytes are all printable ASCII. Eight are looked at together.
+fn is_plain(text: &[u8]) -> bool {
+    const HIGH: u64 = 0x8080_8080_8080_8080;
+    let (eights, rest) = text.as_chunks();
+    let odd = eights.iter().fold(0, |odd, &eight| {
+        let eight = u64::from_le_bytes(eight);
+        // Below a blank the first wraps; 0x7F and what is beyond ASCII have the highest bit in one of the others.
+        odd | eight.wrapping_sub(0x2020_2020_2020_2020)
+            | eight.wrapping_add(0x0101_0101_0101_0101)
+            | eight
+    });
+    odd & HIGH == 0 && rest.iter().all(|byte| matches!(byte, b' '..=b'~'))
 }
 
 #[inline(always)]
-fn skip_blanks(text: &[u8], mut at: usize) -> usize {
+fn skip_blanks(text: &[u8], at: usize) -> usize {
+    match text.get(at) {
+        Some(b' ' | b'\t') => skip_further_blanks(text, at + 1),
+        _ => at,
+    }
+}
+
+fn skip_further_blanks(text: &[u8], mut at: usize) -> usize {
     while let Some(b' ' | b'\t') = text.get(at) {
         at += 1;
     }

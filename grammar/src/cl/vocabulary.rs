@@ -112,13 +112,21 @@ pub(super) fn find(spelling: &str) -> Option<(&'static str, &'static MajorWord)>
     SPELLINGS[from..]
         .iter()
         .take_while(|(key, ..)| *key == wanted)
-        .find(|(_, name, _)| name.eq_ignore_ascii_case(spelling))
+        .find(|(_, name, _)| {
+            let (name, wanted) = (name.as_bytes(), spelling.as_bytes());
+            name.len() == wanted.len()
+                && name[HEAD.min(name.len())..]
+                    .eq_ignore_ascii_case(&wanted[HEAD.min(name.len())..])
+        })
         .map(|&(_, name, word)| (name, word))
 }
 
-/// The first eight characters, in capitals: enough to tell nearly all words apart.
+/// Characters of a spelling that its key holds.
+const HEAD: usize = 8;
+
+/// The first characters, in capitals: enough to tell nearly all words apart.
 fn key(spelling: &str) -> u64 {
-    let mut bytes = [0; 8];
+    let mut bytes = [0; HEAD];
     for (byte, character) in bytes.iter_mut().zip(spelling.bytes()) {
         *byte = character.to_ascii_uppercase();
     }

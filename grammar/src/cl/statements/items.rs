@@ -70,19 +70,34 @@ impl<'l, 't> Items<'l, 't> {
         Ok(numbers)
     }
 
+    /// All items, if they are exactly so many numbers.
+    fn exactly<const N: usize>(&self) -> Option<[f64; N]> {
+        let mut numbers = [0.0; N];
+        if self.line.items.len() != N {
+            return None;
+        }
+        for (number, item) in numbers.iter_mut().zip(&self.line.items) {
+            *number = item.value?;
+        }
+        Some(numbers)
+    }
+
     /// All items, as exactly so many numbers.
     pub(super) fn array<const N: usize>(&self, form: &str) -> Read<[f64; N]> {
-        let numbers = self.numbers(form)?;
-        <[f64; N]>::try_from(numbers)
-            .map_err(|numbers| self.miscounted(&N.to_string(), numbers.len(), form))
+        match self.exactly() {
+            Some(numbers) => Ok(numbers),
+            None => Err(self.miscounted(&N.to_string(), self.numbers(form)?.len(), form)),
+        }
     }
 
     /// All items: a point, or a point and a tool axis.
     pub(super) fn point(&self, form: &str) -> Read<(Point, Option<Direction>)> {
-        match *self.numbers(form)?.as_slice() {
-            [x, y, z] => Ok(([x, y, z], None)),
-            [x, y, z, i, j, k] => Ok(([x, y, z], Some([i, j, k]))),
-            ref numbers => Err(self.miscounted("3 or 6", numbers.len(), form)),
+        if let Some(point) = self.exactly() {
+            return Ok((point, None));
+        }
+        match self.exactly() {
+            Some([x, y, z, i, j, k]) => Ok(([x, y, z], Some([i, j, k]))),
+            None => Err(self.miscounted("3 or 6", self.numbers(form)?.len(), form)),
         }
     }
 

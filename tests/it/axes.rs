@@ -3,9 +3,6 @@
 //!
 //! Expected numbers are worked out by hand, or read back by the tests' own kinematics.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 mod choice;
 mod edge;
 mod exclusive;

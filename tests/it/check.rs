@@ -1,8 +1,5 @@
 //! `post check`: what it derives, against facts that are known from elsewhere, and the programs it writes.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use crate::common;
 
 use std::collections::BTreeMap;

@@ -1,8 +1,5 @@
 //! The command line: what goes where, exit codes, messages, settings, and that a refused job leaves nothing.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use crate::common;
 
 use std::fs;

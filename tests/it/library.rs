@@ -1,8 +1,5 @@
 //! The library: every machine makes a program of its own, which is read back, and refuses one that it must.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use crate::common;
 
 use std::collections::BTreeSet;

@@ -1,4 +1,8 @@
 //! Tests of the command as its users run it.
+#![allow(
+    clippy::unwrap_used,
+    reason = "clippy lets test functions unwrap, but not the helpers beside them"
+)]
 
 mod axes;
 mod check;

@@ -1,8 +1,5 @@
 //! Memory must not grow with the file. Linux alone: the peak is read from /proc while the command runs.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use crate::{common, generate};
 
 use std::fs::{self, File};

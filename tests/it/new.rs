@@ -1,8 +1,5 @@
 //! `post new`: files that the loader and the check accept, from flags and from answers.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use crate::common;
 
 use std::fs;

@@ -1,8 +1,5 @@
 //! Plugins linked into the command against the same plugins opened as shared libraries: one program.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use crate::common;
 
 use std::collections::BTreeMap;

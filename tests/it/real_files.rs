@@ -3,9 +3,6 @@
 //! Some of the programs are read back here by a reader and a kinematics of this test's own, which share no
 //! code with the command: the machine's numbers are written out again, as matrices.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 mod posted;
 mod read_back;
 mod reduced;

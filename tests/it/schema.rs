@@ -1,8 +1,5 @@
 //! `post schema`, judged by a validator of others: every machine file is in order, and slips are found.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use crate::common;
 
 use std::fs;

@@ -3,9 +3,6 @@
 //! After a change of the output, read each new snapshot as the machine's operator would, then accept it:
 //! `cargo insta review`, or `INSTA_UPDATE=always cargo test --test it snapshots`.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use crate::common;
 
 use std::collections::BTreeSet;

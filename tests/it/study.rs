@@ -1,9 +1,6 @@
 //! `post study`: its figures against those of the papers (Li 2024, harmonic; Sha et al. 2022, parabolic), its tables
 //! and its pictures.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use crate::{common, generate};
 
 use std::collections::BTreeMap;

@@ -41,8 +41,8 @@ pub fn seeded(own: u64) -> Rng {
     Rng(own.wrapping_add(seed.wrapping_mul(0xD1B5_4A32_D192_ED03)))
 }
 
-/// SplitMix64: the same numbers on every system and in every run.
-pub struct Rng(pub u64);
+/// SplitMix64: the same numbers on every system and in every run. [`seeded`] and [`randomised`] make it.
+pub struct Rng(u64);
 
 impl Rng {
     pub fn next(&mut self) -> u64 {

@@ -1,9 +1,6 @@
 //! The comparison of two machine files against isometries: no random setting of the axes finds a larger
 //! deviation than the one told, some come near to it, and the parts add up to the whole.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use nalgebra::{Matrix3, Vector3};
 use post_machine::check::{Check, compare};
 use post_machine::description::{Machine, Source, load};

@@ -1,4 +1,8 @@
 //! Tests of the machine: chain, kinematics both ways, machine file, and what is derived from it.
+#![allow(
+    clippy::unwrap_used,
+    reason = "clippy lets test functions unwrap, but not the helpers beside them"
+)]
 
 mod check;
 mod freedom;

@@ -2,9 +2,6 @@
 //! product that shares nothing with the crate, stays within what is certified, whatever the placement, with CL points
 //! left out or not, compensated or linearised; and nothing of the path is cut off.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 mod certified;
 mod commands;
 mod compensation;

@@ -1,4 +1,8 @@
 //! Tests of posting: from CL text to the events that a dialect is asked to write.
+#![allow(
+    clippy::unwrap_used,
+    reason = "clippy lets test functions unwrap, but not the helpers beside them"
+)]
 
 mod accuracy;
 mod certificate;

@@ -2,9 +2,6 @@
 //!
 //! Texts are written in one line, `;` for the line end; steps as [`Run`] prints them. A row is text, steps, findings.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 mod cycles;
 mod frames;
 mod motion;

@@ -389,9 +389,9 @@ fn walks_close_to_the_pole_keep_to_travel() {
 /// differ by full turns alone one is kept, and it is the cheapest.
 #[test]
 fn full_turns_of_an_endless_axis_are_one_way() {
-    let mut rng = Rng(43);
+    let (rounds, mut rng) = randomised(200, 43);
     let (mut exits, mut posted) = (0, 0);
-    for round in 0..200 {
+    for round in rounds {
         let class = &CLASSES[round % 4];
         let points: Vec<Point> = (0..8)
             .map(|index| {

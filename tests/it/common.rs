@@ -1,11 +1,5 @@
 //! What the tests of the command share: running it, and which machine makes which sample.
 
-#![allow(dead_code, reason = "every test program uses a part of it")]
-#![allow(
-    clippy::unwrap_used,
-    reason = "clippy lets tests unwrap, but not the helpers beside them"
-)]
-
 use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

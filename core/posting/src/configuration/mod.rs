@@ -33,10 +33,6 @@ pub(crate) use trellis::pose;
 
 /// What this stage hands on beside commands.
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all are points, and a box would cost each of them an allocation"
-)]
 pub(crate) enum Configured {
     /// A point with the axis values that were chosen for it.
     Point(Chosen),

@@ -101,10 +101,10 @@ fn chains_without_a_closed_form_are_solved_and_verified() {
 /// left only where it passes a singular place.
 #[test]
 fn a_walk_of_six_rotary_axes_is_followed() {
-    let mut rng = Rng(19);
+    let (rounds, mut rng) = randomised(60, 19);
     let (mut steps, mut followed, mut refused) = (0, 0, 0);
     let mut tip = 0.0f64;
-    for _ in 0..60 {
+    for _ in rounds {
         let machine = Random::of(&mut rng, &[Kind::Free; 6]);
         let reference = &machine.reference;
         let edge_at_zero = across(&mut rng, reference.axis);

@@ -7,7 +7,7 @@ use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
 use super::numeric;
-use super::orientation::{Branches, Orientation, RotarySet, angle};
+use super::orientation::{Branches, Orientation, RotarySet, Two, angle};
 
 /// How far a returned solution may miss the pose when it is put through the forward product: mm per metre
 /// of reach, and radians.
@@ -165,6 +165,14 @@ impl Solver {
         match set.turns {
             Some(turns) if set.free == 0 => turns,
             _ => self.chain.turns(&set.joints),
+        }
+    }
+
+    /// The rotary part, where two free axes alone point the tool in closed form.
+    pub(super) fn two(&self) -> Option<&Two> {
+        match &self.form {
+            Form::Closed { orientation, .. } => orientation.two(),
+            Form::Numeric { .. } => None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Tests of the machine: chain, kinematics both ways, machine file, and what is derived from it.
 
+mod batch;
 mod check;
 mod freedom;
 mod kinematics;

@@ -18,9 +18,9 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 use post_machine::axis_words::{WordValues, Words};
-use post_machine::kinematics::batch::{LANES, Rotaries};
+use post_machine::kinematics::batch::{Axes, LANES, Rotaries, Traces};
 use post_machine::kinematics::orientation::RotarySet;
-use post_machine::kinematics::{Joints, Pose, Solver};
+use post_machine::kinematics::{Joints, Pose, Solver, Trace};
 use post_plugin::Format;
 
 const POINTS: u64 = 1_000_000;
@@ -38,7 +38,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         })
         .collect();
     let axes: Vec<Vector3<f64>> = poses.iter().map(|pose| pose.axis).collect();
-    say("ns a point       inverse: one  batch   sines: libm   step   words that differ");
+    say(
+        "ns a point       inverse: one  batch   sines: libm   step   place and trace: one  batch   words that differ",
+    );
     for name in ["ac-trunnion", "head-head", "nutating-head"] {
         let machine = job::machine(name, &[])?;
         let solver = machine
@@ -87,9 +89,33 @@ fn main() -> Result<(), Box<dyn Error>> {
                 black_box(solver.turns_printed(set, joints));
             }
         });
+        let mut traces: Vec<Trace> = printed
+            .iter()
+            .map(|(_, joints, _)| Trace {
+                joints: *joints,
+                turns: solver.chain().turns(joints),
+                ..Trace::default()
+            })
+            .collect();
+        let settled = nanoseconds(|| {
+            for (trace, pose) in traces.iter_mut().zip(&poses) {
+                let turns = trace.turns;
+                black_box(solver.place(pose.tip, &mut trace.joints, &turns).is_ok());
+                solver.chain().trace(trace);
+            }
+        });
+        let tips: Vec<Vector3<f64>> = poses.iter().map(|pose| pose.tip).collect();
+        let (mut at, mut forward) = (Axes::default(), Traces::default());
+        let together = nanoseconds(|| {
+            for tips in tips.chunks(LANES) {
+                black_box(solver.place_all(tips, &mut at));
+                solver.chain().trace_all(&at, tips.len(), &mut forward);
+                black_box(&forward);
+            }
+        });
         let differ = differing(&solver, &words, &poses, &printed);
         say(&format!(
-            "{name:<16} {one:>12.1} {batch:>6.1} {evaluated:>13.1} {stepped:>6.1} {differ:>19}"
+            "{name:<16} {one:>12.1} {batch:>6.1} {evaluated:>13.1} {stepped:>6.1} {settled:>22.1} {together:>6.1} {differ:>19}"
         ));
     }
     Ok(())

@@ -3,6 +3,7 @@
 
 use nalgebra::Vector3;
 
+use super::batch::Axes;
 use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns, stepped};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
@@ -246,6 +247,16 @@ impl Solver {
                 numeric::approach(&self.chain, linear, tip, joints);
                 Ok(())
             }
+        }
+    }
+
+    /// [`Solver::place`] of a batch: puts the linear axes of `at` where the tips stand on `tips` (mm, part frame; at
+    /// most [`super::batch::LANES`]), the rotary ones being where its sines and cosines have them. False, and nothing
+    /// done, where the chain asks for more than that: its points are left to [`Solver::place`].
+    pub fn place_all(&self, tips: &[Vector3<f64>], at: &mut Axes) -> bool {
+        match &self.form {
+            Form::Closed { linear, .. } => linear.place_batch(&self.chain, tips, at),
+            Form::Numeric { .. } => false,
         }
     }
 

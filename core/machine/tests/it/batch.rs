@@ -1,8 +1,8 @@
 //! Many points at once: the bits of one after the other.
 
-use post_machine::kinematics::batch::{LANES, Rotaries};
+use post_machine::kinematics::batch::{Axes, LANES, Rotaries, Traces};
 use post_machine::kinematics::chain::stepped;
-use post_machine::kinematics::{Pose, Solver};
+use post_machine::kinematics::{Pose, Solver, Trace};
 use post_testkit::{Kind, Random, randomised};
 
 /// Angles, sines and cosines of both branches are those of the single point, bit by bit; what is left to it is on a
@@ -72,6 +72,69 @@ fn a_batch_has_the_bits_of_its_points() {
     }
     println!("{solved} points solved, {left} left to the single point");
     assert!(solved > 2_000 && left > 200);
+}
+
+/// Linear axes and forward product of a batch are those of its points, bit by bit.
+#[test]
+fn a_batch_is_placed_and_traced_with_the_bits_of_its_points() {
+    let (rounds, mut rng) = randomised(200, 63);
+    let (mut at, mut out) = (Axes::default(), Traces::default());
+    let (mut placed, mut left) = (0, 0);
+    for round in rounds {
+        let mut kinds = vec![Kind::Linear; 3 + usize::from(round % 8 == 0)];
+        kinds.extend([Kind::Free; 2]);
+        kinds.extend(vec![Kind::Held; round as usize % 2]);
+        let machine = Random::of(&mut rng, &kinds);
+        let chain = machine.reference.chain();
+        let Ok(solver) = Solver::new(chain, &machine.free, machine.held) else {
+            continue;
+        };
+        let chain = solver.chain();
+        let count = 1 + rng.pick(LANES);
+        let tips: Vec<_> = (0..count).map(|_| rng.point(300.0)).collect();
+        let mut singles: Vec<Trace> = Vec::new();
+        for lane in 0..count {
+            let mut trace = Trace {
+                joints: machine.values(&mut rng),
+                ..Trace::default()
+            };
+            trace.turns = chain.turns(&trace.joints);
+            for (index, value) in trace.joints.iter().enumerate() {
+                at.joints[index][lane] = *value;
+                (at.sines[index][lane], at.cosines[index][lane]) = trace.turns.of(index);
+            }
+            singles.push(trace);
+        }
+        if solver.place_all(&tips, &mut at) {
+            placed += count;
+            for (trace, tip) in singles.iter_mut().zip(&tips) {
+                let turns = trace.turns;
+                solver
+                    .place(*tip, &mut trace.joints, &turns)
+                    .expect("placed");
+            }
+        } else {
+            left += count;
+        }
+        chain.trace_all(&at, count, &mut out);
+        for (lane, trace) in singles.iter_mut().enumerate() {
+            chain.trace(trace);
+            for (index, joint) in chain.joints().iter().enumerate() {
+                assert_eq!(
+                    at.joints[index][lane].to_bits(),
+                    trace.joints[index].to_bits()
+                );
+                if joint.rotary {
+                    assert_eq!(out.tip_rates[index][lane], trace.tip_rates[index]);
+                    assert_eq!(out.axes[index][lane], trace.axes[index]);
+                }
+            }
+            assert_eq!(out.tip[lane], trace.pose.tip);
+            assert_eq!(out.axis[lane], trace.pose.axis);
+        }
+    }
+    println!("{placed} points placed, {left} left to the single point");
+    assert!(placed > 1_000 && left > 500);
 }
 
 /// A short step from a known angle ends within a rounding error of where the library's sine and cosine are; what is no

@@ -182,9 +182,9 @@ impl Two {
                     angles.angle[lane] = libm::atan2(angles.sine[lane], angles.cosine[lane]);
                 }
             }
-            for lane in 0..count {
-                first.sine[lane] *= per_square[lane];
-                first.cosine[lane] *= per_square[lane];
+            for (lane, per_square) in per_square[..count].iter().enumerate() {
+                first.sine[lane] *= per_square;
+                first.cosine[lane] *= per_square;
                 second.sine[lane] *= self.per_square;
                 second.cosine[lane] *= self.per_square;
             }

@@ -195,11 +195,11 @@ fn eight(text: u64) -> u64 {
 fn masked_format<const DECIMALS: usize>(out: &mut [u8], value: f64) -> usize {
     let count = (value.abs() * POWERS[DECIMALS] + 0.5) as u64;
     debug_assert!(count < 100_000_000);
-    let fours = count / 10_000 | (count % 10_000) << 32;
+    let fours = count / 10_000 | ((count % 10_000) << 32);
     let hundreds = ((fours * 10_486) >> 20) & 0x0000_007f_0000_007f;
-    let pairs = hundreds | (fours - 100 * hundreds) << 16;
+    let pairs = hundreds | ((fours - 100 * hundreds) << 16);
     let tens = ((pairs * 103) >> 10) & 0x000f_000f_000f_000f;
-    let digits = tens | (pairs - 10 * tens) << 8;
+    let digits = tens | ((pairs - 10 * tens) << 8);
     // No zeros in front, but one before the point.
     let whole = 8 - DECIMALS;
     let skipped = ((digits.trailing_zeros() / 8) as usize).min(whole - 1);

@@ -144,7 +144,7 @@ pub fn write_file(out: &mut impl Write, count: u64) -> io::Result<()> {
 }
 
 /// Point and tool axis: a sine in both directions, 120 by 80 mm, the tool leaning 20 degrees forward.
-fn point(index: u64) -> [f64; 6] {
+pub fn point(index: u64) -> [f64; 6] {
     let row = index / ROW;
     let along = (index % ROW) as f64 / (ROW - 1) as f64;
     let across = (row % ROWS) as f64 / (ROWS - 1) as f64;

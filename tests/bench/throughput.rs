@@ -1,9 +1,24 @@
-//! Whole-job speed as a ratio to a floor measured in the same run. `cargo bench`
+//! Whole-job speed as a ratio to two floors measured in the same run. `cargo bench --bench throughput`
 //!
-//! The floor reads the same file, parses the six numbers of every line, and formats and writes five: what
-//! any program that turns such a file into another must do, by the fastest scalar means known to us. The job
-//! is reading, kinematics, certificate, feed and dialect (through the plugin boundary) on one core.
-//! Runs alternate, and medians are compared, so that the machine's drift hits both alike.
+//! The floors read the same file, parse the six numbers of every line, and format and write five: what any program that
+//! turns such a file into another must do, by plain loops and by the fastest scalar means known to us
+//! (`common/floor.rs`). The job is reading, kinematics, certificate, feed and dialect (through the plugin boundary) on
+//! one core, its text thrown away; the command is the `post` of this build as a process, its program in a file, and it
+//! stands beside floors that write a file too. Runs alternate, and medians are compared, so that the machine's drift
+//! hits all alike.
+//!
+//! Instructions do not drift. Those of a point are the difference between two files, over their points:
+//!
+//! ```sh
+//! for n in 20000 40000; do
+//!     cargo run --release --example generate -- $n > wave-$n.cls
+//!     valgrind --tool=callgrind --callgrind-out-file=/dev/null target/release/post wave-$n.cls \
+//!         --machine ac-trunnion --set control.tcp=post --tool-length 100 --quiet --output wave.nc
+//! done
+//! ```
+
+#[path = "common/floor.rs"]
+mod floor;
 
 #[path = "common/job.rs"]
 mod job;
@@ -14,8 +29,9 @@ mod generate;
 
 use std::error::Error;
 use std::fs::{self, File};
-use std::io::{BufWriter, Read, Write};
+use std::io::{BufWriter, Write};
 use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use post_posting::Job;
@@ -24,6 +40,17 @@ use post_posting::Job;
 const POINTS: u64 = 1_000_000;
 const RUNS: usize = 7;
 
+/// Machine, and what keeps the tip.
+const CASES: [(&str, &str); 4] = [
+    ("ac-trunnion", "post"),
+    ("ac-trunnion", "control"),
+    ("head-head", "post"),
+    ("head-head", "control"),
+];
+
+/// Text thrown away.
+const NOWHERE: &str = "/dev/null";
+
 fn main() -> Result<(), Box<dyn Error>> {
     let points = std::env::args()
         .skip(1)
@@ -31,166 +58,134 @@ fn main() -> Result<(), Box<dyn Error>> {
         .unwrap_or(POINTS);
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("wave.cls");
+    let program = folder.path().join("wave.nc");
     let mut file = BufWriter::new(File::create(&path)?);
     generate::write_file(&mut file, points)?;
     file.flush()?;
     drop(file);
+    agree(&path, folder.path())?;
     say(&format!(
         "{points} five-axis points, {} MB, median of {RUNS} runs, one core",
         fs::metadata(&path)?.len() / 1_000_000
     ));
-    let machines = ["ac-trunnion", "head-head", "nutating-head"];
-    let mut floors = Vec::new();
-    let mut jobs = vec![Vec::new(); machines.len()];
+    let mut jobs = Table::new("job, its text thrown away", points);
+    let mut commands = Table::new("command, its program in a file", points);
     for _ in 0..RUNS {
-        floors.push(timed(|| floor(&path))?);
-        for (machine, times) in machines.iter().zip(&mut jobs) {
-            let settings = [
-                "control.tcp=\"post\"".to_owned(),
-                "control.dialect=\"fanuc\"".to_owned(),
-            ];
-            times.push(timed(|| {
-                job::run(
-                    &path,
-                    machine,
-                    &settings,
-                    Job {
-                        tool_length: Some(100.0),
-                        ..Job::default()
-                    },
-                )
-                .map(drop)
-            })?);
+        let nowhere = Path::new(NOWHERE);
+        for (table, output) in [(&mut jobs, nowhere), (&mut commands, &program)] {
+            table.time("floor, plain", || floor::plain(&path, output))?;
+            table.time("floor, masked", || floor::masked(&path, output))?;
+        }
+        for (machine, tcp) in CASES {
+            let name = format!("{machine}, {tcp}");
+            jobs.time(&name, || job(&path, machine, tcp))?;
+            commands.time(&name, || command(&path, machine, tcp, &program))?;
         }
     }
-    let floor = median(&mut floors);
-    tell("floor", floor, floor, points);
-    for (machine, times) in machines.iter().zip(&mut jobs) {
-        tell(machine, median(times), floor, points);
-    }
+    jobs.tell();
+    commands.tell();
     Ok(())
+}
+
+/// Both floors do the same work.
+fn agree(path: &Path, folder: &Path) -> Result<(), Box<dyn Error>> {
+    let [plain, masked] = ["plain", "masked"].map(|name| folder.join(name));
+    floor::plain(path, &plain)?;
+    floor::masked(path, &masked)?;
+    if fs::read(plain)? == fs::read(masked)? {
+        Ok(())
+    } else {
+        Err("the floors write different files".into())
+    }
+}
+
+fn job(path: &Path, machine: &str, tcp: &str) -> Result<(), Box<dyn Error>> {
+    let settings = [
+        format!("control.tcp={tcp:?}"),
+        "control.dialect=\"fanuc\"".to_owned(),
+    ];
+    let job = Job {
+        tool_length: Some(100.0),
+        ..Job::default()
+    };
+    job::run(path, machine, &settings, job).map(drop)
+}
+
+fn command(path: &Path, machine: &str, tcp: &str, program: &Path) -> Result<(), Box<dyn Error>> {
+    let status = Command::new(env!("CARGO_BIN_EXE_post"))
+        .arg(path)
+        .args(["--machine", machine, "--tool-length", "100", "--quiet"])
+        .args(["--set", "control.dialect=fanuc"])
+        .args(["--set", &format!("control.tcp={tcp}")])
+        .arg("--output")
+        .arg(program)
+        .status()?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(format!("post on {machine}: {status}").into())
+    }
 }
 
 fn say(line: &str) {
     let _ = writeln!(std::io::stdout(), "{line}");
 }
 
-fn tell(name: &str, time: Duration, floor: Duration, points: u64) {
-    let seconds = time.as_secs_f64();
-    say(&format!(
-        "{name:<16} {:>7.1} ns a point {:>10.0} blocks/s {:>6.2} times the floor",
-        seconds / points as f64 * 1e9,
-        points as f64 / seconds,
-        seconds / floor.as_secs_f64()
-    ));
+/// Times of things that are compared, the two floors first.
+struct Table {
+    title: &'static str,
+    points: u64,
+    rows: Vec<(String, Vec<Duration>)>,
 }
 
-fn timed(mut run: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<Duration, Box<dyn Error>> {
-    let start = Instant::now();
-    run()?;
-    Ok(start.elapsed())
+impl Table {
+    fn new(title: &'static str, points: u64) -> Self {
+        Self {
+            title,
+            points,
+            rows: Vec::new(),
+        }
+    }
+
+    /// Runs something once.
+    fn time(
+        &mut self,
+        name: &str,
+        run: impl FnOnce() -> Result<(), Box<dyn Error>>,
+    ) -> Result<(), Box<dyn Error>> {
+        let start = Instant::now();
+        run()?;
+        let time = start.elapsed();
+        match self.rows.iter_mut().find(|(known, _)| known == name) {
+            Some((_, times)) => times.push(time),
+            None => self.rows.push((name.to_owned(), vec![time])),
+        }
+        Ok(())
+    }
+
+    fn tell(&mut self) {
+        let medians: Vec<f64> = self
+            .rows
+            .iter_mut()
+            .map(|(_, times)| median(times).as_secs_f64())
+            .collect();
+        say(&format!(
+            "\n{:<32} ns a point   blocks/s  times plain  times masked",
+            self.title
+        ));
+        for ((name, _), seconds) in self.rows.iter().zip(&medians) {
+            say(&format!(
+                "{name:<32} {:>10.1} {:>10.0} {:>12.2} {:>13.2}",
+                seconds / self.points as f64 * 1e9,
+                self.points as f64 / seconds,
+                seconds / medians[0],
+                seconds / medians[1],
+            ));
+        }
+    }
 }
 
 fn median(times: &mut [Duration]) -> Duration {
     times.sort();
     times[times.len() / 2]
-}
-
-/// Read, parse six numbers a line, format and write five.
-fn floor(path: &Path) -> Result<(), Box<dyn Error>> {
-    let mut input = File::open(path)?;
-    let mut output = File::create("/dev/null")?;
-    let mut buffer = vec![0; 1 << 20];
-    let mut kept = 0;
-    let mut out = Vec::with_capacity(1 << 21);
-    loop {
-        let read = input.read(&mut buffer[kept..])?;
-        if read == 0 {
-            return Ok(());
-        }
-        let filled = kept + read;
-        let mut start = 0;
-        while let Some(length) = memchr::memchr(b'\n', &buffer[start..filled]) {
-            let line = &buffer[start..start + length];
-            start += length + 1;
-            if let Some(numbers) = line.strip_prefix(b"GOTO/") {
-                let mut at = 0;
-                let mut values = [0.0; 6];
-                for value in &mut values {
-                    *value = parse(numbers, &mut at);
-                }
-                for (letter, value, decimals) in [
-                    (b'X', values[0], 4),
-                    (b'Y', values[1], 4),
-                    (b'Z', values[2], 4),
-                    (b'A', values[3], 3),
-                    (b'C', values[4], 3),
-                ] {
-                    out.push(letter);
-                    format(&mut out, value, decimals);
-                    out.push(b' ');
-                }
-                out.push(b'\n');
-            }
-        }
-        buffer.copy_within(start..filled, 0);
-        kept = filled - start;
-        output.write_all(&out)?;
-        out.clear();
-    }
-}
-
-const POWERS: [f64; 10] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
-
-/// The number at `at`, and the comma behind it.
-fn parse(text: &[u8], at: &mut usize) -> f64 {
-    let mut mantissa: u64 = 0;
-    let mut decimals = 0;
-    let mut point = false;
-    let minus = text.get(*at) == Some(&b'-');
-    *at += usize::from(minus);
-    while let Some(&byte) = text.get(*at) {
-        *at += 1;
-        let digit = byte.wrapping_sub(b'0');
-        if digit < 10 {
-            mantissa = mantissa * 10 + u64::from(digit);
-            decimals += usize::from(point);
-        } else if byte == b'.' {
-            point = true;
-        } else {
-            break;
-        }
-    }
-    let value = mantissa as f64 / POWERS[decimals];
-    if minus { -value } else { value }
-}
-
-const PAIRS: &[u8; 200] = b"0001020304050607080910111213141516171819\
-2021222324252627282930313233343536373839\
-4041424344454647484950515253545556575859\
-6061626364656667686970717273747576777879\
-8081828384858687888990919293949596979899";
-
-fn format(out: &mut Vec<u8>, value: f64, decimals: usize) {
-    let mut count = (value.abs() * POWERS[decimals] + 0.5) as u64;
-    let mut text = [b'0'; 20];
-    let mut at = text.len();
-    while count >= 100 || text.len() - at < decimals {
-        let pair = (count % 100) as usize * 2;
-        count /= 100;
-        at -= 2;
-        text[at..at + 2].copy_from_slice(&PAIRS[pair..pair + 2]);
-    }
-    while count > 0 || text.len() - at <= decimals {
-        at -= 1;
-        text[at] = b'0' + (count % 10) as u8;
-        count /= 10;
-    }
-    if value < 0.0 {
-        out.push(b'-');
-    }
-    let point = text.len() - decimals;
-    out.extend_from_slice(&text[at..point]);
-    out.push(b'.');
-    out.extend_from_slice(&text[point..]);
 }

@@ -3,11 +3,12 @@
 
 use nalgebra::Vector3;
 
-use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns};
+use super::batch::Axes;
+use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns, stepped};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
 use super::numeric;
-use super::orientation::{Branches, Orientation, RotarySet, angle};
+use super::orientation::{Branches, Orientation, RotarySet, Two, angle};
 
 /// How far a returned solution may miss the pose when it is put through the forward product: mm per metre
 /// of reach, and radians.
@@ -168,6 +169,32 @@ impl Solver {
         }
     }
 
+    /// Sines and cosines of the printed values of a set: those of the set, a short step on (see [`stepped`]), or, where
+    /// they did not come with it or the step is long, evaluated anew.
+    #[inline]
+    pub fn turns_printed(&self, set: &RotarySet, printed: &Joints) -> Turns {
+        let Some(known) = set.turns.filter(|_| set.free == 0) else {
+            return self.chain.turns(printed);
+        };
+        let mut turns = known;
+        for (index, joint) in self.chain.joints().iter().enumerate() {
+            if joint.rotary {
+                let (sine, cosine) = stepped(set.joints[index], known.of(index), printed[index])
+                    .unwrap_or_else(|| libm::sincos(printed[index]));
+                turns.set(index, sine, cosine);
+            }
+        }
+        turns
+    }
+
+    /// The rotary part, where two free axes alone point the tool in closed form.
+    pub(super) fn two(&self) -> Option<&Two> {
+        match &self.form {
+            Form::Closed { orientation, .. } => orientation.two(),
+            Form::Numeric { .. } => None,
+        }
+    }
+
     /// The free joint nearest to the tool.
     pub fn last_rotary(&self) -> usize {
         match &self.form {
@@ -220,6 +247,16 @@ impl Solver {
                 numeric::approach(&self.chain, linear, tip, joints);
                 Ok(())
             }
+        }
+    }
+
+    /// [`Solver::place`] of a batch: puts the linear axes of `at` where the tips stand on `tips` (mm, part frame; at
+    /// most [`super::batch::LANES`]), the rotary ones being where its sines and cosines have them. False, and nothing
+    /// done, where the chain asks for more than that: its points are left to [`Solver::place`].
+    pub fn place_all(&self, tips: &[Vector3<f64>], at: &mut Axes) -> bool {
+        match &self.form {
+            Form::Closed { linear, .. } => linear.place_batch(&self.chain, tips, at),
+            Form::Numeric { .. } => false,
         }
     }
 

@@ -3,6 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::batch::{Axes, LANES};
 use super::chain::{Chain, Joints, MAX_AXES, Turns, turn};
 use super::fault::{NoClosedForm, Unreachable};
 
@@ -165,6 +166,43 @@ impl Linear {
             joints[joint] = *value;
         }
         Ok(())
+    }
+
+    /// [`Linear::place`] of a batch: the linear axes of `at` for `tips`. False, and nothing done, where the linear
+    /// axes do not stand side by side, or there are more than three.
+    pub(super) fn place_batch(&self, chain: &Chain, tips: &[Vector3<f64>], at: &mut Axes) -> bool {
+        let Some(inverse) = self.inverse.filter(|_| !self.more) else {
+            return false;
+        };
+        let axes = chain.joints();
+        let count = tips.len().min(LANES);
+        let mut targets = [Vector3::zeros(); LANES];
+        let mut ends = [chain.tip(); LANES];
+        for (target, tip) in targets.iter_mut().zip(tips) {
+            *target = tip + chain.mount();
+        }
+        for (index, joint) in axes[..self.first].iter().enumerate() {
+            let turns = at.sines[index].iter().zip(&at.cosines[index]);
+            for (target, (sine, cosine)) in targets[..count].iter_mut().zip(turns) {
+                let arm = *target - joint.point;
+                *target = joint.point + turn(arm, joint.direction, -sine, *cosine);
+            }
+        }
+        for index in (self.last + 1..axes.len()).rev() {
+            let joint = &axes[index];
+            let turns = at.sines[index].iter().zip(&at.cosines[index]);
+            for (end, (sine, cosine)) in ends[..count].iter_mut().zip(turns) {
+                let arm = *end - joint.point;
+                *end = joint.point + turn(arm, joint.direction, *sine, *cosine);
+            }
+        }
+        for (lane, (target, end)) in targets.iter().zip(&ends).take(count).enumerate() {
+            let values = inverse * (target - end);
+            for (value, joint) in values.iter().zip(self.joints) {
+                at.joints[joint][lane] = *value;
+            }
+        }
+        true
     }
 
     /// [`Linear::place`] with more than three linear axes; those that are held stand where `joints` has them.

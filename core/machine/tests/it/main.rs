@@ -4,6 +4,7 @@
     reason = "clippy lets test functions unwrap, but not the helpers beside them"
 )]
 
+mod batch;
 mod check;
 mod freedom;
 mod kinematics;

@@ -1,0 +1,160 @@
+//! What a point costs by the functions for one point and by those for a batch. `cargo bench --bench kernels`
+//!
+//! The points are those of the generated file. The last column counts the printed linear words that are others where
+//! sines and cosines come by a short step: none may be.
+
+#[path = "common/job.rs"]
+#[expect(dead_code, reason = "the machines alone are asked for")]
+mod job;
+
+#[path = "generate.rs"]
+#[expect(dead_code, reason = "its `main` is that of the example")]
+mod generate;
+
+use std::error::Error;
+use std::hint::black_box;
+use std::io::Write;
+use std::time::Instant;
+
+use nalgebra::Vector3;
+use post_machine::axis_words::{WordValues, Words};
+use post_machine::kinematics::batch::{Axes, LANES, Rotaries, Traces};
+use post_machine::kinematics::orientation::RotarySet;
+use post_machine::kinematics::{Joints, Pose, Solver, Trace};
+use post_plugin::Format;
+
+const POINTS: u64 = 1_000_000;
+const RUNS: usize = 7;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let poses: Vec<Pose> = (0..POINTS)
+        .map(|index| {
+            let [x, y, z, i, j, k] = generate::point(index);
+            Pose {
+                tip: Vector3::new(x, y, z),
+                axis: Vector3::new(i, j, k),
+                ..Pose::default()
+            }
+        })
+        .collect();
+    let axes: Vec<Vector3<f64>> = poses.iter().map(|pose| pose.axis).collect();
+    say(
+        "ns a point       inverse: one  batch   sines: libm   step   place and trace: one  batch   words that differ",
+    );
+    for name in ["ac-trunnion", "head-head", "nutating-head"] {
+        let machine = job::machine(name, &[])?;
+        let solver = machine
+            .solver(100.0)
+            .map_err(|lack| format!("{name}: {lack:?}"))?;
+        let format = Format {
+            words: vec![3; machine.axes.len()],
+            ..Format::default()
+        };
+        let mut words = Words::new(&machine, &format);
+        words.set_zero(&solver).ok_or("no zero")?;
+        let one = nanoseconds(|| {
+            for pose in &poses {
+                if let Ok(branches) = solver.orient(pose, 1e-3) {
+                    for index in 0..branches.count() {
+                        black_box(solver.angles(&branches, index));
+                    }
+                }
+            }
+        });
+        let mut out = Rotaries::default();
+        let batch = nanoseconds(|| {
+            for axes in axes.chunks(LANES) {
+                black_box(solver.orient_all(axes, &mut out));
+                black_box(&out);
+            }
+        });
+        let printed: Vec<(RotarySet, Joints, WordValues)> = poses
+            .iter()
+            .filter_map(|pose| {
+                let branches = solver.orient(pose, 1e-3).ok()?;
+                let set = solver.angles(&branches, 0);
+                let mut joints = set.joints;
+                let mut values = WordValues::default();
+                words.print_rotary(&mut joints, &mut values);
+                Some((set, joints, values))
+            })
+            .collect();
+        let evaluated = nanoseconds(|| {
+            for (_, joints, _) in &printed {
+                black_box(solver.chain().turns(joints));
+            }
+        });
+        let stepped = nanoseconds(|| {
+            for (set, joints, _) in &printed {
+                black_box(solver.turns_printed(set, joints));
+            }
+        });
+        let mut traces: Vec<Trace> = printed
+            .iter()
+            .map(|(_, joints, _)| Trace {
+                joints: *joints,
+                turns: solver.chain().turns(joints),
+                ..Trace::default()
+            })
+            .collect();
+        let settled = nanoseconds(|| {
+            for (trace, pose) in traces.iter_mut().zip(&poses) {
+                let turns = trace.turns;
+                black_box(solver.place(pose.tip, &mut trace.joints, &turns).is_ok());
+                solver.chain().trace(trace);
+            }
+        });
+        let tips: Vec<Vector3<f64>> = poses.iter().map(|pose| pose.tip).collect();
+        let (mut at, mut forward) = (Axes::default(), Traces::default());
+        let together = nanoseconds(|| {
+            for tips in tips.chunks(LANES) {
+                black_box(solver.place_all(tips, &mut at));
+                solver.chain().trace_all(&at, tips.len(), &mut forward);
+                black_box(&forward);
+            }
+        });
+        let differ = differing(&solver, &words, &poses, &printed);
+        say(&format!(
+            "{name:<16} {one:>12.1} {batch:>6.1} {evaluated:>13.1} {stepped:>6.1} {settled:>22.1} {together:>6.1} {differ:>19}"
+        ));
+    }
+    Ok(())
+}
+
+/// Linear words that are others with sines and cosines by a short step.
+fn differing(
+    solver: &Solver,
+    words: &Words,
+    poses: &[Pose],
+    printed: &[(RotarySet, Joints, WordValues)],
+) -> usize {
+    let of = |turns, pose: &Pose, joints: &Joints, values: &WordValues| {
+        let (mut joints, mut values) = (*joints, *values);
+        let placed = solver.place(pose.tip, &mut joints, &turns).is_ok();
+        words.print_linear(&mut joints, &mut values);
+        (placed, values.map(f64::to_bits))
+    };
+    let both = poses.iter().zip(printed);
+    both.filter(|(pose, (set, joints, values))| {
+        of(solver.chain().turns(joints), pose, joints, values)
+            != of(solver.turns_printed(set, joints), pose, joints, values)
+    })
+    .count()
+}
+
+/// Of a point, median of a few runs.
+fn nanoseconds(mut run: impl FnMut()) -> f64 {
+    let mut times: Vec<f64> = (0..RUNS)
+        .map(|_| {
+            let start = Instant::now();
+            run();
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[RUNS / 2] * 1e9 / POINTS as f64
+}
+
+fn say(line: &str) {
+    let _ = writeln!(std::io::stdout(), "{line}");
+}

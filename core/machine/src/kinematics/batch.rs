@@ -4,7 +4,7 @@
 
 use nalgebra::Vector3;
 
-use super::chain::{Chain, MAX_AXES, turn};
+use super::chain::{Chain, MAX_AXES, Turns, turn};
 use super::fault::POLE;
 use super::inverse::Solver;
 use super::orientation::Two;
@@ -83,6 +83,18 @@ impl Default for Traces {
             tip_rates: [ZERO; MAX_AXES],
             axes: [ZERO; MAX_AXES],
         }
+    }
+}
+
+impl Turns {
+    /// Of one point of a batch.
+    #[inline]
+    pub fn of_lane(at: &Axes, lane: usize) -> Self {
+        let mut turns = Self::default();
+        for index in 0..MAX_AXES {
+            turns.set(index, at.sines[index][lane], at.cosines[index][lane]);
+        }
+        turns
     }
 }
 

@@ -11,7 +11,7 @@ mod numeric;
 pub mod orientation;
 pub mod travel;
 
-pub use chain::{Chain, Joint, Joints, MAX_AXES, Pose, Trace};
+pub use chain::{Chain, Joint, Joints, MAX_AXES, Pose, Trace, Turns};
 pub use fault::{NoClosedForm, POLE, Unreachable};
 pub use inverse::{Freedom, Solver};
 pub use linear::Second;

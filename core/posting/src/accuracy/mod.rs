@@ -13,9 +13,11 @@ mod even;
 mod fewest;
 mod linearise;
 mod node;
+mod placed_batch;
 mod run;
 
 pub use deviation::{Bound, Move, Tolerances};
 pub use linearise::{Linearise, Piece, Stuck};
 pub use node::{Node, Placer, Refused};
+pub(crate) use placed_batch::PlacedBatch;
 pub use run::Run;

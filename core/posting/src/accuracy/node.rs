@@ -80,9 +80,9 @@ pub enum Refused {
 #[derive(Clone, Debug)]
 pub struct Placer {
     solver: Solver,
-    words: Words,
+    pub(super) words: Words,
     turning: Turning,
-    linear: Vec<Limit>,
+    pub(super) linear: Vec<Limit>,
     /// The branch of the last point: most likely that of the next.
     branch: Cell<usize>,
     axis_tolerance: f64,

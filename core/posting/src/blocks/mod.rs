@@ -11,11 +11,10 @@ use std::rc::Rc;
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::Joints;
 use post_machine::kinematics::orientation::angle;
 use post_plugin::{Compensation, ModelSession};
 
-use crate::accuracy::{Bound, Linearise, Move, Node, Placer, Run};
+use crate::accuracy::{Bound, Linearise, Move, Node, PlacedBatch, Placer, Run};
 use crate::configuration::{Chosen, Configured, pose};
 use crate::findings::Findings;
 use crate::observer::Audience;
@@ -32,6 +31,9 @@ const TURN: f64 = 1e-6;
 
 /// A control that shows an axis over one turn takes the shorter way: no block turns it by more, radians.
 const LONGEST: f64 = 2.9;
+
+/// Fewer points are not worth being solved together.
+const LEAST_TOGETHER: usize = 4;
 
 /// A straight piece of the CL path on its way to become blocks.
 #[derive(Clone, Copy, Debug)]
@@ -117,6 +119,8 @@ pub(crate) struct Blocks<'a> {
     last: Option<Box<Node>>,
     /// The node before that, to be filled again.
     spare: Option<Box<Node>>,
+    /// Points that are solved together.
+    placed: Option<Box<PlacedBatch>>,
     /// The last move was a cut: the tool is on the part.
     on_part: bool,
     /// Cutter radius compensation is in force.
@@ -145,6 +149,7 @@ impl<'a> Blocks<'a> {
             nominal: Vec::new(),
             last: None,
             spare: None,
+            placed: None,
             on_part: false,
             compensating: false,
             told_compensation: false,
@@ -174,19 +179,58 @@ impl<'a> Blocks<'a> {
         batch: &mut Vec<Flow<Configured>>,
         to: &mut Surroundings<'_, '_>,
     ) {
-        for next in batch.drain(..) {
-            match next {
-                Flow::Point(Configured::Point(chosen)) => self.point(&chosen, to),
-                Flow::Point(Configured::Placer(placer)) => {
-                    self.end_run(to);
-                    self.placer = Some(placer);
-                }
-                Flow::Point(Configured::Broken) => {
-                    self.end_run(to);
-                    self.stand_anywhere();
-                }
-                Flow::Command { line, command } => self.command(line, command, to),
+        let mut placed = self.placed.take().unwrap_or_default();
+        let mut from = 0;
+        while from < batch.len() {
+            let count = self.settle_ahead(&batch[from..], &mut placed);
+            for (lane, next) in batch[from..from + count].iter().enumerate() {
+                self.next(next, lane, &mut placed, to);
             }
+            from += count;
+        }
+        self.placed = Some(placed);
+        batch.clear();
+    }
+
+    /// Solves the points at the front of a batch together, as far as one placer solves them; gives how many elements
+    /// they are. Where there are few, or the next is something else, nothing is solved ahead.
+    fn settle_ahead(&self, batch: &[Flow<Configured>], placed: &mut PlacedBatch) -> usize {
+        let points = || {
+            batch.iter().map_while(|next| match next {
+                Flow::Point(Configured::Point(chosen)) if chosen.arrives => {
+                    Some((pose(&chosen.motion), &chosen.joints))
+                }
+                _ => None,
+            })
+        };
+        let count = points().take(PlacedBatch::MOST).count();
+        match &self.placer {
+            Some(placer) if count >= LEAST_TOGETHER => placed.settle(placer, points()),
+            _ => placed.forget(),
+        }
+        count.max(1)
+    }
+
+    /// One element; `lane` is its place among those that were solved together.
+    #[inline]
+    fn next(
+        &mut self,
+        next: &Flow<Configured>,
+        lane: usize,
+        placed: &mut PlacedBatch,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        match next {
+            Flow::Point(Configured::Point(chosen)) => self.point(chosen, lane, placed, to),
+            Flow::Point(Configured::Placer(placer)) => {
+                self.end_run(to);
+                self.placer = Some(Rc::clone(placer));
+            }
+            Flow::Point(Configured::Broken) => {
+                self.end_run(to);
+                self.stand_anywhere();
+            }
+            Flow::Command { line, command } => self.command(*line, command.clone(), to),
         }
     }
 
@@ -222,7 +266,13 @@ impl<'a> Blocks<'a> {
     }
 
     #[inline]
-    fn point(&mut self, chosen: &Chosen, to: &mut Surroundings<'_, '_>) {
+    fn point(
+        &mut self,
+        chosen: &Chosen,
+        lane: usize,
+        placed: &mut PlacedBatch,
+        to: &mut Surroundings<'_, '_>,
+    ) {
         let Some(placer) = self.placer.clone() else {
             return;
         };
@@ -235,7 +285,20 @@ impl<'a> Blocks<'a> {
         if chosen.arrives {
             self.counts.branch_changes += u64::from(chosen.changed && leg.loose);
             self.counts.eased += u64::from(chosen.eased);
-            self.travel(&placer, &leg, &chosen.joints, to);
+            let mut node = self.spare.take().unwrap_or_default();
+            let settled = if placed.take(lane, &mut node) {
+                Ok(())
+            } else {
+                placer.settle(&mut node, pose(leg.motion), 1.0, &chosen.joints)
+            };
+            match settled {
+                Ok(()) => self.travel(&placer, &leg, node, to),
+                Err(refused) => {
+                    self.spare = Some(node);
+                    to.findings
+                        .at(leg.line, refusal::refused(self.machine, &refused));
+                }
+            }
         }
         if let Some(joints) = &chosen.rewind {
             self.end_run(to);
@@ -248,16 +311,9 @@ impl<'a> Blocks<'a> {
         &mut self,
         placer: &Placer,
         leg: &Leg<'_>,
-        joints: &Joints,
+        mut node: Box<Node>,
         to: &mut Surroundings<'_, '_>,
     ) {
-        let mut node = self.spare.take().unwrap_or_default();
-        if let Err(refused) = placer.settle(&mut node, pose(leg.motion), 1.0, joints) {
-            self.spare = Some(node);
-            to.findings
-                .at(leg.line, refusal::refused(self.machine, &refused));
-            return;
-        }
         if self.compensating {
             self.check_compensation(placer, leg.line, &node, to.findings);
         }

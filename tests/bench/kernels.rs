@@ -1,7 +1,6 @@
 //! What a point costs by the functions for one point and by those for a batch. `cargo bench --bench kernels`
 //!
-//! The points are those of the generated file. The last column counts the printed linear words that are others where
-//! sines and cosines come by a short step: none may be.
+//! The points are those of the generated file.
 
 #[path = "common/job.rs"]
 #[expect(dead_code, reason = "the machines alone are asked for")]
@@ -18,9 +17,8 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 use post_machine::axis_words::{WordValues, Words};
-use post_machine::kinematics::batch::{Axes, LANES, Rotaries, Traces};
-use post_machine::kinematics::orientation::RotarySet;
-use post_machine::kinematics::{Joints, Pose, Solver, Trace};
+use post_machine::kinematics::batch::{Axes, LANES, Traces};
+use post_machine::kinematics::{Joints, Pose, Trace};
 use post_plugin::Format;
 
 const POINTS: u64 = 1_000_000;
@@ -37,10 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         })
         .collect();
-    let axes: Vec<Vector3<f64>> = poses.iter().map(|pose| pose.axis).collect();
-    say(
-        "ns a point       inverse: one  batch   sines: libm   step   place and trace: one  batch   words that differ",
-    );
+    say("ns a point       place and trace: one  batch");
     for name in ["ac-trunnion", "head-head", "nutating-head"] {
         let machine = job::machine(name, &[])?;
         let solver = machine
@@ -52,23 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let mut words = Words::new(&machine, &format);
         words.set_zero(&solver).ok_or("no zero")?;
-        let one = nanoseconds(|| {
-            for pose in &poses {
-                if let Ok(branches) = solver.orient(pose, 1e-3) {
-                    for index in 0..branches.count() {
-                        black_box(solver.angles(&branches, index));
-                    }
-                }
-            }
-        });
-        let mut out = Rotaries::default();
-        let batch = nanoseconds(|| {
-            for axes in axes.chunks(LANES) {
-                black_box(solver.orient_all(axes, &mut out));
-                black_box(&out);
-            }
-        });
-        let printed: Vec<(RotarySet, Joints, WordValues)> = poses
+        let printed: Vec<Joints> = poses
             .iter()
             .filter_map(|pose| {
                 let branches = solver.orient(pose, 1e-3).ok()?;
@@ -76,22 +55,12 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let mut joints = set.joints;
                 let mut values = WordValues::default();
                 words.print_rotary(&mut joints, &mut values);
-                Some((set, joints, values))
+                Some(joints)
             })
             .collect();
-        let evaluated = nanoseconds(|| {
-            for (_, joints, _) in &printed {
-                black_box(solver.chain().turns(joints));
-            }
-        });
-        let stepped = nanoseconds(|| {
-            for (set, joints, _) in &printed {
-                black_box(solver.turns_printed(set, joints));
-            }
-        });
         let mut traces: Vec<Trace> = printed
             .iter()
-            .map(|(_, joints, _)| Trace {
+            .map(|joints| Trace {
                 joints: *joints,
                 turns: solver.chain().turns(joints),
                 ..Trace::default()
@@ -113,33 +82,9 @@ fn main() -> Result<(), Box<dyn Error>> {
                 black_box(&forward);
             }
         });
-        let differ = differing(&solver, &words, &poses, &printed);
-        say(&format!(
-            "{name:<16} {one:>12.1} {batch:>6.1} {evaluated:>13.1} {stepped:>6.1} {settled:>22.1} {together:>6.1} {differ:>19}"
-        ));
+        say(&format!("{name:<16} {settled:>20.1} {together:>6.1}"));
     }
     Ok(())
-}
-
-/// Linear words that are others with sines and cosines by a short step.
-fn differing(
-    solver: &Solver,
-    words: &Words,
-    poses: &[Pose],
-    printed: &[(RotarySet, Joints, WordValues)],
-) -> usize {
-    let of = |turns, pose: &Pose, joints: &Joints, values: &WordValues| {
-        let (mut joints, mut values) = (*joints, *values);
-        let placed = solver.place(pose.tip, &mut joints, &turns).is_ok();
-        words.print_linear(&mut joints, &mut values);
-        (placed, values.map(f64::to_bits))
-    };
-    let both = poses.iter().zip(printed);
-    both.filter(|(pose, (set, joints, values))| {
-        of(solver.chain().turns(joints), pose, joints, values)
-            != of(solver.turns_printed(set, joints), pose, joints, values)
-    })
-    .count()
 }
 
 /// Of a point, median of a few runs.

@@ -98,37 +98,6 @@ fn turn_askew(vector: Vector3<f64>, k: Vector3<f64>, sine: f64, cosine: f64) -> 
     vector * cosine + k.cross(&vector) * sine + k * (k.dot(&vector) * (1.0 - cosine))
 }
 
-/// Steps from an angle whose sine and cosine are known are no longer than this, radians.
-const STEP: f64 = 1e-4;
-
-/// 2π in two parts, the first of which is so short that its multiples up to a million are exact.
-const TURN: [f64; 2] = [6.283_185_306_936_502_5, 2.430_840_202_602_477e-10];
-
-/// Sine and cosine of `angle` from those of `known`, an angle that it is a short step away from, any number of full
-/// turns aside; none where it is not, or where `sine` and `cosine` are not as long as those of an angle are.
-///
-/// With the step δ, `sin(a + δ) = sin a + (cos a · sin δ - sin a · (1 - cos δ))`. For |δ| ≤ 10⁻⁴ the series of sin δ and
-/// 1 - cos δ behind their second terms are below δ⁵/120 < 10⁻²² and δ⁶/720 < 10⁻²⁶, so what is off is rounding: δ by half
-/// a unit in the last place of `known` (2.2·10⁻¹⁶ at π), the sum by that of one, and `sine` and `cosine` by what they
-/// came with.
-#[inline]
-pub fn stepped(known: f64, (sine, cosine): (f64, f64), angle: f64) -> Option<(f64, f64)> {
-    let turns = libm::rint((angle - known) * (1.0 / std::f64::consts::TAU));
-    let step = ((angle - turns * TURN[0]) - known) - turns * TURN[1];
-    let long = sine * sine + cosine * cosine - 1.0;
-    // Also where something is not a number.
-    if !(step.abs() <= STEP && turns.abs() < 1e6 && long.abs() <= 4.0 * f64::EPSILON) {
-        return None;
-    }
-    let square = step * step;
-    let by_sine = step - step * square * (1.0 / 6.0);
-    let by_cosine = square * 0.5 - square * square * (1.0 / 24.0);
-    Some((
-        sine + (cosine * by_sine - sine * by_cosine),
-        cosine - (sine * by_sine + cosine * by_cosine),
-    ))
-}
-
 impl Turns {
     /// Puts sine and cosine of joint `index`.
     #[inline]

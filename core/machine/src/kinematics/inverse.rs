@@ -4,11 +4,11 @@
 use nalgebra::Vector3;
 
 use super::batch::Axes;
-use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns, stepped};
+use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
 use super::numeric;
-use super::orientation::{Branches, Orientation, RotarySet, Two, angle};
+use super::orientation::{Branches, Orientation, RotarySet, angle};
 
 /// How far a returned solution may miss the pose when it is put through the forward product: mm per metre
 /// of reach, and radians.
@@ -166,32 +166,6 @@ impl Solver {
         match set.turns {
             Some(turns) if set.free == 0 => turns,
             _ => self.chain.turns(&set.joints),
-        }
-    }
-
-    /// Sines and cosines of the printed values of a set: those of the set, a short step on (see [`stepped`]), or, where
-    /// they did not come with it or the step is long, evaluated anew.
-    #[inline]
-    pub fn turns_printed(&self, set: &RotarySet, printed: &Joints) -> Turns {
-        let Some(known) = set.turns.filter(|_| set.free == 0) else {
-            return self.chain.turns(printed);
-        };
-        let mut turns = known;
-        for (index, joint) in self.chain.joints().iter().enumerate() {
-            if joint.rotary {
-                let (sine, cosine) = stepped(set.joints[index], known.of(index), printed[index])
-                    .unwrap_or_else(|| libm::sincos(printed[index]));
-                turns.set(index, sine, cosine);
-            }
-        }
-        turns
-    }
-
-    /// The rotary part, where two free axes alone point the tool in closed form.
-    pub(super) fn two(&self) -> Option<&Two> {
-        match &self.form {
-            Form::Closed { orientation, .. } => orientation.two(),
-            Form::Numeric { .. } => None,
         }
     }
 

@@ -75,22 +75,10 @@ pub(super) enum Orientation {
     Two(Box<Two>),
 }
 
-/// The vector between the two turns: its coordinate along k1 is that of u, along `towards` it is x, and along `aside`
-/// the root of `square` with either sign.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Between {
-    /// The wanted axis: along k1, along `towards`, along `aside`.
-    pub(super) u: Vector3<f64>,
-    /// Of its angle from k1.
-    pub(super) sine_squared: f64,
-    pub(super) x: f64,
-    pub(super) square: f64,
-}
-
 /// Two rotary axes. Directions are taken as they stand behind the held axes in front of them.
 #[derive(Clone, Debug)]
 pub(super) struct Two {
-    pub(super) joints: [usize; 2],
+    joints: [usize; 2],
     /// Inverse of the held turns in front of k1, if there are any.
     before: Option<Matrix3<f64>>,
     k1: Vector3<f64>,
@@ -109,15 +97,15 @@ pub(super) struct Two {
     across: Vector3<f64>,
     ahead: Vector3<f64>,
     /// One over the square of the part of a across k2.
-    pub(super) per_square: f64,
+    per_square: f64,
     /// Sines and cosines of the held joints.
     held: Turns,
-    pub(super) third: Option<Third>,
+    third: Option<Third>,
 }
 
 /// The third of three rotary axes.
 #[derive(Clone, Debug)]
-pub(super) struct Third {
+struct Third {
     joint: usize,
     /// Inverse of the frame of the tool at zero: axis, edge and their product as columns.
     frame: Matrix3<f64>,
@@ -313,14 +301,6 @@ impl Orientation {
         }
     }
 
-    /// Two free axes and no third.
-    pub(super) fn two(&self) -> Option<&Two> {
-        match self {
-            Self::Two(two) if two.third.is_none() => Some(two),
-            _ => None,
-        }
-    }
-
     /// The first of two or three free joints: the one that turns nothing on the pole.
     pub(super) fn first(&self) -> Option<usize> {
         match self {
@@ -387,7 +367,7 @@ impl Two {
     /// What is to be pointed where, and where the vector across k3 goes.
     #[inline]
     fn wanted(&self, pose: &Pose) -> (Vector3<f64>, Vector3<f64>) {
-        let before = |v: Vector3<f64>| self.behind_held(v);
+        let before = |v: Vector3<f64>| self.before.as_ref().map_or(v, |before| before * v);
         match &self.third {
             None => (before(pose.axis), Vector3::zeros()),
             Some(third) => {
@@ -403,64 +383,31 @@ impl Two {
         }
     }
 
-    /// What lies between the two turns, for an axis wanted behind the held turns in front of k1.
-    ///
-    /// z = k1·cosine + towards·x ± aside·y keeps k1·z = k1·u and |z| = 1; x follows from k2·z = k2·a. Beside a pole
-    /// cosines say little: the sine is taken from the part of u across k1, and 1 - |cosine| from the sine.
     #[inline]
-    pub(super) fn between(&self, u: Vector3<f64>) -> Between {
-        let cosine = self.k1.dot(&u);
+    fn orient(&self, pose: &Pose, tolerance: f64) -> Result<Branches, Unreachable> {
+        let (u, ahead) = self.wanted(pose);
+        // z = k1·cosine + towards·x ± aside·y keeps k1·z = k1·u and |z| = 1; x follows from
+        // k2·z = k2·a. Beside a pole cosines say little: the sine is taken from the part of u across
+        // k1, and 1 - |cosine| from the sine.
+        let mut cosine = self.k1.dot(&u);
         let across = u - self.k1 * cosine;
         let sine_squared = across.norm_squared();
         let rest = sine_squared / (1.0 + cosine.abs());
-        let x = if cosine >= 0.0 {
+        let mut x = if cosine >= 0.0 {
             (self.cone - self.dot) + self.dot * rest
         } else {
             (self.cone + self.dot) - self.dot * rest
         } * self.per_sine;
-        Between {
-            u: Vector3::new(cosine, self.towards.dot(&across), self.aside.dot(&across)),
-            sine_squared,
-            x,
-            square: sine_squared - x * x,
-        }
-    }
-
-    /// Sine and cosine of the first turn, times x² + y², and of the second, times 1 / [`Two::per_square`].
-    #[inline]
-    pub(super) fn turned(&self, u: &Vector3<f64>, x: f64, y: f64) -> [(f64, f64); 2] {
-        let z = Vector3::new(u.x, x, y);
-        // k2 takes a, which lies along `across`, into z; k1 takes z into u, seen along k1.
-        [
-            (x * u.z - y * u.y, x * u.y + y * u.z),
-            (self.ahead.dot(&z), self.across.dot(&z)),
-        ]
-    }
-
-    /// What `axis` is behind the held turns in front of k1.
-    #[inline]
-    pub(super) fn behind_held(&self, axis: Vector3<f64>) -> Vector3<f64> {
-        self.before.as_ref().map_or(axis, |before| before * axis)
-    }
-
-    #[inline]
-    fn orient(&self, pose: &Pose, tolerance: f64) -> Result<Branches, Unreachable> {
-        let (wanted, ahead) = self.wanted(pose);
-        let Between {
-            mut u,
-            sine_squared,
-            mut x,
-            square,
-        } = self.between(wanted);
+        let square = sine_squared - x * x;
         // A tangent solution may come out a rounding error below zero.
         if square < -POLE * POLE {
-            let (miss, latitude) = self.miss(wanted);
+            let (miss, latitude) = self.miss(u);
             if miss > tolerance.max(POLE) {
                 return Err(Unreachable::Axis { miss });
             }
             // The nearest that there is: z where k2's cone touches the latitude.
-            u.x = libm::cos(latitude);
-            x = (self.cone - self.dot * u.x) * self.per_sine;
+            cosine = libm::cos(latitude);
+            x = (self.cone - self.dot * cosine) * self.per_sine;
         }
         let y = square.max(0.0).sqrt();
         Ok(Branches {
@@ -468,7 +415,7 @@ impl Two {
             count: if y == 0.0 { 1 } else { 2 },
             pole: sine_squared < POLE * POLE,
             sine: sine_squared.sqrt(),
-            u,
+            u: Vector3::new(cosine, self.towards.dot(&across), self.aside.dot(&across)),
             x,
             y,
             ahead,
@@ -480,7 +427,9 @@ impl Two {
         let [first, second] = self.joints;
         let Branches { u, x, y, .. } = branches;
         let y = if index == 0 { *y } else { -y };
-        let [(first_sine, first_cosine), (sine, cosine)] = self.turned(u, *x, y);
+        let z = Vector3::new(u.x, *x, y);
+        // k2 takes a, which lies along `across`, into z; k1 takes z into u, seen along k1.
+        let (sine, cosine) = (self.ahead.dot(&z), self.across.dot(&z));
         let turn = libm::atan2(sine, cosine);
         set.joints[second] = turn;
         if branches.pole && self.third.is_some() {
@@ -489,6 +438,7 @@ impl Two {
         } else if branches.pole {
             set.free |= 1 << first;
         } else {
+            let (first_sine, first_cosine) = (x * u.z - y * u.y, x * u.y + y * u.z);
             set.joints[first] = libm::atan2(first_sine, first_cosine);
             if self.third.is_none() {
                 // Of vectors whose lengths are known: the turns need no further sines and cosines.

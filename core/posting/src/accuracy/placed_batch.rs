@@ -16,7 +16,10 @@ pub(crate) struct PlacedBatch {
     /// Where the linear axes bring the points.
     wanted: [Vector3<f64>; LANES],
     /// The nodes, boxed so that they change hands without being copied.
-    #[expect(clippy::vec_box, reason = "a node changes hands by its box; it is large")]
+    #[expect(
+        clippy::vec_box,
+        reason = "a node changes hands by its box; it is large"
+    )]
     nodes: Vec<Box<Node>>,
     /// Those that are solved; the others are left to [`Placer::settle`], which says why.
     settled: [bool; LANES],

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use crate::accuracy::Move;
-use crate::blocks::Block;
+use crate::blocks::{Audience, Block};
 use crate::stream::Flow;
 
 /// Where the text of the program goes.
@@ -50,12 +50,6 @@ impl<'a> Observers<'a> {
             }
         }
     }
-}
-
-/// Who is shown cuts: [`Observers`], whatever they borrow.
-pub(crate) trait Audience {
-    /// See [`Observer::cut`].
-    fn cut(&self, line: u64, cut: &Move<'_>);
 }
 
 impl Audience for Observers<'_> {

@@ -4,7 +4,7 @@ use crate::accuracy::{Refused, Stuck};
 use crate::program::Motion;
 use post_machine::description::{Axis, Machine, Positions};
 use post_machine::diagnostic::{Diagnostic, Extreme};
-use post_machine::kinematics::choose::OverTravel;
+use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, Unreachable};
 

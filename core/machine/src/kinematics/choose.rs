@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::chain::Joints;
 use super::inverse::Solver;
 use super::orientation::{Branches, RotarySet};
-use super::travel::passed;
+use super::travel::{OverTravel, passed};
 
 /// What the choice needs to know of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,17 +14,6 @@ pub struct Limit {
     pub joint: usize,
     /// Least and largest value: mm or radians.
     pub travel: [f64; 2],
-}
-
-/// A value outside the travel of its axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OverTravel {
-    /// Place in the chain.
-    pub joint: usize,
-    /// The value asked for, mm or radians.
-    pub value: f64,
-    /// The limit that it passes.
-    pub limit: f64,
 }
 
 /// Travel and turns of the rotary axes.

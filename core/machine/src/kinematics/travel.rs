@@ -1,6 +1,15 @@
 //! Inside travel: one test for every stage, each with the slack that it says why it needs.
 
-use super::choose::OverTravel;
+/// A value outside the travel of its axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OverTravel {
+    /// Place in the chain.
+    pub joint: usize,
+    /// The value asked for, mm or radians.
+    pub value: f64,
+    /// The limit that it passes.
+    pub limit: f64,
+}
 
 /// Ends of travel come out of expressions and conversions: so far beyond an end is on it, mm or radians.
 pub const AT_END: f64 = 1e-9;

@@ -11,8 +11,8 @@ use post_plugin::Format;
 use post_machine::axis_words::{WordValues, Words};
 use post_machine::description::{ControlPoint, Machine};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::choose::{Limit, OverTravel, Turning};
-use post_machine::kinematics::travel::{AT_END, over, passed};
+use post_machine::kinematics::choose::{Limit, Turning};
+use post_machine::kinematics::travel::{AT_END, OverTravel, over, passed};
 use post_machine::kinematics::{Joints, Pose, Solver, Trace, Unreachable};
 
 /// A point of the path, solved and rounded.

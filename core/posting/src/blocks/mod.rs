@@ -1,5 +1,6 @@
 //! Points whose axis values are chosen become blocks: points put in or left out, every block certified.
 
+mod audience;
 mod block;
 mod gathered;
 mod nominal;
@@ -17,10 +18,10 @@ use post_plugin::{Compensation, ModelSession};
 use crate::accuracy::{Bound, Linearise, Move, Node, PlacedBatch, Placer, Run};
 use crate::configuration::{Chosen, Configured, pose};
 use crate::findings::Findings;
-use crate::observer::Audience;
 use crate::program::{Command, Motion, Pace};
 use crate::refusal;
 use crate::stream::{Flow, Outlet};
+pub(crate) use audience::Audience;
 pub use block::{Block, MotionKind, Reason, Time};
 use gathered::Gathered;
 pub use nominal::Nominal;

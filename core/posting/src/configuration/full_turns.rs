@@ -2,10 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::solution::{Axes, Stand};
+use super::solution::{Axes, Stand, unwound};
 use post_machine::kinematics::Joints;
-use post_machine::kinematics::choose::OverTravel;
-use post_machine::kinematics::travel::over;
+use post_machine::kinematics::travel::{OverTravel, over};
 
 /// Values that differ by less are the same, mm or radians.
 const SAME: f64 = 1e-9;
@@ -198,9 +197,4 @@ impl Axes {
             largest.max((to[axis.joint] - from[axis.joint]).abs())
         })
     }
-}
-
-/// `angle` on the turn nearest to `last`.
-pub(super) fn unwound(angle: f64, last: f64) -> f64 {
-    angle + TAU * f64::round((last - angle) / TAU)
 }

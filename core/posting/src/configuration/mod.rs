@@ -3,6 +3,7 @@
 //! Points wait here until the choice is made, and the commands between them wait with them, in their places.
 //! A command that takes the tool off the part has everything before it decided.
 
+mod backtrace;
 mod cost;
 mod full_turns;
 mod metric;

@@ -17,7 +17,7 @@ use post_machine::description::{Machine, Positions};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Pose, Unreachable};
 
-use super::settle;
+use super::backtrace::Backtrace;
 use super::solution::Found;
 use super::trellis::{Judge, Lattice};
 
@@ -65,7 +65,7 @@ pub(crate) struct Route<'a> {
     /// Redundant axes can be put elsewhere as long as the last rapid is not settled.
     pub(super) tries_positions: bool,
     pub(super) chosen: Vec<Chosen>,
-    pub(super) way: settle::Way,
+    pub(super) way: Backtrace,
 }
 
 /// A point that is left out.
@@ -144,7 +144,7 @@ impl<'a> Route<'a> {
             },
             tries_positions: tries_positions(machine),
             chosen: Vec::new(),
-            way: settle::Way::default(),
+            way: Backtrace::default(),
         })
     }
 

@@ -1,5 +1,6 @@
 //! Settling: the cheapest way through the lattice is walked back, eased close to poles, and handed out.
 
+use super::backtrace::Backtrace;
 use super::cost::Cost;
 use super::route::{Chosen, Route};
 use super::taut::{Gate, taut};
@@ -10,25 +11,6 @@ use post_machine::kinematics::POLE;
 
 /// Values that differ by less are the same, radians.
 const SAME: f64 = 1e-9;
-
-/// The way that was walked back.
-#[derive(Debug, Default)]
-pub(super) struct Way {
-    /// Of each layer the state that it goes through.
-    states: Vec<usize>,
-    /// Layers where the axes are eased, in order, and where they stand there.
-    eased: Vec<(usize, Joints)>,
-}
-
-impl Way {
-    /// Where the axes stand at a layer.
-    fn joints(&self, lattice: &Lattice, layer: usize) -> Joints {
-        match self.eased.binary_search_by_key(&layer, |(layer, _)| *layer) {
-            Ok(place) => self.eased[place].1,
-            Err(_) => lattice.states[self.states[layer]].joints,
-        }
-    }
-}
 
 impl Route<'_> {
     /// Settles all points.
@@ -132,14 +114,14 @@ impl Route<'_> {
     }
 
     /// Pulls the pole joint taut wherever the tolerance leaves it room.
-    fn ease(&self, way: &mut Way) {
+    fn ease(&self, way: &mut Backtrace) {
         let lattice = &self.lattice;
         let layers = &lattice.layers;
         let Some(pole) = self.settings[layers[0].setting].1.solver().pole_joint() else {
             return;
         };
-        let state = |way: &Way, layer: usize| lattice.states[way.states[layer]];
-        let roomy = |way: &Way, layer: usize| {
+        let state = |way: &Backtrace, layer: usize| lattice.states[way.states[layer]];
+        let roomy = |way: &Backtrace, layer: usize| {
             self.lattice.eased(layers[layer].latitude.0) && state(way, layer).rewind.is_none()
         };
         let mut at = usize::from(self.anchored);
@@ -199,7 +181,7 @@ impl Route<'_> {
     }
 
     /// Where the axes stand with the pole joint at `value`; none if it stands there, or the others cannot follow.
-    fn turned_to(&self, way: &Way, layer: usize, pole: usize, value: f64) -> Option<Joints> {
+    fn turned_to(&self, way: &Backtrace, layer: usize, pole: usize, value: f64) -> Option<Joints> {
         let lattice = &self.lattice;
         let joints = lattice.states[way.states[layer]].joints;
         if (value - joints[pole]).abs() < SAME {
@@ -220,7 +202,7 @@ impl Route<'_> {
         Some(stand.joints)
     }
 
-    fn hand_out(&mut self, way: &Way, upto: usize) {
+    fn hand_out(&mut self, way: &Backtrace, upto: usize) {
         let lattice = &self.lattice;
         let mut eased = way.eased.iter().peekable();
         let mut last: Option<(u8, Joints)> = None;

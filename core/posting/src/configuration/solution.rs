@@ -2,12 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use super::full_turns::unwound;
 use super::metric::wrong_side;
 use post_machine::description::{Machine, Positions, Side};
-use post_machine::kinematics::choose::{Limit, OverTravel};
+use post_machine::kinematics::choose::Limit;
 use post_machine::kinematics::orientation::{Branches, angle};
-use post_machine::kinematics::travel::{over, passed};
+use post_machine::kinematics::travel::{OverTravel, over, passed};
 use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
 
 /// One solution, its angles on the turn around zero.
@@ -467,4 +466,9 @@ impl Axes {
             .and_then(|axis| axis.travel)
             .unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
     }
+}
+
+/// `angle` on the turn nearest to `last`.
+pub(super) fn unwound(angle: f64, last: f64) -> f64 {
+    angle + TAU * f64::round((last - angle) / TAU)
 }

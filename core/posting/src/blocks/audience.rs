@@ -1,0 +1,9 @@
+//! Who is shown cuts before anything is done about them.
+
+use crate::accuracy::Move;
+
+/// Those who look on, whatever they borrow.
+pub(crate) trait Audience {
+    /// A cut between two CL points, before any point is put in.
+    fn cut(&self, line: u64, cut: &Move<'_>);
+}

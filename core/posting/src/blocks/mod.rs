@@ -169,23 +169,25 @@ impl<'a> Blocks<'a> {
     }
 
     /// Takes a batch.
-    pub(crate) fn take(
-        &mut self,
-        batch: &mut Vec<Flow<Configured>>,
-        to: &mut Surroundings<'_, '_>,
-    ) {
-        for next in batch.drain(..) {
+    pub(crate) fn take(&mut self, batch: &[Flow<Configured>], to: &mut Surroundings<'_, '_>) {
+        let mut placer = self.placer.clone();
+        for next in batch {
             match next {
-                Flow::Point(Configured::Point(chosen)) => self.point(&chosen, to),
-                Flow::Point(Configured::Placer(placer)) => {
+                Flow::Point(Configured::Point(chosen)) => {
+                    if let Some(placer) = &placer {
+                        self.point(placer, chosen, to);
+                    }
+                }
+                Flow::Point(Configured::Placer(next)) => {
                     self.end_run(to);
-                    self.placer = Some(placer);
+                    placer = Some(Rc::clone(next));
+                    self.placer.clone_from(&placer);
                 }
                 Flow::Point(Configured::Broken) => {
                     self.end_run(to);
                     self.stand_anywhere();
                 }
-                Flow::Command { line, command } => self.command(line, command, to),
+                Flow::Command { line, command } => self.command(*line, command, to),
             }
         }
     }
@@ -195,9 +197,9 @@ impl<'a> Blocks<'a> {
         self.end_run(to);
     }
 
-    fn command(&mut self, line: u64, command: Command, to: &mut Surroundings<'_, '_>) {
+    fn command(&mut self, line: u64, command: &Command, to: &mut Surroundings<'_, '_>) {
         self.end_run(to);
-        match &command {
+        match command {
             Command::Tool(_) | Command::Home => self.stand_anywhere(),
             Command::Head(name) => {
                 self.stand_anywhere();
@@ -212,7 +214,7 @@ impl<'a> Blocks<'a> {
             }
             _ => {}
         }
-        to.out.command(line, command);
+        to.out.command(line, command.clone());
     }
 
     /// The next point is a first position again.
@@ -222,10 +224,7 @@ impl<'a> Blocks<'a> {
     }
 
     #[inline]
-    fn point(&mut self, chosen: &Chosen, to: &mut Surroundings<'_, '_>) {
-        let Some(placer) = self.placer.clone() else {
-            return;
-        };
+    fn point(&mut self, placer: &Placer, chosen: &Chosen, to: &mut Surroundings<'_, '_>) {
         let leg = Leg {
             line: chosen.line,
             motion: &chosen.motion,
@@ -235,11 +234,11 @@ impl<'a> Blocks<'a> {
         if chosen.arrives {
             self.counts.branch_changes += u64::from(chosen.changed && leg.loose);
             self.counts.eased += u64::from(chosen.eased);
-            self.travel(&placer, &leg, &chosen.joints, to);
+            self.travel(placer, &leg, &chosen.joints, to);
         }
         if let Some(joints) = &chosen.rewind {
             self.end_run(to);
-            self.rewind(&placer, &leg, joints, to);
+            self.rewind(placer, &leg, joints, to);
         }
     }
 
@@ -469,13 +468,14 @@ impl<'a> Blocks<'a> {
             (node.trace.pose.axis - from.trace.pose.axis) * self.machine.control_point.along;
         let way = node.tip - from.tip;
         self.largest.keep(leg, bound);
-        let block = self.block(leg, node, bound);
-        to.out.push(Flow::Point(Block {
-            still: from.words == node.words,
-            way: [way.norm(), (way - turned).norm()],
-            nominal,
-            ..block
-        }));
+        to.out.push_with(|| {
+            Flow::Point(Block {
+                still: from.words == node.words,
+                way: [way.norm(), (way - turned).norm()],
+                nominal,
+                ..self.block(leg, node, bound)
+            })
+        });
     }
 
     #[inline]

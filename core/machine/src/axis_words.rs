@@ -13,8 +13,10 @@ pub type WordValues = [f64; MAX_AXES];
 #[derive(Clone, Debug)]
 pub struct Words {
     tcp: Tcp,
-    /// In the order of writing.
-    words: Vec<Word>,
+    /// Words of rotary axes, in the order of writing.
+    rotary: Vec<Word>,
+    /// Words of linear axes, in the order of writing.
+    linear: Vec<Word>,
     /// Axis values with the tip on the part origin and every rotary axis at zero.
     zero: Joints,
 }
@@ -22,9 +24,10 @@ pub struct Words {
 /// One word.
 #[derive(Clone, Copy, Debug)]
 struct Word {
+    /// Place among the words of a block.
+    place: usize,
     /// Place in the chain.
     joint: usize,
-    rotary: bool,
     /// What the control shows where the drawing has the axis at zero, mm or radians.
     reading: f64,
     /// The control shows the axis within one turn from here, degrees.
@@ -103,7 +106,8 @@ impl Words {
         let words = order(machine)
             .into_iter()
             .zip(&format.words)
-            .map(|(joint, decimals)| {
+            .enumerate()
+            .map(|(place, (joint, decimals))| {
                 let axis = &machine.axes[joint];
                 let scale = (0..*decimals).fold(1.0, |scale, _| scale * 10.0);
                 let unit = if axis.joint.rotary {
@@ -112,8 +116,8 @@ impl Words {
                     length
                 };
                 Word {
+                    place,
                     joint,
-                    rotary: axis.joint.rotary,
                     reading: axis.zero,
                     turn_from: axis.range.map(|[least, _]| least / unit),
                     coordinate: match axis.name.as_str() {
@@ -126,30 +130,31 @@ impl Words {
                     scale,
                     per_scale: 1.0 / scale,
                 }
-            })
-            .collect();
+            });
+        let (rotary, linear) = words.partition(|word| machine.axes[word.joint].joint.rotary);
         Self {
             tcp: machine.control.tcp,
-            words,
+            rotary,
+            linear,
             zero: [0.0; MAX_AXES],
         }
     }
 
     /// Number of words.
     pub fn len(&self) -> usize {
-        self.words.len()
+        self.rotary.len() + self.linear.len()
     }
 
     /// No words.
     pub fn is_empty(&self) -> bool {
-        self.words.is_empty()
+        self.len() == 0
     }
 
     /// Takes the work offset from a solver: where the axes stand when the tip of its tool is on the part
     /// origin and every rotary axis at zero. None if the linear axes cannot bring it there.
     pub fn set_zero(&mut self, solver: &Solver) -> Option<()> {
         let mut zero = [0.0; MAX_AXES];
-        for word in self.words.iter().filter(|word| word.rotary) {
+        for word in &self.rotary {
             zero[word.joint] = -word.reading;
         }
         let turns = solver.chain().turns(&zero);
@@ -161,16 +166,14 @@ impl Words {
     /// Puts the rotary values on printed numbers and writes them to `values`.
     #[inline]
     pub fn print_rotary(&self, joints: &mut Joints, values: &mut WordValues) {
-        for (place, word) in self.words.iter().enumerate() {
-            if word.rotary {
-                let asked = joints[word.joint] + word.reading;
-                let value = word.printed(asked * word.per_unit);
-                joints[word.joint] = value * word.unit - word.reading;
-                values[place] = match word.turn_from {
-                    None => value,
-                    Some(from) => word.printed(value - 360.0 * libm::floor((value - from) / 360.0)),
-                };
-            }
+        for word in &self.rotary {
+            let asked = joints[word.joint] + word.reading;
+            let value = word.printed(asked * word.per_unit);
+            joints[word.joint] = value * word.unit - word.reading;
+            values[word.place] = match word.turn_from {
+                None => value,
+                Some(from) => word.printed(value - 360.0 * libm::floor((value - from) / 360.0)),
+            };
         }
     }
 
@@ -182,12 +185,10 @@ impl Words {
             return None;
         }
         let mut printed = tip;
-        for (place, word) in self.words.iter().enumerate() {
-            if !word.rotary {
-                let coordinate = word.coordinate;
-                values[place] = word.printed(tip[coordinate] * word.per_unit);
-                printed[coordinate] = values[place] * word.unit;
-            }
+        for word in &self.linear {
+            let value = word.printed(tip[word.coordinate] * word.per_unit);
+            values[word.place] = value;
+            printed[word.coordinate] = value * word.unit;
         }
         Some(printed)
     }
@@ -195,19 +196,19 @@ impl Words {
     /// Puts the linear axes on printed numbers and writes them to `values`.
     #[inline]
     pub fn print_linear(&self, joints: &mut Joints, values: &mut WordValues) {
-        for (place, word) in self.words.iter().enumerate() {
-            if !word.rotary {
-                let zero = self.zero[word.joint];
-                values[place] = word.printed((joints[word.joint] - zero) * word.per_unit);
-                joints[word.joint] = values[place] * word.unit + zero;
-            }
+        for word in &self.linear {
+            let zero = self.zero[word.joint];
+            let value = word.printed((joints[word.joint] - zero) * word.per_unit);
+            values[word.place] = value;
+            joints[word.joint] = value * word.unit + zero;
         }
     }
 
     /// Values of a joint that are printed inside its travel: those between the outermost printed numbers in
     /// it, and so far beyond them as is still printed as they are. mm or radians.
     pub fn printed_travel(&self, joint: usize, [least, most]: [f64; 2]) -> [f64; 2] {
-        let Some(word) = self.words.iter().find(|word| word.joint == joint) else {
+        let mut words = self.rotary.iter().chain(&self.linear);
+        let Some(word) = words.find(|word| word.joint == joint) else {
             return [least, most];
         };
         let steps = |value: f64| (value + word.reading) * word.per_unit * word.scale;
@@ -220,18 +221,16 @@ impl Words {
 
     /// The largest error of the tip that rounding the linear words can make, mm.
     pub fn rounding(&self) -> f64 {
-        self.words
+        self.linear
             .iter()
-            .filter(|word| !word.rotary)
             .map(|word| 0.5 * word.unit / word.scale)
             .sum()
     }
 
     /// The largest error of the tool axis that rounding the rotary words can make, radians.
     pub fn axis_rounding(&self) -> f64 {
-        self.words
+        self.rotary
             .iter()
-            .filter(|word| word.rotary)
             .map(|word| 0.5 * word.unit / word.scale)
             .sum()
     }

@@ -56,7 +56,7 @@ struct Stages<'a> {
 /// What the stages are to do.
 enum Work<'s> {
     /// Take these steps.
-    Take(&'s mut Vec<(u64, Step)>),
+    Take(&'s [(u64, Step)]),
     /// The file ended on this line.
     Finish(u64),
 }
@@ -181,8 +181,9 @@ impl<'a> Post<'a> {
         self.findings.read(record, || {
             [waiting, stages.settled_line()].into_iter().flatten().min()
         });
-        self.interpreter
-            .record(record, &mut |step| steps.push((record.line, step)));
+        self.interpreter.record(record, &mut |step| {
+            steps.extend(std::iter::once_with(|| (record.line, step)));
+        });
         if self.interpreter.has_findings() {
             self.gather();
         }
@@ -192,7 +193,8 @@ impl<'a> Post<'a> {
     }
 
     fn run(&mut self) {
-        self.stages.run(Work::Take(&mut self.steps), &self.findings);
+        self.stages.run(Work::Take(&self.steps), &self.findings);
+        self.steps.clear();
     }
 
     /// Takes a line that could not be read.

@@ -45,6 +45,15 @@ impl<'o, T> Outlet<'o, T> {
         }
     }
 
+    /// Hands on one element, made where it is to lie: large ones are not copied there.
+    #[inline]
+    pub(crate) fn push_with(&mut self, make: impl FnOnce() -> T) {
+        self.batch.extend(std::iter::once_with(make));
+        if self.batch.len() >= BATCH {
+            self.flush();
+        }
+    }
+
     /// Hands on what there is.
     pub(crate) fn flush(&mut self) {
         if !self.batch.is_empty() {

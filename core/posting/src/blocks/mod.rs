@@ -175,11 +175,7 @@ impl<'a> Blocks<'a> {
     }
 
     /// Takes a batch.
-    pub(crate) fn take(
-        &mut self,
-        batch: &mut Vec<Flow<Configured>>,
-        to: &mut Surroundings<'_, '_>,
-    ) {
+    pub(crate) fn take(&mut self, batch: &[Flow<Configured>], to: &mut Surroundings<'_, '_>) {
         let mut placed = self.placed.take().unwrap_or_default();
         let mut from = 0;
         while from < batch.len() {
@@ -190,7 +186,6 @@ impl<'a> Blocks<'a> {
             from += count;
         }
         self.placed = Some(placed);
-        batch.clear();
     }
 
     /// Solves the points at the front of a batch together, as far as one placer solves them; gives how many elements
@@ -231,7 +226,7 @@ impl<'a> Blocks<'a> {
                 self.end_run(to);
                 self.stand_anywhere();
             }
-            Flow::Command { line, command } => self.command(*line, command.clone(), to),
+            Flow::Command { line, command } => self.command(*line, command, to),
         }
     }
 
@@ -240,9 +235,9 @@ impl<'a> Blocks<'a> {
         self.end_run(to);
     }
 
-    fn command(&mut self, line: u64, command: Command, to: &mut Surroundings<'_, '_>) {
+    fn command(&mut self, line: u64, command: &Command, to: &mut Surroundings<'_, '_>) {
         self.end_run(to);
-        match &command {
+        match command {
             Command::Tool(_) | Command::Home => self.stand_anywhere(),
             Command::Head(name) => {
                 self.stand_anywhere();
@@ -257,7 +252,7 @@ impl<'a> Blocks<'a> {
             }
             _ => {}
         }
-        to.out.command(line, command);
+        to.out.command(line, command.clone());
     }
 
     /// The next point is a first position again.
@@ -526,13 +521,14 @@ impl<'a> Blocks<'a> {
             (node.trace.pose.axis - from.trace.pose.axis) * self.machine.control_point.along;
         let way = node.tip - from.tip;
         self.largest.keep(leg, bound);
-        let block = self.block(leg, node, bound);
-        to.out.push(Flow::Point(Block {
-            still: from.words == node.words,
-            way: [way.norm(), (way - turned).norm()],
-            nominal,
-            ..block
-        }));
+        to.out.push_with(|| {
+            Flow::Point(Block {
+                still: from.words == node.words,
+                way: [way.norm(), (way - turned).norm()],
+                nominal,
+                ..self.block(leg, node, bound)
+            })
+        });
     }
 
     #[inline]

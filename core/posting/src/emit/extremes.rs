@@ -79,11 +79,13 @@ impl Extremes {
 
     /// A block is written that ends at `joints`.
     #[inline]
-    pub(super) fn reach(&mut self, joints: &Joints, axes: usize) {
+    pub(super) fn reach(&mut self, joints: &Joints) {
         self.blocks += 1;
-        for (index, value) in joints.iter().take(axes).enumerate() {
-            self.least[index] = self.least[index].min(*value);
-            self.most[index] = self.most[index].max(*value);
+        // All places, used or not, and no question of what is no number: two at a time.
+        for (index, value) in joints.iter().enumerate() {
+            let (least, most) = (self.least[index], self.most[index]);
+            self.least[index] = if *value < least { *value } else { least };
+            self.most[index] = if *value > most { *value } else { most };
         }
     }
 

@@ -118,7 +118,7 @@ impl<'a> Emit<'a> {
                 if block.still {
                     return;
                 }
-                self.extremes.reach(&block.joints, self.machine.axes.len());
+                self.extremes.reach(&block.joints);
                 self.extremes.go(&self.last, &block.joints);
                 if self.machine.clamps {
                     self.clamp(block);
@@ -247,7 +247,7 @@ impl<'a> Emit<'a> {
     /// The first position after the start or a tool change.
     fn position(&mut self, block: &Block, findings: &Findings) {
         let line = block.line;
-        self.extremes.reach(&block.joints, self.machine.axes.len());
+        self.extremes.reach(&block.joints);
         if let (false, Some(spindle)) = (self.turning, self.commanded) {
             // The tool change stopped it, and the CL file takes it to be turning.
             self.turning = true;

@@ -40,10 +40,7 @@ pub(crate) struct Expand {
 
 /// The moves and commands of `steps`, each with its line, chords straying by no more than `chord_tolerance` mm; and
 /// what cannot be expanded. The tool has no leading edge.
-pub fn expanded(
-    steps: Vec<(u64, Step)>,
-    chord_tolerance: f64,
-) -> (Vec<Flow<Line>>, Vec<Diagnostic>) {
+pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>, Vec<Diagnostic>) {
     let findings = Findings::new("");
     let mut stage = Expand {
         chord_tolerance,
@@ -54,8 +51,7 @@ pub fn expanded(
     let mut next = |batch: &mut Vec<Flow<Line>>| all.append(batch);
     let mut batch = Vec::new();
     let mut out = Outlet::new(&mut batch, &mut next);
-    let mut steps = steps;
-    stage.take(&mut steps, &mut out, &findings);
+    stage.take(steps, &mut out, &findings);
     out.flush();
     (all, findings.sorted())
 }
@@ -78,21 +74,17 @@ impl Expand {
     }
 
     /// Takes a batch of steps, each with its line.
-    pub(crate) fn take(
-        &mut self,
-        steps: &mut Vec<(u64, Step)>,
-        out: &mut Out<'_>,
-        findings: &Findings,
-    ) {
-        for (line, step) in steps.drain(..) {
+    pub(crate) fn take(&mut self, steps: &[(u64, Step)], out: &mut Out<'_>, findings: &Findings) {
+        for (line, step) in steps {
+            let line = *line;
             match step {
-                Step::Move(motion) => self.go(line, motion, out, findings),
-                Step::Arc(arc) => self.arc(line, &arc, out, findings),
-                Step::Spline(spline) => self.spline(line, &spline, out, findings),
-                Step::Cycle(cycle) => self.cycle(line, &cycle, out, findings),
+                Step::Move(motion) => self.go(line, *motion, out, findings),
+                Step::Arc(arc) => self.arc(line, arc, out, findings),
+                Step::Spline(spline) => self.spline(line, spline, out, findings),
+                Step::Cycle(cycle) => self.cycle(line, cycle, out, findings),
                 // Points are in the part frame whatever plane they lie in.
                 Step::Plane(_) | Step::EndCycle => {}
-                Step::Command(command) => self.command(line, command, out, findings),
+                Step::Command(command) => self.command(line, command.clone(), out, findings),
             }
         }
     }
@@ -109,7 +101,7 @@ impl Expand {
     fn go(&mut self, line: u64, motion: Motion, out: &mut Out<'_>, findings: &Findings) {
         self.tip = Some(motion.tip);
         match &mut self.tangential {
-            None => out.push(Flow::Point(Line { line, motion })),
+            None => out.push_with(|| Flow::Point(Line { line, motion })),
             Some(tangential) => tangential.go(line, motion, out, findings),
         }
     }

@@ -40,7 +40,7 @@ impl Run {
         }
         interpreter.finish();
         let mut findings = interpreter.take_findings();
-        let (steps, faults) = expanded(steps, reading.chord_tolerance);
+        let (steps, faults) = expanded(&steps, reading.chord_tolerance);
         findings.extend(faults);
         Self { steps, findings }
     }

@@ -8,9 +8,8 @@ use super::Limit;
 /// Largest feeds of the axes.
 #[derive(Debug)]
 pub(super) struct MaxFeed {
-    /// Minutes that each axis needs for one mm or radian at its largest feed.
+    /// Minutes that each axis needs for one mm or radian at its largest feed; none for places without an axis.
     slowness: [f64; MAX_AXES],
-    count: usize,
 }
 
 impl MaxFeed {
@@ -19,10 +18,7 @@ impl MaxFeed {
         for (slowness, axis) in slowness.iter_mut().zip(&machine.axes) {
             *slowness = 1.0 / axis.max_feed;
         }
-        Self {
-            slowness,
-            count: machine.axes.len().min(MAX_AXES),
-        }
+        Self { slowness }
     }
 }
 
@@ -33,8 +29,11 @@ impl Limit for MaxFeed {
 
     fn least_minutes(&self, from: &Joints, to: &Joints) -> f64 {
         let mut least: f64 = 0.0;
-        for index in 0..self.count {
-            least = least.max((to[index] - from[index]).abs() * self.slowness[index]);
+        for index in 0..MAX_AXES {
+            let minutes = (to[index] - from[index]).abs() * self.slowness[index];
+            if minutes > least {
+                least = minutes;
+            }
         }
         least
     }

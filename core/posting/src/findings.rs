@@ -10,7 +10,7 @@ use post_machine::diagnostic::{Diagnostic, Extreme, Place, Severity, unreadable}
 
 use crate::source_buffer::SourceBuffer;
 
-/// Faults of one run that are told; what comes after is most likely more of the same.
+/// Faults of one run that are told, those found first; what comes after is most likely more of the same.
 pub const MOST_FAULTS: usize = 20;
 
 /// The findings of one run. Every stage may add to them.
@@ -86,7 +86,7 @@ impl Findings {
     pub(crate) fn add(&self, finding: Diagnostic) {
         let mut inner = self.inner.borrow_mut();
         if finding.severity == Severity::Error {
-            if inner.repeated(&finding) {
+            if inner.repeated(&finding) || inner.faults >= MOST_FAULTS {
                 return;
             }
             inner.faults += 1;
@@ -106,14 +106,16 @@ impl Findings {
         self.inner.borrow().faults >= MOST_FAULTS
     }
 
-    /// The warnings as sentences.
+    /// The warnings as sentences, in the order of the lines.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let inner = self.inner.borrow();
-        let warnings = inner
-            .found
-            .iter()
-            .filter(|finding| finding.severity == Severity::Warning);
+        let found = inner.found.iter();
+        let mut warnings: Vec<&Diagnostic> = found
+            .filter(|finding| finding.severity == Severity::Warning)
+            .collect();
+        warnings.sort_by_key(|finding| line_of(finding));
         warnings
+            .into_iter()
             .map(|finding| match &finding.place {
                 Some(place) => format!("line {}: {}", place.line, finding.message),
                 None => finding.message.clone(),
@@ -126,9 +128,14 @@ impl Findings {
         let inner = self.inner.get_mut();
         inner.tell_repeats();
         let mut found = std::mem::take(&mut inner.found);
-        found.sort_by_key(|finding| finding.place.as_ref().map_or(u64::MAX, |place| place.line));
+        found.sort_by_key(line_of);
         found
     }
+}
+
+/// Findings without a line come last.
+fn line_of(finding: &Diagnostic) -> u64 {
+    finding.place.as_ref().map_or(u64::MAX, |place| place.line)
 }
 
 impl Inner {
@@ -150,6 +157,9 @@ impl Inner {
                 repeat.line = line;
             }
             return true;
+        }
+        if self.faults >= MOST_FAULTS {
+            return false;
         }
         self.repeats.push(Repeat {
             finding: self.found.len(),

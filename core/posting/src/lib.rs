@@ -6,7 +6,7 @@
 //! | stage | takes | hands on |
 //! |---|---|---|
 //! | [`program`] | records | [`program::Step`]: what is meant, mm, part frame |
-//! | `expand` | steps | straight moves, unless dialect and machine take the curve as it is |
+//! | `expand` | steps | straight moves: as yet no later stage carries a curve to a dialect that writes it |
 //! | `configuration` | moves | points with the axis values chosen for them, over whole passes |
 //! | `blocks` | points | [`Block`]: as printed, more or fewer of them, each certified |
 //! | `timing` | blocks | the same with time, feed and what limits it |

@@ -2,7 +2,6 @@
 
 mod line;
 mod number;
-mod points;
 mod reader;
 mod record;
 mod scan;
@@ -10,7 +9,6 @@ mod statements;
 mod vocabulary;
 
 pub use line::parse_record;
-pub use points::Points;
 pub use reader::Reader;
 pub use record::*;
 pub use vocabulary::{MajorWord, Usage};

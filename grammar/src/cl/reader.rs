@@ -9,7 +9,6 @@
 //!   must not swallow the move after it.
 
 use super::line::{is_free_text, parse_record};
-use super::points::Points;
 use super::record::Record;
 use super::scan::{self, Plain};
 use crate::fault::{ReadError, SyntaxFault};
@@ -120,41 +119,6 @@ impl<R: Read> Reader<R> {
             }
         }
         Ok(None)
-    }
-
-    /// Fills `points` with the plain `GOTO/x,y,z[,i,j,k]` records that come next, line after line, at most `most` of
-    /// them: the same that [`next_record`](Self::next_record) would give one by one.
-    ///
-    /// It stops before the first line that is anything else, and where the bytes read so far end; so a run may be
-    /// shorter than the file's. With no point at all, the next record is for [`next_record`](Self::next_record).
-    pub fn next_points(&mut self, points: &mut Points, most: usize) -> io::Result<()> {
-        points.clear(most);
-        while !self.ended
-            && self.pending().len() <= LONGEST
-            && memchr2(b'\n', b'\r', self.pending()).is_none()
-        {
-            self.fill()?;
-        }
-        points.first_line = self.line;
-        while points.len() < most
-            && let Some((plain, next)) = self.plain()
-        {
-            points.push(
-                plain.values,
-                plain.has_axis,
-                self.start..self.start + plain.end,
-            );
-            self.start += next;
-            self.line += 1;
-        }
-        Ok(())
-    }
-
-    /// The text of a record of the points read last.
-    ///
-    /// Any other call that reads on may overwrite it.
-    pub fn text(&self, place: Range<usize>) -> &[u8] {
-        &self.buffer[place]
     }
 
     /// The plain `GOTO` that begins here, and where the next line begins; `None` if there is none, or if more of the

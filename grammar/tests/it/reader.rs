@@ -1,6 +1,6 @@
 //! Logical lines: ends, continuations, comments, chunks, faults between good records.
 
-use post_grammar::{Points, ReadError, Reader, Record, Statement};
+use post_grammar::{ReadError, Reader, Record, Statement};
 use proptest::prelude::*;
 use std::io::{self, Cursor, Read};
 
@@ -243,76 +243,20 @@ fn a_failing_input_is_passed_on() {
 const SAMPLE: &str = "\u{FEFF}PARTNO blade\r\nUNITS / MM\r\n\r\n$$-> CSYS / 1, 0, 0, 0, $\r\n 0, 1, 0, 0, $\r\n 0, 0, 1, 0\r\n\
     GOTO / 1, 2, 3, $\n0, 0, 1\nGOTO/1,2\rRAPID\rGOTO/4.5,-.5,1.E-3\n\rCIRCLE/0,0,0,0,0,1 $$ c $\nFINI";
 
-/// As [`all`], with runs of points taken as arrays.
-fn all_by_runs(input: impl Read, most: usize) -> (Vec<String>, usize) {
-    let mut reader = Reader::new(input);
-    let mut points = Points::default();
-    let (mut found, mut in_runs) = (Vec::new(), 0);
-    loop {
-        reader
-            .next_points(&mut points, most)
-            .expect("the input does not fail");
-        assert!(points.len() <= most);
-        in_runs += points.len();
-        for at in 0..points.len() {
-            let axis = [points.i[at], points.j[at], points.k[at]];
-            let statement = Statement::Goto {
-                point: [points.x[at], points.y[at], points.z[at]],
-                axis: points.has_axis[at].then_some(axis),
-            };
-            let text = String::from_utf8_lossy(reader.text(points.text[at].clone()));
-            let line = points.first_line + at as u64;
-            found.push(format!("{line} {text} {statement:?}"));
-        }
-        match reader.next_record() {
-            Ok(None) => return (found, in_runs),
-            Ok(Some(record)) => found.push(told(&record)),
-            Err(ReadError::Syntax(fault)) => found.push(format!("{fault:?}")),
-            Err(ReadError::Io(error)) => panic!("{error}"),
-        }
-    }
-}
-
-#[test]
-fn a_run_of_points_ends_at_any_other_line() {
-    let text = "GOTO/1,2,3\nGOTO/1.5,2,3,0,0,-1\r\n GOTO / 1 , 2 , 3 \rRAPID\nGOTO/1,2,3$\n,0,0,1\nGOTO/7,8,9";
-    let mut reader = Reader::new(text.as_bytes());
-    let mut points = Points::default();
-    reader.next_points(&mut points, 64).unwrap();
-    assert_eq!((points.first_line, points.len()), (1, 3));
-    assert_eq!(points.has_axis, [false, true, false]);
-    assert_eq!(points.k, [0.0, -1.0, 0.0]);
-    assert_eq!(reader.text(points.text[2].clone()), b" GOTO / 1 , 2 , 3 ");
-    let expected = all(text.as_bytes());
-    for most in 1..5 {
-        assert_eq!(all_by_runs(text.as_bytes(), most).0, expected);
-    }
-}
-
-#[test]
-fn long_files_come_in_runs() {
-    let text = "GOTO/12.3456,-7.8901,0.5,0.123456789,-0.5,0.75\n".repeat(20_000);
-    let (found, in_runs) = all_by_runs(text.as_bytes(), 128);
-    assert_eq!(found, all(text.as_bytes()));
-    // Now and then one is read as a record, where a run is full.
-    assert!(in_runs > 19_500, "{in_runs}");
-}
-
 proptest! {
     #![proptest_config(crate::cases())]
 
     #[test]
-    fn runs_of_points_are_what_the_records_are(
+    fn chunks_of_points_do_not_matter(
         lines in prop::collection::vec(
             "( ?GOTO/|GOTO / |GOTO/|GOTO/|GOTO/|RAPID|\\$\\$ |FEDRAT/)(-?[0-9]{1,3}(\\.[0-9]{0,11})?,?){0,7}( ?\\$| \\$\\$ x|x|)(\n|\n|\r\n|\r|\n\n)",
             0..12,
         ),
-        most in 1..6usize,
         sizes in prop::collection::vec(1..200usize, 1..6),
     ) {
         let text = lines.concat();
         let trickle = Trickle { bytes: text.as_bytes(), sizes: sizes.into_iter().cycle() };
-        prop_assert_eq!(all_by_runs(trickle, most).0, all(text.as_bytes()));
+        prop_assert_eq!(all(trickle), all(text.as_bytes()));
     }
 
     #[test]

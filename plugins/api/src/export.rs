@@ -88,6 +88,11 @@ impl Linked {
         self.name
     }
 
+    /// It is an error model, else a dialect.
+    pub fn is_model(self) -> bool {
+        self.open.is_none()
+    }
+
     /// The options that it declares.
     pub fn options(self) -> &'static [OptionSpec] {
         (self.options)()

@@ -31,9 +31,6 @@ use crate::terminal;
 use dry_run::DryRun;
 use sweep::{Sweep, Swept};
 
-/// The models that are compared; the machine's own comes to them.
-const MODELS: [&str; 3] = ["harmonic", "parabolic", "sampled"];
-
 /// Moves before and behind the one that is looked at, in the pictures that show several.
 const AROUND: usize = 4;
 
@@ -176,7 +173,12 @@ fn folder(arguments: &StudyArguments) -> PathBuf {
 /// Opens the models that are compared.
 fn models(dry_run: &DryRun<'_>, machine: &Machine) -> Result<(Vec<String>, Models), Failure> {
     let own = &machine.accuracy.model;
-    let mut names: Vec<String> = MODELS.map(str::to_owned).to_vec();
+    // All that are part of the command; the machine's own comes to them.
+    let stock = post_stock::plugins().iter();
+    let mut names: Vec<String> = stock
+        .filter(|plugin| plugin.is_model())
+        .map(|plugin| plugin.name().to_owned())
+        .collect();
     if !names.contains(own) {
         names.push(own.clone());
     }

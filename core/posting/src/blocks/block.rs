@@ -60,6 +60,8 @@ pub enum MotionKind {
 pub enum Reason {
     /// It ends on a CL point.
     Point,
+    /// It ends on a CL point close to a pole, a rotary axis held or turned early within the tolerance of the tool axis.
+    Eased,
     /// Error control put its end in.
     PutIn,
     /// The tool leaves the part as it stands, before its axes turn.

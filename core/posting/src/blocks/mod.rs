@@ -57,7 +57,7 @@ struct Largest {
 impl Largest {
     /// Can a block with this bound be the worst one?
     #[inline]
-    fn is_below(&self, leg: &Leg<'_>, bound: Bound) -> bool {
+    fn may_be_worst(&self, leg: &Leg<'_>, bound: Bound) -> bool {
         let tip = bound.tip + leg.motion.chord;
         if leg.loose {
             tip > self.rapid
@@ -276,7 +276,11 @@ impl<'a> Blocks<'a> {
             line: chosen.line,
             motion: &chosen.motion,
             loose: chosen.motion.pace == Pace::Rapid,
-            reason: Reason::Point,
+            reason: if chosen.eased {
+                Reason::Eased
+            } else {
+                Reason::Point
+            },
         };
         if chosen.arrives {
             self.counts.branch_changes += u64::from(chosen.changed && leg.loose);
@@ -420,7 +424,7 @@ impl<'a> Blocks<'a> {
         match whole.whole() {
             Some(bound) => {
                 // The cheap bound decides whether the block can be the worst one; the tight one is kept.
-                let bound = if self.largest.is_below(leg, bound) {
+                let bound = if self.largest.may_be_worst(leg, bound) {
                     whole.measured().least(bound)
                 } else {
                     bound

@@ -2,7 +2,7 @@
 
 use post_machine::kinematics::Joints;
 
-use super::trellis::Lattice;
+use super::trellis::Trellis;
 
 /// The way that was walked back.
 #[derive(Debug, Default)]
@@ -15,10 +15,10 @@ pub(super) struct Backtrace {
 
 impl Backtrace {
     /// Where the axes stand at a layer.
-    pub(super) fn joints(&self, lattice: &Lattice, layer: usize) -> Joints {
+    pub(super) fn joints(&self, trellis: &Trellis, layer: usize) -> Joints {
         match self.eased.binary_search_by_key(&layer, |(layer, _)| *layer) {
             Ok(place) => self.eased[place].1,
-            Err(_) => lattice.states[self.states[layer]].joints,
+            Err(_) => trellis.states[self.states[layer]].joints,
         }
     }
 }

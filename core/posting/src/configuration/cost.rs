@@ -1,4 +1,4 @@
-//! What a way through the lattice costs: first what should not be at all, then how far the axes travel.
+//! What a way through the trellis costs: first what should not be at all, then how far the axes travel.
 
 /// Costs are compared place by place: rewinds, points on a side that is not preferred, travel.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,6 +17,7 @@ mod trellis;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
+use nalgebra::Vector3;
 use post_machine::description::{Machine, Positions, Tcp, ToolLength};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
@@ -184,9 +185,14 @@ impl<'a> Configuration<'a> {
     #[inline]
     fn guided(&self, motion: Motion) -> Motion {
         Motion {
-            tip: motion.tip + motion.axis * self.machine.control_point.along,
+            tip: self.control_point(motion.tip, motion.axis),
             ..motion
         }
+    }
+
+    #[inline]
+    fn control_point(&self, tip: Vector3<f64>, axis: Vector3<f64>) -> Vector3<f64> {
+        tip + axis * self.machine.control_point.along
     }
 
     /// A command is carried out between the points that it stands between.
@@ -287,9 +293,9 @@ impl<'a> Configuration<'a> {
     }
 
     /// The tool stands there: solutions near to it are wanted, but nothing moves.
-    fn stand(&mut self, tip: nalgebra::Vector3<f64>, axis: nalgebra::Vector3<f64>) {
+    fn stand(&mut self, tip: Vector3<f64>, axis: Vector3<f64>) {
         let pose = Pose {
-            tip: tip + axis * self.machine.control_point.along,
+            tip: self.control_point(tip, axis),
             axis,
             edge: self.route.edge_at_rest(),
         };

@@ -23,12 +23,12 @@ impl Route<'_> {
         motion: &Motion,
         pushed: Result<Found, Unreachable>,
     ) -> Result<(), Lost> {
-        let kind = match (&pushed, self.lattice.layers.last()) {
+        let kind = match (&pushed, self.trellis.layers.last()) {
             (Ok(_), Some(layer)) => layer.kind,
             _ => Kind::First,
         };
         if pushed.is_ok() {
-            self.lattice.pop();
+            self.trellis.pop();
         }
         if self.try_positions(line, motion).map_err(Lost::Point)? {
             return Ok(());
@@ -59,7 +59,7 @@ impl Route<'_> {
     fn goes_on(&mut self, line: u64, motion: &Motion) -> bool {
         let pushed = self.push(line, motion).is_ok();
         if pushed && !self.alive() {
-            self.lattice.pop();
+            self.trellis.pop();
             return false;
         }
         pushed
@@ -97,26 +97,26 @@ impl Route<'_> {
             return Ok(false);
         }
         alternatives.sort_by(|a, b| {
-            let way = |other: &Joints| self.lattice.measure.approach(&held, other);
+            let way = |other: &Joints| self.trellis.measure.approach(&held, other);
             way(a).total_cmp(&way(b))
         });
         // The points since the last rapid, this one last.
         let settled = usize::from(self.anchored);
         let off_part = |kind: Kind| kind != Kind::Cut;
         let back = match motion.pace {
-            Pace::Rapid => self.lattice.layers.len(),
-            _ => match (settled..self.lattice.layers.len())
+            Pace::Rapid => self.trellis.layers.len(),
+            _ => match (settled..self.trellis.layers.len())
                 .rev()
-                .find(|layer| off_part(self.lattice.layers[*layer].kind))
+                .find(|layer| off_part(self.trellis.layers[*layer].kind))
             {
                 Some(layer) => layer,
-                None if self.lattice.layers.is_empty() => 0,
+                None if self.trellis.layers.is_empty() => 0,
                 None => return Ok(false),
             },
         };
         let mut points: Vec<(u64, Motion)> = Vec::new();
-        while self.lattice.layers.len() > back {
-            if let Some(layer) = self.lattice.pop() {
+        while self.trellis.layers.len() > back {
+            if let Some(layer) = self.trellis.pop() {
                 points.insert(0, (layer.line, layer.motion));
             }
         }
@@ -136,7 +136,7 @@ impl Route<'_> {
                 return Ok(true);
             }
             for _ in 0..pushed {
-                self.lattice.pop();
+                self.trellis.pop();
             }
         }
         self.setting = before;
@@ -159,7 +159,7 @@ impl Route<'_> {
         let Some(rewind) = self.machine.rewind else {
             return false;
         };
-        let Some(layer) = self.lattice.layers.last().cloned() else {
+        let Some(layer) = self.trellis.layers.last().cloned() else {
             return false;
         };
         let placer = self.settings[layer.setting].1.clone();
@@ -171,8 +171,8 @@ impl Route<'_> {
         let reaches = |joints: &Joints| placer.settled(pose(&back), 1.0, joints).is_ok();
         let mut stands = Vec::new();
         let states: Vec<State> = self
-            .lattice
-            .states_of(self.lattice.layers.len() - 1)
+            .trellis
+            .states_of(self.trellis.layers.len() - 1)
             .to_vec();
         let mut added = Vec::new();
         for (place, state) in states.iter().enumerate() {
@@ -180,7 +180,7 @@ impl Route<'_> {
                 continue;
             }
             stands.clear();
-            let axes = &self.lattice.axes;
+            let axes = &self.trellis.axes;
             let found = axes.stands(placer.solver(), &target, &state.joints, &both, &mut stands);
             if found.is_err() {
                 continue;
@@ -199,14 +199,14 @@ impl Route<'_> {
             }
             let state = &states[place];
             self.rewound.push(state.joints);
-            let index = self.lattice.states.len();
-            self.lattice.states.push(State {
+            let index = self.trellis.states.len();
+            self.trellis.states.push(State {
                 cost: state
                     .cost
-                    .and_rewind(self.lattice.measure.between(&state.joints, &joints)),
+                    .and_rewind(self.trellis.measure.between(&state.joints, &joints)),
                 joints,
                 from: state.from,
-                root: if self.mark + 1 == self.lattice.layers.len() {
+                root: if self.mark + 1 == self.trellis.layers.len() {
                     index
                 } else {
                     state.root
@@ -214,7 +214,7 @@ impl Route<'_> {
                 branch,
                 rewind: Some(self.rewound.len() - 1),
             });
-            if let Some(layer) = self.lattice.layers.last_mut() {
+            if let Some(layer) = self.trellis.layers.last_mut() {
                 layer.count += 1;
             }
         }
@@ -244,11 +244,11 @@ impl Route<'_> {
     fn no_way(&self, motion: &Motion, found: &Found) -> Box<Diagnostic> {
         let placer = &self.settings[self.setting].1;
         let target = pose(motion);
-        let Some(from) = self.lattice.best().map(|index| self.lattice.states[index]) else {
+        let Some(from) = self.trellis.best().map(|index| self.trellis.states[index]) else {
             return self.over_travel(found);
         };
         let mut stands = Vec::new();
-        let axes = &self.lattice.axes;
+        let axes = &self.trellis.axes;
         let solved = axes.stands(placer.solver(), &target, &from.joints, &both, &mut stands);
         if solved.is_err() || stands.is_empty() {
             return self.over_travel(found);

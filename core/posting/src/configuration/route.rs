@@ -1,6 +1,6 @@
 //! Which of several solutions is taken at each point, decided over whole passes.
 //!
-//! Points come in one by one; a lattice keeps the cheapest way to every way of standing at the newest. What is
+//! Points come in one by one; a trellis keeps the cheapest way to every way of standing at the newest. What is
 //! decided comes out: as soon as one state is left, at the latest when so many points wait as the machine's
 //! `look_ahead` says. So the memory is bounded, and the choice is the best that can be known by then.
 //!
@@ -19,7 +19,7 @@ use post_machine::kinematics::{Joints, Pose, Unreachable};
 
 use super::backtrace::Backtrace;
 use super::solution::Found;
-use super::trellis::{Judge, Lattice};
+use super::trellis::{Judge, Trellis};
 
 /// A point of the path with the axis values that were chosen for it.
 #[derive(Clone, Debug)]
@@ -52,14 +52,14 @@ pub(crate) struct Route<'a> {
     pub(super) settings: Vec<(Joints, Rc<Placer>)>,
     /// Which of them new points get.
     pub(super) setting: usize,
-    pub(super) lattice: Lattice,
+    pub(super) trellis: Trellis,
     /// The first layer is settled and has one state.
     pub(super) anchored: bool,
     /// The layer whose states the roots name.
     pub(super) mark: usize,
     /// Where the axes stand if there is no layer.
     pub(super) near: Joints,
-    /// Axis values before a rewind: see [`lattice::State::rewind`].
+    /// Axis values before a rewind: see [`trellis::State::rewind`].
     pub(super) rewound: Vec<Joints>,
     judge: Trial<'a>,
     /// Redundant axes can be put elsewhere as long as the last rapid is not settled.
@@ -131,7 +131,7 @@ impl<'a> Route<'a> {
             machine,
             format: format.clone(),
             tool_length,
-            lattice: Lattice::new(machine, &placer),
+            trellis: Trellis::new(machine, &placer),
             settings: vec![(near, Rc::new(placer))],
             setting: 0,
             anchored: false,
@@ -160,7 +160,7 @@ impl<'a> Route<'a> {
 
     /// Line of the first point that is not settled.
     pub(crate) fn first_line(&self) -> Option<u64> {
-        let first = self.lattice.layers.get(usize::from(self.anchored))?;
+        let first = self.trellis.layers.get(usize::from(self.anchored))?;
         Some(first.line)
     }
 
@@ -172,8 +172,8 @@ impl<'a> Route<'a> {
 
     /// Where the axes stand behind the last decided point.
     pub(crate) fn stands_at(&self) -> &Joints {
-        match self.lattice.layers.first() {
-            Some(_) if self.anchored => &self.lattice.states_of(0)[0].joints,
+        match self.trellis.layers.first() {
+            Some(_) if self.anchored => &self.trellis.states_of(0)[0].joints,
             _ => &self.near,
         }
     }
@@ -188,8 +188,8 @@ impl<'a> Route<'a> {
     /// The tool leaves the part (a tool change, home): everything is settled, and the next point is a first one.
     pub(crate) fn leave(&mut self) {
         self.near = *self.stands_at();
-        self.lattice.layers.clear();
-        self.lattice.states.clear();
+        self.trellis.layers.clear();
+        self.trellis.states.clear();
         self.rewound.clear();
         self.anchored = false;
         self.mark = 0;
@@ -210,7 +210,7 @@ impl<'a> Route<'a> {
         self.judge.machine = machine;
         self.tries_positions = tries_positions(machine);
         self.tool_length = tool_length;
-        self.lattice = Lattice::new(machine, &placer);
+        self.trellis = Trellis::new(machine, &placer);
         self.settings = vec![(held, Rc::new(placer))];
         self.setting = 0;
         Ok(())
@@ -239,7 +239,7 @@ impl<'a> Route<'a> {
             let present = self.settings.swap_remove(self.setting);
             self.settings = vec![present];
             self.setting = 0;
-            for layer in &mut self.lattice.layers {
+            for layer in &mut self.trellis.layers {
                 layer.setting = 0;
             }
         }
@@ -266,7 +266,7 @@ impl<'a> Route<'a> {
             return None;
         }
         let placer = &self.settings[self.setting].1;
-        let joints = self.lattice.step(line, motion, self.setting, placer)?;
+        let joints = self.trellis.step(line, motion, self.setting, placer)?;
         Some(Chosen {
             line,
             motion: *motion,
@@ -296,7 +296,7 @@ impl<'a> Route<'a> {
     /// Pushes a point in the present setting.
     #[inline]
     pub(super) fn push(&mut self, line: u64, motion: &Motion) -> Result<Found, Unreachable> {
-        self.lattice.push(
+        self.trellis.push(
             line,
             motion,
             self.setting,
@@ -309,7 +309,7 @@ impl<'a> Route<'a> {
     /// There is a way to stand at the newest point.
     #[inline]
     pub(super) fn alive(&self) -> bool {
-        let newest = self.lattice.layers.last();
+        let newest = self.trellis.layers.last();
         newest.is_some_and(|layer| layer.count > 0)
     }
 

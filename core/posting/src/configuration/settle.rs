@@ -1,10 +1,10 @@
-//! Settling: the cheapest way through the lattice is walked back, eased close to poles, and handed out.
+//! Settling: the cheapest way through the trellis is walked back, eased close to poles, and handed out.
 
 use super::backtrace::Backtrace;
 use super::cost::Cost;
 use super::route::{Chosen, Route};
 use super::taut::{Gate, taut};
-use super::trellis::{HELD, Kind, Lattice, State, pose};
+use super::trellis::{HELD, Kind, State, Trellis, pose};
 use crate::program::{Motion, Pace};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::POLE;
@@ -15,20 +15,20 @@ const SAME: f64 = 1e-9;
 impl Route<'_> {
     /// Settles all points.
     pub(crate) fn settle_all(&mut self) {
-        let last = self.lattice.layers.len().saturating_sub(1);
+        let last = self.trellis.layers.len().saturating_sub(1);
         self.settle(last);
     }
 
     /// Settles what is decided: everything where one state is left, else the older half of a full window.
     #[inline]
     pub(super) fn advance(&mut self) {
-        let layers = &self.lattice.layers;
+        let layers = &self.trellis.layers;
         let Some(layer) = layers.last() else {
             return;
         };
         let waiting = layers.len() - usize::from(self.anchored);
         let look_ahead = self.machine.solution.look_ahead;
-        if layer.count == 1 && !self.lattice.eased(layer.latitude.0) && !self.tries_positions {
+        if layer.count == 1 && !self.trellis.eased(layer.latitude.0) && !self.tries_positions {
             if self.anchored && layers.len() == 2 {
                 self.settle_only();
             } else {
@@ -46,10 +46,10 @@ impl Route<'_> {
     /// Settles the only point that waits, which has one state.
     #[inline]
     fn settle_only(&mut self) {
-        let lattice = &mut self.lattice;
-        let at = &lattice.layers[1];
-        let (before, state) = (lattice.states[at.first].from, lattice.states[at.first]);
-        let before = lattice.states[before];
+        let trellis = &mut self.trellis;
+        let at = &trellis.layers[1];
+        let (before, state) = (trellis.states[at.first].from, trellis.states[at.first]);
+        let before = trellis.states[before];
         if before.rewind.is_some() || state.rewind.is_some() {
             self.settle_all();
             return;
@@ -61,16 +61,16 @@ impl Route<'_> {
             arrives: true,
             joints: state.joints,
             rewind: None,
-            changed: lattice.has_changed(
+            changed: trellis.has_changed(
                 (before.branch, &before.joints),
                 (state.branch, &state.joints),
             ),
             eased: false,
         });
-        lattice.layers.swap_remove(0);
-        lattice.layers[0].first = 0;
-        lattice.states.clear();
-        lattice.states.push(State {
+        trellis.layers.swap_remove(0);
+        trellis.layers[0].first = 0;
+        trellis.states.clear();
+        trellis.states.push(State {
             cost: Cost::NONE,
             from: 0,
             root: 0,
@@ -81,20 +81,20 @@ impl Route<'_> {
 
     /// From here on every state knows which state of the newest layer it comes from.
     fn set_mark(&mut self) {
-        let last = self.lattice.layers.len() - 1;
+        let last = self.trellis.layers.len() - 1;
         self.mark = last;
-        let layer = &self.lattice.layers[last];
+        let layer = &self.trellis.layers[last];
         for index in layer.first..layer.first + layer.count {
-            self.lattice.states[index].root = index;
+            self.trellis.states[index].root = index;
         }
     }
 
     /// Settles the points up to `upto`; the best way to the newest point decides.
     fn settle(&mut self, upto: usize) {
-        let Some(best) = self.lattice.best() else {
+        let Some(best) = self.trellis.best() else {
             return;
         };
-        let count = self.lattice.layers.len();
+        let count = self.trellis.layers.len();
         if count <= usize::from(self.anchored) {
             return;
         }
@@ -103,26 +103,26 @@ impl Route<'_> {
         way.states.clear();
         way.states.resize(count, best);
         for layer in (1..count).rev() {
-            way.states[layer - 1] = self.lattice.states[way.states[layer]].from;
+            way.states[layer - 1] = self.trellis.states[way.states[layer]].from;
         }
         self.ease(&mut way);
         self.hand_out(&way, upto);
-        let joints = way.joints(&self.lattice, upto);
-        let branch = self.lattice.states[way.states[upto]].branch;
+        let joints = way.joints(&self.trellis, upto);
+        let branch = self.trellis.states[way.states[upto]].branch;
         self.drop_before(upto, joints, branch, best);
         self.way = way;
     }
 
     /// Pulls the pole joint taut wherever the tolerance leaves it room.
     fn ease(&self, way: &mut Backtrace) {
-        let lattice = &self.lattice;
-        let layers = &lattice.layers;
+        let trellis = &self.trellis;
+        let layers = &trellis.layers;
         let Some(pole) = self.settings[layers[0].setting].1.solver().pole_joint() else {
             return;
         };
-        let state = |way: &Backtrace, layer: usize| lattice.states[way.states[layer]];
+        let state = |way: &Backtrace, layer: usize| trellis.states[way.states[layer]];
         let roomy = |way: &Backtrace, layer: usize| {
-            self.lattice.eased(layers[layer].latitude.0) && state(way, layer).rewind.is_none()
+            self.trellis.eased(layers[layer].latitude.0) && state(way, layer).rewind.is_none()
         };
         let mut at = usize::from(self.anchored);
         while at < layers.len() {
@@ -138,7 +138,7 @@ impl Route<'_> {
                 .chain((end < layers.len()).then_some(end))
                 .map(|layer| Gate {
                     time: match layers[layer].kind {
-                        Kind::Cut => Some(minutes(lattice, layer)),
+                        Kind::Cut => Some(minutes(trellis, layer)),
                         Kind::First | Kind::Rapid => None,
                     },
                     range: if layer < end {
@@ -154,7 +154,7 @@ impl Route<'_> {
                 })
                 .collect();
             let start = if at > 0 {
-                way.joints(lattice, at - 1)[pole]
+                way.joints(trellis, at - 1)[pole]
             } else {
                 self.near[pole]
             };
@@ -170,50 +170,50 @@ impl Route<'_> {
 
     /// What the tolerance leaves the pole joint at a point.
     fn room(&self, layer: usize, state: &State, pole: usize) -> [f64; 2] {
-        let [least, most] = self.lattice.axes.travel(pole);
+        let [least, most] = self.trellis.axes.travel(pole);
         if state.branch == HELD {
             return [least, most];
         }
-        let sine = self.lattice.layers[layer].latitude.0;
-        let half = self.lattice.freedom / sine.max(1e-12);
+        let sine = self.trellis.layers[layer].latitude.0;
+        let half = self.trellis.freedom / sine.max(1e-12);
         let value = state.joints[pole];
         [(value - half).max(least), (value + half).min(most)]
     }
 
     /// Where the axes stand with the pole joint at `value`; none if it stands there, or the others cannot follow.
     fn turned_to(&self, way: &Backtrace, layer: usize, pole: usize, value: f64) -> Option<Joints> {
-        let lattice = &self.lattice;
-        let joints = lattice.states[way.states[layer]].joints;
+        let trellis = &self.trellis;
+        let joints = trellis.states[way.states[layer]].joints;
         if (value - joints[pole]).abs() < SAME {
             return None;
         }
-        let at = &lattice.layers[layer];
+        let at = &trellis.layers[layer];
         let solver = self.settings[at.setting].1.solver();
         let mut last = match layer {
             0 => joints,
-            layer => way.joints(lattice, layer - 1),
+            layer => way.joints(trellis, layer - 1),
         };
         let turned = value - last[pole];
         last[pole] = value;
         // The others come as near as they can, on the turns where they are.
-        let stand = lattice
+        let stand = trellis
             .axes
             .held(solver, &pose(&at.motion), &last, turned)?;
         Some(stand.joints)
     }
 
     fn hand_out(&mut self, way: &Backtrace, upto: usize) {
-        let lattice = &self.lattice;
+        let trellis = &self.trellis;
         let mut eased = way.eased.iter().peekable();
         let mut last: Option<(u8, Joints)> = None;
         for layer in 0..=upto {
-            let state = &lattice.states[way.states[layer]];
+            let state = &trellis.states[way.states[layer]];
             let turned = eased.next_if(|(place, _)| *place == layer);
             let joints = turned.map_or(state.joints, |(_, joints)| *joints);
             let before = state.rewind.map(|before| self.rewound[before]);
             let settled = layer == 0 && self.anchored;
             if !settled || before.is_some() {
-                let at = &lattice.layers[layer];
+                let at = &trellis.layers[layer];
                 self.chosen.push(Chosen {
                     line: at.line,
                     motion: at.motion,
@@ -222,7 +222,7 @@ impl Route<'_> {
                     joints: before.unwrap_or(joints),
                     rewind: before.map(|_| Box::new(joints)),
                     changed: last.is_some_and(|(branch, last)| {
-                        lattice.has_changed((branch, &last), (state.branch, &joints))
+                        trellis.has_changed((branch, &last), (state.branch, &joints))
                     }),
                     eased: turned.is_some() || (state.branch == HELD && at.latitude.0 > POLE),
                 });
@@ -233,12 +233,12 @@ impl Route<'_> {
 
     /// Forgets what is settled; what does not come from it is no way any more.
     fn drop_before(&mut self, upto: usize, joints: Joints, branch: u8, best: usize) {
-        let lattice = &mut self.lattice;
-        let last = lattice.layers.len() - 1;
-        let (base, root) = (lattice.states[best].cost, lattice.states[best].root);
+        let trellis = &mut self.trellis;
+        let last = trellis.layers.len() - 1;
+        let (base, root) = (trellis.states[best].cost, trellis.states[best].root);
         if upto < last {
-            let newest = &lattice.layers[last];
-            for state in &mut lattice.states[newest.first..newest.first + newest.count] {
+            let newest = &trellis.layers[last];
+            for state in &mut trellis.states[newest.first..newest.first + newest.count] {
                 if state.root == root {
                     state.cost = state.cost.beyond(&base);
                 } else {
@@ -248,18 +248,18 @@ impl Route<'_> {
         }
         // One state is left of the settled layer; those behind it move up. A state that came from another one
         // of it leads nowhere: its cost is infinite where the ways end.
-        let shift = lattice.layers[upto].first + lattice.layers[upto].count - 1;
-        lattice.layers.drain(..upto);
-        lattice.states.drain(..shift);
-        for layer in &mut lattice.layers[1..] {
+        let shift = trellis.layers[upto].first + trellis.layers[upto].count - 1;
+        trellis.layers.drain(..upto);
+        trellis.states.drain(..shift);
+        for layer in &mut trellis.layers[1..] {
             layer.first -= shift;
         }
-        for state in &mut lattice.states {
+        for state in &mut trellis.states {
             state.from = state.from.saturating_sub(shift);
         }
-        lattice.layers[0].first = 0;
-        lattice.layers[0].count = 1;
-        lattice.states[0] = State {
+        trellis.layers[0].first = 0;
+        trellis.layers[0].count = 1;
+        trellis.states[0] = State {
             cost: Cost::NONE,
             joints,
             from: 0,
@@ -275,7 +275,7 @@ impl Route<'_> {
     }
 }
 
-impl Lattice {
+impl Trellis {
     /// Did the path take another branch or another full turn?
     fn has_changed(&self, (a, before): (u8, &Joints), (b, after): (u8, &Joints)) -> bool {
         (a != b && a != HELD && b != HELD)
@@ -284,10 +284,10 @@ impl Lattice {
 }
 
 /// Time of a cut, minutes.
-fn minutes(lattice: &Lattice, layer: usize) -> f64 {
-    let motion = &lattice.layers[layer].motion;
+fn minutes(trellis: &Trellis, layer: usize) -> f64 {
+    let motion = &trellis.layers[layer].motion;
     let way = layer.checked_sub(1).map_or(0.0, |before| {
-        distance(&lattice.layers[before].motion, motion)
+        distance(&trellis.layers[before].motion, motion)
     });
     match motion.pace {
         Pace::PerMinute(feed) => way / feed,

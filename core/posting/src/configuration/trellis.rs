@@ -1,4 +1,4 @@
-//! The lattice of a path: at each point every way to stand there, and between neighbouring points every way to
+//! The trellis of a path: at each point every way to stand there, and between neighbouring points every way to
 //! go on. What has cost least so far is kept for each state (Viterbi), so that the cheapest path through all of
 //! them is known at every point.
 
@@ -47,7 +47,7 @@ pub(crate) struct State {
     /// Which state of the marked point this one comes from.
     pub root: usize,
     pub branch: u8,
-    /// The point is come to with the values of this state of the lattice's `rewound`; there the tool is drawn
+    /// The point is come to with the values of this state of the trellis's `rewound`; there the tool is drawn
     /// back, turned to the values here, and brought back.
     pub rewind: Option<usize>,
 }
@@ -119,7 +119,7 @@ pub(crate) trait Judge {
 
 /// The points that are not settled yet; the first of them is, if `anchored`.
 #[derive(Debug)]
-pub(crate) struct Lattice {
+pub(crate) struct Trellis {
     pub measure: Measure,
     pub axes: Axes,
     pub layers: Vec<Layer>,
@@ -142,7 +142,7 @@ pub(crate) fn pose(motion: &Motion) -> Pose {
     }
 }
 
-impl Lattice {
+impl Trellis {
     pub(crate) fn new(machine: &Machine, placer: &Placer) -> Self {
         let freedom = match machine.solution.pole {
             Pole::Blend => SHARE * machine.accuracy.axis_tolerance - placer.axis_rounding(),
@@ -262,7 +262,7 @@ impl Lattice {
         Ok(found)
     }
 
-    /// The step of a path of which one state lives, in a cut on its branch: what [`Lattice::push`] and settling the
+    /// The step of a path of which one state lives, in a cut on its branch: what [`Trellis::push`] and settling the
     /// only state would give, without a trellis. None, and nothing changed, on any doubt.
     #[inline]
     pub(crate) fn step(

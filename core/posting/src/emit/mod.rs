@@ -113,9 +113,9 @@ impl<'a> Emit<'a> {
                 self.position(block, findings);
             }
             MotionKind::Rapid | MotionKind::Linear => {
-                self.extremes.mark(block, self.writer.next());
                 // A block without a changed word moves nothing and is not written.
                 if block.still {
+                    self.extremes.mark(block, self.writer.next());
                     return;
                 }
                 self.extremes.reach(&block.joints);
@@ -123,6 +123,7 @@ impl<'a> Emit<'a> {
                 if self.machine.clamps {
                     self.clamp(block);
                 }
+                self.extremes.mark(block, self.writer.next());
                 let (tool, words) = (stands(block), &block.words[..self.writer.words()]);
                 self.writer.push(
                     line,
@@ -192,8 +193,8 @@ impl<'a> Emit<'a> {
                 number: tool.number,
                 register: tool.register,
                 length: tool.length,
-                diameter: None,
-                corner_radius: None,
+                diameter: tool.diameter,
+                corner_radius: tool.corner_radius,
                 name: &tool.name,
             },
         );

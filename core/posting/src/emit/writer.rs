@@ -80,8 +80,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Hands the batch to the dialect and its text to the output. Where something is wrong already, the dialect is
-    /// still asked, and no text is written.
+    /// Hands the batch to the dialect and its text to the output.
     pub(super) fn flush(&mut self, extremes: &mut Extremes, findings: &Findings) {
         let Self {
             batch, text, ends, ..
@@ -107,13 +106,14 @@ impl<'a> Writer<'a> {
                 }
                 findings.at(line, fault);
             }
-            Ok(()) if !findings.failed() => {
+            // Where something is wrong already no text is written, but the dialect may find more.
+            Ok(()) if findings.failed() => {}
+            Ok(()) => {
                 if let Err(message) = self.output.write(text.as_bytes()) {
                     self.broken = true;
                     findings.add(Diagnostic::error("output", message));
                 }
             }
-            Ok(()) => self.broken = true,
         }
         batch.clear();
     }

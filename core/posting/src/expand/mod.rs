@@ -1,4 +1,4 @@
-//! Arcs, splines, cycles and planes become moves, unless dialect and machine take them as they are.
+//! Arcs, splines, cycles and planes become moves.
 //!
 //! What a dialect writes itself it declares at open ([`post_plugin::Capabilities`]). A step goes on in its own shape
 //! only if the stages behind can carry it there, and as yet they carry straight moves alone: everything leaves here

@@ -189,6 +189,10 @@ pub struct Tool {
     pub register: u32,
     /// Length from the gauge point to the tip, mm, if the CL file gives it.
     pub length: Option<f64>,
+    /// Of its cutter, mm, if the CL file describes it before it loads the tool.
+    pub diameter: Option<f64>,
+    /// Of the cutter's corner, mm, likewise.
+    pub corner_radius: Option<f64>,
     /// Its name, empty if not known.
     pub name: String,
 }

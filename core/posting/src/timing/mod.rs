@@ -140,7 +140,7 @@ impl<'a> Timing<'a> {
     fn least(&self, block: &Block) -> (f64, Option<&'static str>) {
         let mut least = (0.0, None);
         for limit in &self.limits {
-            let minutes = limit.least_minutes(&self.last, &block.joints);
+            let minutes = limit.least_minutes(&self.last, block);
             if minutes > least.0 {
                 least = (minutes, Some(limit.name()));
             }

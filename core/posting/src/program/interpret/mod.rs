@@ -84,6 +84,8 @@ pub struct Interpreter {
     register: Option<u32>,
     tool_name: String,
     diameter: Option<f64>,
+    /// Diameter and corner radius of the cutter described since the last tool was loaded, mm.
+    cutter: [Option<f64>; 2],
     cutter_length: Option<f64>,
     finished: bool,
     findings: Vec<Diagnostic>,
@@ -143,16 +145,12 @@ impl Interpreter {
             register: None,
             tool_name: String::new(),
             diameter: None,
+            cutter: [None; 2],
             cutter_length: None,
             finished: false,
             findings: Vec::new(),
             census: WordCensus::default(),
         }
-    }
-
-    /// A tool was loaded.
-    pub fn has_tool(&self) -> bool {
-        self.loaded.is_some()
     }
 
     /// Findings since the last call.

@@ -106,12 +106,16 @@ impl Interpreter {
                     .to_owned(),
             );
         }
+        // The cutter of a tool before says nothing of this one.
+        let cutter = std::mem::take(&mut self.cutter);
         // The tool comes from the changer: no arc begins where the last one stood.
         self.tip = None;
         emit(Step::Command(Command::Tool(Tool {
             number: tool.number,
             register,
             length,
+            diameter: cutter[0],
+            corner_radius: cutter[1],
             name: self.tool_name.clone(),
         })));
     }
@@ -135,6 +139,8 @@ impl Interpreter {
         // Files that load their tools describe the cutter just before or after that.
         self.cutter_changed |= self.diameter.is_some() && self.diameter != diameter && self.cut_any;
         self.diameter = diameter;
+        let size = |place: usize| numbers.get(place).map(|size| size * self.scale);
+        self.cutter = [size(0), size(1)];
         self.cutter_length = numbers.get(length).map(|length| length * self.scale);
     }
 

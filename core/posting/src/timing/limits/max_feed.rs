@@ -4,6 +4,7 @@ use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::Limit;
+use crate::blocks::Block;
 
 /// Largest feeds of the axes.
 #[derive(Debug)]
@@ -27,7 +28,8 @@ impl Limit for MaxFeed {
         "max_feed"
     }
 
-    fn least_minutes(&self, from: &Joints, to: &Joints) -> f64 {
+    fn least_minutes(&self, from: &Joints, block: &Block) -> f64 {
+        let to = &block.joints;
         let mut least: f64 = 0.0;
         for index in 0..MAX_AXES {
             let minutes = (to[index] - from[index]).abs() * self.slowness[index];

@@ -5,13 +5,15 @@ mod max_feed;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 
+use crate::blocks::Block;
+
 /// A limit of the machine.
 pub trait Limit: std::fmt::Debug {
     /// Its name, as the machine file has it.
     fn name(&self) -> &'static str;
 
-    /// The least time in which the axes can go from `from` to `to` (mm, radians), minutes.
-    fn least_minutes(&self, from: &Joints, to: &Joints) -> f64;
+    /// The least time of a block that begins with the axes at `from` (mm, radians), minutes.
+    fn least_minutes(&self, from: &Joints, block: &Block) -> f64;
 }
 
 /// The limits that hold on a machine.

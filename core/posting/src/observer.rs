@@ -44,21 +44,21 @@ impl<'a> Observers<'a> {
     }
 
     pub(crate) fn blocks(&self, blocks: &[Flow<Block>]) {
-        if self.any {
-            for observer in self.all.borrow_mut().iter_mut() {
-                observer.blocks(blocks);
-            }
+        for observer in self.all.borrow_mut().iter_mut() {
+            observer.blocks(blocks);
         }
+    }
+
+    /// Those to be shown cuts; none if nobody looks on.
+    pub(crate) fn audience(&self) -> Option<&dyn Audience> {
+        self.any.then_some(self)
     }
 }
 
 impl Audience for Observers<'_> {
-    #[inline]
     fn cut(&self, line: u64, cut: &Move<'_>) {
-        if self.any {
-            for observer in self.all.borrow_mut().iter_mut() {
-                observer.cut(line, cut);
-            }
+        for observer in self.all.borrow_mut().iter_mut() {
+            observer.cut(line, cut);
         }
     }
 }

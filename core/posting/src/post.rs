@@ -90,7 +90,7 @@ impl Stages<'_> {
         let mut to = Surroundings {
             out: &mut made,
             findings,
-            audience: observers,
+            audience: observers.audience(),
         };
         let mut to_blocks =
             |configured: &mut Vec<Flow<Configured>>| blocks.take(configured, &mut to);
@@ -181,9 +181,8 @@ impl<'a> Post<'a> {
         self.findings.read(record, || {
             [waiting, stages.settled_line()].into_iter().flatten().min()
         });
-        self.interpreter.record(record, &mut |step| {
-            steps.extend(std::iter::once_with(|| (record.line, step)));
-        });
+        self.interpreter
+            .record(record, &mut |step| steps.push((record.line, step)));
         if self.interpreter.has_findings() {
             self.gather();
         }

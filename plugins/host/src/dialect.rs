@@ -480,6 +480,14 @@ fn check_batch(
 fn is_sound(text: &[u8]) -> bool {
     // Bit operations without a branch: the compiler makes vectors of them.
     let odd = |byte: u8| (byte < b' ') & (byte != b'\n') | (byte >= 0x7f);
+    let suspect = |byte: u8| odd(byte) | (byte | 32 == b'n');
+    if !text
+        .iter()
+        .fold(false, |found, byte| found | suspect(*byte))
+    {
+        // Both words have an N.
+        return true;
+    }
     let word = |a: u8, b: u8, c: u8, word: &[u8; 3]| {
         (a | 32 == word[0]) & (b | 32 == word[1]) & (c | 32 == word[2])
     };

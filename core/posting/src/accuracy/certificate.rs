@@ -45,7 +45,7 @@ pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> Bend {
             continue;
         }
         let (first, last) = (from.tip_rates[index], to.tip_rates[index]);
-        let radius = first.norm_squared().max(last.norm_squared()).sqrt() + tip / 8.0;
+        let radius = larger(first.norm_squared(), last.norm_squared()).sqrt() + tip / 8.0;
         let slope = (last - first).norm() + tip / 2.0;
         tip += angle * (angle * radius + 2.0 * slope);
         turns += angle;
@@ -281,6 +281,12 @@ fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> Bend {
         axis: axis[3],
         turn: f64::INFINITY,
     }
+}
+
+/// The larger of two numbers. [`f64::max`] asks besides whether one of them is none, at three times the cost.
+#[inline]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// The largest deviation that an interval can have whose ends are off by `ends`.

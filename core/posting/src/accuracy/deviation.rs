@@ -190,8 +190,8 @@ impl Move<'_> {
     #[inline]
     pub(super) fn bound(&self, bend: Bend) -> Bound {
         let (from, to) = (self.from, self.to);
-        let axis_ends = from.axis_error.max(to.axis_error);
-        let tip_ends = from.tip_error.max(to.tip_error);
+        let axis_ends = certificate::larger(from.axis_error, to.axis_error);
+        let tip_ends = certificate::larger(from.tip_error, to.tip_error);
         Bound {
             tip: certificate::deviation(tip_ends, self.tip_bend(bend)) + self.edge_bow(bend),
             axis: chord_angle(certificate::deviation(axis_ends, bend.axis)),

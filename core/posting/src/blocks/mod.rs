@@ -83,8 +83,8 @@ pub(crate) struct Surroundings<'s, 'o> {
     pub out: &'s mut Outlet<'o, Flow<Block>>,
     /// Where faults go.
     pub findings: &'s Findings,
-    /// Who looks on.
-    pub audience: &'s dyn Audience,
+    /// Who looks on, if anybody does.
+    pub audience: Option<&'s dyn Audience>,
 }
 
 /// Counts of this stage.
@@ -418,8 +418,10 @@ impl<'a> Blocks<'a> {
     ) {
         let chord = leg.motion.chord;
         let whole = Move::planned(self.machine, placer, chord, leg.loose, [last, node]);
-        if !leg.loose {
-            to.audience.cut(leg.line, &whole);
+        if let Some(audience) = to.audience
+            && !leg.loose
+        {
+            audience.cut(leg.line, &whole);
         }
         match whole.whole() {
             Some(bound) => {
@@ -521,18 +523,22 @@ impl<'a> Blocks<'a> {
         to: &mut Surroundings<'_, '_>,
     ) {
         // Between the printed tips: that is the way that the control will time.
-        let turned =
-            (node.trace.pose.axis - from.trace.pose.axis) * self.machine.control_point.along;
         let way = node.tip - from.tip;
+        let length = way.norm();
+        let along = self.machine.control_point.along;
+        let tip_length = if along == 0.0 {
+            length
+        } else {
+            (way - (node.trace.pose.axis - from.trace.pose.axis) * along).norm()
+        };
         self.largest.keep(leg, bound);
-        to.out.push_with(|| {
-            Flow::Point(Block {
-                still: from.words == node.words,
-                way: [way.norm(), (way - turned).norm()],
-                nominal,
-                ..self.block(leg, node, bound)
-            })
-        });
+        let block = self.block(leg, node, bound);
+        to.out.push(Flow::Point(Block {
+            still: from.words == node.words,
+            way: [length, tip_length],
+            nominal,
+            ..block
+        }));
     }
 
     #[inline]

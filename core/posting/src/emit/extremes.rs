@@ -63,8 +63,8 @@ impl Extremes {
                 line,
             };
             self.marks[slot] = Some(index);
-        } else {
-            deviation.value = deviation.value.max(value);
+        } else if value > deviation.value {
+            deviation.value = value;
         }
     }
 

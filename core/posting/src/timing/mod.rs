@@ -129,7 +129,9 @@ impl<'a> Timing<'a> {
         };
         let (least, limit) = self.least(block);
         block.time.minutes = asked.max(least).max(1e-9);
-        block.time.limit = limit.filter(|_| least > asked * (1.0 + 1e-9));
+        block.time.limit = limit
+            .filter(|_| least > asked * (1.0 + 1e-9))
+            .map(Limit::name);
         block.time.feed = Some(self.feeds.write(block, &self.last, block.time.minutes));
         self.statistics.limited += u64::from(block.time.limit.is_some());
         self.statistics.cutting += block.time.minutes;
@@ -137,12 +139,12 @@ impl<'a> Timing<'a> {
 
     /// The least time that all limits leave a block, minutes, and the limit that asks for it.
     #[inline]
-    fn least(&self, block: &Block) -> (f64, Option<&'static str>) {
+    fn least(&self, block: &Block) -> (f64, Option<&dyn Limit>) {
         let mut least = (0.0, None);
         for limit in &self.limits {
             let minutes = limit.least_minutes(&self.last, block);
             if minutes > least.0 {
-                least = (minutes, Some(limit.name()));
+                least = (minutes, Some(&**limit));
             }
         }
         least

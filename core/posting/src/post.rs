@@ -184,6 +184,8 @@ impl<'a> Post<'a> {
         self.interpreter
             .record(record, &mut |step| steps.push((record.line, step)));
         if self.interpreter.has_findings() {
+            // What the stages find in the lines before comes before it.
+            self.run();
             self.gather();
         }
         if self.steps.len() >= BATCH {
@@ -198,6 +200,7 @@ impl<'a> Post<'a> {
 
     /// Takes a line that could not be read.
     pub fn unreadable(&mut self, fault: &SyntaxFault) {
+        self.run();
         self.findings.unreadable(fault);
     }
 

@@ -7,6 +7,12 @@ const GUIDE: &str = include_str!("../../../README.md");
 
 #[test]
 fn the_guide_shows_the_examples() {
+    let model = include_str!("../../../parabolic/src/lib.rs");
+    let model = model.split("\n#[cfg(test)]").next().unwrap();
+    assert!(
+        GUIDE.contains(model),
+        "plugins/README.md must show parabolic/src/lib.rs as it is"
+    );
     for (name, example) in [
         ("tiny", include_str!("../../examples/post_tiny.rs")),
         ("gcode", include_str!("../../examples/post_gcode.rs")),

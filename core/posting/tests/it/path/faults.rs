@@ -110,3 +110,24 @@ fn no_numbers_make_it_stumble() {
     println!("{good} good runs, {bad} refused");
     assert!(good > 20 && bad > 100);
 }
+
+/// A file full of lines that cannot be read does not hide what is wrong before them: a batch is posted before the
+/// next fault of reading is told.
+#[test]
+fn the_first_fault_of_a_file_is_told_first() {
+    let model = model("trunnion", false, WIDE, &[]);
+    let mut text = "UNITS/MM\nFEDRAT/500\nGOTO/0,0,0\nGOTO/100000,0,0\n".to_owned();
+    text += &"GOTO/1,2\n".repeat(2 * MOST_FAULTS);
+    let run = model.run(&text);
+    let errors: Vec<_> = run
+        .findings
+        .iter()
+        .filter(|finding| finding.severity == Severity::Error)
+        .collect();
+    assert_eq!(errors.len(), MOST_FAULTS);
+    assert_eq!(errors[0].code, "over-travel", "{}", run.told());
+    let lines = errors
+        .iter()
+        .map(|finding| finding.place.as_ref().map(|place| place.line));
+    assert!(lines.is_sorted());
+}

@@ -2,8 +2,7 @@
 //!
 //! A cutter-location file goes through [`Reader`], which splits it into logical lines in one reused buffer.
 //! The language is that of the pest grammar `line.pest`; a hand-written scanner gives the same for every usual line
-//! and leaves the others to pest, which reads them or says what is wrong. Runs of plain `GOTO/` lines, nearly all of
-//! a file, can be had as arrays ([`Points`]).
+//! and leaves the others to pest, which reads them or says what is wrong.
 //! The structural code of a machine ([`parse_chain`]) and the expressions in its file ([`parse_expression`])
 //! have grammars of their own.
 

@@ -33,14 +33,11 @@ pub trait Observer {
 #[derive(Default)]
 pub(crate) struct Observers<'a> {
     all: RefCell<Vec<&'a mut dyn Observer>>,
-    /// Somebody does.
-    any: bool,
 }
 
 impl<'a> Observers<'a> {
     pub(crate) fn add(&mut self, observer: &'a mut dyn Observer) {
         self.all.get_mut().push(observer);
-        self.any = true;
     }
 
     pub(crate) fn blocks(&self, blocks: &[Flow<Block>]) {
@@ -51,7 +48,7 @@ impl<'a> Observers<'a> {
 
     /// Those to be shown cuts; none if nobody looks on.
     pub(crate) fn audience(&self) -> Option<&dyn Audience> {
-        self.any.then_some(self)
+        (!self.all.borrow().is_empty()).then_some(self)
     }
 }
 

@@ -305,6 +305,11 @@ impl Machine {
         pointing
     }
 
+    /// The head that `HEAD/name` swaps in.
+    pub fn head(&self, name: &str) -> Option<&Head> {
+        self.heads.iter().find(|head| head.name == name)
+    }
+
     /// Indexed axes that are not solved for: they stand where the program or the choice has put them.
     pub fn redundant(&self) -> Vec<usize> {
         let pointing = self.pointing();

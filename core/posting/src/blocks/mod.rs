@@ -241,7 +241,7 @@ impl<'a> Blocks<'a> {
             Command::Tool(_) | Command::Home => self.stand_anywhere(),
             Command::Head(name) => {
                 self.stand_anywhere();
-                if let Some(head) = self.base.heads.iter().find(|head| head.name == *name) {
+                if let Some(head) = self.base.head(name) {
                     self.machine = &head.machine;
                     self.kinds = Kinds::new(self.machine);
                     self.linearise.set(&self.machine.accuracy);

@@ -273,7 +273,7 @@ impl<'a> Configuration<'a> {
             }
             Command::Index { axis, angle } => self.index(line, *axis, *angle, findings),
             Command::Head(name) => {
-                let Some(head) = self.base.heads.iter().find(|head| head.name == *name) else {
+                let Some(head) = self.base.head(name) else {
                     findings.at(line, no_head(self.base, name));
                     return;
                 };

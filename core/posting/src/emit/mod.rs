@@ -202,7 +202,7 @@ impl<'a> Emit<'a> {
 
     /// Another head: the machine is that of the head from here on.
     fn swap_head(&mut self, line: u64, name: &str) {
-        let Some(head) = self.base.heads.iter().find(|head| head.name == name) else {
+        let Some(head) = self.base.head(name) else {
             return;
         };
         self.release(line);

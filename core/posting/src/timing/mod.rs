@@ -84,7 +84,7 @@ impl<'a> Timing<'a> {
         match command {
             Command::Dwell(seconds) => self.statistics.other += seconds / 60.0,
             Command::Head(name) => {
-                let Some(head) = self.base.heads.iter().find(|head| head.name == *name) else {
+                let Some(head) = self.base.head(name) else {
                     return;
                 };
                 if let Some(feeds) = FeedWriter::new(&head.machine, &self.format) {

@@ -204,6 +204,30 @@ impl Words {
         }
     }
 
+    /// What is printed for a joint at `value` in machine coordinates, as near to it as its `travel` allows, in program
+    /// units, and its place among the words.
+    pub fn machine_word(
+        &self,
+        joint: usize,
+        value: f64,
+        travel: Option<[f64; 2]>,
+    ) -> Option<(usize, f64)> {
+        let mut words = self.rotary.iter().chain(&self.linear);
+        let word = words.find(|word| word.joint == joint)?;
+        let shown = |value: f64| (value + word.reading) * word.per_unit;
+        let mut printed = word.printed(shown(value));
+        if let Some([least, most]) = travel {
+            // A limit that is a printed number but for its last bits is that number.
+            let bits = 1e-6 * word.per_scale;
+            if printed > shown(most) + bits {
+                printed = word.printed(printed - word.per_scale);
+            } else if printed < shown(least) - bits {
+                printed = word.printed(printed + word.per_scale);
+            }
+        }
+        Some((word.place, printed))
+    }
+
     /// Values of a joint that are printed inside its travel: those between the outermost printed numbers in
     /// it, and so far beyond them as is still printed as they are. mm or radians.
     pub fn printed_travel(&self, joint: usize, [least, most]: [f64; 2]) -> [f64; 2] {

@@ -4,7 +4,7 @@ use post_grammar::{Record, SyntaxFault};
 use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{DialectSession, ModelSession};
+use post_plugin::{Capabilities, DialectSession, ModelSession};
 
 use crate::blocks::{Block, Blocks, Surroundings};
 use crate::configuration::{Configuration, Configured};
@@ -107,8 +107,8 @@ impl Stages<'_> {
             configuration.finish(&mut configured, findings);
         }
         configured.flush();
-        if finish {
-            blocks.finish(&mut to);
+        if let Some(line) = last_line {
+            blocks.finish(line, &mut to);
         }
         made.flush();
         if let Some(line) = last_line {
@@ -150,7 +150,12 @@ impl<'a> Post<'a> {
             timing: Timing::new(machine, &format)?,
             configuration: Configuration::new(machine, &format, job.tool_length)?,
             configured: Vec::new(),
-            blocks: Blocks::new(machine, model, job.trust_model),
+            blocks: Blocks::new(
+                machine,
+                model,
+                job.trust_model,
+                dialect.capabilities().has(Capabilities::TCP_STILL),
+            ),
             made: Vec::new(),
             observers: Observers::default(),
             emit: Emit::new(machine, dialect, output),

@@ -347,6 +347,9 @@ typedef struct {
 #define POST_WRITES_SUBPROGRAM 0x0000000080000000u
 /* Probe. */
 #define POST_WRITES_PROBE 0x0000000100000000u
+/* Tool centre point control is switched on in a block that moves nothing, so that a first position can go in the
+ * plane and then in depth under it. */
+#define POST_WRITES_TCP_STILL 0x0000000400000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */
@@ -355,7 +358,7 @@ typedef struct {
 /* A line to be written letter for letter (INSERT). */
 #define POST_EVENT_LITERAL 3u
 /* texts[0], text: The line. */
-/* Change to a tool. The last tool's compensation was released before. */
+/* Change to a tool. The tool before it was retracted, the spindle and the coolant stand still. */
 #define POST_EVENT_TOOL_CHANGE 4u
 /* Tool number. */
 #define POST_TOOL_CHANGE_NUMBER 0u
@@ -384,18 +387,29 @@ typedef struct {
 #define POST_EVENT_COMPENSATE 8u
 /* 2 numbers: POST_COMPENSATE_… and the register of the radius. */
 #define POST_COMPENSATE_COMPENSATION 0u
-/* The first position after the start, a tool change or a Event::Release: the tool comes from wherever it stands
- * (clear of the part). The dialect puts the compensation in force (length compensation, or tool centre point
- * control if Setup::tcp), rotary axes first, then the plane, then the depth. */
+/* The first position after a Event::Retract or a tool change. The tool stands clear of the part, the rotary axes
+ * have been turned by Event::Turn. The dialect puts the compensation in force (length compensation, or tool
+ * centre point control if Setup::tcp) in the order that its control needs, and goes to the words at rapid. */
 #define POST_EVENT_POSITION 9u
 /* 6 numbers: Where the tool stands then; none where nobody knows. */
 #define POST_POSITION_TOOL 0u
 /* 2 numbers: Feed of the last approach; none is rapid. */
 #define POST_POSITION_FEED 6u
+/* The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the plane
+ * comes first, the depth last. Else (under tool centre point control) all linear words stand in one block, at
+ * whose end the tool is still clear of the part. */
+#define POST_POSITION_PLANE_FIRST 8u
 /* how many there are, and behind it as many: All axis words, in the order of Setup::words. */
-#define POST_POSITION_WORDS 8u
-/* Cancel what Event::Position put in force (TCP, length), before a tool change, home or the end. */
-#define POST_EVENT_RELEASE 10u
+#define POST_POSITION_WORDS 9u
+/* The tool leaves the part: axes go at rapid to where the machine file proves it to be clear, and what
+ * Event::Position put in force (TCP, length) is cancelled, in the order that the control needs. Sent behind the
+ * start too, when nothing is known of what is in force; never twice without a motion or a tool change between. */
+#define POST_EVENT_RETRACT 10u
+/* Which words: bit n is word n. */
+#define POST_RETRACT_AXES 0u
+/* how many there are, and behind it as many: Positions in machine coordinates (G53, M91, SUPA), in program
+ * units; 0 for words that stay. */
+#define POST_RETRACT_WORDS 1u
 /* Rapid traverse. */
 #define POST_EVENT_RAPID 11u
 /* 6 numbers: Where the tool stands at its end; none where nobody knows. */
@@ -418,53 +432,63 @@ typedef struct {
 #define POST_EVENT_STOP 14u
 /* Optional stop (M1). */
 #define POST_EVENT_OPTIONAL_STOP 15u
-/* Retract to the machine's reference (depth axis first). Comes after Event::Release. */
-#define POST_EVENT_HOME 16u
+/* After a Event::Retract: axes go at rapid to a position of the machine (for a tool change, at the end). */
+#define POST_EVENT_PARK 16u
+/* Which words: bit n is word n. */
+#define POST_PARK_AXES 0u
+/* how many there are, and behind it as many: Positions in machine coordinates, in program units; 0 for words
+ * that stay. */
+#define POST_PARK_WORDS 1u
 /* The program ends. */
 #define POST_EVENT_END 17u
+/* The rotary axes turn at rapid to their words, the tool retracted; the linear axes stay. Comes ahead of
+ * Event::Position, what clamps them between the two. */
+#define POST_EVENT_TURN 18u
+/* how many there are, and behind it as many: All axis words: of these the rotary ones count. */
+#define POST_TURN_WORDS 0u
 /* A line of the machine builder's own (a clamp, another head), to be written letter for letter. It moves
  * nothing, and what is in force stays in force. */
-#define POST_EVENT_WORD 18u
+#define POST_EVENT_WORD 19u
 /* texts[0], text: The line. */
 /* An operation begins. Sent under Capabilities::OPERATION, else its name is a remark. */
-#define POST_EVENT_OPERATION 19u
+#define POST_EVENT_OPERATION 20u
 /* texts[0], name: Its name in the CAM system, empty if it has none. */
 /* The operation ends. Under the same capability. */
-#define POST_EVENT_OPERATION_END 20u
+#define POST_EVENT_OPERATION_END 21u
 /* A message on the control's screen (MSG), under MESSAGE. */
-#define POST_EVENT_MESSAGE 21u
+#define POST_EVENT_MESSAGE 22u
 /* texts[0], text: One line, any characters; empty clears it. */
 /* Units change inside the program, under UNITS; no length is in force across it. */
-#define POST_EVENT_UNITS 22u
+#define POST_EVENT_UNITS 23u
 /* POST_UNITS_…. */
 #define POST_UNITS_UNITS 0u
-/* Another work offset, under WORK_OFFSET. The tool was released before. */
-#define POST_EVENT_WORK_OFFSET 23u
+/* Another work offset, under WORK_OFFSET. The tool was retracted before. */
+#define POST_EVENT_WORK_OFFSET 24u
 /* From 1: G54 is 1, G55 is 2. */
 #define POST_WORK_OFFSET_NUMBER 0u
 /* texts[0], name: As the CL file names it, empty if it does not. */
 /* Other registers for the tool in the spindle, under OFFSETS. */
-#define POST_EVENT_OFFSETS 24u
+#define POST_EVENT_OFFSETS 25u
 /* Register of the length; none stays. */
 #define POST_OFFSETS_LENGTH 0u
 /* Register of the radius; none stays. */
 #define POST_OFFSETS_RADIUS 1u
 /* Spindle on at a constant cutting speed, under SURFACE_SPEED. */
-#define POST_EVENT_SURFACE_SPEED 25u
+#define POST_EVENT_SURFACE_SPEED 26u
 /* m/min, or feet a minute in an inch program. */
 #define POST_SURFACE_SPEED_SPEED 0u
 /* Revolutions a minute that it must not exceed; none if not said. */
 #define POST_SURFACE_SPEED_MOST 1u
 /* POST_SENSE_…. */
 #define POST_SURFACE_SPEED_SENSE 2u
-/* Tool centre point control on or off by itself, under TCP_SWITCH; else Event::Position and Event::Release do
+/* Tool centre point control on or off by itself, under TCP_SWITCH; else Event::Position and Event::Retract do
  * it. */
-#define POST_EVENT_TCP 26u
+#define POST_EVENT_TCP 27u
 /* On, else off. */
 #define POST_TCP_ON 0u
-/* A tilted plane begins, under PLANE: until Event::PlaneOff linear words are in its frame. The tool was released
- * before; the rotary axes turn to words with it. */
-#define POST_EVENT_PLANE 27u
+/* A tilted plane begins, under PLANE: until Event::PlaneOff linear words are in its frame. The tool was
+ * retracted before; the rotary axes turn to words with it. */
+#define POST_EVENT_PLANE 28u
 /* 3 numbers: Origin of the plane's frame, mm, part frame. */
 #define POST_PLANE_ORIGIN 0u
 /* 3 numbers: Its first direction, unit vector, part frame. */
@@ -474,23 +498,23 @@ typedef struct {
 /* how many there are, and behind it as many: Where the axes stand in it: of these the rotary words count. */
 #define POST_PLANE_WORDS 9u
 /* The tilted plane ends. */
-#define POST_EVENT_PLANE_OFF 28u
+#define POST_EVENT_PLANE_OFF 29u
 /* The control may leave the path by so much, under SMOOTHING (G187, CYCLE832, CYCL DEF 32, G61.1). */
-#define POST_EVENT_SMOOTHING 29u
+#define POST_EVENT_SMOOTHING 30u
 /* Of the tip, mm. */
 #define POST_SMOOTHING_TOLERANCE 0u
 /* Of the tool axis, degrees; none where it does not turn. */
 #define POST_SMOOTHING_AXIS_TOLERANCE 1u
 /* The control keeps the path exactly, or as it does by default. */
-#define POST_EVENT_SMOOTHING_OFF 30u
+#define POST_EVENT_SMOOTHING_OFF 31u
 /* A rotary axis is clamped or let go, under CLAMP; else the machine file's own word comes as Event::Word. */
-#define POST_EVENT_CLAMP 31u
+#define POST_EVENT_CLAMP 32u
 /* Which word of the setup, from 0. */
 #define POST_CLAMP_WORD 0u
 /* Clamped, else let go. */
 #define POST_CLAMP_ON 1u
 /* An arc or a helix about normal, at a feed, under ARC_…, HELIX. */
-#define POST_EVENT_ARC 32u
+#define POST_EVENT_ARC 33u
 /* 6 numbers: Where the tool stands at its end; none where nobody knows. */
 #define POST_ARC_TOOL 0u
 /* 2 numbers: Its feed. */
@@ -504,7 +528,7 @@ typedef struct {
 /* how many there are, and behind it as many: All axis words at its end; a helix ends off the plane of its start. */
 #define POST_ARC_WORDS 15u
 /* A spline at a feed, under SPLINE. */
-#define POST_EVENT_SPLINE 33u
+#define POST_EVENT_SPLINE 34u
 /* 2 numbers: Its feed. */
 #define POST_SPLINE_FEED 0u
 /* Degree. */
@@ -516,7 +540,7 @@ typedef struct {
  * second, and so on. */
 /* A drilling cycle is in force at each Event::CyclePoint from here on, under CYCLE_… of its kind. Lengths are
  * in program units, along the tool axis. */
-#define POST_EVENT_CYCLE 34u
+#define POST_EVENT_CYCLE 35u
 /* POST_CYCLE_…. */
 #define POST_CYCLE_CYCLE 0u
 /* 2 numbers: Its feed. */
@@ -534,15 +558,15 @@ typedef struct {
 /* A thread's way a turn; none if the feed says it. */
 #define POST_CYCLE_PITCH 8u
 /* A point of the cycle in force. */
-#define POST_EVENT_CYCLE_POINT 35u
+#define POST_EVENT_CYCLE_POINT 36u
 /* 6 numbers: Where the tool would stand on it; none where nobody knows. */
 #define POST_CYCLE_POINT_TOOL 0u
 /* how many there are, and behind it as many: All axis words with the tip on the point. */
 #define POST_CYCLE_POINT_WORDS 6u
 /* No cycle is in force any more; the tool stands at the last point's retract level. */
-#define POST_EVENT_CYCLE_OFF 36u
+#define POST_EVENT_CYCLE_OFF 37u
 /* A cut with the surface's normal, under SURFACE (LN, 3-D compensation). */
-#define POST_EVENT_SURFACE 37u
+#define POST_EVENT_SURFACE 38u
 /* 6 numbers: Where the tool stands at its end; none where nobody knows. */
 #define POST_SURFACE_TOOL 0u
 /* 2 numbers: Its feed. */
@@ -552,20 +576,20 @@ typedef struct {
 /* how many there are, and behind it as many: All axis words. */
 #define POST_SURFACE_WORDS 11u
 /* Compensation of the tool's size in space, under COMPENSATE_3D. */
-#define POST_EVENT_COMPENSATE_3D 38u
+#define POST_EVENT_COMPENSATE_3D 39u
 /* On, else off. */
 #define POST_COMPENSATE_3D_ON 0u
 /* Register of the radius. */
 #define POST_COMPENSATE_3D_REGISTER 1u
 /* A subprogram is called, under SUBPROGRAM. Afterwards nothing is known to be in force. */
-#define POST_EVENT_SUBPROGRAM 39u
+#define POST_EVENT_SUBPROGRAM 40u
 /* Its number; none if it has a name. */
 #define POST_SUBPROGRAM_NUMBER 0u
 /* How often. */
 #define POST_SUBPROGRAM_TIMES 1u
 /* texts[0], name: Its name, empty if it has a number. */
 /* A move until the probe touches, under PROBE. */
-#define POST_EVENT_PROBE 40u
+#define POST_EVENT_PROBE 41u
 /* 6 numbers: Where the tool would stand at its end; none where nobody knows. */
 #define POST_PROBE_TOOL 0u
 /* 2 numbers: Its feed. */

@@ -259,6 +259,18 @@ impl Axes {
         }
     }
 
+    /// Adds positions in machine coordinates: word n where bit n of `axes` is set. Where those axes stand in the
+    /// program's coordinates is not known afterwards.
+    pub fn write_machine(&mut self, block: &mut Block, axes: u32, words: &[f64]) {
+        for (place, (axis, word)) in self.axes.iter_mut().zip(words).enumerate() {
+            if axes >> place & 1 == 1 {
+                axis.last.forget();
+                axis.write(block, *word, self.style);
+                axis.last.forget();
+            }
+        }
+    }
+
     /// Adds the words of one group that have changed.
     pub fn write_group(&mut self, block: &mut Block, words: &[f64], group: Group) {
         for (axis, word) in self.axes.iter_mut().zip(words) {

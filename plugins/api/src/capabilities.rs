@@ -106,6 +106,9 @@ capabilities! {
     31 SUBPROGRAM;
     /// `Probe`.
     32 PROBE;
+    /// Tool centre point control is switched on in a block that moves nothing, so that a first position can go in
+    /// the plane and then in depth under it.
+    34 TCP_STILL;
 }
 
 impl Capabilities {

@@ -179,7 +179,7 @@ events! { <'a>
         /// The line.
         text: &'a str,
     };
-    /// Change to a tool. The last tool's compensation was released before.
+    /// Change to a tool. The tool before it was retracted, the spindle and the coolant stand still.
     4 TOOL_CHANGE "a tool change" ToolChange {
         /// Tool number.
         number: u32,
@@ -214,20 +214,32 @@ events! { <'a>
         /// POST_COMPENSATE_… and the register of the radius.
         compensation: Compensation
     );
-    /// The first position after the start, a tool change or a [`Event::Release`]: the tool comes from
-    /// wherever it stands (clear of the part). The dialect puts the compensation in force
-    /// (length compensation, or tool centre point control if [`Setup::tcp`](crate::Setup::tcp)),
-    /// rotary axes first, then the plane, then the depth.
+    /// The first position after a [`Event::Retract`] or a tool change. The tool stands clear of the part, the rotary
+    /// axes have been turned by [`Event::Turn`]. The dialect puts the compensation in force (length compensation, or
+    /// tool centre point control if [`Setup::tcp`](crate::Setup::tcp)) in the order that its control needs, and goes
+    /// to the words at rapid.
     9 POSITION "a first position" Position {
         /// Where the tool stands then; none where nobody knows.
         tool: Option<ToolPose>,
         /// Feed of the last approach; none is rapid.
         feed: Option<Feed>,
+        /// The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the
+        /// plane comes first, the depth last. Else (under tool centre point control) all linear words stand in one
+        /// block, at whose end the tool is still clear of the part.
+        plane_first: bool,
         /// All axis words, in the order of [`Setup::words`](crate::Setup::words).
         words: &'a [f64],
     };
-    /// Cancel what [`Event::Position`] put in force (TCP, length), before a tool change, home or the end.
-    10 RELEASE "the release of a tool" Release;
+    /// The tool leaves the part: axes go at rapid to where the machine file proves it to be clear, and what
+    /// [`Event::Position`] put in force (TCP, length) is cancelled, in the order that the control needs. Sent behind
+    /// the start too, when nothing is known of what is in force; never twice without a motion or a tool change
+    /// between.
+    10 RETRACT "a retract" Retract {
+        /// Which words: bit n is word n.
+        axes: u32,
+        /// Positions in machine coordinates (G53, M91, SUPA), in program units; 0 for words that stay.
+        words: &'a [f64],
+    };
     /// Rapid traverse.
     11 RAPID "a rapid" Rapid {
         /// Where the tool stands at its end; none where nobody knows.
@@ -253,51 +265,62 @@ events! { <'a>
     14 STOP "a stop" Stop;
     /// Optional stop (M1).
     15 OPTIONAL_STOP "an optional stop" OptionalStop;
-    /// Retract to the machine's reference (depth axis first). Comes after [`Event::Release`].
-    16 HOME "the way home" Home;
+    /// After a [`Event::Retract`]: axes go at rapid to a position of the machine (for a tool change, at the end).
+    16 PARK "a position of the machine" Park {
+        /// Which words: bit n is word n.
+        axes: u32,
+        /// Positions in machine coordinates, in program units; 0 for words that stay.
+        words: &'a [f64],
+    };
     /// The program ends.
     17 END "the program's end" End;
+    /// The rotary axes turn at rapid to their words, the tool retracted; the linear axes stay. Comes ahead of
+    /// [`Event::Position`], what clamps them between the two.
+    18 TURN "a turn of the rotary axes" Turn {
+        /// All axis words: of these the rotary ones count.
+        words: &'a [f64],
+    };
     /// A line of the machine builder's own (a clamp, another head), to be written letter for letter. It moves
     /// nothing, and what is in force stays in force.
-    18 WORD "a line of the machine's own" Word {
+    19 WORD "a line of the machine's own" Word {
         /// The line.
         text: &'a str,
     };
 
     /// An operation begins. Sent under [`Capabilities::OPERATION`](crate::Capabilities::OPERATION), else its
     /// name is a remark.
-    19 OPERATION "the start of an operation" Operation {
+    20 OPERATION "the start of an operation" Operation {
         /// Its name in the CAM system, empty if it has none.
         name: &'a str,
     };
     /// The operation ends. Under the same capability.
-    20 OPERATION_END "the end of an operation" OperationEnd;
+    21 OPERATION_END "the end of an operation" OperationEnd;
     /// A message on the control's screen (`MSG`), under `MESSAGE`.
-    21 MESSAGE "a message to the operator" Message {
+    22 MESSAGE "a message to the operator" Message {
         /// One line, any characters; empty clears it.
         text: &'a str,
     };
     /// Units change inside the program, under `UNITS`; no length is in force across it.
-    22 UNITS "a change of units" Units(
+    23 UNITS "a change of units" Units(
         /// POST_UNITS_….
         units: Units
     );
-    /// Another work offset, under `WORK_OFFSET`. The tool was released before.
-    23 WORK_OFFSET "a work offset" WorkOffset {
+    /// Another work offset, under `WORK_OFFSET`. The tool was retracted before.
+    24 WORK_OFFSET "a work offset" WorkOffset {
         /// From 1: G54 is 1, G55 is 2.
         number: u32,
         /// As the CL file names it, empty if it does not.
         name: &'a str,
     };
     /// Other registers for the tool in the spindle, under `OFFSETS`.
-    24 OFFSETS "other registers of a tool" Offsets {
+    25 OFFSETS "other registers of a tool" Offsets {
         /// Register of the length; none stays.
         length: Option<u32>,
         /// Register of the radius; none stays.
         radius: Option<u32>,
     };
     /// Spindle on at a constant cutting speed, under `SURFACE_SPEED`.
-    25 SURFACE_SPEED "a constant cutting speed" SurfaceSpeed {
+    26 SURFACE_SPEED "a constant cutting speed" SurfaceSpeed {
         /// m/min, or feet a minute in an inch program.
         speed: f64,
         /// Revolutions a minute that it must not exceed; none if not said.
@@ -306,14 +329,14 @@ events! { <'a>
         sense: SpindleSense,
     };
     /// Tool centre point control on or off by itself, under `TCP_SWITCH`; else [`Event::Position`] and
-    /// [`Event::Release`] do it.
-    26 TCP "a switch of tool centre point control" Tcp {
+    /// [`Event::Retract`] do it.
+    27 TCP "a switch of tool centre point control" Tcp {
         /// On, else off.
         on: bool,
     };
     /// A tilted plane begins, under `PLANE`: until [`Event::PlaneOff`] linear words are in its frame. The tool was
-    /// released before; the rotary axes turn to `words` with it.
-    27 PLANE "a tilted plane" Plane {
+    /// retracted before; the rotary axes turn to `words` with it.
+    28 PLANE "a tilted plane" Plane {
         /// Origin of the plane's frame, mm, part frame.
         origin: [f64; 3],
         /// Its first direction, unit vector, part frame.
@@ -324,26 +347,26 @@ events! { <'a>
         words: &'a [f64],
     };
     /// The tilted plane ends.
-    28 PLANE_OFF "the end of a tilted plane" PlaneOff;
+    29 PLANE_OFF "the end of a tilted plane" PlaneOff;
     /// The control may leave the path by so much, under `SMOOTHING` (G187, CYCLE832, CYCL DEF 32, G61.1).
-    29 SMOOTHING "smoothing" Smoothing {
+    30 SMOOTHING "smoothing" Smoothing {
         /// Of the tip, mm.
         tolerance: f64,
         /// Of the tool axis, degrees; none where it does not turn.
         axis_tolerance: Option<f64>,
     };
     /// The control keeps the path exactly, or as it does by default.
-    30 SMOOTHING_OFF "the end of smoothing" SmoothingOff;
+    31 SMOOTHING_OFF "the end of smoothing" SmoothingOff;
     /// A rotary axis is clamped or let go, under `CLAMP`; else the machine file's own word comes as
     /// [`Event::Word`].
-    31 CLAMP "a clamp" Clamp {
+    32 CLAMP "a clamp" Clamp {
         /// Which word of the setup, from 0.
         word: u32,
         /// Clamped, else let go.
         on: bool,
     };
     /// An arc or a helix about `normal`, at a feed, under `ARC_…`, `HELIX`.
-    32 ARC "an arc" Arc {
+    33 ARC "an arc" Arc {
         /// Where the tool stands at its end; none where nobody knows.
         tool: Option<ToolPose>,
         /// Its feed.
@@ -358,7 +381,7 @@ events! { <'a>
         words: &'a [f64],
     };
     /// A spline at a feed, under `SPLINE`.
-    33 SPLINE "a spline" Spline {
+    34 SPLINE "a spline" Spline {
         /// Its feed.
         feed: Feed,
         /// Degree.
@@ -372,7 +395,7 @@ events! { <'a>
     };
     /// A drilling cycle is in force at each [`Event::CyclePoint`] from here on, under `CYCLE_…` of its kind. Lengths
     /// are in program units, along the tool axis.
-    34 CYCLE "a cycle" Cycle {
+    35 CYCLE "a cycle" Cycle {
         /// POST_CYCLE_….
         cycle: Cycle,
         /// Its feed.
@@ -391,16 +414,16 @@ events! { <'a>
         pitch: Option<f64>,
     };
     /// A point of the cycle in force.
-    35 CYCLE_POINT "a point of a cycle" CyclePoint {
+    36 CYCLE_POINT "a point of a cycle" CyclePoint {
         /// Where the tool would stand on it; none where nobody knows.
         tool: Option<ToolPose>,
         /// All axis words with the tip on the point.
         words: &'a [f64],
     };
     /// No cycle is in force any more; the tool stands at the last point's retract level.
-    36 CYCLE_OFF "the end of a cycle" CycleOff;
+    37 CYCLE_OFF "the end of a cycle" CycleOff;
     /// A cut with the surface's normal, under `SURFACE` (`LN`, 3-D compensation).
-    37 SURFACE "a cut with a surface normal" Surface {
+    38 SURFACE "a cut with a surface normal" Surface {
         /// Where the tool stands at its end; none where nobody knows.
         tool: Option<ToolPose>,
         /// Its feed.
@@ -411,14 +434,14 @@ events! { <'a>
         words: &'a [f64],
     };
     /// Compensation of the tool's size in space, under `COMPENSATE_3D`.
-    38 COMPENSATE_3D "compensation in space" Compensate3d {
+    39 COMPENSATE_3D "compensation in space" Compensate3d {
         /// On, else off.
         on: bool,
         /// Register of the radius.
         register: u32,
     };
     /// A subprogram is called, under `SUBPROGRAM`. Afterwards nothing is known to be in force.
-    39 SUBPROGRAM "a subprogram" Subprogram {
+    40 SUBPROGRAM "a subprogram" Subprogram {
         /// Its number; none if it has a name.
         number: Option<u32>,
         /// How often.
@@ -427,7 +450,7 @@ events! { <'a>
         name: &'a str,
     };
     /// A move until the probe touches, under `PROBE`.
-    40 PROBE "a probing move" Probe {
+    41 PROBE "a probing move" Probe {
         /// Where the tool would stand at its end; none where nobody knows.
         tool: Option<ToolPose>,
         /// Its feed.
@@ -441,8 +464,12 @@ events! { <'a>
 impl<'a> Event<'a> {
     /// A first position of which only the words are known.
     pub const fn position(words: &'a [f64], feed: Option<Feed>) -> Self {
-        let tool = None;
-        Event::Position { tool, feed, words }
+        Event::Position {
+            tool: None,
+            feed,
+            plane_first: true,
+            words,
+        }
     }
 
     /// A rapid of which only the words are known.
@@ -486,6 +513,9 @@ impl<'a> Event<'a> {
         matches!(
             self,
             Event::Position { .. }
+                | Event::Turn { .. }
+                | Event::Retract { .. }
+                | Event::Park { .. }
                 | Event::Rapid { .. }
                 | Event::Linear { .. }
                 | Event::Arc { .. }

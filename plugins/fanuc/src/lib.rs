@@ -19,6 +19,7 @@ impl Control for Fanuc {
             range: "G54 to G59 or G54.1 P1 to P300",
             ..Table::ISO.offset
         },
+        cancel: CANCEL,
         tcp: Tcp::Length("G43.4"),
         ..Table::ISO
     };
@@ -55,15 +56,11 @@ const OPTIONS: &[OptionSpec] = &[
     options::inverse_time_decimals(3),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
     OptionSpec::text(
-        "retract",
-        "",
-        "Block that clears the depth axis; empty: G91 G28 with its word. G90 follows.",
+        "cancel",
+        CANCEL,
+        "Block at the start that cancels scaling, mirror and rotation; less on a control without one of them.",
     ),
-    OptionSpec::text(
-        "home",
-        "",
-        "Block after the retract at the end and at GOHOME: G91 G28 X0. Y0. G90 follows.",
-    ),
+    options::RETRACT,
     OptionSpec::integer(
         "length_register",
         (0, 999),
@@ -72,8 +69,13 @@ const OPTIONS: &[OptionSpec] = &[
     ),
     options::COOLANT_OFF,
     options::COOLANT_THROUGH,
+    options::COOLANT_THROUGH_OFF,
     options::COOLANT_AIR,
+    options::COOLANT_AIR_OFF,
 ];
+
+/// Scaling, programmable mirror image, rotation and tilted plane off.
+const CANCEL: &str = "G50 G50.1 G69";
 
 export_dialect!(fanuc, Iso<Fanuc>);
 

@@ -1,4 +1,4 @@
-use post_kit::{Bench, P1, P3, at, cut};
+use post_kit::{ASIDE, Bench, P1, P3, TOP, at, cut, turn};
 use post_plugin::{Compensation, Coolant, Event, Value};
 
 fn bench() -> Bench {
@@ -23,17 +23,23 @@ fn options_change_what_they_say() {
         .with("block_numbers", Value::Flag(true))
         .with("trailing_zeros", Value::Flag(false))
         .with("work_offset", Value::Text("G54.1 P12"))
-        .with("home", Value::Text("G91 G28 X0. Y0."))
+        .with("cancel", Value::Text("G69"))
+        .with("coolant_through_off", Value::Text("M89"))
         .with("length_register", Value::Integer(5))
         .with("coolant_through", Value::Text("M88"))
-        .with("coolant_off", Value::Text("M9 M89"));
+        .with("retract", Value::Text("G91 G28 Z0."));
     let events = [
         Event::Start,
+        TOP,
         Event::Coolant(Coolant::Through),
         Event::Preselect { number: 3 },
+        turn(P1),
         at(P1),
         cut(P3, 12.25),
         Event::Compensate(Compensation::Off),
+        TOP,
+        Event::Coolant(Coolant::Off),
+        ASIDE,
         Event::End,
     ];
     insta::assert_snapshot!(bench.write(&events).unwrap());

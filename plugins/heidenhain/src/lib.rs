@@ -5,7 +5,7 @@
 mod options;
 
 use post_plugin::{
-    Axes, Block, Compensation, Coolant, Dialect, Event, Feed, Format, Group, Modal, NumberStyle,
+    Axes, Block, Capabilities, Compensation, Coolant, Dialect, Event, Feed, Format, Group, Modal, NumberStyle,
     OptionSpec, Setup, Spindle, SpindleSense, Units, ascii, export_dialect,
 };
 
@@ -27,8 +27,12 @@ struct Heidenhain {
     feed_decimals: u8,
     preset: i64,
     rotary_way: String,
+    /// The control has rotary axes: it knows M129 and PLANE.
+    rotary: bool,
+    /// The transformations of a program that came before are cancelled.
+    reset: bool,
+    /// In the place of a retract in machine coordinates; empty: none.
     retract: String,
-    home: String,
     tcp_on: String,
     tcp_off: String,
     coolant: [(Coolant, String); 5],
@@ -41,9 +45,12 @@ struct Heidenhain {
     radius: Modal<&'static str>,
     compensation: &'static str,
     tcp_active: Modal<bool>,
-    retracted: Modal<bool>,
     spindle_on: Modal<bool>,
+    /// How the spindle turns, if it does.
+    sense: Option<SpindleSense>,
     coolant_on: Modal<bool>,
+    /// The coolant that is on.
+    flowing: Option<Coolant>,
 }
 
 /// An event that waits for the tool call.
@@ -79,8 +86,9 @@ impl Dialect for Heidenhain {
             } else {
                 own("rotary_way")
             },
+            rotary: setup.words.iter().any(|word| word.rotary),
+            reset: setup.flag("reset"),
             retract: own("retract"),
-            home: own("home"),
             tcp_on: own("tcp_on"),
             tcp_off: own("tcp_off"),
             coolant: [
@@ -97,10 +105,15 @@ impl Dialect for Heidenhain {
             radius: Modal::default(),
             compensation: "R0",
             tcp_active: Modal::default(),
-            retracted: Modal::default(),
             spindle_on: Modal::default(),
+            sense: None,
             coolant_on: Modal::default(),
+            flowing: None,
         })
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::TCP_STILL
     }
 
     fn format(&self) -> Format {
@@ -136,11 +149,6 @@ impl Dialect for Heidenhain {
             }
             Event::Word { text } => self.block.line(text, out),
             Event::ToolChange { number, name, .. } => {
-                self.clear(out);
-                if self.spindle_on.is(true) {
-                    self.block.line("M5", out);
-                    self.spindle_on.set(false);
-                }
                 if !name.is_empty() {
                     self.comment(&format!("T{number} {name}"), out);
                 }
@@ -157,8 +165,18 @@ impl Dialect for Heidenhain {
                     Compensation::Right { .. } => "RR",
                 }
             }
-            Event::Position { words, feed, .. } => self.approach(words, feed, out)?,
-            Event::Release => self.release(out),
+            Event::Turn { words } => {
+                self.axes.forget();
+                self.rapid_group(words, Group::Rotary, out)?;
+            }
+            Event::Position {
+                words,
+                feed,
+                plane_first,
+                ..
+            } => self.approach(words, feed, plane_first, out)?,
+            Event::Retract { axes, words } => self.leave(axes, words, out),
+            Event::Park { axes, words } => self.in_machine_coordinates(axes, words, out),
             Event::Rapid { words, .. } => {
                 if self.axes.moved(words) {
                     self.block.word("L");
@@ -183,9 +201,8 @@ impl Dialect for Heidenhain {
                     .number("", seconds, 3, NumberStyle::default())
                     .end(out);
             }
-            Event::Stop => self.block.line("M0", out),
-            Event::OptionalStop => self.block.line("M1", out),
-            Event::Home => self.go_home(out),
+            Event::Stop => self.halt("M0", out),
+            Event::OptionalStop => self.halt("M1", out),
             Event::End => self.end(out),
             other => return Err(other.refusal()),
         }
@@ -207,8 +224,34 @@ impl Heidenhain {
             );
             self.block.line(&words, out);
         }
+        if self.reset {
+            self.cancel(out);
+        }
         self.block.line(&self.rotary_way, out);
-        self.tcp_active.set(false);
+    }
+
+    /// What a program before, or the operator, may have left in force. Nothing of it moves an axis.
+    fn cancel(&mut self, out: &mut String) {
+        if self.rotary {
+            // M128 outlives the end of a program; in a tilted plane M91 would still be the machine's own.
+            self.block.line(&self.tcp_off, out);
+            self.tcp_active.set(false);
+            self.block.line("PLANE RESET STAY", out);
+        }
+        for line in [
+            "CYCL DEF 7.0 DATUM SHIFT",
+            "CYCL DEF 7.1 X+0",
+            "CYCL DEF 7.2 Y+0",
+            "CYCL DEF 7.3 Z+0",
+            "CYCL DEF 8.0 MIRROR IMAGE",
+            "CYCL DEF 8.1",
+            "CYCL DEF 10.0 ROTATION",
+            "CYCL DEF 10.1 ROT+0",
+            "CYCL DEF 11.0 SCALING",
+            "CYCL DEF 11.1 SCL 1",
+        ] {
+            self.block.line(line, out);
+        }
     }
 
     fn frame(&mut self, word: &str, out: &mut String) {
@@ -237,6 +280,7 @@ impl Heidenhain {
         self.block.end(out);
         self.speed = Modal::default();
         self.spindle_on.forget();
+        self.sense = None;
         self.axes.forget();
         for held in std::mem::take(&mut self.held) {
             match held {
@@ -253,6 +297,7 @@ impl Heidenhain {
             Spindle::Off => {
                 self.block.line("M5", out);
                 self.spindle_on.set(false);
+                self.sense = None;
                 return Ok(());
             }
             Spindle::Orient => {
@@ -276,31 +321,57 @@ impl Heidenhain {
                 self.block.line(&self.tcp_on, out);
             }
         }
-        self.block.line(
-            match sense {
-                SpindleSense::Clockwise => "M3",
-                SpindleSense::CounterClockwise => "M4",
-            },
-            out,
-        );
+        self.block.line(turns(sense), out);
         self.spindle_on.set(true);
+        self.sense = Some(sense);
         Ok(())
     }
 
-    fn cool(&mut self, wanted: Coolant, out: &mut String) -> Result<(), String> {
+    /// A stop switches spindle and coolant off: both are on again before the tool moves.
+    fn halt(&mut self, word: &str, out: &mut String) {
+        self.block.line(word, out);
+        if let Some(sense) = self.sense {
+            self.block.line(turns(sense), out);
+        }
+        if let Some(flowing) = self.flowing {
+            self.coolant_codes(flowing, out);
+        }
+    }
+
+    /// The M codes of a coolant; false if it has none.
+    fn coolant_codes(&mut self, wanted: Coolant, out: &mut String) -> bool {
         let codes = self.coolant.iter().find(|(coolant, _)| *coolant == wanted);
         let codes = codes.map_or("", |(_, codes)| codes);
-        if codes.is_empty() {
+        for code in codes.split_whitespace() {
+            self.block.line(code, out);
+        }
+        !codes.is_empty()
+    }
+
+    fn cool(&mut self, wanted: Coolant, out: &mut String) -> Result<(), String> {
+        if !self.coolant_codes(wanted, out) {
             return Err(format!(
                 "the M code of {wanted:?} coolant is the machine builder's: set the option \
                  `coolant_{}`",
                 format!("{wanted:?}").to_lowercase()
             ));
         }
-        for code in codes.split_whitespace() {
-            self.block.line(code, out);
-        }
         self.coolant_on.set(wanted != Coolant::Off);
+        self.flowing = (wanted != Coolant::Off).then_some(wanted);
+        Ok(())
+    }
+
+    fn rapid_group(
+        &mut self,
+        words: &[f64],
+        group: Group,
+        out: &mut String,
+    ) -> Result<(), String> {
+        if self.axes.moved_group(words, group) {
+            self.block.word("L");
+            self.axes.write_group(&mut self.block, words, group);
+            self.finish_move(None, true, out)?;
+        }
         Ok(())
     }
 
@@ -308,30 +379,23 @@ impl Heidenhain {
         &mut self,
         words: &[f64],
         feed: Option<Feed>,
+        plane_first: bool,
         out: &mut String,
     ) -> Result<(), String> {
-        self.axes.forget();
         self.radius.forget();
-        let first: &[Group] = match self.tcp {
-            true => &[Group::Rotary],
-            false => &[Group::Rotary, Group::Plane],
-        };
-        for &group in first {
-            if self.axes.moved_group(words, group) {
-                self.block.word("L");
-                self.axes.write_group(&mut self.block, words, group);
-                self.finish_move(None, true, out)?;
-            }
-        }
+        // The rotary axes have been turned; what is left of them here moves nothing else.
+        self.rapid_group(words, Group::Rotary, out)?;
         if self.tcp && self.tcp_active.set(true) {
             self.block.line(&self.tcp_on, out);
+        }
+        if plane_first {
+            self.rapid_group(words, Group::Plane, out)?;
         }
         if self.axes.moved(words) {
             self.block.word("L");
             self.axes.write(&mut self.block, words);
             self.finish_move(feed, true, out)?;
         }
-        self.retracted.forget();
         Ok(())
     }
 
@@ -369,22 +433,26 @@ impl Heidenhain {
         Ok(())
     }
 
-    fn release(&mut self, out: &mut String) {
-        if self.tcp && self.tcp_active.set(false) {
+    /// The tool leaves the part; the control keeps the tip no longer, as M91 asks for.
+    fn leave(&mut self, axes: u32, words: &[f64], out: &mut String) {
+        if self.rotary && self.tcp_active.set(false) {
             self.block.line(&self.tcp_off, out);
         }
+        if self.retract.is_empty() {
+            self.in_machine_coordinates(axes, words, out);
+        } else {
+            self.block.line(&self.retract, out);
+        }
         self.axes.forget();
+        self.radius.forget();
     }
 
-    fn clear(&mut self, out: &mut String) {
-        if !self.tcp_active.is(false) {
-            self.release(out);
-        }
-        if self.retracted.set(true) {
-            self.block.line(&self.retract, out);
-            self.axes.forget();
-            self.radius.forget();
-        }
+    /// Axes at rapid to positions in machine coordinates, for this block alone.
+    fn in_machine_coordinates(&mut self, axes: u32, words: &[f64], out: &mut String) {
+        self.block.word("L");
+        self.axes.write_machine(&mut self.block, axes, words);
+        self.block.line("R0 FMAX M91", out);
+        self.radius.forget();
     }
 
     /// Spindle and coolant off, unless they are.
@@ -399,19 +467,8 @@ impl Heidenhain {
         }
     }
 
-    fn go_home(&mut self, out: &mut String) {
-        self.clear(out);
-        if !self.home.is_empty() {
-            self.block.line(&self.home, out);
-            self.axes.forget();
-        }
-    }
-
     fn end(&mut self, out: &mut String) {
-        // The tool leaves the part first: a spindle that stops in it tears.
-        self.clear(out);
         self.stop(out);
-        self.go_home(out);
         self.block.line("M30", out);
         self.frame("END", out);
     }
@@ -423,9 +480,17 @@ impl Heidenhain {
         self.radius.forget();
         self.axes.forget();
         self.tcp_active.forget();
-        self.retracted.forget();
         self.spindle_on.forget();
+        self.sense = None;
         self.coolant_on.forget();
+        self.flowing = None;
+    }
+}
+
+fn turns(sense: SpindleSense) -> &'static str {
+    match sense {
+        SpindleSense::Clockwise => "M3",
+        SpindleSense::CounterClockwise => "M4",
     }
 }
 

@@ -19,15 +19,15 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         default: Value::Text("M127"),
         help: "M127: the way that is programmed; M126: the shortest, for a display below 360.",
     },
-    OptionSpec::text(
-        "retract",
-        "M140 MB MAX",
-        "Block that clears the depth axis.",
+    OptionSpec::flag(
+        "reset",
+        true,
+        "M129, PLANE RESET and the cycles 7, 8, 10, 11 at the start cancel what was in force before.",
     ),
     OptionSpec::text(
-        "home",
+        "retract",
         "",
-        "Block after the retract at the end and at GOHOME: L X+0 Y+0 R0 FMAX M91.",
+        "Block that takes the place of the retract in machine coordinates (M140 MB MAX): nobody proves where it leads.",
     ),
     OptionSpec::text("tcp_on", "M128", "Block that switches TCP on."),
     OptionSpec::text("tcp_off", "M129", "Block that switches TCP off."),

@@ -37,7 +37,7 @@ fn options_change_what_they_say() {
         cut(P3, 12.3),
         turning(4000.0),
         cut(P4, 12.3),
-        Event::Release,
+        post_kit::TOP,
         Event::End,
     ];
     insta::assert_snapshot!(bench.write(&events).unwrap());

@@ -23,7 +23,7 @@ impl Dialect for Panics {
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
         out.push_str("half a line");
         match event {
-            Event::Home => panic!("the sky fell on {}", "Home"),
+            Event::Park { .. } => panic!("the sky fell on {}", "Park"),
             Event::End => std::panic::panic_any(4711),
             _ => out.push('\n'),
         }

@@ -1,12 +1,12 @@
 //! Writes a program by a [`Table`].
 
 use post_plugin::{
-    Axes, Block, Compensation, Coolant, Event, Feed, Format, Modal, NumberStyle, Setup, Spindle,
-    SpindleSense, Units,
+    Axes, Block, Capabilities, Compensation, Coolant, Event, Feed, Format, Modal, NumberStyle,
+    Setup, Spindle, SpindleSense, Units,
 };
 
 use crate::options::{flag, integer, text};
-use crate::table::{Dwell, Step, Table, Tcp};
+use crate::table::{Dwell, Leave, Table, Tcp};
 use crate::{FeedDecimals, Motion};
 
 /// Most decimals of a number with a point where the option of it is not offered.
@@ -24,27 +24,35 @@ pub struct Engine {
     inch: bool,
     tcp: bool,
     work_offset: String,
+    cancel: String,
+    /// In the place of a retract in machine coordinates; empty: none.
     retract: String,
-    home: String,
     tcp_on: String,
+    /// Empty: nothing is written about it.
     tcp_off: String,
     coolant_codes: [String; 5],
+    /// What ends each of them.
+    coolant_ends: [String; 5],
     /// Of the tool in use.
     register: Option<u32>,
     offset_active: Modal<bool>,
     length_active: Modal<bool>,
-    retracted: Modal<bool>,
+    tcp_active: Modal<bool>,
+    /// The spindle's last command, if that has it turning.
+    turning: Option<Spindle>,
     spindle: Modal<bool>,
     coolant: Modal<bool>,
+    /// Coolants that are on: places in [`COOLANTS`], one bit each.
+    flowing: u8,
 }
 
-/// Coolants in the order of [`Table::coolant`], with their options.
-const COOLANTS: [(Coolant, &str); 5] = [
-    (Coolant::Off, "coolant_off"),
-    (Coolant::Flood, "coolant_flood"),
-    (Coolant::Mist, "coolant_mist"),
-    (Coolant::Through, "coolant_through"),
-    (Coolant::Air, "coolant_air"),
+/// Coolants in the order of [`Table::coolant`], with the options that say what switches them on and off.
+const COOLANTS: [(Coolant, &str, &str); 5] = [
+    (Coolant::Off, "coolant_off", "coolant_off"),
+    (Coolant::Flood, "coolant_flood", "coolant_off"),
+    (Coolant::Mist, "coolant_mist", "coolant_mist_off"),
+    (Coolant::Through, "coolant_through", "coolant_through_off"),
+    (Coolant::Air, "coolant_air", "coolant_air_off"),
 ];
 
 impl Engine {
@@ -77,13 +85,6 @@ impl Engine {
                 "the work offset is `{work_offset}`, must be {range}"
             ));
         }
-        let retract = match text(setup, "retract", "") {
-            given if given.is_empty() => {
-                let words: Vec<String> = axes.depths().map(|name| format!("{name}0.")).collect();
-                format!("{} {}", table.retract.words, words.join(" "))
-            }
-            given => given,
-        };
         let feeds = FeedDecimals {
             per_minute: integer(setup, "feed_decimals", 1) as u8 + u8::from(inch),
             inverse_time: integer(setup, "inverse_time_decimals", 3) as u8,
@@ -93,8 +94,19 @@ impl Engine {
             Tcp::Blocks { on, off, .. } => (on, off),
             Tcp::None | Tcp::Length(_) => ("", ""),
         };
+        // Where the post keeps the tip, the words may not exist: only a machine file that names them has them written.
+        let tcp_off = match text(setup, "tcp_off", "") {
+            given if given.is_empty() && setup.tcp => tcp_off.to_owned(),
+            given => given,
+        };
         let register = integer(setup, "length_register", 0) as u32;
         let mut coolant = table.coolant.iter();
+        let coolant_codes =
+            COOLANTS.map(|(_, option, _)| text(setup, option, coolant.next().unwrap_or(&"")));
+        let coolant_ends = COOLANTS.map(|(_, _, option)| match text(setup, option, "") {
+            end if end.is_empty() => coolant_codes[0].clone(),
+            end => end,
+        });
         Ok(Engine {
             table,
             motion: Motion::new(&table.codes, block, axes, feeds),
@@ -104,19 +116,28 @@ impl Engine {
             inch,
             tcp: setup.tcp,
             work_offset,
-            retract,
-            home: text(setup, "home", ""),
+            cancel: text(setup, "cancel", table.cancel),
+            retract: text(setup, "retract", ""),
             tcp_on: text(setup, "tcp_on", tcp_on),
-            tcp_off: text(setup, "tcp_off", tcp_off),
-            coolant_codes: COOLANTS
-                .map(|(_, option)| text(setup, option, coolant.next().unwrap_or(&""))),
+            tcp_off,
+            coolant_codes,
+            coolant_ends,
             register: (register != 0).then_some(register),
             offset_active: Modal::default(),
             length_active: Modal::default(),
-            retracted: Modal::default(),
+            tcp_active: Modal::default(),
+            turning: None,
             spindle: Modal::default(),
             coolant: Modal::default(),
+            flowing: 0,
         })
+    }
+
+    pub(crate) fn capabilities(&self) -> Capabilities {
+        match self.table.tcp {
+            Tcp::Blocks { .. } => Capabilities::TCP_STILL,
+            Tcp::None | Tcp::Length(_) => Capabilities::NONE,
+        }
     }
 
     pub(crate) fn format(&self) -> Format {
@@ -154,15 +175,16 @@ impl Engine {
         if !self.machine.is_empty() {
             self.remark(&self.machine, out);
         }
-        let units = self.table.codes.units[usize::from(self.inch)];
-        let mut safe = format!("{units} {}", self.table.safe);
+        self.line(self.table.codes.units[usize::from(self.inch)], out);
+        let mut safe = self.table.safe.to_owned();
         if self.table.offset.at_start {
             safe.push(' ');
             safe.push_str(&self.work_offset);
             self.offset_active.set(true);
         }
         self.line(&safe, out);
-        self.length_active.set(false);
+        let cancel = std::mem::take(&mut self.cancel);
+        self.line(&cancel, out);
         self.motion.feeds_per_minute();
     }
 
@@ -212,12 +234,23 @@ impl Engine {
             Event::Spindle(spindle) => self.turn(spindle, out)?,
             Event::Coolant(coolant) => self.cool(coolant, out)?,
             Event::Compensate(compensation) => self.motion.compensate(compensation),
-            Event::Position { words, feed, .. } => self.position(words, feed, out)?,
-            Event::Release => self.release(out),
+            Event::Turn { words } => {
+                self.work_offset(out);
+                self.motion.turn(words, out);
+            }
+            Event::Position {
+                words,
+                feed,
+                plane_first,
+                ..
+            } => self.position(words, feed, plane_first, out)?,
+            Event::Retract { axes, words } => self.leave(axes, words, out),
+            Event::Park { axes, words } => {
+                self.motion.machine(self.table.machine, axes, words, out);
+            }
             Event::Dwell { seconds } => self.dwell(seconds, out),
-            Event::Stop => self.line(codes.stop[0], out),
-            Event::OptionalStop => self.line(codes.stop[1], out),
-            Event::Home => self.go_home(out),
+            Event::Stop => self.stop(codes.stop[0], out)?,
+            Event::OptionalStop => self.stop(codes.stop[1], out)?,
             Event::End => self.end(out),
             ref other => return Err(other.refusal()),
         }
@@ -225,10 +258,7 @@ impl Engine {
     }
 
     fn change(&mut self, number: u32, register: u32, name: &str, out: &mut String) {
-        self.clear(out);
-        if self.spindle.is(true) {
-            self.line(self.table.spindle[2], out);
-        }
+        self.motion.settle(out);
         if !name.is_empty() {
             self.remark(&format!("T{number} {name}"), out);
         }
@@ -241,12 +271,15 @@ impl Engine {
         if !self.table.offset.at_start {
             self.offset_active.forget();
         }
+        self.turning = None;
         self.spindle.forget();
     }
 
     fn turn(&mut self, spindle: Spindle, out: &mut String) -> Result<(), String> {
         let [clockwise, counter, off, orient] = self.table.spindle;
-        self.spindle.set(matches!(spindle, Spindle::On { .. }));
+        let on = matches!(spindle, Spindle::On { .. });
+        self.spindle.set(on);
+        self.turning = on.then_some(spindle);
         match spindle {
             Spindle::Off => self.line(off, out),
             Spindle::Orient if orient.is_empty() => {
@@ -267,8 +300,12 @@ impl Engine {
     }
 
     fn cool(&mut self, coolant: Coolant, out: &mut String) -> Result<(), String> {
-        let place = COOLANTS.iter().position(|(known, _)| *known == coolant);
-        let place = place.unwrap_or_default();
+        let known = COOLANTS.iter().position(|(known, ..)| *known == coolant);
+        let place = known.unwrap_or_default();
+        if coolant == Coolant::Off {
+            self.end_coolant(out);
+            return Ok(());
+        }
         if self.coolant_codes[place].is_empty() {
             let option = COOLANTS[place].1;
             let offered = self.table.options.iter().any(|spec| spec.key == option);
@@ -279,15 +316,45 @@ impl Engine {
                 false => "this control has no such coolant".to_owned(),
             });
         }
-        self.coolant.set(coolant != Coolant::Off);
-        self.codes(place, out);
+        self.coolant.set(true);
+        self.flowing |= 1 << place;
+        one_by_one(&self.coolant_codes[place], &mut self.motion, out);
         Ok(())
     }
 
-    /// One M in a block, as most controls have it by default.
-    fn codes(&mut self, coolant: usize, out: &mut String) {
-        for code in self.coolant_codes[coolant].split_whitespace() {
-            self.motion.line(code, out);
+    /// What ends the coolants that are on; where nobody knows, all of them.
+    fn end_coolant(&mut self, out: &mut String) {
+        let flowing = std::mem::take(&mut self.flowing);
+        let mut written: Vec<&str> = Vec::new();
+        for (place, end) in self.coolant_ends.iter().enumerate() {
+            let ends = flowing >> place & 1 == 1 || (flowing == 0 && place == 0);
+            if ends && !written.contains(&end.as_str()) {
+                one_by_one(end, &mut self.motion, out);
+                written.push(end);
+            }
+        }
+        self.coolant.set(false);
+    }
+
+    /// A stop, and behind it what it has switched off, before the tool moves on.
+    fn stop(&mut self, word: &str, out: &mut String) -> Result<(), String> {
+        self.line(word, out);
+        if let (true, Some(spindle)) = (self.table.stops.spindle, self.turning) {
+            self.turn(spindle, out)?;
+        }
+        if self.table.stops.coolant {
+            for place in 1..COOLANTS.len() {
+                if self.flowing >> place & 1 == 1 {
+                    one_by_one(&self.coolant_codes[place], &mut self.motion, out);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn work_offset(&mut self, out: &mut String) {
+        if self.offset_active.set(true) && !self.table.offset.at_start {
+            self.motion.line(&self.work_offset, out);
         }
     }
 
@@ -295,35 +362,25 @@ impl Engine {
         &mut self,
         words: &[f64],
         feed: Option<Feed>,
+        plane_first: bool,
         out: &mut String,
     ) -> Result<(), String> {
-        let length = self.length()?;
-        if self.offset_active.set(true) && !self.table.offset.at_start {
-            self.motion.line(&self.work_offset, out);
-        }
-        if !self.tcp {
-            self.motion.turn_first(words, out);
-            self.motion.plane_next(words, out);
-            self.motion.arrive(words, feed, &length, out);
-        } else if let Tcp::Blocks { approach, .. } = self.table.tcp {
-            for step in approach {
-                match step {
-                    Step::Turn => self.motion.turn_first(words, out),
-                    Step::Length => self.motion.line(&length, out),
-                    Step::Tcp => self.motion.line(&self.tcp_on, out),
-                }
+        let mut length = self.length()?;
+        self.work_offset(out);
+        // The rotary axes have been turned; what is left of them here moves nothing else.
+        self.motion.turn(words, out);
+        if let (true, Tcp::Blocks { length_first, .. }) = (self.tcp, self.table.tcp) {
+            if length_first {
+                self.motion.line(&std::mem::take(&mut length), out);
             }
-            let last = match approach.contains(&Step::Length) {
-                true => "",
-                false => &length,
-            };
-            self.motion.arrive(words, feed, last, out);
-        } else {
-            self.motion.turn_first(words, out);
-            self.motion.arrive(words, feed, &length, out);
+            self.motion.line(&self.tcp_on, out);
+            self.tcp_active.set(true);
         }
+        if plane_first {
+            self.motion.plane(words, out);
+        }
+        self.motion.arrive(words, feed, &length, out);
         self.length_active.set(true);
-        self.retracted.forget();
         Ok(())
     }
 
@@ -358,65 +415,41 @@ impl Engine {
         block.end(out);
     }
 
-    /// Ends length compensation and tool centre point control.
-    pub fn release(&mut self, out: &mut String) {
+    /// The tool leaves the part, and what was in force is cancelled, in the order of the table.
+    fn leave(&mut self, axes: u32, words: &[f64], out: &mut String) {
         self.motion.settle(out);
-        if self.length_active.set(false) {
-            let steps = match self.table.tcp {
-                Tcp::Blocks { release, .. } if self.tcp => release,
-                _ => &[Step::Length],
-            };
-            for step in steps {
-                match step {
-                    Step::Length => self.motion.line(self.table.length.off, out),
-                    Step::Tcp => self.motion.line(&self.tcp_off, out),
-                    Step::Turn => {}
+        for step in self.table.leave {
+            match step {
+                Leave::Retract if self.retract.is_empty() => {
+                    self.motion.machine(self.table.machine, axes, words, out);
+                }
+                Leave::Retract => {
+                    self.motion.line(&self.retract, out);
+                    self.motion.moved_by_line();
+                }
+                Leave::Length => {
+                    if self.length_active.set(false) {
+                        self.motion.line(self.table.length.off, out);
+                    }
+                }
+                Leave::Tcp => {
+                    if self.tcp_active.set(false) {
+                        self.motion.line(&self.tcp_off, out);
+                    }
                 }
             }
         }
         self.motion.axes.forget();
     }
 
-    /// The depth axis to its reference, unless it stands there.
-    pub fn clear(&mut self, out: &mut String) {
+    fn end(&mut self, out: &mut String) {
         self.motion.settle(out);
-        if !self.length_active.is(false) {
-            self.release(out);
-        }
-        if self.retracted.set(true) {
-            self.motion.line(&self.retract, out);
-            self.after_retract(out);
-        }
-    }
-
-    fn after_retract(&mut self, out: &mut String) {
-        self.line(self.table.retract.after, out);
-        self.motion.moved_by_line();
-    }
-
-    /// Spindle and coolant off, unless they are.
-    fn stop(&mut self, out: &mut String) {
         if self.spindle.set(false) {
             self.line(self.table.spindle[2], out);
         }
-        if self.coolant.set(false) {
-            self.codes(0, out);
+        if !self.coolant.is(false) {
+            self.end_coolant(out);
         }
-    }
-
-    fn go_home(&mut self, out: &mut String) {
-        self.clear(out);
-        if !self.home.is_empty() {
-            self.motion.line(&self.home, out);
-            self.after_retract(out);
-        }
-    }
-
-    fn end(&mut self, out: &mut String) {
-        // The tool leaves the part first: a spindle that stops in it tears.
-        self.clear(out);
-        self.stop(out);
-        self.go_home(out);
         self.line(self.table.end, out);
         if self.percent {
             self.bare("%", out);
@@ -428,8 +461,16 @@ impl Engine {
         self.motion.forget();
         self.offset_active.forget();
         self.length_active.forget();
-        self.retracted.forget();
+        self.tcp_active.forget();
+        self.turning = None;
         self.spindle.forget();
         self.coolant.forget();
+    }
+}
+
+/// One M in a block, as most controls have it by default.
+fn one_by_one(codes: &str, motion: &mut Motion, out: &mut String) {
+    for code in codes.split_whitespace() {
+        motion.line(code, out);
     }
 }

@@ -13,7 +13,7 @@ use post_plugin::{Capabilities, Dialect, Event, Format, OptionSpec, Setup};
 
 pub use engine::Engine;
 pub use motion::{FeedDecimals, Motion};
-pub use table::{Codes, Dwell, Length, Offset, Retract, Step, Table, Tcp};
+pub use table::{Codes, Dwell, Leave, Length, Offset, Stops, Table, Tcp};
 
 /// A control of the family: its table, and what does not fit into one.
 pub trait Control: Sized + Send + 'static {
@@ -79,7 +79,7 @@ impl<C: Control> Dialect for Iso<C> {
     }
 
     fn capabilities(&self) -> Capabilities {
-        self.control.capabilities()
+        self.control.capabilities() | self.engine.capabilities()
     }
 
     #[inline]

@@ -151,13 +151,21 @@ impl Motion {
         self.block.end(out);
     }
 
+    /// Axes at rapid to positions in machine coordinates; `front` is what says so (`G53 G0`).
+    pub fn machine(&mut self, front: &str, axes: u32, words: &[f64], out: &mut String) {
+        self.block.word(front);
+        self.axes.write_machine(&mut self.block, axes, words);
+        self.block.end(out);
+        self.motion.forget();
+    }
+
     /// The rotary axes alone, at rapid.
-    pub fn turn_first(&mut self, words: &[f64], out: &mut String) {
+    pub fn turn(&mut self, words: &[f64], out: &mut String) {
         self.rapid_group(words, Group::Rotary, out);
     }
 
     /// The linear axes but the depth, at rapid.
-    pub fn plane_next(&mut self, words: &[f64], out: &mut String) {
+    pub fn plane(&mut self, words: &[f64], out: &mut String) {
         self.rapid_group(words, Group::Plane, out);
     }
 

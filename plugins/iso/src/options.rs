@@ -19,6 +19,24 @@ pub const COOLANT_THROUGH: OptionSpec = OptionSpec::text(
 );
 /// Air.
 pub const COOLANT_AIR: OptionSpec = OptionSpec::text("coolant_air", "", "M codes of air.");
+/// The end of coolant through the tool.
+pub const COOLANT_THROUGH_OFF: OptionSpec = OptionSpec::text(
+    "coolant_through_off",
+    "",
+    "M codes that end it; empty: those of coolant_off.",
+);
+/// The end of air.
+pub const COOLANT_AIR_OFF: OptionSpec = OptionSpec::text(
+    "coolant_air_off",
+    "",
+    "M codes that end it; empty: those of coolant_off.",
+);
+/// The way out in the user's own words.
+pub const RETRACT: OptionSpec = OptionSpec::text(
+    "retract",
+    "",
+    "Block that takes the place of the retract in machine coordinates: nobody proves where it leads.",
+);
 /// The end of all coolant.
 pub const COOLANT_OFF: OptionSpec =
     OptionSpec::text("coolant_off", "M9", "M codes that end all coolant.");

@@ -18,8 +18,12 @@ pub struct Table {
     pub remark: fn(&str) -> String,
     /// Words of motion, feed and compensation.
     pub codes: Codes,
-    /// Behind the units in the first block: what puts the control into a known state.
+    /// The block behind that of the units: plane, compensation, cycles, way of counting and feed mode in a known state.
+    /// It moves nothing, whatever was in force.
     pub safe: &'static str,
+    /// A block behind it that cancels what shifts, turns, scales or mirrors, and moves nothing; may be empty. Option
+    /// `cancel`.
+    pub cancel: &'static str,
     /// Largest block number; past it they begin anew.
     pub largest_number: u32,
     /// Zeros at the end of axis words are left out. Option `trailing_zeros`.
@@ -32,8 +36,12 @@ pub struct Table {
     pub length: Length,
     /// Tool centre point control.
     pub tcp: Tcp,
-    /// The way out.
-    pub retract: Retract,
+    /// In front of positions in machine coordinates, at rapid: `G53 G0`.
+    pub machine: &'static str,
+    /// The order in which the tool retracts and what is in force is cancelled.
+    pub leave: &'static [Leave],
+    /// What a stop of the program switches off, or may.
+    pub stops: Stops,
     /// A wait.
     pub dwell: Dwell,
     /// Behind `T1`: the change of the tool.
@@ -41,7 +49,8 @@ pub struct Table {
     /// Spindle clockwise, counter-clockwise, off, oriented; empty where the control has none.
     pub spindle: [&'static str; 4],
     /// M codes of coolant off, flood, mist, through the tool, air; empty where they are the machine builder's.
-    /// Options `coolant_off`, `coolant_flood`, `coolant_mist`, `coolant_through`, `coolant_air`.
+    /// Options `coolant_off`, `coolant_flood`, `coolant_mist`, `coolant_through`, `coolant_air`; `coolant_mist_off`,
+    /// `coolant_through_off`, `coolant_air_off` where a kind has an end of its own.
     pub coolant: [&'static str; 5],
     /// Ends the program.
     pub end: &'static str,
@@ -96,37 +105,36 @@ pub enum Tcp {
     None,
     /// A word in the place of [`Length::on`], cancelled as that is: `G43.4`.
     Length(&'static str),
-    /// Blocks of its own. Options `tcp_on`, `tcp_off`.
+    /// Blocks of its own, which move nothing. Options `tcp_on`, `tcp_off`.
     Blocks {
         /// Switches it on.
         on: &'static str,
         /// Switches it off.
         off: &'static str,
-        /// The way to the first position, in order. What it does not name of the length comes with the last block.
-        approach: &'static [Step],
-        /// The order in which all is switched off.
-        release: &'static [Step],
+        /// The length comes in a block of its own before it; else with the last block of a first position.
+        length_first: bool,
     },
 }
 
-/// A step of the way to a first position, or of a release.
+/// A step of the way out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// The rotary axes turn at rapid.
-    Turn,
-    /// The length compensation is switched, in a block of its own.
+pub enum Leave {
+    /// The depth goes to its end in machine coordinates. Option `retract` is the whole block.
+    Retract,
+    /// The length compensation is cancelled.
     Length,
-    /// The tool centre point control is switched.
+    /// The tool centre point control is switched off, where blocks of its own do that.
     Tcp,
 }
 
-/// The way out, with the names of the depth axes behind it.
-#[derive(Clone, Copy, Debug)]
-pub struct Retract {
-    /// In front of `Z0.`. Option `retract` is the whole block, option `home` one behind it at the end.
-    pub words: &'static str,
-    /// A block behind it, and behind that of option `home`; may be empty.
-    pub after: &'static str,
+/// What a stop of the program (M0, M1) switches off. It is written again behind the stop: where the control or its
+/// builder has left it on, that does nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stops {
+    /// The spindle.
+    pub spindle: bool,
+    /// The coolant.
+    pub coolant: bool,
 }
 
 /// A wait: its address, and the unit of its number.
@@ -158,7 +166,8 @@ impl Table {
         percent: true,
         remark,
         codes: Codes::ISO,
-        safe: "G17 G40 G49 G80 G90 G94",
+        safe: "G17 G40 G80 G90 G94",
+        cancel: "",
         largest_number: 99_999,
         trim: false,
         per_revolution: 4,
@@ -174,9 +183,11 @@ impl Table {
             off: "G49",
         },
         tcp: Tcp::None,
-        retract: Retract {
-            words: "G91 G28",
-            after: "G90",
+        machine: "G53 G0",
+        leave: &[Leave::Retract, Leave::Length],
+        stops: Stops {
+            spindle: true,
+            coolant: true,
         },
         dwell: Dwell::Milliseconds("P"),
         change: "M6",

@@ -3,8 +3,8 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-use post_iso::{Codes, Control, Dwell, Iso, Length, Retract, Step, Table, Tcp};
-use post_kit::{Bench, P1, P3, TOOL, at, cut, timed};
+use post_iso::{Codes, Control, Dwell, Iso, Leave, Length, Table, Tcp};
+use post_kit::{Bench, P1, P3, TOOL, TOP, at, cut, timed, turn};
 use post_plugin::export::Exported;
 use post_plugin::{Compensation, Event, Feed, Linked, Setup};
 
@@ -25,10 +25,7 @@ impl Control for Small {
             off: "",
             ..Table::ISO.length
         },
-        retract: Retract {
-            words: "G53 G0",
-            after: "",
-        },
+        leave: &[Leave::Retract],
         dwell: Dwell::Seconds("P", 2),
         change: "",
         ..Table::ISO
@@ -51,9 +48,9 @@ impl Control for Ordered {
         tcp: Tcp::Blocks {
             on: "M128",
             off: "M129",
-            approach: &[Step::Turn, Step::Length, Step::Tcp],
-            release: &[Step::Tcp, Step::Length],
+            length_first: true,
         },
+        leave: &[Leave::Tcp, Leave::Length, Leave::Retract],
         dwell: Dwell::Seconds("F", 2),
         ..Table::ISO
     };
@@ -94,17 +91,20 @@ fn ordered() -> Bench {
 fn what_a_control_has_no_word_for_is_left_out_or_refused() {
     let text = small().write(&[
         Event::Start,
+        TOP,
         TOOL,
+        turn(P1),
         at(P1),
         cut(P3, 500.0),
         Event::Dwell { seconds: 0.5 },
+        TOP,
         Event::End,
     ]);
     assert_eq!(
         text.unwrap(),
-        "(BRACKET)\n(AC TRUNNION)\nG21 G17 G90 G94\nG53 G0 Z0.\n(T1 BALL D10 [R5])\nT1\nG54\n\
+        "(BRACKET)\n(AC TRUNNION)\nG21\nG17 G90 G94\nG53 G0 Z500.000\n(T1 BALL D10 [R5])\nT1\nG54\n\
          G0 A-30.000 C45.000\nX10.000 Y-20.500\nZ100.000\nG94 G1 X12.500 Z2.000 A-30.125 F500.\n\
-         G4 P0.50\nG53 G0 Z0.\nM5\nM9\nM30\n"
+         G4 P0.50\nG53 G0 Z500.000\nM5\nM9\nM30\n"
     );
     let refused = |event| small().write(&[Event::Start, event]).unwrap_err();
     assert!(refused(timed(P1, 2.0)).contains("InverseTime"));
@@ -117,15 +117,17 @@ fn what_a_control_has_no_word_for_is_left_out_or_refused() {
 #[test]
 fn the_order_of_switching_and_what_does_not_fit_are_the_dialects() {
     let text = ordered().tcp().write(&[
+        TOP,
         TOOL,
+        turn(P1),
         at(P1),
         Event::Dwell { seconds: 2.0 },
         Event::Message { text: "HALF" },
-        Event::Release,
+        TOP,
     ]);
     assert_eq!(
         text.unwrap(),
-        "M129\nG49\nG91 G28 Z0.\nG90\n(T1 BALL D10 [R5])\nT1 M6\nG54\nG0 A-30.000 C45.000\n\
-         G56 H1\nM128\nX10.000 Y-20.500 Z100.000\nG4 F2.00\nMSG=HALF\nM129\nG49\n"
+        "M129\nG49\nG53 G0 Z500.000\n(T1 BALL D10 [R5])\nT1 M6\nG54\nG0 A-30.000 C45.000\n\
+         G56 H1\nM128\nX10.000 Y-20.500\nZ100.000\nG4 F2.00\nMSG=HALF\nM129\nG49\nG53 G0 Z500.000\n"
     );
 }

@@ -149,6 +149,22 @@ pub const P4: &[f64] = &[15.0, -20.5, 2.0, -30.125, 46.0];
 /// A tool with a name that needs care.
 pub const TOOL: Event<'static> = Event::tool_change(1, 1, "Ball Ø10 (R5)");
 
+/// Clear of the part: the depth axis at its end, machine coordinates.
+pub const TOP: Event<'static> = Event::Retract {
+    axes: 0b100,
+    words: &[0.0, 0.0, 500.0, 0.0, 0.0],
+};
+/// The rotary axes at zero and the plane aside, machine coordinates.
+pub const ASIDE: Event<'static> = Event::Park {
+    axes: 0b11011,
+    words: &[-250.0, 200.0, 0.0, 0.0, 0.0],
+};
+
+/// The turn to a first position.
+pub const fn turn(words: &[f64]) -> Event<'_> {
+    Event::Turn { words }
+}
+
 /// A first position at rapid.
 pub const fn at(words: &[f64]) -> Event<'_> {
     Event::position(words, None)
@@ -180,12 +196,15 @@ pub const fn turning(rpm: f64) -> Event<'static> {
 pub fn job(timed: bool) -> Vec<Event<'static>> {
     let mut events = vec![
         Event::Start,
+        TOP,
         Event::Comment {
             text: "Schlichten (fein) 100%",
         },
         TOOL,
         turning(3000.0),
         Event::Coolant(Coolant::Flood),
+        TOP,
+        turn(P1),
         at(P1),
         rapid(P2),
         rapid(P2),
@@ -199,11 +218,19 @@ pub fn job(timed: bool) -> Vec<Event<'static>> {
         rapid(P1),
         Event::Dwell { seconds: 2.5 },
         Event::OptionalStop,
-        Event::Release,
-        Event::Home,
+        TOP,
+        Event::Spindle(Spindle::Off),
+        Event::Coolant(Coolant::Off),
         Event::tool_change(2, 12, ""),
         turning(1200.0),
-        Event::position(P1, Some(Feed::PerMinute(2000.5))),
+        TOP,
+        turn(P1),
+        Event::Position {
+            tool: None,
+            feed: Some(Feed::PerMinute(2000.5)),
+            plane_first: false,
+            words: P1,
+        },
         Event::Compensate(Compensation::Left { register: 32 }),
         cut(P2, 300.0),
         cut(P3, 300.0),
@@ -212,9 +239,10 @@ pub fn job(timed: bool) -> Vec<Event<'static>> {
         Event::Literal { text: "M77" },
         Event::Word { text: "M78" },
         rapid(P1),
-        Event::Release,
+        TOP,
         Event::Spindle(Spindle::Off),
         Event::Coolant(Coolant::Off),
+        ASIDE,
         Event::End,
     ]);
     events

@@ -2,7 +2,7 @@
 //!
 //! What it assumes about the control stands in `plugins/README.md`.
 
-use post_iso::{Control, Dwell, Engine, Iso, Length, Offset, Retract, Step, Table, Tcp, options};
+use post_iso::{Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, Tcp, options};
 use post_plugin::{NumberStyle, OptionSpec, Setup, export_dialect, remark};
 
 struct LinuxCnc {
@@ -28,15 +28,20 @@ impl Control for LinuxCnc {
             by_itself: true,
             ..Table::ISO.length
         },
+        // An offset of G92 shifts everything; G92.2 keeps its numbers.
+        cancel: "G92.2",
+        // G43 ahead of the switch, else the joints jump by the length.
         tcp: Tcp::Blocks {
             on: "M428",
             off: "M429",
-            approach: &[Step::Turn, Step::Tcp],
-            release: &[Step::Length, Step::Tcp],
+            length_first: true,
         },
-        retract: Retract {
-            words: "G53 G0",
-            after: "",
+        // G53 means the kinematics in force: under TCP it turns with the table.
+        leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
+        // M0 and M1 leave both as they are.
+        stops: Stops {
+            spindle: false,
+            coolant: false,
         },
         dwell: Dwell::Seconds("P", 3),
         end: "M2",
@@ -96,22 +101,17 @@ const OPTIONS: &[OptionSpec] = &[
         0.0,
         "P of G64, program units: the control leaves the path by up to as much; 0: G61, exact path.",
     ),
-    OptionSpec::text(
-        "retract",
-        "",
-        "Block that clears the depth axis; empty: G53 G0 with its word at 0.",
-    ),
-    OptionSpec::text(
-        "home",
-        "",
-        "Block after the retract at the end and at GOHOME.",
-    ),
+    options::RETRACT,
     OptionSpec::text(
         "tcp_on",
         "M428",
         "Remap that switches to the TCP kinematics.",
     ),
-    OptionSpec::text("tcp_off", "M429", "Remap that switches back."),
+    OptionSpec::text(
+        "tcp_off",
+        "",
+        "Remap that switches back; empty: M429 under tcp = \"control\", else nothing is written about it.",
+    ),
     options::COOLANT_THROUGH,
     options::COOLANT_AIR,
 ];

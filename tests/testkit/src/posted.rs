@@ -72,7 +72,12 @@ impl DialectSession for Recorder {
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
             let (words, tool, feed, value) = match event {
-                Event::Position { words, tool, feed } => (words, tool, feed, 0.0),
+                Event::Position {
+                    words, tool, feed, ..
+                } => (words, tool, feed, 0.0),
+                Event::Turn { words } | Event::Retract { words, .. } | Event::Park { words, .. } => {
+                    (words, None, None, 0.0)
+                }
                 Event::Rapid { words, tool } => (words, tool, None, 0.0),
                 Event::Linear { words, tool, feed } => (words, tool, Some(feed), 0.0),
                 Event::Dwell { seconds } => (&[][..], None, None, seconds),

@@ -12,7 +12,7 @@ use super::file::{MachineFile, Quantity, Tcp};
 use super::layers::{Source, Sources, overlay};
 use super::options::take_options;
 use super::setting::Setting;
-use super::{Axis, Control, GivenOption, Head, Machine};
+use super::{Axis, Control, Frame, GivenOption, Head, Machine};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::kinematics::NoClosedForm;
 
@@ -229,7 +229,7 @@ impl Builder<'_> {
         let stages = axes.iter().any(|axis| axis.range.is_some()) || !solution.exclusive.is_empty();
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
-        let machine = Machine {
+        let mut machine = Machine {
             clamps,
             indexes,
             stages,
@@ -259,8 +259,10 @@ impl Builder<'_> {
             accuracy,
             solution,
             rewind,
+            frame: Frame::default(),
             heads: Vec::new(),
         };
+        self.frame(control, &mut machine);
         if let (Some(edge), false) = (&file.tool.edge, machine.pointing().len() == 3) {
             self.fault(
                 "machine-edge",

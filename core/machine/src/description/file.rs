@@ -355,7 +355,27 @@ pub(crate) struct ControlFile {
     /// What becomes of `INSERT text`; comment if not said.
     #[serde(default)]
     pub insert: Insert,
+    /// Where linear axes stand when the tool is retracted, machine coordinates, mm; the end of travel of the depth
+    /// axis away from the part if not said.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Number>")]
+    pub retract: Positions,
+    /// Where axes stand before a tool change, machine coordinates, mm or degrees; the rotary axes of park if not said.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Number>")]
+    pub change: Positions,
+    /// Where axes stand at the end and after GOHOME, machine coordinates, mm or degrees.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Number>")]
+    pub park: Positions,
+    /// With tcp = "control" and a table that is tilted: a first position is approached from so high, mm along the depth
+    /// axis; from the retract if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub approach: Option<Quantity>,
 }
+
+/// Positions of axes by their names.
+pub(crate) type Positions = BTreeMap<Spanned<String>, Quantity>;
 
 /// Where points are put in.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]

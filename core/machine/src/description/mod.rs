@@ -5,6 +5,7 @@ mod axes;
 mod build;
 mod choice;
 mod file;
+mod frame;
 mod layers;
 mod numbers;
 mod options;
@@ -22,6 +23,7 @@ pub use file::{
     EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement, Pole, Side, Tcp,
     ToolLength,
 };
+pub use frame::Frame;
 pub use layers::Source;
 pub use schema::schema;
 pub use setting::Setting;
@@ -57,6 +59,8 @@ pub struct Machine {
     pub solution: Solution,
     /// How the tool leaves the part when a cut cannot go on; none if it must not.
     pub rewind: Option<Rewind>,
+    /// Where the axes go between the passes.
+    pub frame: Frame,
     /// Some axis is clamped and let go by words.
     pub clamps: bool,
     /// Some axis moves off the part alone.

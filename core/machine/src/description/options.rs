@@ -9,6 +9,9 @@ use super::layers::Sources;
 use super::{GivenOption, OptionValue};
 use crate::diagnostic::Diagnostic;
 
+/// Sub-tables of `[control]` that are the machine's own: no dialect has such a name.
+const OWN: [&str; 3] = ["retract", "change", "park"];
+
 /// Takes the sub-tables of `[section]` out: they belong to plugins, and only those know their keys.
 pub(super) fn take_options(
     table: &mut Spanned<DeTable<'_>>,
@@ -24,6 +27,7 @@ pub(super) fn take_options(
         .iter()
         .filter(|(_, value)| value.get_ref().is_table())
         .map(|(key, _)| key.get_ref().to_string())
+        .filter(|key| !OWN.contains(&key.as_str()))
         .collect();
     for name in names {
         let Some(DeValue::Table(options)) = table.remove(name.as_str()).map(Spanned::into_inner)

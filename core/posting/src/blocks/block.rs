@@ -47,7 +47,7 @@ pub struct Block {
 pub enum MotionKind {
     /// From wherever it stands, clear of the part: the first position after the start or a tool change.
     Position,
-    /// As [`MotionKind::Position`], over the reference: an index axis turns on the way.
+    /// As [`MotionKind::Position`], the tool retracted ahead of it: an index axis turns on the way.
     Reference,
     /// At rapid traverse.
     Rapid,
@@ -64,8 +64,10 @@ pub enum Reason {
     Eased,
     /// Error control put its end in.
     PutIn,
-    /// The tool leaves the part as it stands, before its axes turn.
+    /// The tool leaves the part as it stands, before its axes turn or it is retracted.
     Leave,
+    /// It ends straight above a first position, as high as the tool was retracted: all linear words in one block.
+    Approach,
     /// A stop on the way of axes that cannot go in one block.
     Stage,
     /// The tool is drawn back, turned and brought back.

@@ -1,5 +1,6 @@
 //! Points whose axis values are chosen become blocks: points put in or left out, every block certified.
 
+mod approach;
 mod audience;
 mod block;
 mod gathered;
@@ -126,6 +127,8 @@ pub(crate) struct Blocks<'a> {
     on_part: bool,
     /// Cutter radius compensation is in force.
     compensating: bool,
+    /// The dialect switches tool centre point control on in a block that moves nothing.
+    tcp_still: bool,
     /// Set once the fault that compensation cannot be was given.
     told_compensation: bool,
     /// The largest deviations so far.
@@ -138,6 +141,7 @@ impl<'a> Blocks<'a> {
         machine: &'a Machine,
         model: &'a mut dyn ModelSession,
         trust_model: bool,
+        tcp_still: bool,
     ) -> Self {
         Self {
             machine,
@@ -153,6 +157,7 @@ impl<'a> Blocks<'a> {
             placed: None,
             on_part: false,
             compensating: false,
+            tcp_still,
             told_compensation: false,
             largest: Largest::default(),
             counts: Counts::default(),
@@ -224,23 +229,26 @@ impl<'a> Blocks<'a> {
             }
             Flow::Point(Configured::Broken) => {
                 self.end_run(to);
-                self.stand_anywhere();
+                // The next point is a first position again.
+                self.last = None;
+                self.on_part = false;
             }
             Flow::Command { line, command } => self.command(*line, command, to),
         }
     }
 
     /// The file ends: what waits is carried out.
-    pub(crate) fn finish(&mut self, to: &mut Surroundings<'_, '_>) {
+    pub(crate) fn finish(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
         self.end_run(to);
+        self.depart(line, to);
     }
 
     fn command(&mut self, line: u64, command: &Command, to: &mut Surroundings<'_, '_>) {
         self.end_run(to);
         match command {
-            Command::Tool(_) | Command::Home => self.stand_anywhere(),
+            Command::Tool(_) | Command::Home => self.depart(line, to),
             Command::Head(name) => {
-                self.stand_anywhere();
+                self.depart(line, to);
                 if let Some(head) = self.base.head(name) {
                     self.machine = &head.machine;
                     self.kinds = Kinds::new(self.machine);
@@ -253,12 +261,6 @@ impl<'a> Blocks<'a> {
             _ => {}
         }
         to.out.command(line, command.clone());
-    }
-
-    /// The next point is a first position again.
-    fn stand_anywhere(&mut self) {
-        self.last = None;
-        self.on_part = false;
     }
 
     #[inline]
@@ -322,35 +324,17 @@ impl<'a> Blocks<'a> {
             self.end_run(to);
         }
         match self.last.take() {
-            None => self.first(leg, &node, MotionKind::Position, to),
+            None => self.first(placer, leg, &node, MotionKind::Position, to),
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
                 // An index axis turns with the tool at the reference, not somewhere over the part.
-                let last = self.leave_part(placer, leg, last, to);
-                self.first(leg, &node, MotionKind::Reference, to);
+                let last = self.leave_part(placer, leg.line, last, to);
+                self.first(placer, leg, &node, MotionKind::Reference, to);
                 self.spare = Some(last);
             }
             Some(last) => self.spare = Some(self.go(placer, leg, last, &mut node, gathers, to)),
         }
         self.on_part = leg.motion.pace != Pace::Rapid;
         self.last = Some(node);
-    }
-
-    /// The first position after the start or a tool change.
-    fn first(
-        &mut self,
-        leg: &Leg<'_>,
-        node: &Node,
-        kind: MotionKind,
-        to: &mut Surroundings<'_, '_>,
-    ) {
-        let block = self.block(leg, node, Bound::default());
-        to.out.push(Flow::Point(Block {
-            kind,
-            // Nobody knows the way: the feed is that of a millimetre.
-            way: [1.0; 2],
-            nominal: Nominal::of(leg.motion.pace, 1.0, Travels::default),
-            ..block
-        }));
     }
 
     /// A move from where the tool stands to `node`; gives the node that it left.

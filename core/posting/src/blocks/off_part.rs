@@ -7,23 +7,54 @@ use post_machine::kinematics::orientation::angle;
 use super::{Blocks, Leg, Reason, Surroundings};
 use crate::accuracy::{Node, Placer};
 use crate::configuration::pose;
+use crate::findings::Findings;
 use crate::program::{Motion, Pace};
 use crate::refusal;
 
+/// A tool leans from here on, radians.
+const LEANS: f64 = 1e-3;
+
+/// An axis that is as near to a position stands there, mm.
+const STANDS: f64 = 1e-3;
+
+/// How far a tool that leans is drawn back where the machine has no `[rewind]`, mm: the first that travel allows.
+const LEAVE: [f64; 5] = [100.0, 50.0, 25.0, 12.0, 6.0];
+
 impl Blocks<'_> {
-    /// Before the way to the reference, which goes along the depth axis: a tool that leans in the part is drawn
-    /// back along its own axis.
+    /// The tool is about to be retracted: from where it stands, if it stands anywhere.
+    pub(super) fn depart(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
+        if let (Some(placer), Some(last)) = (self.placer.clone(), self.last.take()) {
+            self.leave_part(&placer, line, last, to);
+        }
+        self.on_part = false;
+    }
+
+    /// Before a retract, which goes along the depth axis: a tool that leans is drawn back along its own axis, and the
+    /// retract must lead away from the part. Gives where the tool stands then.
     pub(super) fn leave_part(
         &mut self,
         placer: &Placer,
-        leg: &Leg<'_>,
+        line: u64,
         last: Box<Node>,
         to: &mut Surroundings<'_, '_>,
     ) -> Box<Node> {
-        let leaning = angle(self.in_machine(placer, &last), self.machine.tool_axis) > 1e-3;
-        if !self.on_part || !leaning {
-            return last;
-        }
+        let leaning = angle(self.in_machine(placer, &last), self.machine.tool_axis) > LEANS;
+        let last = match leaning {
+            true => self.draw_back(placer, line, last, to),
+            false => last,
+        };
+        self.check_retract(placer, line, &last, to.findings);
+        last
+    }
+
+    /// A tool that leans goes back along its own axis.
+    fn draw_back(
+        &mut self,
+        placer: &Placer,
+        line: u64,
+        last: Box<Node>,
+        to: &mut Surroundings<'_, '_>,
+    ) -> Box<Node> {
         let stands = Motion {
             tip: last.target.tip,
             axis: last.target.axis,
@@ -32,42 +63,81 @@ impl Blocks<'_> {
             chord: 0.0,
         };
         let along = self.machine.control_point.along;
-        let away = self
-            .machine
-            .rewind
-            .and_then(|rewind| Some((stands.drawn_back(&rewind, along)?, rewind)));
-        let Some((away, rewind)) = away else {
-            to.findings.at(leg.line,
-                Diagnostic::error(
-                    "index",
-                    "an index axis must turn here, and the tool leans in the part: straight up to the reference it would gouge",
+        let feed = self.machine.rewind.and_then(|rewind| rewind.retract_feed);
+        let away: Vec<Motion> = match &self.machine.rewind {
+            Some(rewind) => stands.drawn_back(rewind, along).into_iter().collect(),
+            None => LEAVE
+                .iter()
+                .map(|distance| Motion {
+                    tip: stands.tip + stands.axis * *distance,
+                    ..stands
+                })
+                .collect(),
+        };
+        // The rotary axes as they stand, an index axis among them; as far as the linear axes go.
+        let mut refused = None;
+        for away in away {
+            let motion = Motion {
+                pace: Pace::feed_or_rapid(feed),
+                ..away
+            };
+            match placer.settled(pose(&motion), 1.0, &last.trace.joints) {
+                Ok(node) => {
+                    let out = Leg {
+                        line,
+                        motion: &motion,
+                        loose: true,
+                        reason: Reason::Leave,
+                    };
+                    self.on_part = false;
+                    self.cut(placer, &out, &last, &node, to);
+                    return Box::new(node);
+                }
+                Err(fault) => refused = refused.or(Some(fault)),
+            }
+        }
+        // Off the part the CL file has led the tool away; straight up it may go from there.
+        if self.on_part {
+            let fault = match refused {
+                Some(refused) => refusal::refused(self.machine, &refused),
+                None => Diagnostic::error(
+                    "retract",
+                    "the tool leans in the part, and must be retracted here: straight up it would gouge",
                 )
-                .help("retract along the tool before this line, or give the machine a [rewind]"),
-            );
-            return last;
-        };
-        let motion = Motion {
-            pace: Pace::feed_or_rapid(rewind.retract_feed),
-            ..away
-        };
-        let out = Leg {
-            motion: &motion,
-            loose: true,
-            reason: Reason::Leave,
-            ..*leg
-        };
-        // The rotary axes as they stand, the index axis among them.
-        match placer.settled(pose(&motion), 1.0, &last.trace.joints) {
-            Ok(node) => {
-                self.on_part = false;
-                self.cut(placer, &out, &last, &node, to);
-                Box::new(node)
+                .help("retract along the tool before this line, or give [rewind] a distance"),
+            };
+            to.findings.at(line, fault);
+        }
+        last
+    }
+
+    /// A retract that is not proven to lead away from the part is refused.
+    fn check_retract(&self, placer: &Placer, line: u64, node: &Node, findings: &Findings) {
+        let machine = self.machine;
+        let joints = &node.trace.joints;
+        for (joint, position) in &machine.frame.retract {
+            let axis = &machine.axes[*joint];
+            let way = position - joints[*joint];
+            if libm::fabs(way) < STANDS || self.leads_away(placer, joints, *joint, way) {
+                continue;
             }
-            Err(refused) => {
-                to.findings
-                    .at(leg.line, refusal::refused(self.machine, &refused));
-                last
-            }
+            let (now, then) = (axis.reading(joints[*joint]), axis.reading(*position));
+            let leans = angle(self.in_machine(placer, node), machine.tool_axis).to_degrees();
+            let name = &axis.name;
+            findings.at(line, match machine.frame.retract_said {
+                true if leans < 90.0 => Diagnostic::error(
+                    "retract",
+                    format!("{name} stands at {now:.3} mm, and [control] retract = {then:.3} mm would bring the tool down"),
+                )
+                .help("put the retract beyond what the program reaches"),
+                // Whoever names a position answers for the way to it.
+                true => continue,
+                false => Diagnostic::error(
+                    "retract",
+                    format!("the tool leans by {leans:.1}°: {name} at {then:.3} mm, the end of its travel, is not proven to lead it away from the part"),
+                )
+                .help("end the path with the tool less inclined, or name a position with [control] retract and answer for it"),
+            });
         }
     }
 

@@ -265,7 +265,7 @@ impl<'a> Configuration<'a> {
         match &mut command {
             Command::From { tip, axis } => self.stand(*tip, *axis),
             Command::Tool(tool) => {
-                self.route.leave();
+                self.park(&self.machine.frame.change);
                 self.measure(tool);
                 self.tool = Some(tool.clone());
                 tool.length = self.length;
@@ -286,10 +286,19 @@ impl<'a> Configuration<'a> {
                 }
                 self.equip(line, findings);
             }
-            Command::Home => self.route.leave(),
+            Command::Home => self.park(&self.machine.frame.park),
             _ => {}
         }
         out.command(line, command);
+    }
+
+    /// The tool is retracted and axes are sent to positions of the machine: what comes behind begins there.
+    fn park(&mut self, positions: &[(usize, f64)]) {
+        let mut near = *self.route.stands_at();
+        for (joint, value) in positions {
+            near[*joint] = *value;
+        }
+        self.route.begin_at(near);
     }
 
     /// The tool stands there: solutions near to it are wanted, but nothing moves.

@@ -1,8 +1,10 @@
 //! Blocks and commands become the events of the dialect: what is in force, tool changes, approach, clamps.
 
 mod extremes;
+mod frame;
 mod writer;
 
+use post_machine::axis_words::Words;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
@@ -11,7 +13,7 @@ use post_plugin::{Capabilities, Coolant, DialectSession, Event, Spindle, ToolPos
 use crate::blocks::{Block, MotionKind};
 use crate::findings::Findings;
 use crate::observer::Output;
-use crate::program::{Command, Pace, Tool};
+use crate::program::{Command, Pace};
 use crate::stream::Flow;
 pub(crate) use extremes::Extremes;
 use writer::Writer;
@@ -27,8 +29,10 @@ pub(crate) struct Emit<'a> {
     last: Joints,
     /// Axes that are known to be clamped, one bit each.
     clamped: u8,
-    /// Length compensation or TCP is in force.
-    positioned: bool,
+    /// Prints positions in machine coordinates.
+    words: Words,
+    /// The tool is retracted, and nothing is in force that a first position puts in force.
+    clear: bool,
     /// The spindle was switched on since the last tool change.
     turning: bool,
     /// What the CL file last said of it.
@@ -47,22 +51,27 @@ impl<'a> Emit<'a> {
         dialect: &'a mut dyn DialectSession,
         output: &'a mut dyn Output,
     ) -> Self {
+        let words = Words::new(machine, dialect.format());
         let mut writer = Writer::new(dialect, output);
         writer.push(0, Event::Start);
-        Self {
+        let mut emit = Self {
             machine,
             base: machine,
             writer,
             extremes: Extremes::new(),
             last: Joints::default(),
             clamped: 0,
-            positioned: false,
+            words,
+            clear: false,
             turning: false,
             commanded: None,
             coolant: None,
             coolant_due: false,
             told_spindle: false,
-        }
+        };
+        // Nothing is known of where the tool stands, nor of what is in force.
+        emit.retract(0);
+        emit
     }
 
     /// Extremes so far.
@@ -80,7 +89,7 @@ impl<'a> Emit<'a> {
         for next in batch {
             match next {
                 Flow::Point(block) => self.block(block, findings),
-                Flow::Command { line, command } => self.command(*line, command),
+                Flow::Command { line, command } => self.command(*line, command, findings),
             }
             if self.writer.is_full() {
                 self.flush(findings);
@@ -91,8 +100,7 @@ impl<'a> Emit<'a> {
 
     /// The last events; `line` is the last of the CL file.
     pub(crate) fn finish(&mut self, line: u64, findings: &Findings) {
-        self.release(line);
-        self.writer.push(line, Event::End);
+        self.end(line, findings);
         self.flush(findings);
     }
 
@@ -107,8 +115,7 @@ impl<'a> Emit<'a> {
         match block.kind {
             MotionKind::Position => self.position(block, findings),
             MotionKind::Reference => {
-                self.writer.push(line, Event::Release);
-                self.writer.push(line, Event::Home);
+                self.retract(line);
                 self.extremes.go(&self.last, &block.joints);
                 self.position(block, findings);
             }
@@ -137,23 +144,15 @@ impl<'a> Emit<'a> {
         self.last = block.joints;
     }
 
-    fn command(&mut self, line: u64, command: &Command) {
+    fn command(&mut self, line: u64, command: &Command, findings: &Findings) {
         let event = match command {
             // These act on the choice of axis values alone.
             Command::From { .. } | Command::Index { .. } => return,
-            Command::Tool(tool) => return self.change(line, tool),
+            Command::Tool(tool) => return self.change(line, tool, findings),
             Command::Head(name) => return self.swap_head(line, name),
             Command::Preselect(number) => Event::Preselect { number: *number },
-            Command::Spindle(spindle) => {
-                self.turning = matches!(spindle, Spindle::On { .. });
-                self.commanded = self.turning.then_some(*spindle);
-                Event::Spindle(*spindle)
-            }
-            Command::Coolant(coolant) => {
-                self.coolant = (*coolant != Coolant::Off).then_some(*coolant);
-                self.coolant_due = false;
-                Event::Coolant(*coolant)
-            }
+            Command::Spindle(spindle) => return self.spindle(line, *spindle),
+            Command::Coolant(coolant) => return self.coolant(line, *coolant),
             Command::Compensate(compensation) => Event::Compensate(*compensation),
             // Of a dialect that does not know operations the name is a remark.
             Command::Operation(name) if self.writer.knows(Capabilities::OPERATION) => {
@@ -168,63 +167,9 @@ impl<'a> Emit<'a> {
             Command::Dwell(seconds) => Event::Dwell { seconds: *seconds },
             Command::Stop => Event::Stop,
             Command::OptionalStop => Event::OptionalStop,
-            Command::Home => {
-                self.release(line);
-                Event::Home
-            }
+            Command::Home => return self.go_home(line, findings),
         };
         self.writer.push(line, event);
-    }
-
-    /// Cancels compensation, if any is in force.
-    fn release(&mut self, line: u64) {
-        if std::mem::take(&mut self.positioned) {
-            self.writer.push(line, Event::Release);
-        }
-    }
-
-    fn change(&mut self, line: u64, tool: &Tool) {
-        self.release(line);
-        self.turning = false;
-        self.writer.tool_known();
-        self.writer.push(
-            line,
-            Event::ToolChange {
-                number: tool.number,
-                register: tool.register,
-                length: tool.length,
-                diameter: tool.diameter,
-                corner_radius: tool.corner_radius,
-                name: &tool.name,
-            },
-        );
-    }
-
-    /// Another head: the machine is that of the head from here on.
-    fn swap_head(&mut self, line: u64, name: &str) {
-        let Some(head) = self.base.head(name) else {
-            return;
-        };
-        self.release(line);
-        self.machine = &head.machine;
-        // Away first: a spindle that stops in the part tears. Both are switched on again with the first position,
-        // as after a tool change.
-        self.writer.push(line, Event::Home);
-        if std::mem::take(&mut self.turning) {
-            self.writer.push(line, Event::Spindle(Spindle::Off));
-        }
-        if self.coolant.is_some() {
-            self.coolant_due = true;
-            self.writer.push(line, Event::Coolant(Coolant::Off));
-        }
-        match &head.word {
-            Some(word) => self.writer.push(line, Event::Word { text: word }),
-            None => {
-                let text = format!("CHANGE TO HEAD {name}");
-                self.writer.push(line, Event::Comment { text: &text });
-                self.writer.push(line, Event::Stop);
-            }
-        }
     }
 
     /// A tool that cuts must turn, but for a knife.
@@ -243,45 +188,6 @@ impl<'a> Emit<'a> {
             )
             .help("the CAM system should write SPINDL before this line"),
         );
-    }
-
-    /// The first position after the start or a tool change.
-    fn position(&mut self, block: &Block, findings: &Findings) {
-        let line = block.line;
-        self.extremes.reach(&block.joints);
-        if let (false, Some(spindle)) = (self.turning, self.commanded) {
-            // The tool change stopped it, and the CL file takes it to be turning.
-            self.turning = true;
-            self.writer.push(line, Event::Spindle(spindle));
-            findings.at(
-                line,
-                Diagnostic::warning(
-                    "spindle",
-                    "no SPINDL since the tool change; the spindle was switched on again as before it",
-                )
-                .help("check that the speed fits the new tool"),
-            );
-        }
-        if let (true, Some(coolant)) = (std::mem::take(&mut self.coolant_due), self.coolant) {
-            self.writer.push(line, Event::Coolant(coolant));
-        }
-        // Nobody knows whether they are clamped.
-        for joint in 0..self.machine.axes.len() {
-            self.set_clamp(line, joint, false, true);
-        }
-        self.writer.push(
-            line,
-            Event::Position {
-                tool: stands(block),
-                feed: block.time.feed,
-                words: &block.words[..self.writer.words()],
-            },
-        );
-        self.positioned = true;
-        // What was turned on the way is clamped before the tool goes on.
-        for joint in 0..self.machine.axes.len() {
-            self.set_clamp(line, joint, true, false);
-        }
     }
 
     /// Lets go the axes that this block moves, and clamps the others before the tool cuts.

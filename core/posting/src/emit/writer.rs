@@ -1,7 +1,7 @@
 //! Events on their way to the dialect, and its text on the way to the output.
 
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Batch, Capabilities, DialectSession, Event};
+use post_plugin::{Batch, Capabilities, DialectSession, Event, Format};
 
 use super::extremes::Extremes;
 use crate::findings::Findings;
@@ -42,6 +42,11 @@ impl<'a> Writer<'a> {
     /// The dialect declared that it writes this.
     pub(super) fn knows(&self, capability: Capabilities) -> bool {
         self.dialect.capabilities().has(capability)
+    }
+
+    /// What the dialect prints.
+    pub(super) fn format(&self) -> &Format {
+        self.dialect.format()
     }
 
     /// Words of a block.

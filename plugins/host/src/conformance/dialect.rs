@@ -167,8 +167,8 @@ fn optional(event: &Event<'_>) -> bool {
             | Event::Dwell { .. }
             | Event::Stop
             | Event::OptionalStop
-            | Event::Release
-            | Event::Home
+            | Event::Retract { .. }
+            | Event::Park { .. }
             | Event::Spindle(_)
             | Event::ToolChange { .. }
     )
@@ -204,6 +204,10 @@ fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>> {
     };
     let mut events = vec![
         Event::Start,
+        Event::Retract {
+            axes: 0b100,
+            words: words(0),
+        },
         Event::Comment {
             text: "naïve (µ); % ~",
         },
@@ -213,6 +217,7 @@ fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>> {
             sense: SpindleSense::Clockwise,
         }),
         Event::Coolant(Coolant::Flood),
+        Event::Turn { words: words(0) },
         Event::position(words(0), None),
     ];
     events.extend((1..positions.len() - 1).map(|cut| {
@@ -228,8 +233,14 @@ fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>> {
         Event::OptionalStop,
         Event::Coolant(Coolant::Off),
         Event::Spindle(Spindle::Off),
-        Event::Release,
-        Event::Home,
+        Event::Retract {
+            axes: 0b100,
+            words: words(0),
+        },
+        Event::Park {
+            axes: 0b11,
+            words: words(0),
+        },
         Event::End,
     ]);
     events.retain(|event| !left_out.contains(&event.name()));

@@ -104,8 +104,14 @@ fn job() -> Batch {
         ));
     }
     push(Event::Dwell { seconds: 0.25 });
-    push(Event::Release);
-    push(Event::Home);
+    push(Event::Retract {
+        axes: 0b100,
+        words: &[0.0, 0.0, 500.0, 0.0, 0.0],
+    });
+    push(Event::Park {
+        axes: 0b11,
+        words: &[-250.0, 200.0, 0.0, 0.0, 0.0],
+    });
     push(Event::End);
     batch
 }
@@ -366,7 +372,8 @@ fn a_plugin_that_panics_does_not_take_the_host_with_it() {
     let mut session = plugin.dialect(&setup).unwrap();
     let mut batch = Batch::default();
     batch.push(1, Event::Start);
-    batch.push(2, Event::Home);
+    let (axes, words) = (1, &[0.0][..]);
+    batch.push(2, Event::Park { axes, words });
     let (mut out, mut ends) = (String::new(), Vec::new());
     let fault = session
         .write_batch(&batch, &mut out, &mut ends)

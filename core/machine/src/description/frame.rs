@@ -1,0 +1,149 @@
+//! Where the axes go between the passes: out of the part, to a tool change, at the end.
+
+use toml::Spanned;
+
+use super::build::Builder;
+use super::file::{ControlFile, Positions as Said};
+use super::{Axis, Machine};
+use crate::axis_words::is_depth;
+use crate::kinematics::travel::passed;
+
+/// The positions of a machine around a program's moves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Where the depth axes stand when the tool is retracted: place in the chain and value, mm.
+    pub retract: Vec<(usize, f64)>,
+    /// The machine file says so, and answers for it; else it is the end of travel away from the part.
+    pub retract_said: bool,
+    /// Where axes stand before a tool change, the tool retracted: mm or radians.
+    pub change: Vec<(usize, f64)>,
+    /// Where axes stand at the program's end and where the CL file sends the tool home: mm or radians.
+    pub park: Vec<(usize, f64)>,
+    /// A first position under tool centre point control is approached from so far along the depth axis, mm; none is
+    /// from as high as the retract.
+    pub approach: Option<f64>,
+}
+
+impl Frame {
+    /// Where a joint stands when the tool is retracted, if it is moved for that.
+    pub fn retracted(&self, joint: usize) -> Option<f64> {
+        let mut retract = self.retract.iter();
+        let found = retract.find(|(place, _)| *place == joint);
+        found.map(|(_, value)| *value)
+    }
+}
+
+impl Machine {
+    /// The end of travel of each depth axis on the side of the holder: there the tool is as far from the part as these
+    /// axes bring it.
+    fn depth_ends(&self) -> Vec<(usize, f64)> {
+        let axes = self.axes.iter().enumerate();
+        axes.filter(|(place, axis)| is_depth(self, *place) && axis.indexed.is_none())
+            .filter_map(|(place, axis)| {
+                let [least, most] = axis.travel?;
+                let away = axis.joint.direction.dot(&self.tool_axis) > 0.0;
+                Some((place, if away { most } else { least }))
+            })
+            .collect()
+    }
+}
+
+impl Builder<'_> {
+    /// Takes the positions of `[control]` into a machine whose axes are known.
+    pub(super) fn frame(&mut self, said: &ControlFile, machine: &mut Machine) {
+        let retract = self.positions(&said.retract, machine);
+        for (place, _) in &retract {
+            if machine.axes[*place].joint.rotary {
+                let name = &machine.axes[*place].name;
+                let span = said.retract.keys().find(|key| key.get_ref() == name);
+                self.fault(
+                    "machine-frame",
+                    span.map_or(0..0, Spanned::span),
+                    format!("retract turns {name}: the tool leaves the part by its linear axes"),
+                    "rotary axes stand where park or change says",
+                );
+            }
+        }
+        let park = self.positions(&said.park, machine);
+        let change = match said.change.is_empty() {
+            // Rotary axes stand for a tool change as they do at the end.
+            true => {
+                let rotary = |place: &usize| machine.axes[*place].joint.rotary;
+                park.iter().copied().filter(|(at, _)| rotary(at)).collect()
+            }
+            false => self.positions(&said.change, machine),
+        };
+        let approach = said.approach.as_ref().map(|height| {
+            let value = self.number(height);
+            if value <= 0.0 {
+                self.fault(
+                    "machine-frame",
+                    height.span(),
+                    format!("approach is {value}; it must be above zero"),
+                    "left out, the tool comes down from as high as it was retracted",
+                );
+            }
+            value
+        });
+        machine.frame = Frame {
+            retract_said: !retract.is_empty(),
+            retract: match retract.is_empty() {
+                true => machine.depth_ends(),
+                false => retract,
+            },
+            change,
+            park,
+            approach,
+        };
+    }
+
+    fn positions(&mut self, said: &Said, machine: &Machine) -> Vec<(usize, f64)> {
+        let mut positions = Vec::new();
+        for (name, value) in said {
+            let known = machine.axes.iter().position(|axis| axis.name == *name.get_ref());
+            let Some(place) = known else {
+                self.fault(
+                    "machine-frame",
+                    name.span(),
+                    format!("the machine has no axis {}", name.get_ref()),
+                    "",
+                );
+                continue;
+            };
+            let axis = &machine.axes[place];
+            let shown = self.number(value);
+            let position = shown * axis.unit() - axis.zero;
+            if let (Some([least, most]), true) =
+                (axis.travel, passed(axis.travel, position, 0.0).is_some())
+            {
+                self.fault(
+                    "machine-travel",
+                    value.span(),
+                    format!(
+                        "{} cannot stand at {shown}: its travel is {} to {}",
+                        axis.name,
+                        axis.reading(least),
+                        axis.reading(most)
+                    ),
+                    "positions of [control] are in machine coordinates, as the control shows them",
+                );
+            }
+            if !stands(axis, position) {
+                self.fault(
+                    "machine-travel",
+                    value.span(),
+                    format!("{} cannot stand at {shown}: it is none of its positions", axis.name),
+                    "",
+                );
+            }
+            positions.push((place, position));
+        }
+        positions
+    }
+}
+
+/// An indexed axis stands at its positions alone.
+fn stands(axis: &Axis, position: f64) -> bool {
+    let indexed = axis.indexed.as_ref();
+    indexed.is_none_or(|indexed| indexed.positions.holds(position, axis.travel.is_none()))
+}

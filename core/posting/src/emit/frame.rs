@@ -1,0 +1,258 @@
+//! The frame around the moves: retracts, positions of the machine, the way to a first position.
+
+use post_machine::axis_words::{WordValues, Words};
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{Coolant, Event, Spindle};
+
+use super::{Emit, stands};
+use crate::blocks::{Block, Reason};
+use crate::findings::Findings;
+use crate::program::Tool;
+
+/// Full turns that an axis may stand away from its park position before somebody is told, degrees.
+const TURN: f64 = 360.0;
+
+impl Emit<'_> {
+    /// The depth axes to where the tool is clear of the part, and everything cancelled that a first position put in
+    /// force.
+    pub(super) fn retract(&mut self, line: u64) {
+        if std::mem::replace(&mut self.clear, true) {
+            return;
+        }
+        let positions = self.machine.frame.retract.clone();
+        let (axes, words) = self.machine_words(positions.iter().copied());
+        for (joint, value) in positions {
+            self.last[joint] = value;
+        }
+        let words = &words[..self.writer.words()];
+        self.writer.push(line, Event::Retract { axes, words });
+    }
+
+    /// Axes to positions of the machine, the tool retracted: the rotary ones first.
+    fn park(&mut self, line: u64, positions: &[(usize, f64)], findings: &Findings) {
+        for rotary in [true, false] {
+            let axes = &self.machine.axes;
+            let group: Vec<(usize, f64)> = positions
+                .iter()
+                .copied()
+                .filter(|(joint, _)| axes[*joint].joint.rotary == rotary)
+                .collect();
+            if group.is_empty() {
+                continue;
+            }
+            for &(joint, value) in &group {
+                self.tell_unwinding(line, joint, value, findings);
+                self.set_clamp(line, joint, false, true);
+            }
+            let (axes, words) = self.machine_words(group.iter().copied());
+            let words = &words[..self.writer.words()];
+            self.writer.push(line, Event::Park { axes, words });
+            for &(joint, value) in &group {
+                self.last[joint] = value;
+                self.set_clamp(line, joint, true, false);
+            }
+        }
+    }
+
+    /// An axis that turns back by whole turns takes its time: nobody shall wonder why.
+    fn tell_unwinding(&self, line: u64, joint: usize, value: f64, findings: &Findings) {
+        let axis = &self.machine.axes[joint];
+        if !axis.joint.rotary || axis.range.is_some() {
+            return;
+        }
+        let (from, to) = (axis.reading(self.last[joint]), axis.reading(value));
+        let way = libm::fabs(to - from);
+        if way <= TURN {
+            return;
+        }
+        let time = match axis.max_feed.is_finite() {
+            true => format!(", {:.1} min at its max_feed", way / axis.max_feed.to_degrees()),
+            false => String::new(),
+        };
+        findings.at(
+            line,
+            Diagnostic::warning(
+                "unwinding",
+                format!(
+                    "{} turns back from {from:.3}° to {to:.3}°, {:.0} turns, to where [control] parks it{time}",
+                    axis.name,
+                    libm::floor(way / TURN)
+                ),
+            )
+            .help("a control that shows the axis over one turn has no such way: [axis] range"),
+        );
+    }
+
+    /// At the end an axis stands whole turns away from zero, and nothing turns it back.
+    fn tell_wound(&self, line: u64, findings: &Findings) {
+        for (joint, axis) in self.machine.axes.iter().enumerate() {
+            let parked = self.machine.frame.park.iter().any(|(place, _)| *place == joint);
+            let stands = axis.reading(self.last[joint]);
+            if !axis.joint.rotary || axis.range.is_some() || parked || libm::fabs(stands) <= TURN {
+                continue;
+            }
+            findings.at(
+                line,
+                Diagnostic::warning(
+                    "unwinding",
+                    format!("at the end {} stands at {stands:.3}°: the next program turns it back", axis.name),
+                )
+                .help(format!("[control] park = {{ {} = 0 }} turns it back off the part, at the end of this one", axis.name)),
+            );
+        }
+    }
+
+    /// Words of positions in machine coordinates, and which they are.
+    fn machine_words(&self, positions: impl Iterator<Item = (usize, f64)>) -> (u32, WordValues) {
+        let mut axes = 0;
+        let mut words = WordValues::default();
+        for (joint, value) in positions {
+            let travel = self.machine.axes[joint].travel;
+            if let Some((place, word)) = self.words.machine_word(joint, value, travel) {
+                axes |= 1 << place;
+                words[place] = word;
+            }
+        }
+        (axes, words)
+    }
+
+    /// The spindle and the coolant stand still while nobody cuts; what the CL file wants is on again at the next first
+    /// position.
+    fn rest(&mut self, line: u64) {
+        if std::mem::take(&mut self.turning) {
+            self.writer.push(line, Event::Spindle(Spindle::Off));
+        }
+        if self.coolant.is_some() && !std::mem::replace(&mut self.coolant_due, true) {
+            self.writer.push(line, Event::Coolant(Coolant::Off));
+        }
+    }
+
+    pub(super) fn change(&mut self, line: u64, tool: &Tool, findings: &Findings) {
+        self.retract(line);
+        self.rest(line);
+        let positions = self.machine.frame.change.clone();
+        self.park(line, &positions, findings);
+        self.writer.tool_known();
+        self.writer.push(
+            line,
+            Event::ToolChange {
+                number: tool.number,
+                register: tool.register,
+                length: tool.length,
+                diameter: tool.diameter,
+                corner_radius: tool.corner_radius,
+                name: &tool.name,
+            },
+        );
+        // A changer may leave the depth axis anywhere.
+        self.clear = !self.machine.axes.iter().any(|axis| axis.joint.rotary);
+    }
+
+    /// Another head: the machine is that of the head from here on.
+    pub(super) fn swap_head(&mut self, line: u64, name: &str) {
+        let Some(head) = self.base.head(name) else {
+            return;
+        };
+        // Away first: a spindle that stops in the part tears.
+        self.retract(line);
+        self.rest(line);
+        self.machine = &head.machine;
+        self.words = Words::new(self.machine, self.writer.format());
+        match &head.word {
+            Some(word) => self.writer.push(line, Event::Word { text: word }),
+            None => {
+                let text = format!("CHANGE TO HEAD {name}");
+                self.writer.push(line, Event::Comment { text: &text });
+                self.writer.push(line, Event::Stop);
+            }
+        }
+        self.clear = false;
+    }
+
+    /// Home: retracted, and parked.
+    pub(super) fn go_home(&mut self, line: u64, findings: &Findings) {
+        self.retract(line);
+        let positions = self.machine.frame.park.clone();
+        self.park(line, &positions, findings);
+    }
+
+    pub(super) fn end(&mut self, line: u64, findings: &Findings) {
+        // The tool leaves the part first: a spindle that stops in it tears.
+        self.retract(line);
+        self.rest(line);
+        self.go_home(line, findings);
+        self.tell_wound(line, findings);
+        self.writer.push(line, Event::End);
+    }
+
+    /// The first position after the start, a tool change or a retract: the rotary axes turn with the tool clear of the
+    /// part, are clamped, and then it comes near.
+    pub(super) fn position(&mut self, block: &Block, findings: &Findings) {
+        let line = block.line;
+        self.extremes.reach(&block.joints);
+        let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
+        if turns {
+            self.retract(line);
+        }
+        self.wake(line, findings);
+        let words = &block.words[..self.writer.words()];
+        // Nobody knows whether they are clamped.
+        for joint in 0..self.machine.axes.len() {
+            self.set_clamp(line, joint, false, true);
+        }
+        if turns {
+            self.writer.push(line, Event::Turn { words });
+            for joint in 0..self.machine.axes.len() {
+                if self.machine.axes[joint].joint.rotary {
+                    self.set_clamp(line, joint, true, false);
+                }
+            }
+        }
+        self.writer.push(
+            line,
+            Event::Position {
+                tool: stands(block),
+                feed: block.time.feed,
+                plane_first: block.reason != Reason::Approach,
+                words,
+            },
+        );
+        self.clear = false;
+        // A linear axis that stands between cuts has come to its place with the others.
+        for joint in 0..self.machine.axes.len() {
+            self.set_clamp(line, joint, true, false);
+        }
+    }
+
+    /// Spindle and coolant on as the CL file takes them to be.
+    fn wake(&mut self, line: u64, findings: &Findings) {
+        if let (false, Some(spindle)) = (self.turning, self.commanded) {
+            // The tool change stopped it, and the CL file takes it to be turning.
+            self.turning = true;
+            self.writer.push(line, Event::Spindle(spindle));
+            findings.at(
+                line,
+                Diagnostic::warning(
+                    "spindle",
+                    "no SPINDL since the tool change; the spindle was switched on again as before it",
+                )
+                .help("check that the speed fits the new tool"),
+            );
+        }
+        if let (true, Some(coolant)) = (std::mem::take(&mut self.coolant_due), self.coolant) {
+            self.writer.push(line, Event::Coolant(coolant));
+        }
+    }
+
+    pub(super) fn coolant(&mut self, line: u64, coolant: Coolant) {
+        self.coolant = (coolant != Coolant::Off).then_some(coolant);
+        self.coolant_due = false;
+        self.writer.push(line, Event::Coolant(coolant));
+    }
+
+    pub(super) fn spindle(&mut self, line: u64, spindle: Spindle) {
+        self.turning = matches!(spindle, Spindle::On { .. });
+        self.commanded = self.turning.then_some(spindle);
+        self.writer.push(line, Event::Spindle(spindle));
+    }
+}

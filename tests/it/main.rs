@@ -10,6 +10,8 @@ mod command;
 mod common;
 mod library;
 #[cfg(target_os = "linux")]
+mod linuxcnc;
+#[cfg(target_os = "linux")]
 mod memory;
 mod new;
 mod plugins;

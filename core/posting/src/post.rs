@@ -4,7 +4,7 @@ use post_grammar::{Record, SyntaxFault};
 use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Capabilities, DialectSession, ModelSession};
+use post_plugin::{DialectSession, ModelSession};
 
 use crate::blocks::{Block, Blocks, Surroundings};
 use crate::configuration::{Configuration, Configured};
@@ -150,12 +150,7 @@ impl<'a> Post<'a> {
             timing: Timing::new(machine, &format)?,
             configuration: Configuration::new(machine, &format, job.tool_length)?,
             configured: Vec::new(),
-            blocks: Blocks::new(
-                machine,
-                model,
-                job.trust_model,
-                dialect.capabilities().has(Capabilities::TCP_STILL),
-            ),
+            blocks: Blocks::new(machine, model, job.trust_model),
             made: Vec::new(),
             observers: Observers::default(),
             emit: Emit::new(machine, dialect, output),

@@ -142,7 +142,8 @@ typedef struct {
 
 /* Comes filled with zeros but for `size`: write no further. Decimals are at most 9; `inverse_time` is -1 if there
  * is no G93; `words_len` is that of the setup; `extension` is padded with zeros; `writes` is the sum of
- * POST_WRITES_ of all that the dialect writes beyond straight moves: 0 to begin with. */
+ * POST_WRITES_ of all that the dialect writes beyond straight moves: 0 to begin with. `most_inverse_time` is the
+ * largest F under G93, 0 if it has no end. */
 typedef struct {
     uint64_t size;
     uint8_t words[32];
@@ -152,6 +153,7 @@ typedef struct {
     uint32_t words_len;
     uint8_t extension[16];
     uint64_t writes;
+    double most_inverse_time;
 } PostFormat;
 
 /* tip: mm, part frame, minus the chord. axis: rotation vector in degrees, part frame. */
@@ -396,8 +398,8 @@ typedef struct {
 /* 2 numbers: Feed of the last approach; none is rapid. */
 #define POST_POSITION_FEED 6u
 /* The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the plane
- * comes first, the depth last. Else (under tool centre point control) all linear words stand in one block, at
- * whose end the tool is still clear of the part. */
+ * comes first, the depth last. Else (under tool centre point control) an Event::Park has brought it across, and
+ * all linear words stand in one block, which leads it down. */
 #define POST_POSITION_PLANE_FIRST 8u
 /* how many there are, and behind it as many: All axis words, in the order of Setup::words. */
 #define POST_POSITION_WORDS 9u
@@ -432,7 +434,8 @@ typedef struct {
 #define POST_EVENT_STOP 14u
 /* Optional stop (M1). */
 #define POST_EVENT_OPTIONAL_STOP 15u
-/* After a Event::Retract: axes go at rapid to a position of the machine (for a tool change, at the end). */
+/* After a Event::Retract: axes go at rapid to a position of the machine (for a tool change, at the end, above a
+ * first position). */
 #define POST_EVENT_PARK 16u
 /* Which words: bit n is word n. */
 #define POST_PARK_AXES 0u
@@ -676,7 +679,7 @@ POST_ASSERT(offsetof(PostSetup, tools_len) == 136, "PostSetup.tools_len");
 POST_ASSERT(offsetof(PostSetup, least) == 144, "PostSetup.least");
 POST_ASSERT(offsetof(PostSetup, largest) == 168, "PostSetup.largest");
 POST_ASSERT(offsetof(PostSetup, time) == 192, "PostSetup.time");
-POST_ASSERT(sizeof(PostFormat) == 80 && POST_ALIGN(PostFormat) == 8, "PostFormat");
+POST_ASSERT(sizeof(PostFormat) == 88 && POST_ALIGN(PostFormat) == 8, "PostFormat");
 POST_ASSERT(offsetof(PostFormat, size) == 0, "PostFormat.size");
 POST_ASSERT(offsetof(PostFormat, words) == 8, "PostFormat.words");
 POST_ASSERT(offsetof(PostFormat, feed) == 40, "PostFormat.feed");
@@ -685,6 +688,7 @@ POST_ASSERT(offsetof(PostFormat, feed_per_revolution) == 48, "PostFormat.feed_pe
 POST_ASSERT(offsetof(PostFormat, words_len) == 52, "PostFormat.words_len");
 POST_ASSERT(offsetof(PostFormat, extension) == 56, "PostFormat.extension");
 POST_ASSERT(offsetof(PostFormat, writes) == 72, "PostFormat.writes");
+POST_ASSERT(offsetof(PostFormat, most_inverse_time) == 80, "PostFormat.most_inverse_time");
 POST_ASSERT(sizeof(PostPlugin) == 96 && POST_ALIGN(PostPlugin) == 8, "PostPlugin");
 POST_ASSERT(offsetof(PostPlugin, magic) == 0, "PostPlugin.magic");
 POST_ASSERT(offsetof(PostPlugin, abi) == 8, "PostPlugin.abi");

@@ -35,7 +35,7 @@ pub trait Dialect: Sized + Send + 'static {
 }
 
 /// How a dialect writes numbers, and what its control can do. The host rounds to these before it certifies.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Format {
     /// Decimals of each axis word, in the order of [`Setup::words`].
     pub words: Vec<u8>,
@@ -47,6 +47,9 @@ pub struct Format {
     pub feed_per_revolution: u8,
     /// The usual ending of a program's file name, without the dot.
     pub extension: String,
+    /// The largest F that the control takes under inverse time, 1/min; none if it has no end. A block that would need
+    /// more is slowed down.
+    pub most_inverse_time: Option<f64>,
 }
 
 /// An opened dialect as the core sees it: batches, whatever stands behind it.

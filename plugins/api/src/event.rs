@@ -224,8 +224,8 @@ events! { <'a>
         /// Feed of the last approach; none is rapid.
         feed: Option<Feed>,
         /// The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the
-        /// plane comes first, the depth last. Else (under tool centre point control) all linear words stand in one
-        /// block, at whose end the tool is still clear of the part.
+        /// plane comes first, the depth last. Else (under tool centre point control) an [`Event::Park`] has brought it
+        /// across, and all linear words stand in one block, which leads it down.
         plane_first: bool,
         /// All axis words, in the order of [`Setup::words`](crate::Setup::words).
         words: &'a [f64],
@@ -265,7 +265,8 @@ events! { <'a>
     14 STOP "a stop" Stop;
     /// Optional stop (M1).
     15 OPTIONAL_STOP "an optional stop" OptionalStop;
-    /// After a [`Event::Retract`]: axes go at rapid to a position of the machine (for a tool change, at the end).
+    /// After a [`Event::Retract`]: axes go at rapid to a position of the machine (for a tool change, at the end, above
+    /// a first position).
     16 PARK "a position of the machine" Park {
         /// Which words: bit n is word n.
         axes: u32,

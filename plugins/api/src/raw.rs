@@ -243,6 +243,8 @@ pub struct PostFormat {
     pub extension: [u8; 16],
     /// The sum of `WRITES_…`: see [`Capabilities`](crate::Capabilities).
     pub writes: u64,
+    /// The largest F under inverse time, 1/min; 0 if it has no end.
+    pub most_inverse_time: f64,
 }
 
 /// Host's function that takes a declared option.

@@ -54,6 +54,7 @@ const OPTIONS: &[OptionSpec] = &[
     options::TRAILING_ZEROS,
     options::feed_decimals(1),
     options::inverse_time_decimals(3),
+    options::most_inverse_time(9999.999),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
     OptionSpec::text(
         "cancel",

@@ -5,8 +5,8 @@
 mod options;
 
 use post_plugin::{
-    Axes, Block, Capabilities, Compensation, Coolant, Dialect, Event, Feed, Format, Group, Modal, NumberStyle,
-    OptionSpec, Setup, Spindle, SpindleSense, Units, ascii, export_dialect,
+    Axes, Block, Capabilities, Compensation, Coolant, Dialect, Event, Feed, Format, Group, Modal,
+    NumberStyle, OptionSpec, Setup, Spindle, SpindleSense, Units, ascii, export_dialect,
 };
 
 use crate::options::OPTIONS;
@@ -123,6 +123,7 @@ impl Dialect for Heidenhain {
             inverse_time: None,
             feed_per_revolution: 3,
             extension: "h".to_owned(),
+            ..Format::default()
         }
     }
 
@@ -361,12 +362,7 @@ impl Heidenhain {
         Ok(())
     }
 
-    fn rapid_group(
-        &mut self,
-        words: &[f64],
-        group: Group,
-        out: &mut String,
-    ) -> Result<(), String> {
+    fn rapid_group(&mut self, words: &[f64], group: Group, out: &mut String) -> Result<(), String> {
         if self.axes.moved_group(words, group) {
             self.block.word("L");
             self.axes.write_group(&mut self.block, words, group);

@@ -16,7 +16,7 @@ impl Dialect for Panics {
             feed: 0,
             inverse_time: None,
             feed_per_revolution: 0,
-            extension: String::new(),
+            ..Format::default()
         }
     }
 

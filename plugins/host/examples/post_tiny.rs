@@ -21,6 +21,7 @@ impl Dialect for Tiny {
             inverse_time: None,
             feed_per_revolution: 3,
             extension: "nc".to_owned(),
+            ..Format::default()
         }
     }
 

@@ -229,6 +229,12 @@ fn check_format(format: &Format, words: usize) -> Result<(), String> {
             "its format asks for {count} decimals, at most 9 are possible"
         ));
     }
+    if let Some(most) = format
+        .most_inverse_time
+        .filter(|most| most.is_nan() || *most <= 0.0)
+    {
+        return Err(format!("its largest inverse-time feed is {most}"));
+    }
     let extension = &format.extension;
     if extension.len() > 16 || !extension.bytes().all(|byte| byte.is_ascii_alphanumeric()) {
         return Err("its file extension is not letters and digits".to_owned());
@@ -291,6 +297,7 @@ impl Library {
             },
             feed_per_revolution: decimals(raw.feed_per_revolution),
             extension: String::from_utf8_lossy(extension).into_owned(),
+            most_inverse_time: Some(raw.most_inverse_time).filter(|most| *most != 0.0),
         };
         Ok((format, Capabilities::from_bits(raw.writes)))
     }

@@ -1,8 +1,8 @@
 //! Writes a program by a [`Table`].
 
 use post_plugin::{
-    Axes, Block, Capabilities, Compensation, Coolant, Event, Feed, Format, Modal, NumberStyle,
-    Setup, Spindle, SpindleSense, Units,
+    Axes, Block, Compensation, Coolant, Event, Feed, Format, Modal, NumberStyle, Setup, Spindle,
+    SpindleSense, Units, Value,
 };
 
 use crate::options::{flag, integer, text};
@@ -30,6 +30,7 @@ pub struct Engine {
     tcp_on: String,
     /// Empty: nothing is written about it.
     tcp_off: String,
+    most_inverse_time: Option<f64>,
     coolant_codes: [String; 5],
     /// What ends each of them.
     coolant_ends: [String; 5],
@@ -120,6 +121,10 @@ impl Engine {
             retract: text(setup, "retract", ""),
             tcp_on: text(setup, "tcp_on", tcp_on),
             tcp_off,
+            most_inverse_time: match setup.option("most_inverse_time") {
+                Some(Value::Number(most)) if most > 0.0 => Some(most),
+                _ => None,
+            },
             coolant_codes,
             coolant_ends,
             register: (register != 0).then_some(register),
@@ -133,15 +138,11 @@ impl Engine {
         })
     }
 
-    pub(crate) fn capabilities(&self) -> Capabilities {
-        match self.table.tcp {
-            Tcp::Blocks { .. } => Capabilities::TCP_STILL,
-            Tcp::None | Tcp::Length(_) => Capabilities::NONE,
-        }
-    }
-
     pub(crate) fn format(&self) -> Format {
-        self.motion.format(self.table.extension)
+        Format {
+            most_inverse_time: self.most_inverse_time,
+            ..self.motion.format(self.table.extension)
+        }
     }
 
     /// Name of the program.
@@ -369,15 +370,15 @@ impl Engine {
         self.work_offset(out);
         // The rotary axes have been turned; what is left of them here moves nothing else.
         self.motion.turn(words, out);
+        if plane_first {
+            self.motion.plane(words, out);
+        }
         if let (true, Tcp::Blocks { length_first, .. }) = (self.tcp, self.table.tcp) {
             if length_first {
                 self.motion.line(&std::mem::take(&mut length), out);
             }
             self.motion.line(&self.tcp_on, out);
             self.tcp_active.set(true);
-        }
-        if plane_first {
-            self.motion.plane(words, out);
         }
         self.motion.arrive(words, feed, &length, out);
         self.length_active.set(true);

@@ -79,7 +79,7 @@ impl<C: Control> Dialect for Iso<C> {
     }
 
     fn capabilities(&self) -> Capabilities {
-        self.control.capabilities() | self.engine.capabilities()
+        self.control.capabilities()
     }
 
     #[inline]

@@ -63,6 +63,7 @@ impl Motion {
             inverse_time: (!self.codes.feed[1].is_empty()).then_some(self.decimals.inverse_time),
             feed_per_revolution: self.decimals.per_revolution,
             extension: extension.to_owned(),
+            ..Format::default()
         }
     }
 

@@ -71,6 +71,16 @@ pub const fn inverse_time_decimals(default: i64) -> OptionSpec {
     OptionSpec::integer("inverse_time_decimals", (0, 6), default, "Of F under G93.")
 }
 
+/// The largest inverse-time feed.
+pub const fn most_inverse_time(default: f64) -> OptionSpec {
+    OptionSpec::number(
+        "most_inverse_time",
+        (0.0, 1e9),
+        default,
+        "The largest F under G93, 1/min; a block that would need more is slowed down. 0: the control has no end.",
+    )
+}
+
 /// A whole number, or the table's where the dialect does not offer it.
 pub(crate) fn integer(setup: &Setup<'_>, key: &str, table: i64) -> i64 {
     match setup.option(key) {

@@ -128,6 +128,6 @@ fn the_order_of_switching_and_what_does_not_fit_are_the_dialects() {
     assert_eq!(
         text.unwrap(),
         "M129\nG49\nG53 G0 Z500.000\n(T1 BALL D10 [R5])\nT1 M6\nG54\nG0 A-30.000 C45.000\n\
-         G56 H1\nM128\nX10.000 Y-20.500\nZ100.000\nG4 F2.00\nMSG=HALF\nM129\nG49\nG53 G0 Z500.000\n"
+         X10.000 Y-20.500\nG56 H1\nM128\nZ100.000\nG4 F2.00\nMSG=HALF\nM129\nG49\nG53 G0 Z500.000\n"
     );
 }

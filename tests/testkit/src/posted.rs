@@ -48,6 +48,7 @@ impl Recorder {
                 inverse_time: Some(4),
                 feed_per_revolution: 4,
                 extension: "nc".to_owned(),
+                ..Format::default()
             },
             capabilities: Capabilities::NONE,
             asked: Vec::new(),
@@ -75,9 +76,9 @@ impl DialectSession for Recorder {
                 Event::Position {
                     words, tool, feed, ..
                 } => (words, tool, feed, 0.0),
-                Event::Turn { words } | Event::Retract { words, .. } | Event::Park { words, .. } => {
-                    (words, None, None, 0.0)
-                }
+                Event::Turn { words }
+                | Event::Retract { words, .. }
+                | Event::Park { words, .. } => (words, None, None, 0.0),
                 Event::Rapid { words, tool } => (words, tool, None, 0.0),
                 Event::Linear { words, tool, feed } => (words, tool, Some(feed), 0.0),
                 Event::Dwell { seconds } => (&[][..], None, None, seconds),

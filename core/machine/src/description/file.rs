@@ -368,10 +368,6 @@ pub(crate) struct ControlFile {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Number>")]
     pub park: Positions,
-    /// With tcp = "control" and a table that is tilted: a first position is approached from so high, mm along the depth
-    /// axis; from the retract if not said.
-    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
-    pub approach: Option<Quantity>,
 }
 
 /// Positions of axes by their names.

@@ -19,18 +19,6 @@ pub struct Frame {
     pub change: Vec<(usize, f64)>,
     /// Where axes stand at the program's end and where the CL file sends the tool home: mm or radians.
     pub park: Vec<(usize, f64)>,
-    /// A first position under tool centre point control is approached from so far along the depth axis, mm; none is
-    /// from as high as the retract.
-    pub approach: Option<f64>,
-}
-
-impl Frame {
-    /// Where a joint stands when the tool is retracted, if it is moved for that.
-    pub fn retracted(&self, joint: usize) -> Option<f64> {
-        let mut retract = self.retract.iter();
-        let found = retract.find(|(place, _)| *place == joint);
-        found.map(|(_, value)| *value)
-    }
 }
 
 impl Machine {
@@ -73,18 +61,6 @@ impl Builder<'_> {
             }
             false => self.positions(&said.change, machine),
         };
-        let approach = said.approach.as_ref().map(|height| {
-            let value = self.number(height);
-            if value <= 0.0 {
-                self.fault(
-                    "machine-frame",
-                    height.span(),
-                    format!("approach is {value}; it must be above zero"),
-                    "left out, the tool comes down from as high as it was retracted",
-                );
-            }
-            value
-        });
         machine.frame = Frame {
             retract_said: !retract.is_empty(),
             retract: match retract.is_empty() {
@@ -93,14 +69,16 @@ impl Builder<'_> {
             },
             change,
             park,
-            approach,
         };
     }
 
     fn positions(&mut self, said: &Said, machine: &Machine) -> Vec<(usize, f64)> {
         let mut positions = Vec::new();
         for (name, value) in said {
-            let known = machine.axes.iter().position(|axis| axis.name == *name.get_ref());
+            let known = machine
+                .axes
+                .iter()
+                .position(|axis| axis.name == *name.get_ref());
             let Some(place) = known else {
                 self.fault(
                     "machine-frame",
@@ -132,7 +110,10 @@ impl Builder<'_> {
                 self.fault(
                     "machine-travel",
                     value.span(),
-                    format!("{} cannot stand at {shown}: it is none of its positions", axis.name),
+                    format!(
+                        "{} cannot stand at {shown}: it is none of its positions",
+                        axis.name
+                    ),
                     "",
                 );
             }

@@ -171,6 +171,7 @@ mod tests {
                 inverse_time: None,
                 feed_per_revolution: 4,
                 extension: "nc".to_owned(),
+                ..Format::default()
             };
             let placer = Placer::for_machine(&machine, &format, 100.0, &Joints::default())
                 .expect("a placer");

@@ -66,8 +66,6 @@ pub enum Reason {
     PutIn,
     /// The tool leaves the part as it stands, before its axes turn or it is retracted.
     Leave,
-    /// It ends straight above a first position, as high as the tool was retracted: all linear words in one block.
-    Approach,
     /// A stop on the way of axes that cannot go in one block.
     Stage,
     /// The tool is drawn back, turned and brought back.

@@ -1,6 +1,5 @@
 //! Points whose axis values are chosen become blocks: points put in or left out, every block certified.
 
-mod approach;
 mod audience;
 mod block;
 mod gathered;
@@ -127,8 +126,6 @@ pub(crate) struct Blocks<'a> {
     on_part: bool,
     /// Cutter radius compensation is in force.
     compensating: bool,
-    /// The dialect switches tool centre point control on in a block that moves nothing.
-    tcp_still: bool,
     /// Set once the fault that compensation cannot be was given.
     told_compensation: bool,
     /// The largest deviations so far.
@@ -141,7 +138,6 @@ impl<'a> Blocks<'a> {
         machine: &'a Machine,
         model: &'a mut dyn ModelSession,
         trust_model: bool,
-        tcp_still: bool,
     ) -> Self {
         Self {
             machine,
@@ -157,7 +153,6 @@ impl<'a> Blocks<'a> {
             placed: None,
             on_part: false,
             compensating: false,
-            tcp_still,
             told_compensation: false,
             largest: Largest::default(),
             counts: Counts::default(),
@@ -324,17 +319,35 @@ impl<'a> Blocks<'a> {
             self.end_run(to);
         }
         match self.last.take() {
-            None => self.first(placer, leg, &node, MotionKind::Position, to),
+            None => self.first(leg, &node, MotionKind::Position, to),
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
                 // An index axis turns with the tool at the reference, not somewhere over the part.
                 let last = self.leave_part(placer, leg.line, last, to);
-                self.first(placer, leg, &node, MotionKind::Reference, to);
+                self.first(leg, &node, MotionKind::Reference, to);
                 self.spare = Some(last);
             }
             Some(last) => self.spare = Some(self.go(placer, leg, last, &mut node, gathers, to)),
         }
         self.on_part = leg.motion.pace != Pace::Rapid;
         self.last = Some(node);
+    }
+
+    /// The first position after the start, a tool change, or a turn of an index axis.
+    fn first(
+        &mut self,
+        leg: &Leg<'_>,
+        node: &Node,
+        kind: MotionKind,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        let block = self.block(leg, node, Bound::default());
+        to.out.push(Flow::Point(Block {
+            kind,
+            // Nobody knows the way: the feed is that of a millimetre.
+            way: [1.0; 2],
+            nominal: Nominal::of(leg.motion.pace, 1.0, Travels::default),
+            ..block
+        }));
     }
 
     /// A move from where the tool stands to `node`; gives the node that it left.

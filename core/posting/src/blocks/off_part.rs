@@ -17,6 +17,9 @@ const LEANS: f64 = 1e-3;
 /// An axis that is as near to a position stands there, mm.
 const STANDS: f64 = 1e-3;
 
+/// Cosine of the largest angle between a way that leads the tool away from the part and its axis.
+const AWAY: f64 = 1e-3;
+
 /// How far a tool that leans is drawn back where the machine has no `[rewind]`, mm: the first that travel allows.
 const LEAVE: [f64; 5] = [100.0, 50.0, 25.0, 12.0, 6.0];
 
@@ -139,6 +142,15 @@ impl Blocks<'_> {
                 .help("end the path with the tool less inclined, or name a position with [control] retract and answer for it"),
             });
         }
+    }
+
+    /// Moving a joint that way brings the tool away from the part, towards its holder.
+    fn leads_away(&self, placer: &Placer, joints: &Joints, joint: usize, way: f64) -> bool {
+        let chain = placer.solver().chain();
+        let mut further = *joints;
+        further[joint] += libm::copysign(1.0, way);
+        let (from, to) = (chain.forward(joints), chain.forward(&further));
+        (to.tip - from.tip).dot(&from.axis) > AWAY
     }
 
     /// Draws the tool back along its axis, turns it to `joints`, and brings it back.

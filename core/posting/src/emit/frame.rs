@@ -1,16 +1,21 @@
 //! The frame around the moves: retracts, positions of the machine, the way to a first position.
 
-use post_machine::axis_words::{WordValues, Words};
+use post_machine::axis_words::{self, WordValues, Words};
+use post_machine::description::Tcp;
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Coolant, Event, Spindle};
+use post_machine::kinematics::Joints;
+use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
-use super::{Emit, stands};
-use crate::blocks::{Block, Reason};
+use super::{Emit, chain, stands};
+use crate::blocks::Block;
 use crate::findings::Findings;
 use crate::program::Tool;
 
 /// Full turns that an axis may stand away from its park position before somebody is told, degrees.
 const TURN: f64 = 360.0;
+
+/// Directions and angles that differ by less are the same, radians.
+const SAME: f64 = 1e-9;
 
 impl Emit<'_> {
     /// The depth axes to where the tool is clear of the part, and everything cancelled that a first position put in
@@ -66,7 +71,10 @@ impl Emit<'_> {
             return;
         }
         let time = match axis.max_feed.is_finite() {
-            true => format!(", {:.1} min at its max_feed", way / axis.max_feed.to_degrees()),
+            true => format!(
+                ", {:.1} min at its max_feed",
+                way / axis.max_feed.to_degrees()
+            ),
             false => String::new(),
         };
         findings.at(
@@ -86,7 +94,12 @@ impl Emit<'_> {
     /// At the end an axis stands whole turns away from zero, and nothing turns it back.
     fn tell_wound(&self, line: u64, findings: &Findings) {
         for (joint, axis) in self.machine.axes.iter().enumerate() {
-            let parked = self.machine.frame.park.iter().any(|(place, _)| *place == joint);
+            let parked = self
+                .machine
+                .frame
+                .park
+                .iter()
+                .any(|(place, _)| *place == joint);
             let stands = axis.reading(self.last[joint]);
             if !axis.joint.rotary || axis.range.is_some() || parked || libm::fabs(stands) <= TURN {
                 continue;
@@ -158,6 +171,7 @@ impl Emit<'_> {
         self.rest(line);
         self.machine = &head.machine;
         self.words = Words::new(self.machine, self.writer.format());
+        self.chain = chain(self.machine);
         match &head.word {
             Some(word) => self.writer.push(line, Event::Word { text: word }),
             None => {
@@ -208,12 +222,19 @@ impl Emit<'_> {
                 }
             }
         }
+        let plane_first = self.plane_first(&block.joints);
+        if !plane_first {
+            // Across in machine coordinates, before the words mean the tip; then down.
+            let (axes, across) = self.machine_words(self.plane(&block.joints));
+            let words = &across[..self.writer.words()];
+            self.writer.push(line, Event::Park { axes, words });
+        }
         self.writer.push(
             line,
             Event::Position {
                 tool: stands(block),
                 feed: block.time.feed,
-                plane_first: block.reason != Reason::Approach,
+                plane_first,
                 words,
             },
         );
@@ -222,6 +243,45 @@ impl Emit<'_> {
         for joint in 0..self.machine.axes.len() {
             self.set_clamp(line, joint, true, false);
         }
+    }
+
+    /// Words of the plane move the tool across the spindle, and the word of the depth moves it along, from where the
+    /// dialect writes them.
+    fn plane_first(&self, joints: &Joints) -> bool {
+        let machine = self.machine;
+        let (Tcp::Control, Some(depth), Some(chain)) =
+            (machine.control.tcp, axis_words::depth(machine), &self.chain)
+        else {
+            return true;
+        };
+        // Ahead of a block that switches it on with a move, words are axis positions: the same where nothing is turned.
+        let mut axes = machine.axes.iter().zip(joints);
+        let turned = axes.any(|(axis, joint)| {
+            axis.joint.rotary && libm::fabs(axis.reading(*joint) * axis.unit()) > SAME
+        });
+        if turned && !self.writer.knows(Capabilities::TCP_STILL) {
+            return false;
+        }
+        let mut further = *joints;
+        further[depth] += 1.0;
+        let way = chain.forward(&further).tip - chain.forward(joints).tip;
+        let along = match machine.axes[depth].name.as_str() {
+            "X" => way.x,
+            "Y" => way.y,
+            _ => way.z,
+        };
+        1.0 - libm::fabs(along) < SAME
+    }
+
+    /// Where the linear axes across the spindle stand.
+    fn plane(&self, joints: &Joints) -> impl Iterator<Item = (usize, f64)> {
+        let machine = self.machine;
+        let joints = *joints;
+        (0..machine.axes.len())
+            .filter(|joint| {
+                !machine.axes[*joint].joint.rotary && !axis_words::is_depth(machine, *joint)
+            })
+            .map(move |joint| (joint, joints[joint]))
     }
 
     /// Spindle and coolant on as the CL file takes them to be.

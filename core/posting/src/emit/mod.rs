@@ -7,7 +7,7 @@ mod writer;
 use post_machine::axis_words::Words;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::Joints;
+use post_machine::kinematics::{Chain, Joints};
 use post_plugin::{Capabilities, Coolant, DialectSession, Event, Spindle, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
@@ -31,6 +31,8 @@ pub(crate) struct Emit<'a> {
     clamped: u8,
     /// Prints positions in machine coordinates.
     words: Words,
+    /// The machine's, with any tool in it.
+    chain: Option<Chain>,
     /// The tool is retracted, and nothing is in force that a first position puts in force.
     clear: bool,
     /// The spindle was switched on since the last tool change.
@@ -62,6 +64,7 @@ impl<'a> Emit<'a> {
             last: Joints::default(),
             clamped: 0,
             words,
+            chain: chain(machine),
             clear: false,
             turning: false,
             commanded: None,
@@ -213,6 +216,14 @@ impl<'a> Emit<'a> {
             self.writer.push(line, Event::Word { text });
         }
     }
+}
+
+/// The chain, if the machine can be solved.
+fn chain(machine: &Machine) -> Option<Chain> {
+    machine
+        .solver(0.0)
+        .ok()
+        .map(|solver| solver.chain().clone())
 }
 
 /// Where the tool stands at the end of a block.

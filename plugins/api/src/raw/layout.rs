@@ -55,7 +55,7 @@ pub const TABLES: &[Layout] = layouts! {
         cl_file tip_tolerance axis_tolerance rapid_tolerance ahead moves tools tools_len least largest time
     }
     PostFormat as "PostFormat" {
-        size words feed inverse_time feed_per_revolution words_len extension writes
+        size words feed inverse_time feed_per_revolution words_len extension writes most_inverse_time
     }
     PostPlugin as "PostPlugin" {
         magic abi kind size table_size layout name version describe loaded dialect model

@@ -173,6 +173,7 @@ impl PostFormat {
         words_len: 0,
         extension: [0; 16],
         writes: 0,
+        most_inverse_time: 0.0,
     };
 
     /// `format` as it crosses the border; none if it has too many words or too long an extension.
@@ -183,6 +184,7 @@ impl PostFormat {
             feed_per_revolution: format.feed_per_revolution.into(),
             words_len: format.words.len() as u32,
             writes: capabilities.bits(),
+            most_inverse_time: format.most_inverse_time.unwrap_or(0.0),
             ..PostFormat::EMPTY
         };
         raw.words

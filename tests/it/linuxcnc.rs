@@ -1,0 +1,399 @@
+//! Programs in the real LinuxCNC: where its joints go between the cuts, from a cold start and from one with TCP still on.
+//!
+//! The tip is computed from the joints by the laws of LinuxCNC's kinematics modules, not by the product.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use nalgebra::{Rotation3, Vector3};
+use post_testkit::shared;
+
+use crate::common::{command, run};
+
+/// Two tools, the first approached upright, the second leaning; cuts that turn, a stop, rapids on the way out.
+const TWO_TOOLS: &str = "UNITS/MM
+LOADTL/1
+SPINDL/RPM,3000,CLW
+COOLNT/FLOOD
+RAPID
+GOTO/ 20.0, 10.0, 30.0, 0.0, 0.0, 1.0
+FEDRAT/3000,MMPM
+GOTO/ 20.0, 10.0, 15.0, 0.0, 0.0, 1.0
+GOTO/ 30.0, 10.0, 15.0, 0.0, 0.5, 0.8660254
+GOTO/ 30.0, 20.0, 15.0, 0.3, 0.4, 0.8660254
+RAPID
+GOTO/ 30.0, 20.0, 35.0, 0.3, 0.4, 0.8660254
+LOADTL/2
+SPINDL/RPM,2000,CLW
+RAPID
+GOTO/ -20.0, 10.0, 30.0, 0.0, 0.5, 0.8660254
+FEDRAT/3000,MMPM
+GOTO/ -20.0, 10.0, 15.0, 0.0, 0.5, 0.8660254
+GOTO/ -30.0, 15.0, 15.0, -0.3, 0.4, 0.8660254
+STOP
+GOTO/ -30.0, -15.0, 15.0, -0.3, 0.4, 0.8660254
+RAPID
+GOTO/ -30.0, -15.0, 45.0, -0.3, 0.4, 0.8660254
+END
+FINI
+";
+
+/// mm/min and degrees a minute: ten times those of the demonstration machines, so that a run takes seconds.
+const LINEAR: f64 = 12_000.0;
+const ROTARY: f64 = 18_000.0;
+
+/// Lengths of the two tools, mm.
+const TOOLS: [f64; 2] = [40.0, 25.0];
+
+/// Of a rapid, mm.
+const RAPID_TOLERANCE: f64 = 0.5;
+
+/// What is the same but for the interpolation's last digits, mm or degrees.
+const SAME: f64 = 0.002;
+
+/// A machine of LinuxCNC's.
+struct Machine {
+    /// Ours.
+    file: &'static str,
+    /// Theirs.
+    name: &'static str,
+    tilting: char,
+    /// Upper end of Z, mm.
+    top: f64,
+    /// Where the part origin stands, mm along Z.
+    part: f64,
+    /// Tip and tool axis in the part frame, from joints X Y Z, tilting axis, C (radians) and the length in force.
+    law: fn(Vector3<f64>, f64, f64, f64) -> (Vector3<f64>, Vector3<f64>),
+}
+
+fn table(
+    joints: Vector3<f64>,
+    offset: Vector3<f64>,
+    tilt: Rotation3<f64>,
+    c: f64,
+    length: f64,
+) -> (Vector3<f64>, Vector3<f64>) {
+    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), -c);
+    let carriage = joints - Vector3::z() * length;
+    (
+        turn * (offset + tilt * (carriage - offset)),
+        turn * tilt * Vector3::z(),
+    )
+}
+
+const MACHINES: [Machine; 3] = [
+    Machine {
+        file: "xyzac-trt",
+        name: "xyzac-trt",
+        tilting: 'A',
+        top: 120.0,
+        part: 0.0,
+        law: |joints, a, c, length| {
+            let tilt = Rotation3::from_axis_angle(&Vector3::x_axis(), -a);
+            table(joints, Vector3::new(0.0, 20.0, 10.0), tilt, c, length)
+        },
+    },
+    Machine {
+        file: "xyzbc-trt",
+        name: "xyzbc-trt",
+        tilting: 'B',
+        top: 120.0,
+        part: 0.0,
+        law: |joints, b, c, length| {
+            let tilt = Rotation3::from_axis_angle(&Vector3::y_axis(), -b);
+            table(joints, Vector3::new(-20.0, 0.0, -15.0), tilt, c, length)
+        },
+    },
+    Machine {
+        file: "linuxcnc-5axis",
+        name: "5axis",
+        tilting: 'B',
+        top: 100.0,
+        part: -200.0,
+        law: |joints, b, c, length| {
+            let pivot = 250.0;
+            let axis = Rotation3::from_axis_angle(&Vector3::z_axis(), c)
+                * Rotation3::from_axis_angle(&Vector3::y_axis(), -b)
+                * Vector3::z();
+            let tip = joints + Vector3::z() * pivot - axis * (pivot + length);
+            (tip, axis)
+        },
+    },
+];
+
+/// Where the joints stand at one millisecond.
+#[derive(Clone, Copy)]
+struct Row {
+    linear: Vector3<f64>,
+    /// The tilting axis and C, degrees.
+    rotary: [f64; 2],
+    feed: bool,
+    length: f64,
+}
+
+/// Runs a program; none where LinuxCNC is not.
+fn joints(machine: &Machine, program: &Path, tcp_on: bool) -> Option<Vec<Row>> {
+    let folder = program.parent().unwrap();
+    let recorded = folder.join("joints.csv");
+    let tilting = machine.tilting;
+    let mut linuxcnc = Command::new(shared("linuxcnc/run")?);
+    linuxcnc.arg(program).args(["--machine", machine.name]);
+    linuxcnc.args(["--tool", "1=40,10", "--tool", "2=25,10"]);
+    linuxcnc.args(["--start", &format!("Z=-5,{tilting}=-30,C=90")]);
+    linuxcnc.args(["--before", &format!("G10 L2 P1 X0 Y0 Z{}", machine.part)]);
+    for axis in ['X', 'Y', 'Z'] {
+        linuxcnc.args(["--max-feed", &format!("{axis}={LINEAR}")]);
+    }
+    for axis in [tilting, 'C'] {
+        linuxcnc.args(["--max-feed", &format!("{axis}={ROTARY}")]);
+    }
+    if tcp_on {
+        linuxcnc.args([
+            "--before",
+            "T1 M6",
+            "--before",
+            "G43 H1",
+            "--tcp-on-at-start",
+        ]);
+    }
+    linuxcnc.arg("-o").arg(&recorded);
+    let done = linuxcnc.output().unwrap();
+    let said = String::from_utf8_lossy(&done.stderr);
+    if done.status.code() == Some(3) {
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "LinuxCNC is missing: {said}"
+        );
+        eprintln!("skipped: {said}");
+        return None;
+    }
+    assert!(
+        done.status.success(),
+        "{} does not run to its end on {}: {said}",
+        program.display(),
+        machine.name
+    );
+    let text = fs::read_to_string(&recorded).unwrap();
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|known| *known == name).unwrap();
+    let places = ["X", "Y", "Z"].map(column);
+    let turning = [column(&tilting.to_string()), column("C")];
+    let (motion, length) = (column("motion"), column("tool_z"));
+    let rows = lines.map(|line| {
+        let fields: Vec<&str> = line.split(',').collect();
+        let number = |place: usize| fields[place].parse::<f64>().unwrap();
+        Row {
+            linear: Vector3::from(places.map(number)),
+            rotary: turning.map(number),
+            feed: fields[motion] == "feed",
+            length: number(length),
+        }
+    });
+    Some(rows.collect())
+}
+
+/// The points of the rapids of a CL file, by the tool that is in use; each path begins where a cut ends.
+fn rapid_paths(text: &str) -> Vec<Vec<[Vector3<f64>; 2]>> {
+    let mut paths: Vec<Vec<[Vector3<f64>; 2]>> = vec![Vec::new()];
+    let mut last = None;
+    let mut rapid = false;
+    for line in text.lines() {
+        if line.starts_with("LOADTL") {
+            paths.push(Vec::new());
+            last = None;
+        } else if line.starts_with("RAPID") {
+            rapid = true;
+        } else if let Some(numbers) = line.strip_prefix("GOTO/") {
+            let numbers: Vec<f64> = numbers
+                .split(',')
+                .map(|it| it.trim().parse().unwrap())
+                .collect();
+            let tip = Vector3::new(numbers[0], numbers[1], numbers[2]);
+            if std::mem::take(&mut rapid) {
+                paths.last_mut().unwrap().push([last.unwrap_or(tip), tip]);
+            }
+            last = Some(tip);
+        }
+    }
+    paths
+}
+
+/// How far a point is off a straight piece.
+fn off(point: &Vector3<f64>, [from, to]: &[Vector3<f64>; 2]) -> f64 {
+    let way = to - from;
+    let share = match way.norm_squared() {
+        0.0 => 0.0,
+        square => ((point - from).dot(&way) / square).clamp(0.0, 1.0),
+    };
+    (point - from - way * share).norm()
+}
+
+/// Judges one run; says what is wrong.
+fn judge(machine: &Machine, rows: &[Row]) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let paths = rapid_paths(TWO_TOOLS);
+    let at_top = |row: &Row| (row.linear.z - machine.top).abs() < 2.0 * SAME;
+    let beside = |row: &Row, other: &Row| {
+        (row.linear.xy() - other.linear.xy()).norm() < SAME && turned(row, other) < SAME
+    };
+    // Between the cuts.
+    let mut start = 0;
+    while start < rows.len() {
+        let feed = rows[start].feed;
+        let end = (start..rows.len())
+            .find(|at| rows[*at].feed != feed)
+            .unwrap_or(rows.len());
+        let segment = &rows[start..end];
+        // At a stop it stands where the cut has ended.
+        let cut_end = start.checked_sub(1).map(|at| rows[at]);
+        start = end;
+        if feed {
+            continue;
+        }
+        // Turning points at the top, under which the tool may go up and down.
+        let mut tops: Vec<&Row> = Vec::new();
+        for row in segment.iter().filter(|row| at_top(row)) {
+            if tops.last().is_none_or(|last| !beside(row, last)) {
+                tops.push(row);
+            }
+        }
+        // A head that leans leaves along the tool axis, from the end of the rapid.
+        for row in segment {
+            let [tilt, c] = row.rotary.map(f64::to_radians);
+            let stands = |row: &Row| {
+                // The tool is there also while its length is not in force.
+                let lengths = if row.length == 0.0 {
+                    &TOOLS[..]
+                } else {
+                    std::slice::from_ref(&row.length)
+                };
+                lengths
+                    .iter()
+                    .map(|length| (machine.law)(row.linear, tilt, c, *length))
+                    .map(|(tip, axis)| (tip - Vector3::z() * machine.part, axis))
+                    .collect::<Vec<_>>()
+            };
+            let on_way = stands(row).iter().any(|(tip, axis)| {
+                paths.iter().flatten().any(|piece| {
+                    off(tip, piece) < RAPID_TOLERANCE
+                        || off(tip, &[piece[1], piece[1] + axis * 101.0]) < RAPID_TOLERANCE
+                })
+            });
+            let stays = cut_end
+                .is_some_and(|cut| beside(row, &cut) && (row.linear.z - cut.linear.z).abs() < SAME);
+            let on_retract = stays || at_top(row) || tops.iter().any(|top| beside(row, top));
+            if !on_way && !on_retract {
+                wrong.push(format!(
+                    "between the cuts at X {:.3} Y {:.3} Z {:.3} {:.3}° C {:.3}°",
+                    row.linear.x, row.linear.y, row.linear.z, row.rotary[0], row.rotary[1]
+                ));
+                break;
+            }
+        }
+    }
+    // From one millisecond to the next.
+    for pair in rows.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let way = (to.linear - from.linear).amax();
+        let turn = turned(&from, &to);
+        let (way_a_minute, turn_a_minute) = (way * 60_000.0, turn * 60_000.0);
+        // In feed no joint passes its largest; elsewhere nothing jumps.
+        let allowed = if from.feed && to.feed { 1.01 } else { 4.0 };
+        if way_a_minute > LINEAR * allowed || turn_a_minute > ROTARY * allowed {
+            wrong.push(format!(
+                "{way_a_minute:.0} mm/min, {turn_a_minute:.0}°/min {} at X {:.3} Y {:.3} Z {:.3}",
+                if to.feed {
+                    "in feed"
+                } else {
+                    "between the cuts"
+                },
+                to.linear.x,
+                to.linear.y,
+                to.linear.z
+            ));
+            break;
+        }
+    }
+    wrong
+}
+
+fn turned(from: &Row, to: &Row) -> f64 {
+    let axes = from.rotary.iter().zip(&to.rotary);
+    axes.map(|(from, to)| (to - from).abs()).fold(0.0, f64::max)
+}
+
+fn two_tools_on(machine: &Machine) {
+    if shared("linuxcnc/run").is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("fast.toml");
+    let mut text = format!(
+        "extends = \"{}\"\n[control.linuxcnc]\ntcp_off = \"M429\"\n",
+        machine.file
+    );
+    text += &format!(
+        "[workpiece]\nmount = [0, 0, {}]\n[tools]\n1 = {}\n2 = {}\n",
+        machine.part, TOOLS[0], TOOLS[1]
+    );
+    for axis in ['X', 'Y', 'Z'] {
+        text += &format!("[axis.{axis}]\nmax_feed = {LINEAR}\n");
+    }
+    for axis in [machine.tilting, 'C'] {
+        text += &format!("[axis.{axis}]\nmax_feed = {ROTARY}\n");
+    }
+    fs::write(&file, text).unwrap();
+    fs::write(folder.path().join("two.cls"), TWO_TOOLS).unwrap();
+    for tcp in ["control", "post"] {
+        let done = run(
+            command().current_dir(folder.path()).args([
+                "-m",
+                "fast.toml",
+                "--tcp",
+                tcp,
+                "two.cls",
+                "-o",
+                "two.ngc",
+            ]),
+            b"",
+        );
+        assert_eq!(done.code, 0, "{}", done.err);
+        for tcp_on in [false, true] {
+            let Some(rows) = joints(machine, &folder.path().join("two.ngc"), tcp_on) else {
+                return;
+            };
+            assert!(
+                rows.iter().filter(|row| row.feed).count() > 500,
+                "it hardly cuts"
+            );
+            let wrong = judge(machine, &rows);
+            let start = if tcp_on {
+                "TCP still on"
+            } else {
+                "a cold start"
+            };
+            assert!(
+                wrong.is_empty(),
+                "{}, tcp = {tcp}, from {start}: {wrong:#?}",
+                machine.file
+            );
+        }
+    }
+}
+
+#[test]
+fn two_tools_on_a_table_that_tilts_about_x() {
+    two_tools_on(&MACHINES[0]);
+}
+
+#[test]
+fn two_tools_on_a_table_that_tilts_about_y() {
+    two_tools_on(&MACHINES[1]);
+}
+
+#[test]
+fn two_tools_on_a_fork_head() {
+    two_tools_on(&MACHINES[2]);
+}

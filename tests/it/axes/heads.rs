@@ -53,7 +53,7 @@ fn a_head_is_swapped_between_retract_and_next_position() {
         let place = lines.iter().position(|line| *line == swap).unwrap();
         let before = lines[..place]
             .iter()
-            .rposition(|line| line.contains("G28 Z0."))
+            .rposition(|line| line.starts_with("G53 G0 Z"))
             .unwrap();
         let between = &lines[before + 1..place];
         assert!(
@@ -84,8 +84,8 @@ fn a_head_without_a_word_stops_the_program() {
         lines[..told]
             .iter()
             .rev()
-            .take(3)
-            .any(|line| *line == "G91 G28 Z0.")
+            .take(4)
+            .any(|line| line.starts_with("G53 G0 Z"))
     );
 }
 

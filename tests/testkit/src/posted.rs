@@ -76,9 +76,6 @@ impl DialectSession for Recorder {
                 Event::Position {
                     words, tool, feed, ..
                 } => (words, tool, feed, 0.0),
-                Event::Turn { words }
-                | Event::Retract { words, .. }
-                | Event::Park { words, .. } => (words, None, None, 0.0),
                 Event::Rapid { words, tool } => (words, tool, None, 0.0),
                 Event::Linear { words, tool, feed } => (words, tool, Some(feed), 0.0),
                 Event::Dwell { seconds } => (&[][..], None, None, seconds),
@@ -218,7 +215,11 @@ pub fn watched(
     observers: &mut [&mut dyn Observer],
 ) -> Run {
     let mut output = Nowhere;
-    let mut post = Post::new(machine, job, &mut dialect, model, &mut output)
+    // The path is what is looked at here, as it is: no retract behind it, and none that a machine which leans any way
+    // could not make.
+    let mut machine = machine.clone();
+    machine.frame.retract.clear();
+    let mut post = Post::new(&machine, job, &mut dialect, model, &mut output)
         .expect("machine and dialect agree");
     for observer in observers {
         post.watch(*observer);

@@ -33,7 +33,8 @@ pub fn load(
     for head in heads {
         let mut layered = table.clone();
         overlay(layered.get_mut(), head.overrides);
-        let other = read(layered, &sources)?;
+        let mut other = read(layered, &sources)?;
+        other.keep_frame_of(&machine);
         if !other
             .axes
             .iter()

@@ -22,6 +22,17 @@ pub struct Frame {
 }
 
 impl Machine {
+    /// A head is retracted and parked by the axes of the machine that carries it, as far as they go with it.
+    pub(super) fn keep_frame_of(&mut self, carrier: &Machine) {
+        self.frame = carrier.frame.clone();
+        for (place, value) in &mut self.frame.retract {
+            let axis = self.axes.get(*place);
+            if let Some([least, most]) = axis.and_then(|axis| axis.travel) {
+                *value = value.clamp(least, most);
+            }
+        }
+    }
+
     /// The end of travel of each depth axis on the side of the holder: there the tool is as far from the part as these
     /// axes bring it.
     fn depth_ends(&self) -> Vec<(usize, f64)> {

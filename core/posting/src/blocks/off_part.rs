@@ -17,8 +17,11 @@ const LEANS: f64 = 1e-3;
 /// An axis that is as near to a position stands there, mm.
 const STANDS: f64 = 1e-3;
 
-/// Cosine of the largest angle between a way that leads the tool away from the part and its axis.
+/// Cosine of the largest angle between the axis of a tool in the part and a way that leads it away.
 const AWAY: f64 = 1e-3;
+
+/// A way across the tool axis is one but for so much.
+const SIDEWAYS: f64 = 1e-6;
 
 /// How far a tool that leans is drawn back where the machine has no `[rewind]`, mm: the first that travel allows.
 const LEAVE: [f64; 5] = [100.0, 50.0, 25.0, 12.0, 6.0];
@@ -41,6 +44,9 @@ impl Blocks<'_> {
         last: Box<Node>,
         to: &mut Surroundings<'_, '_>,
     ) -> Box<Node> {
+        if self.machine.frame.retract.is_empty() {
+            return last;
+        }
         let leaning = angle(self.in_machine(placer, &last), self.machine.tool_axis) > LEANS;
         let last = match leaning {
             true => self.draw_back(placer, line, last, to),
@@ -144,13 +150,15 @@ impl Blocks<'_> {
         }
     }
 
-    /// Moving a joint that way brings the tool away from the part, towards its holder.
+    /// Moving a joint that way brings the tool away from the part, towards its holder; sideways is enough for one that
+    /// has left the part.
     fn leads_away(&self, placer: &Placer, joints: &Joints, joint: usize, way: f64) -> bool {
         let chain = placer.solver().chain();
         let mut further = *joints;
         further[joint] += libm::copysign(1.0, way);
         let (from, to) = (chain.forward(joints), chain.forward(&further));
-        (to.tip - from.tip).dot(&from.axis) > AWAY
+        let least = if self.on_part { AWAY } else { -SIDEWAYS };
+        (to.tip - from.tip).dot(&from.axis) > least
     }
 
     /// Draws the tool back along its axis, turns it to `joints`, and brings it back.

@@ -15,6 +15,8 @@ mod new;
 mod plugins;
 mod real_files;
 mod schema;
+#[cfg(unix)]
+mod signals;
 mod snapshots;
 mod study;
 

@@ -3,6 +3,9 @@
 mod curves;
 mod cycles;
 mod feeds;
+mod moves;
+mod readiness;
+mod reading;
 mod tools;
 
 use nalgebra::Vector3;
@@ -11,32 +14,13 @@ use post_grammar::{
 };
 use post_plugin::{Coolant, SpindleSense};
 
+pub use reading::Reading;
+
 use super::frame::Frame;
 use super::word_census::{Unknown, WordCensus};
-use super::{Command, DrillCycle, Motion, Pace, PlaneStep, Step};
-use post_machine::description::{Insert, ToolLength};
+use super::{Command, DrillCycle, Pace, PlaneStep, Step};
+use post_machine::description::Insert;
 use post_machine::diagnostic::{Diagnostic, Place};
-
-/// How a file is to be read.
-#[derive(Clone, Debug, Default)]
-pub struct Reading {
-    /// The file's name in messages.
-    pub file: String,
-    /// Units of the numbers, whatever the file says.
-    pub units: Option<Units>,
-    /// The tool that a file without `LOADTL` works with.
-    pub tool: Option<u32>,
-    /// Take points and axes into the frame of `MSYS`.
-    pub apply_msys: bool,
-    /// What to do with unknown words.
-    pub unknown: Unknown,
-    /// What becomes of `INSERT`.
-    pub insert: Insert,
-    /// Which tool length counts.
-    pub tool_length: ToolLength,
-    /// How far chords may stray from arcs and splines, mm.
-    pub chord_tolerance: f64,
-}
 
 /// Turns records into steps.
 #[derive(Debug)]
@@ -477,166 +461,6 @@ impl Interpreter {
                     emit(Step::Command(Command::Comment(record.text().into_owned())));
                 }
             }
-        }
-    }
-
-    /// A `GOTO` that neither ends a curve nor stands in a cycle: nearly all of a file.
-    #[inline]
-    fn plain_goto(
-        &mut self,
-        record: &Record<'_>,
-        point: [f64; 3],
-        axis: Option<[f64; 3]>,
-        emit: &mut impl FnMut(Step),
-    ) {
-        if !self.set_axis(record, axis) {
-            return;
-        }
-        if self.check_axis || self.loaded.is_none() || self.cutter_changed {
-            self.before_move(record, emit);
-        }
-        let tip = self.point(point);
-        if let Some(pace) = self.pace(record) {
-            self.arrive(tip);
-            emit(Step::Move(self.motion(tip, pace)));
-        }
-    }
-
-    fn goto(
-        &mut self,
-        record: &Record<'_>,
-        point: [f64; 3],
-        axis: Option<[f64; 3]>,
-        emit: &mut impl FnMut(Step),
-    ) {
-        let pending = match self.pending.take() {
-            Some(Pending::Arc(circle)) => Some(circle),
-            Some(spline) => {
-                self.pending = Some(spline);
-                self.end_spline(record, emit);
-                None
-            }
-            None => None,
-        };
-        if pending.is_none() && self.cycle.is_none() {
-            self.plain_goto(record, point, axis, emit);
-            return;
-        }
-        let start_axis = self.axis;
-        if !self.set_axis(record, axis) {
-            return;
-        }
-        self.before_move(record, emit);
-        let tip = self.point(point);
-        if let Some(circle) = pending {
-            self.arc(record, &circle, tip, start_axis, emit);
-        } else if let Some((drill, feed)) = self.cycle
-            && let Some(pace) = self.resolved(record, feed)
-        {
-            self.drill(drill, pace, tip, emit);
-        }
-    }
-
-    /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
-    /// cutter without a tool.
-    #[cold]
-    fn before_move(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
-        if std::mem::take(&mut self.check_axis)
-            && let (Some(turned), Some(told)) = (self.frame.turned(), self.told_axis)
-            && (turned * self.axis - told).norm() > 1e-3
-        {
-            self.fault(
-                record,
-                "rotabl",
-                "the index angles (ROTABL) do not turn the tool to the axis that TLAXIS names"
-                    .to_owned(),
-                "one of the two is wrong: check the operation's set-up in the CAM system",
-            );
-        }
-        if self.loaded.is_none() {
-            self.load_told(record, emit);
-        }
-        if self.cutter_changed && !self.told_cutter {
-            self.told_cutter = true;
-            self.warn(
-                record,
-                "cutter",
-                "another cutter was described (CUTTER, TLDATA), but no tool was loaded for it: this is cut with the tool before".to_owned(),
-            );
-        }
-    }
-
-    /// Takes the axis of a six-number point; false if it is none.
-    #[inline]
-    fn set_axis(&mut self, record: &Record<'_>, axis: Option<[f64; 3]>) -> bool {
-        let Some(axis) = axis else {
-            return true;
-        };
-        let axis = Vector3::from(axis);
-        let square = axis.norm_squared();
-        if square < 1e-12 {
-            self.fault(
-                record,
-                "axis",
-                "the tool axis is null".to_owned(),
-                "i, j, k are a direction, from the tip to the holder",
-            );
-            return false;
-        }
-        self.axis = axis * (1.0 / square.sqrt());
-        true
-    }
-
-    #[inline]
-    fn point(&self, point: [f64; 3]) -> Vector3<f64> {
-        Vector3::from(point) * self.scale
-    }
-
-    /// How fast the next move goes; a fault if nothing says so.
-    #[inline]
-    fn pace(&mut self, record: &Record<'_>) -> Option<Pace> {
-        if std::mem::take(&mut self.rapid) || self.rapid_feed {
-            return Some(Pace::Rapid);
-        }
-        let Some(feed) = self.feed else {
-            if self.tip.is_none() {
-                // The first approach of a file that names no feed yet comes from the tool change.
-                return Some(Pace::Rapid);
-            }
-            self.fault(
-                record,
-                "no-feed",
-                "this move has no feed: no FEDRAT before it, and no RAPID".to_owned(),
-                "the CAM system must write a FEDRAT",
-            );
-            return None;
-        };
-        self.resolved(record, feed)
-    }
-
-    /// The tool comes to stand at `tip`.
-    #[inline]
-    fn arrive(&mut self, tip: Vector3<f64>) {
-        self.tip = Some(tip);
-        self.measured = true;
-        self.cut_any = true;
-    }
-
-    /// The motion to `tip` (frame of the file) with axis and edge in force.
-    #[inline]
-    fn motion(&self, tip: Vector3<f64>, pace: Pace) -> Motion {
-        let (tip, axis) = self.frame.to_part(tip, self.axis);
-        let edge = if self.edge == Vector3::zeros() {
-            self.edge
-        } else {
-            self.frame.direction_to_part(self.edge)
-        };
-        Motion {
-            tip,
-            axis,
-            edge,
-            pace,
-            chord: 0.0,
         }
     }
 

@@ -23,7 +23,7 @@ pub struct DrillCycle {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Peck {
     step: f64,
-    /// Out of the hole after each (`DEEP`), or back by a little to break the chip (`BRKCHP`).
+    /// Out of the hole after each (`DEEP`), or back by a little to break the chip (`BRKCHP`, `CHIP`).
     full: bool,
 }
 
@@ -39,10 +39,13 @@ pub enum Leg {
 }
 
 /// Kinds that rapid, feed, dwell and feed or rapid back make.
-const KINDS: [&str; 12] = [
-    "DRILL", "DEEP", "BRKCHP", "BORE", "REAM", "FACE", "CSINK", "CBORE", "CDRILL", "SPOT", "THRU",
-    "PECKING",
+const KINDS: [&str; 15] = [
+    "DRILL", "DEEP", "DEEP2", "DEEPHL", "BRKCHP", "CHIP", "BORE", "REAM", "FACE", "CSINK", "CBORE",
+    "CDRILL", "SPOT", "THRU", "PECKING",
 ];
+
+/// Kinds that go in pecks.
+const PECKED: [&str; 5] = ["DEEP", "DEEP2", "DEEPHL", "BRKCHP", "CHIP"];
 
 /// Above the last depth a peck begins at feed, and a chip is broken by going back so far: mm.
 const GAP: f64 = 0.5;
@@ -93,7 +96,7 @@ impl DrillCycle {
             .filter(|step| *step > 0.0)
             .map(|step| Peck {
                 step: step * scale,
-                full: !is("BRKCHP"),
+                full: !is("BRKCHP") && !is("CHIP"),
             });
         if let Some(peck) = peck
             && (clearance - bottom) / peck.step > MOST_PECKS
@@ -124,7 +127,7 @@ impl DrillCycle {
             && cycle
                 .kinds
                 .iter()
-                .any(|kind| kind == "DEEP" || kind == "BRKCHP");
+                .any(|kind| PECKED.contains(&kind.as_str()));
         let pecks = pecks.then(|| "the pecks, since there is no STEP".to_owned());
         pecks
             .into_iter()

@@ -4,12 +4,14 @@ mod accuracy;
 mod axes;
 mod build;
 mod choice;
+mod cl_words;
 mod file;
 mod layers;
 mod numbers;
 mod options;
 mod schema;
 mod setting;
+mod spindle;
 
 use std::f64::consts::TAU;
 
@@ -18,6 +20,7 @@ use nalgebra::Vector3;
 pub use accuracy::{Accuracy, ControlPoint};
 pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
+pub use cl_words::WordRule;
 pub use file::{
     EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement, Pole, Side, Tcp,
     ToolLength,
@@ -25,6 +28,7 @@ pub use file::{
 pub use layers::Source;
 pub use schema::schema;
 pub use setting::Setting;
+pub use spindle::SpindleSpeeds;
 
 use crate::diagnostic::Place;
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
@@ -51,6 +55,10 @@ pub struct Machine {
     pub tools: Vec<(u32, f64)>,
     /// Its control.
     pub control: Control,
+    /// How fast its spindle turns.
+    pub spindle: SpindleSpeeds,
+    /// Lines of the program for words of the CL file.
+    pub word_rules: Vec<WordRule>,
     /// What it must keep.
     pub accuracy: Accuracy,
     /// Which of several solutions is taken.

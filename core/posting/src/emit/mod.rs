@@ -11,7 +11,7 @@ use post_plugin::{Capabilities, Coolant, DialectSession, Event, Spindle, ToolPos
 use crate::blocks::{Block, MotionKind};
 use crate::findings::Findings;
 use crate::observer::Output;
-use crate::program::{Command, Pace, Tool};
+use crate::program::{Command, Tool};
 use crate::stream::Flow;
 pub(crate) use extremes::Extremes;
 use writer::Writer;
@@ -37,8 +37,6 @@ pub(crate) struct Emit<'a> {
     coolant: Option<Coolant>,
     /// Coolant was switched off in between.
     coolant_due: bool,
-    /// Set once the warning that no spindle turns was given.
-    told_spindle: bool,
 }
 
 impl<'a> Emit<'a> {
@@ -61,7 +59,6 @@ impl<'a> Emit<'a> {
             commanded: None,
             coolant: None,
             coolant_due: false,
-            told_spindle: false,
         }
     }
 
@@ -102,7 +99,6 @@ impl<'a> Emit<'a> {
 
     #[inline]
     fn block(&mut self, block: &Block, findings: &Findings) {
-        self.check_spindle(block, findings);
         let line = block.line;
         match block.kind {
             MotionKind::Position => self.position(block, findings),
@@ -225,24 +221,6 @@ impl<'a> Emit<'a> {
                 self.writer.push(line, Event::Stop);
             }
         }
-    }
-
-    /// A tool that cuts must turn, but for a knife.
-    #[inline]
-    fn check_spindle(&mut self, block: &Block, findings: &Findings) {
-        let cuts = block.pace != Pace::Rapid;
-        if !cuts || self.turning || self.told_spindle || self.machine.edge.is_some() {
-            return;
-        }
-        self.told_spindle = true;
-        findings.at(
-            block.line,
-            Diagnostic::warning(
-                "spindle",
-                "the tool cuts, and the spindle was not switched on",
-            )
-            .help("the CAM system should write SPINDL before this line"),
-        );
     }
 
     /// The first position after the start or a tool change.

@@ -19,7 +19,7 @@ impl Interpreter {
         if !self.set_axis(record, axis) {
             return;
         }
-        if self.check_axis || self.loaded.is_none() || self.cutter_changed {
+        if self.due {
             self.before_move(record, emit);
         }
         let tip = self.point(point);
@@ -45,6 +45,10 @@ impl Interpreter {
             }
             None => None,
         };
+        if self.cycle_lost {
+            self.lost_hole(record, point, axis);
+            return;
+        }
         if pending.is_none() && self.cycle.is_none() {
             self.plain_goto(record, point, axis, emit);
             return;
@@ -96,16 +100,16 @@ impl Interpreter {
         if std::mem::take(&mut self.rapid) || self.rapid_feed {
             return Some(Pace::Rapid);
         }
-        let Some(feed) = self.feed else {
-            if self.tip.is_none() {
-                // The first approach of a file that names no feed yet comes from the tool change.
-                return Some(Pace::Rapid);
-            }
+        if self.feed.is_none() && self.tip.is_none() {
+            // The first approach of a file that names no feed yet comes from the tool change.
+            return Some(Pace::Rapid);
+        }
+        let Some(feed) = self.feed.or_else(|| self.told_feed()) else {
             self.fault(
                 record,
                 "no-feed",
                 "this move has no feed: no FEDRAT before it, and no RAPID".to_owned(),
-                "the CAM system must write a FEDRAT",
+                "the CAM system must write a FEDRAT; --feed MM_A_MINUTE is for cuts without one",
             );
             return None;
         };

@@ -1,13 +1,14 @@
-//! What must be in order before the tool moves: axis, tool, cutter.
+//! What must be in order before the tool moves and before it cuts: axis, tool, cutter, spindle.
 
 use post_grammar::Record;
+use post_plugin::Spindle;
 
-use super::Interpreter;
-use crate::program::Step;
+use super::{Interpreter, ToldSpindle};
+use crate::program::{Command, Step};
 
 impl Interpreter {
     /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
-    /// cutter without a tool.
+    /// cutter without a tool, the speed that the user names.
     #[cold]
     pub(super) fn before_move(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
         if std::mem::take(&mut self.check_axis)
@@ -22,16 +23,62 @@ impl Interpreter {
                 "one of the two is wrong: check the operation's set-up in the CAM system",
             );
         }
-        if self.loaded.is_none() {
-            self.load_told(record, emit);
+        self.load_told(record, emit);
+        if std::mem::take(&mut self.cutter_changed) {
+            self.refuse_cutter(record);
         }
-        if self.cutter_changed && !self.told_cutter {
-            self.told_cutter = true;
-            self.warn(
-                record,
-                "cutter",
-                "another cutter was described (CUTTER, TLDATA), but no tool was loaded for it: this is cut with the tool before".to_owned(),
-            );
+        if let (false, Some(rpm)) = (self.spindle_said, self.reading.spindle.speed()) {
+            self.spindle_said = true;
+            self.may_cut = true;
+            self.rpm = Some(rpm);
+            emit(Step::Command(Command::Spindle(Spindle::On {
+                rpm,
+                sense: self.sense,
+            })));
         }
+        self.due = false;
+    }
+
+    /// Another cutter was described, and no tool was loaded for it.
+    fn refuse_cutter(&mut self, record: &Record<'_>) {
+        if self.reading.allows("CUTTER") {
+            self.allow("CUTTER", "is cut with the tool before", record);
+            return;
+        }
+        let (message, help) = match self.loaded {
+            Some((number, ..)) if self.file_loads => (
+                format!("another cutter is described (CUTTER, TLDATA) and no tool is loaded for it: this would be cut with tool {number}"),
+                "the CAM system must load it (LOADTL); --allow CUTTER cuts on with the tool before",
+            ),
+            _ => (
+                "another cutter is described (CUTTER, TLDATA), and the file loads no tools: all would be cut with one".to_owned(),
+                "--tool-from-cutter numbers tools in the order of their cutters; --allow CUTTER cuts all with one",
+            ),
+        };
+        self.fault(record, "cutter", message, help);
+    }
+
+    /// The tool cuts though the spindle stands: the file switched it off, or never on.
+    #[cold]
+    pub(super) fn cut_standing(&mut self, record: &Record<'_>) {
+        // Said once, until the spindle is spoken of again.
+        self.may_cut = true;
+        let (message, help) = if self.spindle_said {
+            (
+                "the tool cuts, and the file has switched the spindle off",
+                "the CAM system should write SPINDL before this line; --spindle off cuts with a spindle that stands",
+            )
+        } else {
+            (
+                "the tool cuts, and the spindle was not switched on",
+                "the CAM system should write SPINDL before this line; --spindle RPM switches it on at each tool for which the file does not, --spindle off lets it stand",
+            )
+        };
+        self.fault(record, "spindle", message.to_owned(), help);
+    }
+
+    /// The tool cuts without turning: a knife, or as the user says.
+    pub(super) fn need_not_turn(&self) -> bool {
+        self.reading.knife || self.reading.spindle == ToldSpindle::Still
     }
 }

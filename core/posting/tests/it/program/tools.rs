@@ -96,19 +96,24 @@ fn the_register_of_compensation_does_not_outlive_its_tool() {
 
 /// Another cutter described and none loaded: the path of a small tool is cut with a large one.
 #[test]
-fn a_second_cutter_without_a_tool_change_is_told_once() {
+fn a_second_cutter_without_a_tool_change_is_refused() {
     for (text, findings) in [
         (
             "CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/6;GOTO/2,0,0",
-            "warning cutter",
+            "error cutter",
         ),
         (
             "CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/6;GOTO/2,0,0;GOTO/3,0,0;CUTTER/4;GOTO/4,0,0",
-            "warning cutter",
+            "error cutter; error cutter",
+        ),
+        // The same diameter, and a ball.
+        (
+            "CUTTER/10,0;GOTO/1,0,0;CUTTER/10,5;GOTO/2,0,0",
+            "error cutter",
         ),
         (
             "CUTTER/10;GOTO/1,0,0;TLDATA/MILL,6,0;GOTO/2,0,0",
-            "warning cutter",
+            "error cutter",
         ),
         ("CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/10;GOTO/2,0,0", ""),
         (

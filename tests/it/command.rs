@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 
-use common::{Run, check_numbers, command, post, read_json, root, run};
+use common::{Run, check_numbers, command, names, post, read_json, root, run};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -22,15 +22,6 @@ fn with_file(name: &str, text: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(name), text).unwrap();
     folder
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 /// Runs in a folder that has no machine files of its own.

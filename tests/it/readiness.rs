@@ -84,6 +84,26 @@ fn several_cutters_are_several_tools() {
         0,
         &["CUTTER, met 3 times, is cut with the tool before"],
     );
+    // The same number for two cutters is a slip of the CAM system, most likely.
+    let twice =
+        format!("{HEAD}CUTTER/10\nLOADTL/1\nSPINDL/3000,CLW\n{CUT}CUTTER/6\nLOADTL/1\n{CUT}{TAIL}");
+    told(
+        &on_vmc(&[], &twice),
+        1,
+        &[
+            "error[cutter]",
+            "input:12",
+            "tool 1 is still in the spindle",
+        ],
+    );
+    told(
+        &on_vmc(
+            &[],
+            &twice.replace("CUTTER/6\nLOADTL/1", "CUTTER/6\nLOADTL/2"),
+        ),
+        0,
+        &[],
+    );
     // A file that loads its tools numbers them itself.
     let loads = text.replace("CUTTER/4\n", "CUTTER/4\nLOADTL/7\n");
     told(

@@ -1,8 +1,7 @@
 //! A command that is interrupted leaves nothing behind.
 
-use crate::common::command;
+use crate::common::{command, names};
 
-use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -10,15 +9,6 @@ use std::time::{Duration, Instant};
 
 /// What a CL file begins with; more of it never comes.
 const BEGUN: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,0,50\n";
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
-}
 
 /// Waits until `done`, or fails.
 #[track_caller]

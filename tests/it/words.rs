@@ -106,6 +106,24 @@ fn words_that_a_program_can_do_without_are_left_out_with_a_warning() {
     }
 }
 
+/// All that nobody knows is refused, but for one word.
+#[test]
+fn a_word_that_nobody_knows_can_be_allowed_too() {
+    let text = file("FROBN/1");
+    let strict = ["--unknown", "error"];
+    told(
+        &posted(&strict, &text),
+        1,
+        &["error[unknown-word]", "FROBN", "--allow"],
+    );
+    let allowed = posted(&[&strict[..], &["--allow", "frobn"]].concat(), &text);
+    told(
+        &allowed,
+        0,
+        &["FROBN, met once, is left out, as --allow says"],
+    );
+}
+
 #[test]
 fn a_rule_of_the_machine_file_writes_the_line() {
     let machine = r#"
@@ -159,6 +177,7 @@ fn a_rule_that_says_nothing_is_refused_with_its_line() {
         ("AUXFUN = \"\"", "a line of the program is empty"),
         ("AUXFUN = \"M1\\nM2\"", "several lines are a list"),
         ("AUXFUN = []", "a rule without a line"),
+        ("AUXFUN = 8", "a line of the program or a list of lines"),
         ("INSERT = \"M{n}\"", "INSERT has a meaning to post"),
         ("GOTO = \"X{n}\"", "GOTO has a meaning to post"),
         ("\"\" = \"M{n}\"", "which is no word"),

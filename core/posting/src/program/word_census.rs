@@ -97,7 +97,7 @@ impl WordCensus {
                 let message = format!("{word} {what}: met {}", times(count.count));
                 let finding = match policy {
                     Unknown::Error => Diagnostic::error("unknown-word", message).help(
-                        "--unknown=warn leaves it out, --unknown=pass writes it as a comment",
+                        "--allow leaves it out, --unknown=warn all of its kind, --unknown=pass writes them as comments",
                     ),
                     Unknown::Warn => {
                         Diagnostic::warning("unknown-word", format!("{message}; left out"))

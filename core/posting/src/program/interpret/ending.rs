@@ -8,7 +8,7 @@ use super::Interpreter;
 impl Interpreter {
     /// What is wrong with the end of a file whose last record is `last`; `line_end` says whether a line end stands behind
     /// it. The finding has no place yet.
-    pub(crate) fn cut_off(&mut self, last: &str, line_end: bool) -> Option<Diagnostic> {
+    pub(crate) fn cut_off(&self, last: &str, line_end: bool) -> Option<Diagnostic> {
         if self.finished {
             return None;
         }

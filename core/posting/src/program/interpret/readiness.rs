@@ -47,8 +47,8 @@ impl Interpreter {
         }
         let (message, help) = match self.loaded {
             Some((number, ..)) if self.file_loads => (
-                format!("another cutter is described (CUTTER, TLDATA) and no tool is loaded for it: this would be cut with tool {number}"),
-                "the CAM system must load it (LOADTL); --allow CUTTER cuts on with the tool before",
+                format!("another cutter is described (CUTTER, TLDATA), and tool {number} is still in the spindle: this would be cut with it"),
+                "the CAM system must load it as another tool (LOADTL); --allow CUTTER cuts on with the one before",
             ),
             _ => (
                 "another cutter is described (CUTTER, TLDATA), and the file loads no tools: all would be cut with one".to_owned(),

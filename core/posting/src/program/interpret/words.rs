@@ -21,11 +21,11 @@ impl Interpreter {
             return;
         }
         let usage = record.statement.usage();
+        if matches!(usage, Usage::Refused | Usage::Unknown) && self.reading.allows(word) {
+            self.allow(word, "is left out", record);
+            return;
+        }
         if usage == Usage::Refused {
-            if self.reading.allows(word) {
-                self.allow(word, "is left out", record);
-                return;
-            }
             self.fault(
                 record,
                 "refused-word",

@@ -389,7 +389,8 @@ fn cycles() {
             feed: feed(187.165839),
             dwell: Some(0.0),
             step: Some(5.0),
-            rest: vec![word("G98"), number(2.0), number(46.927686)],
+            later_step: Some(2.0),
+            rest: vec![word("G98"), number(46.927686)],
         }),
         &[
             "CYCLE/ DRILL,G98,12.373300,PECKING,5.000000,2.000000,MMPM,187.165839,3.000000,46.927686 46.927686 DWELL,0.000000 ",
@@ -423,6 +424,17 @@ fn cycles() {
             ..CycleDefinition::default()
         }),
         &["CYCLE/BORE,FEDTO,-5,RTRCTO,AUTO,DWELL,REV,2,DRAG"],
+    );
+    // The number behind an option is no clearance.
+    same(
+        define(CycleDefinition {
+            kinds: kinds(&["DEEP2"]),
+            depth: Some(5.0),
+            step: Some(1.0),
+            rest: vec![word("DECR"), number(0.2)],
+            ..CycleDefinition::default()
+        }),
+        &["CYCLE/DEEP2,FEDTO,5,STEP,1,DECR,0.2"],
     );
 }
 

@@ -30,7 +30,7 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
             // CAMWorks gives the first peck and those that follow.
             "STEP" | "PECKING" => {
                 cycle.step = Some(items.number(&name, FORM)?);
-                cycle.rest.extend(items.take_number().map(Argument::Number));
+                cycle.later_step = items.take_number();
             }
             "RTRCTO" | "RETURN" | "DWELL" => match (items.take_number(), name.as_ref()) {
                 (Some(value), "DWELL") => cycle.dwell = Some(value),

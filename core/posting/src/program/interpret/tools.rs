@@ -1,6 +1,8 @@
 //! Tools, cutters, spindle and radius compensation.
 
-use post_grammar::{Cutcom, LoadTool, Record, Sense, Side, Spindle as SpindleWord, SpindleUnit};
+use post_grammar::{
+    Argument, Cutcom, LoadTool, Record, Sense, Side, Spindle as SpindleWord, SpindleUnit,
+};
 use post_plugin::{Compensation, Spindle, SpindleSense};
 
 use super::{Described, Interpreter};
@@ -165,6 +167,18 @@ impl Interpreter {
                 "leave --tool-from-cutter out",
             );
             return;
+        }
+        if !tool.rest.is_empty() {
+            let rest: Vec<String> = tool
+                .rest
+                .iter()
+                .map(|argument| match argument {
+                    Argument::Number(number) => number.to_string(),
+                    Argument::Word(word) => word.clone(),
+                })
+                .collect();
+            let message = format!("of this tool change is left out: {}", rest.join(", "));
+            self.warn(record, "tool", message);
         }
         self.load(record, tool, emit);
     }

@@ -11,6 +11,13 @@ fn tools_and_registers() {
         ("LOAD/TOOL,0", "", "error tool"),
         ("LOADTL/3,ADJUST,0", "", "error tool"),
         ("LOADTL/3,OSETNO,0", "", "error tool"),
+        // CATIA writes a register behind the number, others pockets: nothing of it goes without a word.
+        ("LOADTL/3,5;GOTO/1,0,0", "T3/3; F100 1,0,0", "warning tool"),
+        (
+            "LOADTL/3,IN,4;GOTO/1,0,0",
+            "T3/3; F100 1,0,0",
+            "warning tool",
+        ),
         (
             "LOADTL/3;GOTO/1,0,0;LOADTL/3;GOTO/2,0,0;LOADTL/3,ADJUST,3",
             "T3/3; F100 1,0,0; F100 2,0,0",

@@ -15,6 +15,7 @@ use failure::Failure;
 use verbs::CommandLine;
 
 fn main() -> ExitCode {
+    files::delete_on_signals();
     let done = CommandLine::try_parse()
         .map_err(Failure::Usage)
         .and_then(CommandLine::run);

@@ -3,15 +3,17 @@
 //! A cutter-location file goes through [`Reader`], which splits it into logical lines in one reused buffer.
 //! The language is that of the pest grammar `line.pest`; a hand-written scanner gives the same for every usual line
 //! and leaves the others to pest, which reads them or says what is wrong.
-//! The structural code of a machine ([`parse_chain`]) and the expressions in its file ([`parse_expression`])
-//! have grammars of their own.
+//! The structural code of a machine ([`parse_chain`]), the expressions in its file ([`parse_expression`]) and the lines
+//! of a program that it has for words of the CL file ([`Template`]) have grammars of their own.
 
 mod chain;
 mod cl;
 mod expression;
 mod fault;
+mod template;
 
 pub use chain::{Link, LinkKind, parse_chain};
 pub use cl::*;
 pub use expression::{EvaluationFault, Expression, parse_expression};
 pub use fault::{ReadError, SyntaxFault};
+pub use template::{FillFault, Template};

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use clap::builder::{EnumValueParser, TypedValueParser};
 use post_grammar::Units;
 use post_machine::description::{OutputUnits, Setting, Tcp};
-use post_posting::program::Unknown;
+use post_posting::program::{ToldSpindle, Unknown};
 
 /// `--units`.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -87,6 +87,27 @@ impl From<UnknownWord> for Unknown {
 /// `NAME=VALUE`; what it means to the machine file is the loader's business.
 pub fn setting(text: &str) -> Result<Setting, Infallible> {
     Ok(Setting::Written(text.to_owned()))
+}
+
+/// A word of CL files, in capitals.
+pub fn cl_word(text: &str) -> Result<String, String> {
+    let sign = |byte: u8| byte.is_ascii_alphanumeric() || b"_-.".contains(&byte);
+    if text.starts_with(|first: char| first.is_ascii_alphabetic()) && text.bytes().all(sign) {
+        Ok(text.to_ascii_uppercase())
+    } else {
+        Err(format!("`{text}` is no word of a CL file"))
+    }
+}
+
+/// Revolutions a minute, or `off`.
+pub fn spindle(text: &str) -> Result<ToldSpindle, String> {
+    if text.eq_ignore_ascii_case("off") {
+        return Ok(ToldSpindle::Still);
+    }
+    match positive(text) {
+        Ok(rpm) => Ok(ToldSpindle::On(rpm)),
+        Err(message) => Err(format!("{message}; a speed or `off` is meant")),
+    }
 }
 
 /// `X,Y,Z`.

@@ -9,11 +9,12 @@ use std::path::PathBuf;
 use clap::Args;
 use post_grammar::Units;
 use post_machine::description::{Setting, Tcp};
-use post_posting::program::Unknown;
+use post_posting::program::{ToldSpindle, Unknown};
 
 use crate::files::PathArg;
 use flag_values::{
-    Msys, TcpWord, UnitsWord, UnknownWord, not_negative, point, positive, setting, word,
+    Msys, TcpWord, UnitsWord, UnknownWord, cl_word, not_negative, point, positive, setting,
+    spindle, word,
 };
 
 /// A CL file, how it is read, and the machine.
@@ -57,9 +58,28 @@ pub struct JobArguments {
     )]
     pub unknown: Unknown,
 
+    /// Takes upon yourself what a word would have done, and leaves it out: a word that changes where or whether metal
+    /// is cut (`OFSETL`), `INSERT` (codes become remarks), `CUTTER` (several cutters are one tool), `FINI` (the file
+    /// is whole). Repeatable.
+    #[arg(long, value_name = "WORD", value_parser = cl_word, help_heading = "Reading")]
+    pub allow: Vec<String>,
+
     /// Number of the tool, for a CL file that loads none.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Reading")]
     pub tool: Option<u32>,
+
+    /// Numbers tools from 1 in the order of their cutters, for a CL file that describes several and loads none.
+    #[arg(long, conflicts_with = "tool", help_heading = "Reading")]
+    pub tool_from_cutter: bool,
+
+    /// Speed that the spindle is switched on at for each tool for which the CL file does not; `off`: it stands, and
+    /// the tool cuts so.
+    #[arg(long, value_name = "RPM", value_parser = spindle, help_heading = "Reading")]
+    pub spindle: Option<ToldSpindle>,
+
+    /// Feed of the cuts for which the CL file gives none, mm/min.
+    #[arg(long, value_name = "MM_A_MINUTE", value_parser = positive, help_heading = "Reading")]
+    pub feed: Option<f64>,
 
     /// Where the part origin sits for this job, all axes at zero, machine frame, mm.
     #[arg(

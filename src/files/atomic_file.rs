@@ -5,8 +5,8 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use post_posting::Output;
-use tempfile::NamedTempFile;
 
+use super::temporary::Temporary;
 use super::{FileFault, PathArg};
 
 /// What a text becomes at the end.
@@ -47,9 +47,10 @@ impl Target {
     }
 }
 
-/// A text in the making. Dropped without [`AtomicFile::finish`], it leaves nothing behind.
+/// A text in the making. Dropped without [`AtomicFile::finish`], it leaves nothing behind, nor if the command is
+/// interrupted.
 pub struct AtomicFile {
-    file: BufWriter<NamedTempFile>,
+    file: BufWriter<Temporary>,
     target: Target,
     /// The target as the user named it.
     named: PathArg,
@@ -61,9 +62,9 @@ impl AtomicFile {
         let named = target.clone();
         let target = Target::of(&named);
         let file = match &target {
-            Target::File(path) => NamedTempFile::new_in(folder(path)),
+            Target::File(path) => Temporary::new_in(folder(path)),
             // Nothing may be seen before all is good, and memory must not grow: it waits in a file.
-            Target::Standard | Target::Stream(_) => NamedTempFile::new(),
+            Target::Standard | Target::Stream(_) => Temporary::new_in(&std::env::temp_dir()),
         };
         // The name of the temporary file would only puzzle.
         let file = file.map_err(|error| FileFault::write(&named, error.kind().into()))?;
@@ -104,15 +105,15 @@ impl Output for NullSink {
     }
 }
 
-fn place(file: BufWriter<NamedTempFile>, target: Target) -> io::Result<()> {
+fn place(file: BufWriter<Temporary>, target: Target) -> io::Result<()> {
     let mut file = file.into_inner().map_err(|fault| fault.into_error())?;
     match target {
         Target::Standard => copy(&mut file, &mut io::stdout().lock()),
         Target::Stream(path) => copy(&mut file, &mut OpenOptions::new().write(true).open(path)?),
         Target::File(path) => {
             readable(&file, &path)?;
-            file.as_file().sync_all()?;
-            file.persist(&path).map_err(|fault| fault.error.kind())?;
+            file.as_file()?.sync_all()?;
+            file.persist(&path)?;
             // The new name is safe once its folder is on the disk; not every system can open a folder.
             if let Ok(folder) = fs::File::open(folder(&path)) {
                 let _ = folder.sync_all();
@@ -122,9 +123,9 @@ fn place(file: BufWriter<NamedTempFile>, target: Target) -> io::Result<()> {
     }
 }
 
-fn copy(file: &mut NamedTempFile, to: &mut dyn Write) -> io::Result<()> {
-    file.as_file_mut().seek(SeekFrom::Start(0))?;
-    match io::copy(file.as_file_mut(), to).and_then(|_| to.flush()) {
+fn copy(file: &mut Temporary, to: &mut dyn Write) -> io::Result<()> {
+    file.seek(SeekFrom::Start(0))?;
+    match io::copy(file, to).and_then(|_| to.flush()) {
         // A reader that has seen enough is no fault.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         done => done,
@@ -133,15 +134,15 @@ fn copy(file: &mut NamedTempFile, to: &mut dyn Write) -> io::Result<()> {
 
 /// A temporary file is for its owner alone; the program gets the rights of the file it replaces, or the usual ones.
 #[cfg(unix)]
-fn readable(file: &NamedTempFile, target: &Path) -> io::Result<()> {
+fn readable(file: &Temporary, target: &Path) -> io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     let mode = fs::metadata(target).map_or(0o644, |metadata| metadata.permissions().mode());
-    file.as_file()
+    file.as_file()?
         .set_permissions(fs::Permissions::from_mode(mode))
 }
 
 #[cfg(not(unix))]
-fn readable(_: &NamedTempFile, _: &Path) -> io::Result<()> {
+fn readable(_: &Temporary, _: &Path) -> io::Result<()> {
     Ok(())
 }
 

@@ -5,6 +5,7 @@ mod cl_input;
 mod file_fault;
 mod path_arg;
 pub mod svg;
+mod temporary;
 
 use std::path::Path;
 
@@ -12,6 +13,7 @@ pub use atomic_file::{AtomicFile, NullSink};
 pub use cl_input::ClInput;
 pub use file_fault::FileFault;
 pub use path_arg::PathArg;
+pub use temporary::delete_on_signals;
 
 /// Writes a text whole, or not at all.
 pub fn write(target: &PathArg, text: &[u8]) -> Result<(), FileFault> {

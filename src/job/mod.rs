@@ -43,6 +43,10 @@ pub fn posting(arguments: &JobArguments, file: &str) -> Job {
             tool: arguments.tool,
             apply_msys: arguments.msys == Msys::Apply,
             unknown: arguments.unknown,
+            spindle: arguments.spindle.unwrap_or_default(),
+            feed: arguments.feed,
+            tool_from_cutter: arguments.tool_from_cutter,
+            allowed: arguments.allow.clone(),
             ..Reading::default()
         },
         tool_length: arguments.tool_length,
@@ -65,7 +69,10 @@ pub fn read(input: ClInput, post: &mut Post<'_>) -> Result<(), FileFault> {
     while !post.gave_up() {
         match reader.next_record() {
             Ok(Some(record)) => post.record(&record),
-            Ok(None) => break,
+            Ok(None) => {
+                post.ended(!reader.ends_within_a_line());
+                break;
+            }
             Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
             Err(ReadError::Io(error)) => {
                 return Err(FileFault::Read {

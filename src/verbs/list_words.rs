@@ -13,8 +13,9 @@ use crate::files::{ClInput, FileFault, PathArg};
 /// Prints every word of a CL file: how often, and what becomes of it; without a file every word that is known.
 ///
 /// used: it has its effect on the program; passed on: its text goes into the program; ignored: it says
-/// nothing to a machine; refused: it changes where the tool goes, and post does not know how; unknown:
-/// left out with a warning, unless --unknown says otherwise.
+/// nothing to a machine; refused: it changes where or whether metal is cut, and post does not know how: [cl.words] in
+/// the machine file gives its lines, --allow leaves it out; unknown: left out with a warning, unless --unknown says
+/// otherwise.
 #[derive(Debug, Args)]
 pub struct WordsArguments {
     /// The CL file, `-` for standard input.

@@ -43,7 +43,8 @@ use test_plugin::PluginArguments;
   post study part.cls --machine ac-trunnion
   post plugin test target/release/libpost_mine.so
 
-Exit codes: 0 the program is written; 1 refused, the messages say why; 2 the command line is wrong.",
+Exit codes: 0 the program is written; 1 refused, the messages say why; 2 the command line is wrong;
+130, 143 interrupted.",
     max_term_width = 100
 )]
 pub struct CommandLine {

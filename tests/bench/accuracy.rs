@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use post_grammar::Units;
 use post_host::{OpenedModel, Plugin};
 use post_posting::accuracy::{Linearise, Move, Node, Placer, Run, Tolerances};
-use post_posting::program::Reading;
+use post_posting::program::{Reading, ToldSpindle};
 use post_posting::{Job, Observer};
 
 const RUNS: usize = 3;
@@ -83,6 +83,8 @@ impl Case {
         Job {
             reading: Reading {
                 units: self.millimetres.then_some(Units::Millimetre),
+                // Not all of the files switch it on.
+                spindle: ToldSpindle::Still,
                 ..Reading::default()
             },
             tool_length: self.tool_length,

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 
-use common::{Run, check_numbers, command, post, read_json, root, run};
+use common::{Run, check_numbers, command, names, post, read_json, root, run};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -22,15 +22,6 @@ fn with_file(name: &str, text: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(name), text).unwrap();
     folder
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 /// Runs in a folder that has no machine files of its own.
@@ -96,7 +87,8 @@ fn a_program_on_standard_output_is_alone_there() {
     assert_eq!(file.code, 0, "{}", file.err);
     assert!(file.out.starts_with("%\nO1000") && file.out.ends_with("M30\n%\n"));
     assert_contains(&file.err, &["standard output", "tip deviation"]);
-    let quiet = post(&["-q", "-m", "ac-trunnion", BLADE, "-o", "-"]);
+    let length = ["--tool-length", "0"];
+    let quiet = post(&[&["-q", "-m", "ac-trunnion", BLADE, "-o", "-"], &length[..]].concat());
     assert_eq!(
         (quiet.code, quiet.out, quiet.err.as_str()),
         (0, file.out, "")
@@ -147,9 +139,10 @@ fn a_reader_that_has_seen_enough_is_no_fault() {
     for step in 0..20_000 {
         text.push_str(&format!("GOTO/{},{},10\n", step % 97, step % 89));
     }
+    text.push_str("FINI\n");
     let folder = with_file("long.cls", &text);
     let mut child = command()
-        .args(["-q", "-m", "vmc", "-o", "-"])
+        .args(["-q", "-m", "vmc", "--tool-length", "0", "-o", "-"])
         .arg(folder.path().join("long.cls"))
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -165,18 +158,18 @@ fn a_reader_that_has_seen_enough_is_no_fault() {
 
 #[test]
 fn a_machine_is_found_by_name_by_path_and_in_folders() {
-    let built_in = post(&["-q", "-m", "ac-trunnion", BLADE, "-o", "-"]);
+    let quiet = ["-q", "--tool-length", "0", "-o", "-", "-m"];
+    let with = |machine: &str| post(&[&quiet[..], &[machine, BLADE]].concat());
+    let built_in = with("ac-trunnion");
     for machine in ["ac-trunnion.toml", "machines/ac-trunnion.toml"] {
-        assert_eq!(post(&["-q", "-m", machine, BLADE, "-o", "-"]), built_in);
+        assert_eq!(with(machine), built_in);
     }
     // A folder without `machines`: the one built in.
     let folder = tempfile::tempdir().unwrap();
     let blade = root().join(BLADE);
     let blade = blade.to_str().unwrap();
-    let done = post_in(
-        folder.path(),
-        &["-q", "-m", "ac-trunnion", blade, "-o", "-"],
-    );
+    let arguments = [&quiet[..], &["ac-trunnion", blade]].concat();
+    let done = post_in(folder.path(), &arguments);
     assert_eq!(done, built_in);
     // A file of the same name in a folder that is named comes first.
     let own = folder.path().join("own");
@@ -246,8 +239,8 @@ fn a_fault_in_a_machine_file_is_shown_in_its_line() {
 #[test]
 fn the_summary_holds_what_is_documented_and_agrees_with_the_program() {
     for (machine, with) in [
-        ("ac-trunnion", &[][..]),
-        ("dmu50", &[]),
+        ("ac-trunnion", &["--tool-length", "80"][..]),
+        ("dmu50", &["--tool-length", "80"]),
         ("disc-cutter", &["--tool-length", "80"]),
         ("nutating-head", &["--tcp", "post", "--tool-length", "80"]),
     ] {
@@ -288,6 +281,7 @@ fn check_summary(summary: &Value, program: &str, machine: &str) {
         "tolerance_mm",
         "axis_tolerance_deg",
         "axes",
+        "tools",
         "time_s",
         "cutting_time_s",
         "blocks_limited",
@@ -398,7 +392,7 @@ fn the_numbers_of_a_small_job_are_those_worked_out_by_hand() {
 
 #[test]
 fn no_progress_and_no_colour_in_a_pipe() {
-    let done = post(&["-m", "head-head", BLADE, "-o", "-"]);
+    let done = post(&["-m", "ac-trunnion", BLADE, "-o", "-"]);
     assert_eq!(done.code, 0);
     assert_contains(&done.err, &["warning[tool-length]", "--tool-length"]);
     for text in [&done.out, &done.err] {
@@ -595,7 +589,8 @@ fn a_message_says_where_what_how_much_and_what_helps() {
         ("vmc", "TRACUT/ON", &["refused-word", "TRACUT", "help: "]),
         ("vmc", "GOTO/0,0,10,0,0,0", &["axis", "null", "help: "]),
     ] {
-        let done = post_text(&["-m", machine], &format!("{head}{line}\n"));
+        let with = ["-m", machine, "--spindle", "3000"];
+        let done = post_text(&with, &format!("{head}{line}\nFINI\n"));
         assert_eq!(
             (done.code, done.out.as_str()),
             (1, ""),
@@ -822,11 +817,12 @@ fn the_mount_moves_the_axes_and_not_the_words_of_a_work_offset() {
 
 #[test]
 fn units_are_what_the_user_says() {
-    let text = "LOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/1,0,2\nFEDRAT/10\nGOTO/1,0,1\n";
-    let inch = post_text(&["-q", "-m", "vmc", "--units", "inch"], text);
+    let text = "LOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/1,0,2\nFEDRAT/10\nGOTO/1,0,1\nFINI\n";
+    let on_vmc = ["-q", "-m", "vmc", "--tool-length", "0"];
+    let inch = post_text(&[&on_vmc[..], &["--units", "inch"]].concat(), text);
     assert_contains(&inch.out, &["X25.400", "G1 Z25.400 F254."]);
     assert_eq!(inch.err, "");
-    let millimetres = post_text(&["-q", "-m", "vmc", "--units", "mm"], text);
+    let millimetres = post_text(&[&on_vmc[..], &["--units", "mm"]].concat(), text);
     assert_contains(&millimetres.out, &["X1.000", "G1 Z1.000 F10."]);
     // Without a word from anybody they are mm, and that is said.
     let unsaid = post_text(&["-q", "-m", "vmc"], text);

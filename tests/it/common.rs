@@ -82,6 +82,10 @@ impl Case {
         let mut arguments = vec!["--machine", self.machine, "-o", "-", "--summary"];
         arguments.push(json.to_str().unwrap());
         arguments.extend(self.with);
+        // The samples do not say how long their tools are.
+        if !self.with.contains(&"--tool-length") {
+            arguments.extend(["--tool-length", "0"]);
+        }
         arguments.extend(more);
         let sample = sample(self.sample);
         arguments.push(sample.to_str().unwrap());
@@ -143,6 +147,16 @@ pub fn run(command: &mut Command, input: &[u8]) -> Run {
         out: String::from_utf8(output.stdout).unwrap(),
         err: String::from_utf8(output.stderr).unwrap(),
     }
+}
+
+/// Names of what lies in a folder.
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
 }
 
 pub fn read_json(path: &Path) -> Value {

@@ -15,10 +15,14 @@ mod linuxcnc;
 mod memory;
 mod new;
 mod plugins;
+mod readiness;
 mod real_files;
 mod schema;
+#[cfg(unix)]
+mod signals;
 mod snapshots;
 mod study;
+mod words;
 
 #[path = "../bench/generate.rs"]
 #[expect(dead_code, reason = "its `main` is that of the example")]

@@ -23,10 +23,17 @@ type V = Vector3<f64>;
 fn post(file: &Path, machine: &str, with: &str) -> (Run, Option<Value>) {
     let folder = tempfile::tempdir().unwrap();
     let json = folder.path().join("s.json");
+    // Most of the files say neither how fast the spindle turns nor how long the tool is.
+    let length = match with.contains("--tool-length") {
+        true => "",
+        false => "--tool-length 0",
+    };
     let done = run(
         command()
             .args(["-q", "-m", machine, "-o", "-", "--summary"])
             .arg(&json)
+            .args(["--spindle", "6000"])
+            .args(length.split_whitespace())
             .args(with.split_whitespace())
             .arg(file),
         b"",

@@ -1,7 +1,8 @@
 //! What is found wrong on the way, complete at birth: every finding that has a line gets its file and the line's
 //! text when it is made.
 //!
-//! A limit that is passed by a thousand points is told once, with how often and how far it is passed.
+//! What is found a thousand times is told once, where it was found first, with how often; of a limit that is passed also
+//! how far.
 
 use std::cell::RefCell;
 
@@ -25,20 +26,69 @@ struct Inner {
     /// Text of the lines that a finding may still be made for.
     source: SourceBuffer,
     found: Vec<Diagnostic>,
+    /// One for each of `found`.
     repeats: Vec<Repeat>,
     /// Faults, repeated ones counted once.
     faults: usize,
 }
 
-/// A limit that is passed again and again.
+/// How often something was found.
 #[derive(Debug)]
 struct Repeat {
-    /// Its first finding.
-    finding: usize,
+    kind: Kind,
     count: u64,
-    extreme: Extreme,
-    /// Where it is passed farthest.
-    line: u64,
+    /// Where it was found last.
+    last: u64,
+    /// How far a limit is passed, and where it is passed farthest.
+    extreme: Option<(Extreme, u64)>,
+}
+
+/// Findings of one kind are told once: of the same limit, or whose sentences differ in their numbers alone.
+#[derive(Debug, PartialEq, Eq)]
+struct Kind {
+    severity: Severity,
+    code: &'static str,
+    /// Of a limit.
+    key: Option<u64>,
+    /// Of all others: the sentence, each number in it as one sign.
+    sentence: String,
+}
+
+impl Kind {
+    fn of(finding: &Diagnostic) -> Self {
+        let key = finding.extreme.as_ref().map(|extreme| extreme.key);
+        Self {
+            severity: finding.severity,
+            code: finding.code,
+            key,
+            sentence: match key {
+                Some(_) => String::new(),
+                None => without_numbers(&finding.message),
+            },
+        }
+    }
+}
+
+/// A sentence with a sign in the place of each number.
+fn without_numbers(sentence: &str) -> String {
+    let mut bare = String::new();
+    let mut within = false;
+    for character in sentence.chars() {
+        let digit = character.is_ascii_digit();
+        // A sign before a number and a point in it are the number's.
+        if digit && !within {
+            while bare.ends_with(['-', '.']) {
+                bare.pop();
+            }
+            if !bare.ends_with('#') {
+                bare.push('#');
+            }
+        } else if !digit {
+            bare.push(character);
+        }
+        within = digit;
+    }
+    bare
 }
 
 impl Findings {
@@ -63,10 +113,15 @@ impl Findings {
         source.keep(record.line, record.raw, settled);
     }
 
+    /// The text of a line of the CL file; empty if no finding was to be made for it any more.
+    pub(crate) fn text(&self, line: u64) -> String {
+        self.inner.borrow().source.text(line).unwrap_or_default()
+    }
+
     /// A finding at a line of the CL file.
     #[cold]
     pub(crate) fn at(&self, line: u64, finding: Diagnostic) {
-        let text = self.inner.borrow().source.text(line).unwrap_or_default();
+        let text = self.text(line);
         let place = Place {
             file: self.file.clone(),
             line,
@@ -85,12 +140,22 @@ impl Findings {
     #[cold]
     pub(crate) fn add(&self, finding: Diagnostic) {
         let mut inner = self.inner.borrow_mut();
+        if inner.repeated(&finding) {
+            return;
+        }
         if finding.severity == Severity::Error {
-            if inner.repeated(&finding) || inner.faults >= MOST_FAULTS {
+            if inner.faults >= MOST_FAULTS {
                 return;
             }
             inner.faults += 1;
         }
+        let line = finding.place.as_ref().map_or(0, |place| place.line);
+        inner.repeats.push(Repeat {
+            kind: Kind::of(&finding),
+            count: 1,
+            last: line,
+            extreme: finding.extreme.clone().map(|extreme| (extreme, line)),
+        });
         inner.found.push(finding);
     }
 
@@ -109,25 +174,21 @@ impl Findings {
     /// The warnings as sentences, in the order of the lines.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let inner = self.inner.borrow();
-        let found = inner.found.iter();
-        let mut warnings: Vec<&Diagnostic> = found
-            .filter(|finding| finding.severity == Severity::Warning)
-            .collect();
-        warnings.sort_by_key(|finding| line_of(finding));
+        let mut warnings = inner.told();
+        warnings.retain(|finding| finding.severity == Severity::Warning);
+        warnings.sort_by_key(line_of);
         warnings
             .into_iter()
             .map(|finding| match &finding.place {
                 Some(place) => format!("line {}: {}", place.line, finding.message),
-                None => finding.message.clone(),
+                None => finding.message,
             })
             .collect()
     }
 
     /// All findings in the order of the lines, those without a line last.
-    pub(crate) fn sorted(mut self) -> Vec<Diagnostic> {
-        let inner = self.inner.get_mut();
-        inner.tell_repeats();
-        let mut found = std::mem::take(&mut inner.found);
+    pub(crate) fn sorted(self) -> Vec<Diagnostic> {
+        let mut found = self.inner.borrow().told();
         found.sort_by_key(line_of);
         found
     }
@@ -139,47 +200,70 @@ fn line_of(finding: &Diagnostic) -> u64 {
 }
 
 impl Inner {
-    /// A limit that was passed before: counted, and its largest value kept.
+    /// What was found before: counted, and of a limit its largest value kept.
     fn repeated(&mut self, finding: &Diagnostic) -> bool {
-        let Some(extreme) = &finding.extreme else {
+        let kind = Kind::of(finding);
+        let Some(repeat) = self.repeats.iter_mut().find(|repeat| repeat.kind == kind) else {
             return false;
         };
         let line = finding.place.as_ref().map_or(0, |place| place.line);
-        let known = self.repeats.iter_mut().find(|repeat| {
-            let first = &self.found[repeat.finding];
-            first.code == finding.code
-                && first.extreme.as_ref().map(|extreme| extreme.key) == Some(extreme.key)
-        });
-        if let Some(repeat) = known {
-            repeat.count += 1;
-            if extreme.by > repeat.extreme.by {
-                repeat.extreme = extreme.clone();
-                repeat.line = line;
-            }
-            return true;
+        repeat.count += 1;
+        repeat.last = repeat.last.max(line);
+        if let (Some(extreme), Some((farthest, at))) = (&finding.extreme, &mut repeat.extreme)
+            && extreme.by > farthest.by
+        {
+            *farthest = extreme.clone();
+            *at = line;
         }
-        if self.faults >= MOST_FAULTS {
-            return false;
-        }
-        self.repeats.push(Repeat {
-            finding: self.found.len(),
-            count: 1,
-            extreme: extreme.clone(),
-            line,
-        });
-        false
+        true
     }
 
-    /// Adds to the first finding of a limit how often and how far it was passed.
-    fn tell_repeats(&mut self) {
-        for repeat in &self.repeats {
-            if repeat.count > 1 {
-                let finding = &mut self.found[repeat.finding];
-                finding.message.push_str(&format!(
-                    "; {} points pass it, the farthest with {} on line {}",
-                    repeat.count, repeat.extreme.value, repeat.line
-                ));
-            }
+    /// What was found, each with how often.
+    fn told(&self) -> Vec<Diagnostic> {
+        let told = |(finding, repeat): (&Diagnostic, &Repeat)| {
+            let mut finding = finding.clone();
+            let more = match (&repeat.extreme, repeat.count - 1) {
+                (_, 0) => return finding,
+                (Some((extreme, line)), _) => format!(
+                    "; {} points pass it, the farthest with {} on line {line}",
+                    repeat.count, extreme.value
+                ),
+                (None, 1) if repeat.last > 0 => {
+                    format!("; one more like it, on line {}", repeat.last)
+                }
+                (None, more) if repeat.last > 0 => {
+                    format!("; {more} more like it, the last on line {}", repeat.last)
+                }
+                (None, more) => format!("; {more} more like it"),
+            };
+            finding.message.push_str(&more);
+            finding
+        };
+        self.found.iter().zip(&self.repeats).map(told).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_that_differ_in_numbers_are_of_one_kind() {
+        for (one, other, same) in [
+            (
+                "the ends lie 0.0012 mm apart",
+                "the ends lie 12 mm apart",
+                true,
+            ),
+            ("A would be -3.5°", "A would be 140°", true),
+            ("A would be 1°", "C would be 1°", false),
+            ("5 numbers are given", "1 number is given", false),
+        ] {
+            assert_eq!(
+                without_numbers(one) == without_numbers(other),
+                same,
+                "{one}"
+            );
         }
     }
 }

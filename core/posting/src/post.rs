@@ -143,6 +143,8 @@ impl<'a> Post<'a> {
         job.reading.chord_tolerance = machine.accuracy.tolerance / 2.0;
         job.reading.insert = machine.control.insert;
         job.reading.tool_length = machine.control.tool_length;
+        job.reading.rules.clone_from(&machine.word_rules);
+        job.reading.knife = machine.edge.is_some();
         let format = dialect.format().clone();
         let stages = Stages {
             expand: Expand::new(machine, job.reading.chord_tolerance),
@@ -201,7 +203,22 @@ impl<'a> Post<'a> {
     /// Takes a line that could not be read.
     pub fn unreadable(&mut self, fault: &SyntaxFault) {
         self.run();
+        self.records += 1;
+        self.last_line = fault.line;
         self.findings.unreadable(fault);
+    }
+
+    /// The input has ended; `line_end` says whether a line end stands behind its last line. Of a file that was cut off
+    /// no program is made.
+    pub fn ended(&mut self, line_end: bool) {
+        if self.records == 0 {
+            return;
+        }
+        self.run();
+        let last = self.findings.text(self.last_line);
+        if let Some(finding) = self.interpreter.cut_off(&last, line_end) {
+            self.findings.at(self.last_line, finding);
+        }
     }
 
     /// So many faults that reading on would only repeat them.
@@ -225,15 +242,6 @@ impl<'a> Post<'a> {
             self.findings.add(
                 Diagnostic::error("empty", format!("{file} has no move"))
                     .help("is it a cutter-location file (APT, CLSF, NCL)?"),
-            );
-        }
-        if !self.findings.failed() && configuration.length_unknown() {
-            self.findings.add(
-                Diagnostic::warning(
-                    "tool-length",
-                    "no length of the tool is known; it was taken as 0, and on this machine the axis positions depend on it",
-                )
-                .help("give --tool-length, or [tools] in the machine file"),
             );
         }
         let report = (!self.findings.failed()).then(|| self.report());
@@ -296,6 +304,7 @@ impl<'a> Post<'a> {
             tolerance_mm: machine.accuracy.tolerance,
             axis_tolerance_deg: machine.accuracy.axis_tolerance.to_degrees(),
             axes,
+            tools: stages.configuration.tools().to_vec(),
             branch_changes: counts.branch_changes,
             rewinds: counts.rewinds,
             points_eased: counts.eased,

@@ -44,6 +44,8 @@ pub struct Report {
     pub axis_tolerance_deg: f64,
     /// What of each axis was used.
     pub axes: Vec<AxisRange>,
+    /// The tools that were worked with, each with the length that travel was checked with.
+    pub tools: Vec<ToolUse>,
     /// Times that another branch of the solution or another full turn was taken, off the part.
     pub branch_changes: u64,
     /// Times that the tool was drawn back in a cut, turned and brought back.
@@ -88,6 +90,31 @@ pub struct AxisRange {
     pub travel: Option<[f64; 2]>,
     /// Its way over all blocks, mm or degrees.
     pub way: f64,
+}
+
+/// A tool that was worked with.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ToolUse {
+    /// Its number; none if the CL file loads no tool.
+    pub number: Option<u32>,
+    /// The length that was assumed, mm from the gauge point to the tip.
+    pub length_mm: f64,
+    /// Who gave it.
+    pub source: LengthSource,
+}
+
+/// Who gave the length of a tool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LengthSource {
+    /// `--tool-length`.
+    Option,
+    /// `[tools]`.
+    MachineFile,
+    /// `LOADTL/…,LENGTH`, or with `tool_length = "cl"` the cutter.
+    ClFile,
+    /// Nobody: 0 was taken.
+    Unknown,
 }
 
 /// A plugin that took part.

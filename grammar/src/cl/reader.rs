@@ -47,6 +47,8 @@ pub struct Reader<R> {
     line: u64,
     /// The last record was parted by a `$`; the next one is likely to be, too.
     parted: bool,
+    /// What was taken last, blanks aside, is no line end.
+    unended: bool,
 }
 
 /// A physical line; offsets from `start`.
@@ -71,12 +73,19 @@ impl<R: Read> Reader<R> {
             taken: 0,
             line: 1,
             parted: false,
+            unended: false,
         }
     }
 
     /// How many bytes the records so far take up, for a progress bar; at the end the length of the file.
     pub fn bytes_read(&self) -> u64 {
         self.taken - self.pending().len() as u64
+    }
+
+    /// The input as far as it was taken ends in the middle of a line: of a file that was read to its end, no line end
+    /// stands behind the last record.
+    pub fn ends_within_a_line(&self) -> bool {
+        self.unended
     }
 
     /// The next record; `None` at the end of the file.
@@ -284,6 +293,12 @@ impl<R: Read> Reader<R> {
             match self.input.read(&mut self.buffer[self.end..]) {
                 Ok(0) => self.ended = true,
                 Ok(count) => {
+                    // Old DOS systems end a text file with 0x1A.
+                    let taken = &self.buffer[self.end..self.end + count];
+                    let told = |byte: &&u8| !matches!(**byte, b' ' | b'\t' | b'\x1A');
+                    if let Some(last) = taken.iter().rev().find(told) {
+                        self.unended = !matches!(last, b'\n' | b'\r');
+                    }
                     self.end += count;
                     self.taken += count as u64;
                 }

@@ -379,6 +379,8 @@ pub struct CycleDefinition {
     pub dwell: Option<f64>,
     /// Peck (`STEP`, `PECKING`).
     pub step: Option<f64>,
+    /// The pecks that follow the first, if they are others.
+    pub later_step: Option<f64>,
     /// Words and numbers that have no field.
     pub rest: Vec<Argument>,
 }

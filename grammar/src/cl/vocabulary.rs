@@ -27,9 +27,10 @@ pub enum Usage {
     Passed,
     /// It says nothing that an NC program could hold (display, names of features, the CAM system's own data).
     Ignored,
-    /// It changes where the tool goes, and `post` does not know how: the file is refused.
+    /// It changes where or whether metal is cut, and `post` does not know how: the file is refused, unless the user
+    /// takes it upon himself.
     Refused,
-    /// `post` does nothing with it, and says so.
+    /// Nobody's word, or one that a program can do without: `post` does nothing with it, and says so.
     Unknown,
 }
 
@@ -219,15 +220,16 @@ fn feature(word: &'static str, text: String) -> Statement {
 /// CAM systems add; in alphabetical order.
 #[rustfmt::skip]
 static WORDS: &[MajorWord] = &[
-    unsupported(&["ARCSLP"], "slope of a helix"),
-    unsupported(&["AUXFUN"], "an M function by its number"),
+    refused(&["ARCSLP"], "slope of a helix"),
+    refused(&["AUXFUN"], "an M function by its number"),
     ignored(&["BOX"], "the blank"),
     unsupported(&["BREAK"], "a break in the tape"),
     refused(&["CALL"], "runs a macro"),
+    refused(&["CALSUB"], "runs a subprogram"),
     ignored(&["CAMERA"], "display"),
-    unsupported(&["CHECK"], "limits of the axes to be watched"),
+    unsupported(&["CHECK"], "limits of the axes to be watched; post watches those of the machine file"),
     used(&["CIRCLE"], circle, ["CIRCLE/0,0,0,0,0,1,10", "arc to the next GOTO: centre, axis, radius"]).else_refused(),
-    unsupported(&["CLAMP"], "clamps an axis"),
+    refused(&["CLAMP"], "clamps an axis or a part"),
     refused(&["CLEARP"], "clearance plane, to which RETRCT goes"),
     refused(&["CLRSRF"], "clearance plane, to which RETRCT goes"),
     used(&["CNTRL"], cntrl, ["CNTRL/1,2,3", "control point of a spline"]),
@@ -241,10 +243,12 @@ static WORDS: &[MajorWord] = &[
     ignored(&["CUTCOM_GEOMETRY_TYPE"], "how the CAM system computed the path"),
     used(&["CUTTER"], cutter, ["CUTTER/10,1", "the cutter: diameter, corner radius"]),
     used(&["CYCLE"], cycle, ["CYCLE/DRILL,FEDTO,-10,MMPM,200,RAPTO,3", "cycle at the points that follow"]).else_refused(),
+    refused(&["DEFSUB"], "defines a subprogram"),
     used(&["DELAY", "DWELL"], delay, ["DELAY/2", "waits: seconds, or turns with REV"]),
     ignored(&["DISPLY"], "display"),
     ignored(&["DRAFT"], "plotter"),
     used(&["END-OF-PATH"], end_of_path, ["END-OF-PATH", "end of an operation (NX)"]),
+    refused(&["ENDSUB"], "ends a subprogram"),
     ignored(&["FEATNO"], "number of a feature"),
     used(&["FEDRAT"], fedrat, ["FEDRAT/MMPM,250", "feed of the cuts that follow"]),
     used(&["FINI", "END"], fini, ["FINI", "end of the file"]),
@@ -265,14 +269,16 @@ static WORDS: &[MajorWord] = &[
     refused(&["MACRO"], "defines a macro"),
     ignored(&["MCHTOL"], "tolerance; the machine file states ours"),
     ignored(&["MFGNO"], "number of an operation"),
+    refused(&["MIRROR"], "mirrors the points"),
     refused(&["MODE"], "how the coordinates that follow are meant"),
     ignored(&["MOVE_ATTRIB"], "lead in, link, lead out"),
     used(&["MSYS"], msys, ["MSYS/0,0,0,1,0,0,0,1,0", "frame of the operation (--msys)"]).else_refused(),
     used(&["MULTAX"], multax, ["MULTAX/ON", "tool axis with the points; OFF: Z"]),
     used(&["NURBS"], nurbs, ["NURBS/", "a spline begins"]),
+    refused(&["OFSETL"], "a work offset by its number"),
     ignored_as(&["OPFEATEND"], Behind::Text(feature), ["OPFEATEND/Hole1", "name of a feature"]),
     ignored_as(&["OPFEATSTART"], Behind::Text(feature), ["OPFEATSTART/Hole1", "name of a feature"]),
-    unsupported(&["OPSKIP"], "blocks that the operator may skip"),
+    refused(&["OPSKIP"], "blocks that the operator may skip"),
     used(&["OPSTOP"], opstop, ["OPSTOP", "optional stop"]),
     refused(&["ORIGIN"], "moves the origin"),
     ignored(&["PAINT"], "display"),
@@ -284,8 +290,8 @@ static WORDS: &[MajorWord] = &[
     passed(&["PPRINT"], Behind::Text(|_, text| Statement::Print(text)), ["PPRINT check clamps", "a remark for the operator"]),
     ignored(&["PPTOL"], "tolerance; the machine file states ours"),
     ignored(&["PPWORD"], "a word of another post-processor"),
-    unsupported(&["PREFUN"], "a G function by its number"),
-    unsupported(&["PROBE"], "probing"),
+    refused(&["PREFUN"], "a G function by its number"),
+    refused(&["PROBE"], "probing"),
     refused(&["PSIS"], "a surface for the APT processor's moves"),
     used(&["RAPID"], rapid, ["RAPID", "the next move is at rapid"]),
     refused(&["READ"], "goes on in another file"),
@@ -297,6 +303,7 @@ static WORDS: &[MajorWord] = &[
     ignored(&["SAFETY"], "how the CAM system kept clear"),
     used(&["SELECT", "SELCTL"], select_tool, ["SELECT/TOOL,4", "makes the next tool ready; SELECT with TOOL"]),
     ignored(&["SEQNO"], "block numbers; the machine file states ours"),
+    refused(&["SET"], "a work offset (SET/OFSETL), or how what follows is meant"),
     unsupported(&["SLOWDN"], "slows down before corners"),
     used(&["SPINDL"], spindl, ["SPINDL/RPM,9000,CLW", "spindle"]),
     used(&["STOP"], stop, ["STOP", "stop"]),
@@ -311,5 +318,6 @@ static WORDS: &[MajorWord] = &[
     refused(&["TRANS"], "moves the points by a step"),
     ignored(&["TRNTYP"], "how the CAM system moved the points"),
     used(&["UNITS", "UNIT"], units, ["UNITS/MM", "units of the lengths"]),
-    unsupported(&["UNLOAD"], "puts the tool away"),
+    refused(&["UNLOAD"], "puts the tool away"),
+    refused(&["ZERO"], "moves the origin"),
 ];

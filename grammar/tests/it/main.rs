@@ -1,10 +1,11 @@
-//! Tests of the readers: CL files, structural codes, expressions.
+//! Tests of the readers: CL files, structural codes, expressions, templates.
 
 mod chain;
 mod expression;
 mod files;
 mod reader;
 mod statements;
+mod template;
 
 use proptest::test_runner::{Config, RngSeed};
 

@@ -278,3 +278,27 @@ proptest! {
         all(text.as_bytes());
     }
 }
+
+/// Whether a line end stands behind the last line, whatever the chunks and the blanks at the end.
+#[test]
+fn a_file_that_ends_within_a_line_is_told() {
+    for (text, within) in [
+        ("", false),
+        ("GOTO/1,2,3", true),
+        ("GOTO/1,2,3\n", false),
+        ("GOTO/1,2,3\r", false),
+        ("GOTO/1,2,3\r\n", false),
+        ("GOTO/1,2,3\n \t\x1A", false),
+        ("GOTO/1,2,3  ", true),
+        ("FINI", true),
+    ] {
+        for chunk in [1, 2, 7, 100] {
+            let mut reader = Reader::new(Trickle {
+                bytes: text.as_bytes(),
+                sizes: vec![chunk].into_iter().cycle(),
+            });
+            while reader.next_record().unwrap().is_some() {}
+            assert_eq!(reader.ends_within_a_line(), within, "{text:?} by {chunk}");
+        }
+    }
+}

@@ -389,7 +389,8 @@ fn cycles() {
             feed: feed(187.165839),
             dwell: Some(0.0),
             step: Some(5.0),
-            rest: vec![word("G98"), number(2.0), number(46.927686)],
+            later_step: Some(2.0),
+            rest: vec![word("G98"), number(46.927686)],
         }),
         &[
             "CYCLE/ DRILL,G98,12.373300,PECKING,5.000000,2.000000,MMPM,187.165839,3.000000,46.927686 46.927686 DWELL,0.000000 ",
@@ -423,6 +424,17 @@ fn cycles() {
             ..CycleDefinition::default()
         }),
         &["CYCLE/BORE,FEDTO,-5,RTRCTO,AUTO,DWELL,REV,2,DRAG"],
+    );
+    // The number behind an option is no clearance.
+    same(
+        define(CycleDefinition {
+            kinds: kinds(&["DEEP2"]),
+            depth: Some(5.0),
+            step: Some(1.0),
+            rest: vec![word("DECR"), number(0.2)],
+            ..CycleDefinition::default()
+        }),
+        &["CYCLE/DEEP2,FEDTO,5,STEP,1,DECR,0.2"],
     );
 }
 
@@ -711,6 +723,33 @@ fn what_becomes_of_a_record_depends_on_its_form() {
     ] {
         assert_eq!(read(text).usage(), usage, "{text}");
     }
+}
+
+/// The words of the classic lists for post-processors (APT360, PostWorks, VERICUT): each is judged, and what a program
+/// can do without is a short list.
+#[test]
+fn the_classic_words_are_judged() {
+    let words = "PARTNO MACHIN UNITS MULTAX FROM GOTO GODLTA CIRCLE CUTTER TLDATA LOADTL SELCTL SELECT UNLOAD TURRET \
+                 TOOLNO SPINDL COOLNT FEDRAT RAPID CYCLE CUTCOM ROTABL ROTHED ROTATE CLAMP ORIGIN TRANS TRACUT COUPLE \
+                 MODE LINTOL PPTOL MCHTOL ARCSLP CLRSRF CLEARP RETRCT PLUNGE GOHOME POSITN POSTN CHECK SAFETY SEQNO \
+                 TMARK OPSKIP OPSTOP STOP DELAY DWELL AUXFUN PREFUN INSERT PPRINT DISPLY LEADER REWIND BREAK SLOWDN \
+                 THREAD DRAFT PAINT MSYS END-OF-PATH HEAD PIVOTZ PROBE REMARK READ MACRO TERMAC CALL INDIRV TLON GOFWD \
+                 PSIS END FINI SET OFSETL MIRROR CALSUB ZERO";
+    let of = |usage: Usage| -> Vec<&str> {
+        let becomes = |word: &&str| MajorWord::find(word).map(|row| row.usage) == Some(usage);
+        words.split_whitespace().filter(becomes).collect()
+    };
+    let missing: Vec<&str> = words
+        .split_whitespace()
+        .filter(|word| MajorWord::find(word).is_none())
+        .collect();
+    assert_eq!(missing, [""; 0]);
+    assert_eq!(of(Usage::Unknown), ["CHECK", "BREAK", "SLOWDN"]);
+    let without_effect = [
+        "MACHIN", "LINTOL", "PPTOL", "MCHTOL", "SAFETY", "SEQNO", "TMARK", "DISPLY", "LEADER",
+        "REWIND", "DRAFT", "PAINT", "REMARK",
+    ];
+    assert_eq!(of(Usage::Ignored), without_effect);
 }
 
 /// The README lists the words by what becomes of them.

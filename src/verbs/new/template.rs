@@ -287,6 +287,12 @@ pub fn write(choices: &Choices) -> String {
         );
     }
     line("", "");
+    line("# [spindle]", "");
+    line(
+        "# max_speed = 12000",
+        "rpm: what the spindle can do; a CL file that asks for more is refused",
+    );
+    line("", "");
     line("[accuracy]", "");
     line(
         &format!("tolerance = {}", choices.tolerance),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use post_posting::report::{Deviation, Report};
+use post_posting::report::{Deviation, LengthSource, Report};
 
 use crate::files::PathArg;
 
@@ -93,6 +93,19 @@ pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
                 axis.min, axis.max, axis.way
             ),
         );
+    }
+    for tool in &report.tools {
+        let name = match tool.number {
+            Some(number) => format!("tool {number}"),
+            None => "tool".to_owned(),
+        };
+        let source = match tool.source {
+            LengthSource::Option => "by --tool-length",
+            LengthSource::MachineFile => "by the machine file",
+            LengthSource::ClFile => "by the CL file",
+            LengthSource::Unknown => "nobody gave it",
+        };
+        row(&name, format!("{} mm long, {source}", tool.length_mm));
     }
     let mut choices = Vec::new();
     for (count, what) in [

@@ -4,6 +4,7 @@ use post_host::{Finder, OpenedDialect};
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Batch, DialectSession, Format, WriteFault};
+use post_posting::program::ToldSpindle;
 use post_posting::report::Report;
 use post_posting::{Observer, Post};
 
@@ -60,7 +61,11 @@ impl<'a> DryRun<'a> {
         let (dialect, _) = plugin_finder::dialect(&self.finder, machine, &program, Some(source))?;
         let (mut model, _) = plugin_finder::model(&self.finder, machine)?;
         let input = ClInput::open(source)?;
-        let posting = job::posting(self.arguments, &input.name);
+        let mut posting = job::posting(self.arguments, &input.name);
+        if posting.reading.spindle == ToldSpindle::Unknown {
+            // Nothing is written: how fast the spindle turns is nobody's business.
+            posting.reading.spindle = ToldSpindle::Still;
+        }
         let mut dialect = Rounding::new(dialect, self.exact);
         let mut sink = NullSink;
         let mut post = Post::new(machine, posting, &mut dialect, &mut model, &mut sink)

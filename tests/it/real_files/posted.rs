@@ -44,12 +44,12 @@ const GOOD: &[(&str, &str, &str)] = &[
     (
         "camworks_neMoguta_UniSource.clt",
         "ac-trunnion",
-        "--tool 1 --tool-length 150",
+        "--tool-from-cutter --tool-length 150",
     ),
     (
         "swcam_aamorim_Interface-glue.clt",
         "ac-trunnion",
-        "--tool 1 --tool-length 150",
+        "--tool-from-cutter --tool-length 150",
     ),
     (
         "swcam_aamorim_Teste-Metrologia.apt",
@@ -113,13 +113,13 @@ const REFUSED: &[(&str, &str, &str, &str)] = &[
     (
         "camworks_neMoguta_UniSource.clt",
         "vmc",
-        "--tool 1",
+        "--tool-from-cutter",
         "out-of-reach",
     ),
     (
         "swcam_aamorim_Interface-glue.clt",
         "vmc",
-        "--tool 1",
+        "--tool-from-cutter",
         "out-of-reach",
     ),
     (
@@ -132,13 +132,13 @@ const REFUSED: &[(&str, &str, &str, &str)] = &[
     (
         "camworks_neMoguta_UniSource.clt",
         "head-head",
-        "--tool 1",
+        "--tool-from-cutter",
         "compensation",
     ),
     (
         "swcam_aamorim_Interface-glue.clt",
         "head-head-360",
-        "--tool 1",
+        "--tool-from-cutter",
         "compensation",
     ),
     (

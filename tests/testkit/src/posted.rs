@@ -9,6 +9,7 @@ use post_plugin::{
     Batch, Capabilities, Curve, Deviation, DialectSession, Event, Feed, Format, ModelSession,
     Tolerance, ToolPose, WriteFault,
 };
+use post_posting::program::ToldSpindle;
 use post_posting::report::Report;
 use post_posting::{Job, Observer, Output, Post};
 
@@ -214,6 +215,11 @@ pub fn watched(
     model: &mut dyn ModelSession,
     observers: &mut [&mut dyn Observer],
 ) -> Run {
+    let mut job = job;
+    if job.reading.spindle == ToldSpindle::Unknown {
+        // Texts this short do not care for the spindle.
+        job.reading.spindle = ToldSpindle::Still;
+    }
     let mut output = Nowhere;
     // The path is what is looked at here, as it is: no retract behind it, and none that a machine which leans any way
     // could not make.

@@ -101,11 +101,12 @@ fn take_heads<'i>(
                 None => return Err(fault(word.span())),
             },
         };
-        if let Some((key, _)) = overrides.iter().find(|(key, _)| key.get_ref() == "control") {
+        let whole = |key: &str| matches!(key, "control" | "cl");
+        if let Some((key, _)) = overrides.iter().find(|(key, _)| whole(key.get_ref())) {
             return Err(vec![
-                Diagnostic::error("machine-head", "a head does not change the control")
+                Diagnostic::error("machine-head", format!("a head does not change [{}]", key.get_ref()))
                     .at(sources.place(key.span()))
-                    .help("[control] holds for the whole program: units, dialect and who keeps the tip"),
+                    .help("[control] and [cl] hold for the whole program: units, dialect, who keeps the tip, words"),
             ]);
         }
         taken.push(HeadLayer {
@@ -227,6 +228,8 @@ impl Builder<'_> {
         }
         let accuracy = self.accuracy(&file.accuracy, &mut model_options);
         let control_point = self.control_point(&file.tool.control_point);
+        let spindle = self.spindle(&file.spindle);
+        let word_rules = self.word_rules(&file.cl);
         let stages = axes.iter().any(|axis| axis.range.is_some()) || !solution.exclusive.is_empty();
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
@@ -257,6 +260,8 @@ impl Builder<'_> {
                 tool_length: control.tool_length,
                 insert: control.insert,
             },
+            spindle,
+            word_rules,
             accuracy,
             solution,
             rewind,

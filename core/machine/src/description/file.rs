@@ -54,6 +54,12 @@ pub(crate) struct MachineFile {
     /// The control and its language.
     #[schemars(with = "ControlFile")]
     pub control: Spanned<ControlFile>,
+    /// How fast the spindle turns.
+    #[serde(default)]
+    pub spindle: SpindleFile,
+    /// Words of the CL file that this machine has lines for.
+    #[serde(default)]
+    pub cl: ClFile,
     /// What the program must keep.
     #[serde(default)]
     pub accuracy: AccuracyFile,
@@ -92,6 +98,50 @@ pub(crate) struct ToolFile {
     /// The point of the tool that must stay within tolerance; that of the CL file if not said.
     #[serde(default)]
     pub control_point: ControlPointFile,
+}
+
+/// How fast the spindle turns.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SpindleFile {
+    /// Least speed, rpm; a slower one is refused.
+    #[schemars(with = "Option<Number>", extend("minimum" = 0))]
+    pub min_speed: Option<Quantity>,
+    /// Largest speed, rpm; a faster one is refused.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub max_speed: Option<Quantity>,
+}
+
+/// Words of the CL file that this machine has lines for.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ClFile {
+    /// The line of the program, or the lines, for a word that has no meaning to post: `OFSETL = "G{n+53}"`. Between braces
+    /// n is the first number behind the slash, n2 the second. `"SET/OFSETL"` is for one form of a word alone.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Lines>")]
+    pub words: BTreeMap<Spanned<String>, Spanned<Lines>>,
+}
+
+/// A line of the program, or several.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    expecting = "a line of the program or a list of lines is expected"
+)]
+pub(crate) enum Lines {
+    One(String),
+    #[schemars(extend("minItems" = 1))]
+    Several(Vec<String>),
+}
+
+impl Lines {
+    pub(crate) fn as_slice(&self) -> &[String] {
+        match self {
+            Self::One(line) => std::slice::from_ref(line),
+            Self::Several(lines) => lines,
+        }
+    }
 }
 
 /// One axis: its kind and line, how far it goes and how fast.
@@ -313,7 +363,8 @@ pub enum ToolLength {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Insert {
-    /// A comment: SolidWorks CAM describes stock and tools with it, and `X85. Y38.` would be a move.
+    /// A comment: SolidWorks CAM describes stock and tools with it, and `X85. Y38.` would be a move. A text that is
+    /// nothing but words of a program is refused.
     #[default]
     Comment,
     /// A line of the program, letter for letter, as APT has it.

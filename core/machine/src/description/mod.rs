@@ -4,6 +4,7 @@ mod accuracy;
 mod axes;
 mod build;
 mod choice;
+mod cl_words;
 mod file;
 mod frame;
 mod layers;
@@ -11,6 +12,7 @@ mod numbers;
 mod options;
 mod schema;
 mod setting;
+mod spindle;
 
 use std::f64::consts::TAU;
 
@@ -19,6 +21,7 @@ use nalgebra::Vector3;
 pub use accuracy::{Accuracy, ControlPoint};
 pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
+pub use cl_words::WordRule;
 pub use file::{
     EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement, Pole, Side, Tcp,
     ToolLength,
@@ -27,6 +30,7 @@ pub use frame::Frame;
 pub use layers::Source;
 pub use schema::schema;
 pub use setting::Setting;
+pub use spindle::SpindleSpeeds;
 
 use crate::diagnostic::Place;
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
@@ -53,6 +57,10 @@ pub struct Machine {
     pub tools: Vec<(u32, f64)>,
     /// Its control.
     pub control: Control,
+    /// How fast its spindle turns.
+    pub spindle: SpindleSpeeds,
+    /// Lines of the program for words of the CL file.
+    pub word_rules: Vec<WordRule>,
     /// What it must keep.
     pub accuracy: Accuracy,
     /// Which of several solutions is taken.

@@ -18,16 +18,17 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use nalgebra::Vector3;
-use post_machine::description::{Machine, Positions, Tcp, ToolLength};
+use post_machine::description::{Machine, Positions, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_machine::kinematics::travel::{AT_END, passed};
-use post_plugin::Format;
+use post_plugin::{Format, Spindle};
 
 use crate::accuracy::Placer;
 use crate::expand::Line;
 use crate::findings::Findings;
 use crate::program::{Command, Motion, Tool};
+use crate::report::{LengthSource, ToolUse};
 use crate::stream::{Flow, Outlet};
 pub(crate) use route::Chosen;
 use route::{Lost, Route};
@@ -76,8 +77,14 @@ pub(crate) struct Configuration<'a> {
     told_length: Option<f64>,
     /// Length of the tool in use, if anybody gave it.
     length: Option<f64>,
-    /// The tool's length matters and nobody gave it.
-    length_unknown: bool,
+    /// Where the length comes from.
+    source: LengthSource,
+    /// The tools that were worked with, each with the length that was assumed.
+    tools: Vec<ToolUse>,
+    /// The tool, with the head and the length that it has now, is among them.
+    in_use: bool,
+    /// The speed that the spindle was told last, rpm.
+    speed: Option<f64>,
     /// The tool in use.
     tool: Option<Tool>,
     /// Points taken.
@@ -104,7 +111,13 @@ impl<'a> Configuration<'a> {
             chosen: Vec::new(),
             told_length,
             length: told_length,
-            length_unknown: told_length.is_none(),
+            source: match told_length {
+                Some(_) => LengthSource::Option,
+                None => LengthSource::Unknown,
+            },
+            tools: Vec::new(),
+            in_use: false,
+            speed: None,
             tool: None,
             moves: 0,
         })
@@ -115,9 +128,9 @@ impl<'a> Configuration<'a> {
         self.moves
     }
 
-    /// The tool length mattered, and was taken as 0 because nobody gave it.
-    pub(crate) fn length_unknown(&self) -> bool {
-        self.length_unknown && self.length_matters()
+    /// The tools that were worked with, in the order in which they came.
+    pub(crate) fn tools(&self) -> &[ToolUse] {
+        &self.tools
     }
 
     /// Line of the first point or command that is not decided.
@@ -157,6 +170,9 @@ impl<'a> Configuration<'a> {
     fn point(&mut self, at: &Line, out: &mut Out<'_>, findings: &Findings) {
         self.moves += 1;
         let line = at.line;
+        if !self.in_use {
+            self.take_into_use(line, findings);
+        }
         let motion = self.guided(at.motion);
         if self.waiting.is_empty()
             && let Some(chosen) = self.route.step(line, &motion)
@@ -279,14 +295,21 @@ impl<'a> Configuration<'a> {
                 };
                 self.route.leave();
                 self.machine = &head.machine;
-                // A head may have lengths of its own.
+                // A head may have lengths of its own, and a spindle of its own.
                 if let Some(tool) = self.tool.take() {
                     self.measure(&tool);
                     self.tool = Some(tool);
                 }
+                self.in_use = false;
                 self.equip(line, findings);
+                self.check_speed(line, findings);
             }
             Command::Home => self.park(&self.machine.frame.park),
+            Command::Spindle(Spindle::On { rpm, .. }) => {
+                self.speed = Some(*rpm);
+                self.check_speed(line, findings);
+            }
+            Command::Spindle(_) => self.speed = None,
             _ => {}
         }
         out.command(line, command);
@@ -299,6 +322,14 @@ impl<'a> Configuration<'a> {
             near[*joint] = *value;
         }
         self.route.begin_at(near);
+    }
+
+    /// A speed that the spindle of the head in use cannot turn at.
+    fn check_speed(&self, line: u64, findings: &Findings) {
+        let refused = self.speed.and_then(|rpm| self.machine.spindle.refuse(rpm));
+        if let Some(finding) = refused {
+            findings.at(line, finding);
+        }
     }
 
     /// The tool stands there: solutions near to it are wanted, but nothing moves.
@@ -326,12 +357,37 @@ impl<'a> Configuration<'a> {
                 .find(|(number, _)| *number == tool.number)
                 .map(|(_, length)| *length)
         };
-        let length = self.told_length.or_else(table).or(tool.length);
-        self.length_unknown |= length.is_none();
-        if length.is_some() && self.moves == 0 {
-            self.length_unknown = false;
+        let given = [
+            (self.told_length, LengthSource::Option),
+            (table(), LengthSource::MachineFile),
+            (tool.length, LengthSource::ClFile),
+        ];
+        let mut given = given
+            .into_iter()
+            .filter_map(|(length, source)| Some((length?, source)));
+        let known = given.next();
+        self.length = known.map(|(length, _)| length);
+        self.source = known.map_or(LengthSource::Unknown, |(_, source)| source);
+        self.in_use = false;
+    }
+
+    /// The first move with a tool: which length is assumed is kept for the summary; where the axis positions depend on a
+    /// length that nobody gave, there is no program.
+    #[cold]
+    fn take_into_use(&mut self, line: u64, findings: &Findings) {
+        self.in_use = true;
+        let used = ToolUse {
+            number: self.tool.as_ref().map(|tool| tool.number),
+            length_mm: self.length.unwrap_or(0.0),
+            source: self.source,
+        };
+        if self.tools.contains(&used) {
+            return;
         }
-        self.length = length;
+        if self.source == LengthSource::Unknown {
+            findings.at(line, unknown_length(used.number, self.length_matters()));
+        }
+        self.tools.push(used);
     }
 
     /// Takes machine and tool length into the route.
@@ -385,7 +441,7 @@ impl<'a> Configuration<'a> {
     /// keep the tip.
     fn length_matters(&self) -> bool {
         let machine = self.machine;
-        if machine.control.tcp == Tcp::Control || machine.control.tool_length == ToolLength::Cl {
+        if machine.control.tcp == Tcp::Control {
             return false;
         }
         let first_linear = machine.axes.iter().position(|axis| !axis.joint.rotary);
@@ -394,6 +450,26 @@ impl<'a> Configuration<'a> {
             .iter()
             .skip(first_linear.unwrap_or(0))
             .any(|axis| axis.joint.rotary)
+    }
+}
+
+/// Nobody gave the length of a tool; `matters` if the axis positions of the program depend on it, else travel alone is
+/// checked with it.
+fn unknown_length(number: Option<u32>, matters: bool) -> Diagnostic {
+    let tool = match number {
+        Some(number) => format!("of tool {number}"),
+        None => "of the tool".to_owned(),
+    };
+    let help = "give --tool-length, or [tools] in the machine file";
+    if matters {
+        let message = format!(
+            "no length {tool} is known, and on this machine, whose head turns, the axis positions depend on it"
+        );
+        Diagnostic::error("tool-length", message)
+            .help(format!("{help}; --tool-length 0 says that there is none"))
+    } else {
+        let message = format!("no length {tool} is known: travel was checked with 0 mm");
+        Diagnostic::warning("tool-length", message).help(help)
     }
 }
 

@@ -6,14 +6,13 @@ mod writer;
 
 use post_machine::axis_words::Words;
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Chain, Joints};
 use post_plugin::{Capabilities, Coolant, DialectSession, Event, Spindle, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
 use crate::findings::Findings;
 use crate::observer::Output;
-use crate::program::{Command, Pace};
+use crate::program::Command;
 use crate::stream::Flow;
 pub(crate) use extremes::Extremes;
 use writer::Writer;
@@ -43,8 +42,6 @@ pub(crate) struct Emit<'a> {
     coolant: Option<Coolant>,
     /// Coolant was switched off in between.
     coolant_due: bool,
-    /// Set once the warning that no spindle turns was given.
-    told_spindle: bool,
 }
 
 impl<'a> Emit<'a> {
@@ -70,7 +67,6 @@ impl<'a> Emit<'a> {
             commanded: None,
             coolant: None,
             coolant_due: false,
-            told_spindle: false,
         };
         // Nothing is known of where the tool stands, nor of what is in force.
         emit.retract(0);
@@ -113,7 +109,6 @@ impl<'a> Emit<'a> {
 
     #[inline]
     fn block(&mut self, block: &Block, findings: &Findings) {
-        self.check_spindle(block, findings);
         let line = block.line;
         match block.kind {
             MotionKind::Position => self.position(block, findings),
@@ -173,24 +168,6 @@ impl<'a> Emit<'a> {
             Command::Home => return self.go_home(line, findings),
         };
         self.writer.push(line, event);
-    }
-
-    /// A tool that cuts must turn, but for a knife.
-    #[inline]
-    fn check_spindle(&mut self, block: &Block, findings: &Findings) {
-        let cuts = block.pace != Pace::Rapid;
-        if !cuts || self.turning || self.told_spindle || self.machine.edge.is_some() {
-            return;
-        }
-        self.told_spindle = true;
-        findings.at(
-            block.line,
-            Diagnostic::warning(
-                "spindle",
-                "the tool cuts, and the spindle was not switched on",
-            )
-            .help("the CAM system should write SPINDL before this line"),
-        );
     }
 
     /// Lets go the axes that this block moves, and clamps the others before the tool cuts.

@@ -23,7 +23,9 @@ pub struct DrillCycle {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Peck {
     step: f64,
-    /// Out of the hole after each (`DEEP`), or back by a little to break the chip (`BRKCHP`).
+    /// Of those behind the first.
+    later: f64,
+    /// Out of the hole after each (`DEEP`), or back by a little to break the chip (`BRKCHP`, `CHIP`).
     full: bool,
 }
 
@@ -39,10 +41,13 @@ pub enum Leg {
 }
 
 /// Kinds that rapid, feed, dwell and feed or rapid back make.
-const KINDS: [&str; 12] = [
-    "DRILL", "DEEP", "BRKCHP", "BORE", "REAM", "FACE", "CSINK", "CBORE", "CDRILL", "SPOT", "THRU",
-    "PECKING",
+const KINDS: [&str; 15] = [
+    "DRILL", "DEEP", "DEEP2", "DEEPHL", "BRKCHP", "CHIP", "BORE", "REAM", "FACE", "CSINK", "CBORE",
+    "CDRILL", "SPOT", "THRU", "PECKING",
 ];
+
+/// Kinds that go in pecks.
+const PECKED: [&str; 5] = ["DEEP", "DEEP2", "DEEPHL", "BRKCHP", "CHIP"];
 
 /// Above the last depth a peck begins at feed, and a chip is broken by going back so far: mm.
 const GAP: f64 = 0.5;
@@ -87,20 +92,22 @@ impl DrillCycle {
             .retract
             .map_or(clearance, |level| level * scale)
             .max(clearance);
-        let peck = cycle
-            .step
-            .map(libm::fabs)
-            .filter(|step| *step > 0.0)
-            .map(|step| Peck {
-                step: step * scale,
-                full: !is("BRKCHP"),
-            });
+        let length = |step: Option<f64>| {
+            let step = libm::fabs(step?) * scale;
+            (step > 0.0).then_some(step)
+        };
+        let peck = length(cycle.step).map(|step| Peck {
+            step,
+            later: length(cycle.later_step).unwrap_or(step),
+            full: !is("BRKCHP") && !is("CHIP"),
+        });
         if let Some(peck) = peck
-            && (clearance - bottom) / peck.step > MOST_PECKS
+            && let least = peck.step.min(peck.later)
+            && (clearance - bottom) / least > MOST_PECKS
         {
             return Err(format!(
-                "a peck of {} mm over a depth of {} mm is more than {MOST_PECKS} pecks",
-                peck.step, -bottom
+                "a peck of {least} mm over a depth of {} mm is more than {MOST_PECKS} pecks",
+                -bottom
             ));
         }
         Ok(Self {
@@ -124,12 +131,12 @@ impl DrillCycle {
             && cycle
                 .kinds
                 .iter()
-                .any(|kind| kind == "DEEP" || kind == "BRKCHP");
+                .any(|kind| PECKED.contains(&kind.as_str()));
         let pecks = pecks.then(|| "the pecks, since there is no STEP".to_owned());
         pecks
             .into_iter()
             .chain(cycle.rest.iter().filter_map(|argument| match argument {
-                // CAMWorks states the level twice and a second peck.
+                // CAMWorks states the level twice.
                 Argument::Word(word) if word == "G98" => None,
                 Argument::Word(word) => Some(word.clone()),
                 Argument::Number(_) => None,
@@ -150,7 +157,7 @@ impl DrillCycle {
                 } else {
                     emit(Leg::Rapid((depth + GAP).min(self.clearance)));
                 }
-                depth -= peck.step;
+                depth -= peck.later;
             }
         }
         emit(Leg::Feed(self.bottom));
@@ -197,6 +204,23 @@ mod tests {
                 Leg::Rapid(1.0),
             ]
         );
+    }
+
+    #[test]
+    fn the_pecks_behind_the_first_may_be_others() {
+        let definition = CycleDefinition {
+            kinds: vec!["CHIP".to_owned()],
+            depth: Some(8.0),
+            clearance: Some(1.0),
+            step: Some(5.0),
+            later_step: Some(2.0),
+            ..CycleDefinition::default()
+        };
+        let down: Vec<Leg> = legs(&definition, 1.0)
+            .into_iter()
+            .filter(|leg| matches!(leg, Leg::Feed(_)))
+            .collect();
+        assert_eq!(down, [Leg::Feed(-5.0), Leg::Feed(-7.0), Leg::Feed(-8.0)]);
     }
 
     #[test]

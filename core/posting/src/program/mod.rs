@@ -10,7 +10,7 @@ mod word_census;
 
 pub use arc::Arc;
 pub use cycle::{DrillCycle, Leg};
-pub use interpret::{Interpreter, Reading};
+pub use interpret::{Interpreter, Reading, ToldSpindle};
 pub use spline::Spline;
 pub use step::{ArcStep, Command, CycleStep, Motion, Pace, PlaneStep, SplineStep, Step, Tool};
 pub use word_census::Unknown;

@@ -21,6 +21,8 @@ pub enum Unknown {
 #[derive(Debug, Default)]
 pub(crate) struct WordCensus {
     counts: BTreeMap<String, WordCount>,
+    /// Words that the user took upon himself, by what was done instead of carrying them out.
+    allowed: BTreeMap<(String, &'static str), WordCount>,
 }
 
 #[derive(Debug)]
@@ -44,6 +46,28 @@ impl WordCensus {
             first: place(),
         };
         self.counts.insert(word.to_owned(), count);
+    }
+
+    /// Counts a word at `place` that is not carried out because the user allows it; `instead` is what is done.
+    pub(crate) fn allow(&mut self, word: &str, instead: &'static str, place: Place) {
+        let count = self.allowed.entry((word.to_owned(), instead));
+        let count = count.or_insert(WordCount {
+            usage: Usage::Refused,
+            count: 0,
+            first: place,
+        });
+        count.count += 1;
+    }
+
+    /// A warning for each word that the user took upon himself.
+    pub(crate) fn allowed(&self) -> impl Iterator<Item = Diagnostic> {
+        self.allowed.iter().map(|((word, instead), count)| {
+            let message = format!(
+                "{word}, met {}, {instead}, as --allow says",
+                times(count.count)
+            );
+            Diagnostic::warning("allowed-word", message).at(Some(count.first.clone()))
+        })
     }
 
     /// How often a word was met.
@@ -73,7 +97,7 @@ impl WordCensus {
                 let message = format!("{word} {what}: met {}", times(count.count));
                 let finding = match policy {
                     Unknown::Error => Diagnostic::error("unknown-word", message).help(
-                        "--unknown=warn leaves it out, --unknown=pass writes it as a comment",
+                        "--allow leaves it out, --unknown=warn all of its kind, --unknown=pass writes them as comments",
                     ),
                     Unknown::Warn => {
                         Diagnostic::warning("unknown-word", format!("{message}; left out"))

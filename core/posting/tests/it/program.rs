@@ -16,7 +16,7 @@ use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::{Compensation, Spindle};
 use post_posting::Flow;
 use post_posting::expand::{Line, expanded};
-use post_posting::program::{Command, Interpreter, Motion, Pace, Reading, Unknown};
+use post_posting::program::{Command, Interpreter, Motion, Pace, Reading, ToldSpindle, Unknown};
 
 /// What comes of a text.
 struct Run {
@@ -27,8 +27,14 @@ struct Run {
 
 impl Run {
     fn of(reading: Reading, text: &str) -> Self {
+        let spindle = match reading.spindle {
+            // Texts this short do not care for the spindle.
+            ToldSpindle::Unknown => ToldSpindle::Still,
+            told => told,
+        };
         let reading = Reading {
             chord_tolerance: 0.01,
+            spindle,
             ..reading
         };
         let text = text.replace(';', "\n");

@@ -27,11 +27,10 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
         match name.as_ref() {
             "FEDTO" | "DEPTH" => cycle.depth = Some(items.number(&name, FORM)?),
             "RAPTO" | "CLEAR" => cycle.clearance = Some(items.number(&name, FORM)?),
-            "STEP" => cycle.step = Some(items.number(&name, FORM)?),
             // CAMWorks gives the first peck and those that follow.
-            "PECKING" => {
+            "STEP" | "PECKING" => {
                 cycle.step = Some(items.number(&name, FORM)?);
-                cycle.rest.extend(items.take_number().map(Argument::Number));
+                cycle.later_step = items.take_number();
             }
             "RTRCTO" | "RETURN" | "DWELL" => match (items.take_number(), name.as_ref()) {
                 (Some(value), "DWELL") => cycle.dwell = Some(value),
@@ -66,8 +65,11 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
             None if name.is_empty() => {
                 return Err(items.unexpected(item, "a word or a number is expected", FORM));
             }
-            None if kinds_end || matches!(name.as_ref(), "G98" | "G99") => {
-                cycle.rest.push(item.argument())
+            None if matches!(name.as_ref(), "G98" | "G99") => cycle.rest.push(item.argument()),
+            // The number behind an option is the option's: it is no clearance.
+            None if kinds_end => {
+                cycle.rest.push(item.argument());
+                cycle.rest.extend(items.take_number().map(Argument::Number));
             }
             None => cycle.kinds.push(name.into_owned()),
         }

@@ -23,12 +23,29 @@ impl Interpreter {
         })));
     }
 
+    /// A point of a cycle that was refused: the tool is taken to stand there, so that nothing is said of its moves.
+    pub(super) fn lost_hole(
+        &mut self,
+        record: &Record<'_>,
+        point: [f64; 3],
+        axis: Option<[f64; 3]>,
+    ) {
+        self.rapid = false;
+        if self.set_axis(record, axis) {
+            let tip = self.point(point);
+            self.arrive(tip);
+        }
+    }
+
     pub(super) fn cycle(
         &mut self,
         record: &Record<'_>,
         cycle: &Cycle,
         emit: &mut impl FnMut(Step),
     ) {
+        if matches!(cycle, Cycle::Off | Cycle::Define(_)) {
+            self.cycle_lost = false;
+        }
         match cycle {
             Cycle::Off => {
                 if self.cycle.take().is_some() {
@@ -44,6 +61,8 @@ impl Interpreter {
         let drill = match DrillCycle::new(definition, self.scale) {
             Ok(drill) => drill,
             Err(message) => {
+                self.cycle = None;
+                self.cycle_lost = true;
                 self.fault(
                     record,
                     "cycle",
@@ -55,7 +74,7 @@ impl Interpreter {
         };
         let feed = match definition.feed {
             Some(feed) => self.feed_word(record, feed),
-            None => self.feed,
+            None => self.feed.or_else(|| self.told_feed()),
         };
         let left: Vec<String> = DrillCycle::left_out(definition).collect();
         if !left.is_empty() {
@@ -66,7 +85,14 @@ impl Interpreter {
             );
         }
         let Some(feed) = feed.filter(|feed| *feed != FeedWord::Pace(Pace::Rapid)) else {
-            self.fault(record, "no-feed", "the cycle has no feed".to_owned(), "");
+            self.cycle = None;
+            self.cycle_lost = true;
+            self.fault(
+                record,
+                "no-feed",
+                "the cycle has no feed".to_owned(),
+                "the CAM system must write it with one; --feed MM_A_MINUTE is for cuts without one",
+            );
             return;
         };
         self.cycle = Some((drill, feed));

@@ -9,6 +9,9 @@ impl Interpreter {
     /// A feed word as the spindle turns now.
     #[inline]
     pub(super) fn resolved(&mut self, record: &Record<'_>, feed: FeedWord) -> Option<Pace> {
+        if !self.may_cut {
+            self.cut_standing(record);
+        }
         match (feed, self.rpm) {
             (FeedWord::Pace(pace), _) => Some(pace),
             (FeedWord::PerRevolution(feed), Some(rpm)) if rpm > 0.0 => {
@@ -19,11 +22,17 @@ impl Interpreter {
                     record,
                     "feed",
                     "a feed per revolution needs a spindle speed".to_owned(),
-                    "put a SPINDL before it",
+                    "put a SPINDL before it, or say --spindle RPM",
                 );
                 None
             }
         }
+    }
+
+    /// The feed of cuts that the file gives none.
+    pub(super) fn told_feed(&self) -> Option<FeedWord> {
+        let feed = self.reading.feed?;
+        Some(FeedWord::Pace(Pace::PerMinute(feed)))
     }
 
     pub(super) fn set_feed(&mut self, record: &Record<'_>, feed: FeedRate) {
@@ -40,13 +49,17 @@ impl Interpreter {
     pub(super) fn feed_word(&mut self, record: &Record<'_>, feed: FeedRate) -> Option<FeedWord> {
         let value = feed.value.unwrap_or(0.0);
         if value <= 0.0 {
-            self.fault(
-                record,
-                "feed",
-                format!("a feed of {value}: it must be above zero"),
-                "",
-            );
-            return None;
+            // CAM systems write 0 where nobody gave a feed.
+            let told = self.told_feed().filter(|_| value == 0.0);
+            if told.is_none() {
+                self.fault(
+                    record,
+                    "feed",
+                    format!("a feed of {value}: it must be above zero"),
+                    "the CAM system must write one; --feed MM_A_MINUTE stands for a feed of 0",
+                );
+            }
+            return told;
         }
         self.measured = true;
         // Where the units are overridden, a word of the units that the file declares goes with its lengths.

@@ -2,8 +2,13 @@
 
 mod curves;
 mod cycles;
+mod ending;
 mod feeds;
+mod moves;
+mod readiness;
+mod reading;
 mod tools;
+mod words;
 
 use nalgebra::Vector3;
 use post_grammar::{
@@ -11,32 +16,12 @@ use post_grammar::{
 };
 use post_plugin::{Coolant, SpindleSense};
 
-use super::frame::Frame;
-use super::word_census::{Unknown, WordCensus};
-use super::{Command, DrillCycle, Motion, Pace, PlaneStep, Step};
-use post_machine::description::{Insert, ToolLength};
-use post_machine::diagnostic::{Diagnostic, Place};
+pub use reading::{Reading, ToldSpindle};
 
-/// How a file is to be read.
-#[derive(Clone, Debug, Default)]
-pub struct Reading {
-    /// The file's name in messages.
-    pub file: String,
-    /// Units of the numbers, whatever the file says.
-    pub units: Option<Units>,
-    /// The tool that a file without `LOADTL` works with.
-    pub tool: Option<u32>,
-    /// Take points and axes into the frame of `MSYS`.
-    pub apply_msys: bool,
-    /// What to do with unknown words.
-    pub unknown: Unknown,
-    /// What becomes of `INSERT`.
-    pub insert: Insert,
-    /// Which tool length counts.
-    pub tool_length: ToolLength,
-    /// How far chords may stray from arcs and splines, mm.
-    pub chord_tolerance: f64,
-}
+use super::frame::Frame;
+use super::word_census::WordCensus;
+use super::{Command, DrillCycle, Pace, PlaneStep, Step};
+use post_machine::diagnostic::{Diagnostic, Place};
 
 /// Turns records into steps.
 #[derive(Debug)]
@@ -68,6 +53,12 @@ pub struct Interpreter {
     last_cycle: Option<(DrillCycle, FeedWord)>,
     rpm: Option<f64>,
     sense: SpindleSense,
+    /// The spindle turns, need not turn, or that it does not was said.
+    may_cut: bool,
+    /// The file said what the spindle does since the tool came.
+    spindle_said: bool,
+    /// Something is to be seen to before the next move.
+    due: bool,
     coolant: Coolant,
     side: Option<Side>,
     /// Number, register and length (as written) of the tool in the spindle.
@@ -78,18 +69,43 @@ pub struct Interpreter {
     measured: bool,
     /// Some move was read since the last tool was loaded.
     cut_any: bool,
-    told_cutter: bool,
+    /// The cutters described so far, in the order of the numbers of their tools, and the tool that is to be loaded for the
+    /// last; for files whose tools are numbered here.
+    cutters: Vec<Described>,
+    /// The file loads tools itself.
+    file_loads: bool,
+    cutter_due: Option<u32>,
+    /// The cutter described last.
+    described: Option<Described>,
     /// Cutter compensation is in force, and its register.
     compensated: bool,
     register: Option<u32>,
     tool_name: String,
     diameter: Option<f64>,
+    /// A cycle was refused: the points that it acts at are no moves.
+    cycle_lost: bool,
+    /// The operation that is open (NX), its paths must be ended.
+    path: Option<String>,
+    /// Some operation was begun (NX).
+    paths: bool,
+    /// Of a system that ends every file with FINI.
+    wants_fini: bool,
     /// Diameter and corner radius of the cutter described since the last tool was loaded, mm.
     cutter: [Option<f64>; 2],
     cutter_length: Option<f64>,
     finished: bool,
     findings: Vec<Diagnostic>,
     census: WordCensus,
+}
+
+/// A cutter as the file describes it.
+#[derive(Clone, Debug, PartialEq)]
+struct Described {
+    /// Where its length stands among the numbers: that tells the words apart.
+    length: usize,
+    numbers: Vec<f64>,
+    /// The tool's name (NX).
+    name: String,
 }
 
 /// A feed as the file has it; one a revolution waits for the speed of the spindle at the move.
@@ -115,6 +131,7 @@ impl Interpreter {
     pub fn new(reading: Reading) -> Self {
         let scale = reading.units.map_or(1.0, millimetres);
         let frame = Frame::new(reading.apply_msys);
+        let may_cut = reading.knife || reading.spindle == ToldSpindle::Still;
         Self {
             reading,
             units: None,
@@ -134,17 +151,27 @@ impl Interpreter {
             last_cycle: None,
             rpm: None,
             sense: SpindleSense::Clockwise,
+            may_cut,
+            spindle_said: false,
+            due: true,
             coolant: Coolant::Flood,
             side: None,
             loaded: None,
             cutter_changed: false,
             measured: false,
             cut_any: false,
-            told_cutter: false,
+            cutters: Vec::new(),
+            file_loads: false,
+            cutter_due: None,
+            described: None,
             compensated: false,
             register: None,
             tool_name: String::new(),
             diameter: None,
+            cycle_lost: false,
+            path: None,
+            paths: false,
+            wants_fini: false,
             cutter: [None; 2],
             cutter_length: None,
             finished: false,
@@ -175,6 +202,7 @@ impl Interpreter {
         if let Statement::Goto { point, axis } = &record.statement
             && self.pending.is_none()
             && self.cycle.is_none()
+            && !self.cycle_lost
             && !self.finished
         {
             self.plain_goto(record, *point, *axis, emit);
@@ -214,6 +242,7 @@ impl Interpreter {
         }
         self.findings
             .extend(self.census.unknown(self.reading.unknown));
+        self.findings.extend(self.census.allowed());
     }
 
     fn other(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
@@ -319,7 +348,7 @@ impl Interpreter {
                 self.load_told(record, emit);
                 emit(Step::Command(Command::Coolant(coolant)));
             }
-            Statement::LoadTool(tool) => self.load(record, tool, emit),
+            Statement::LoadTool(tool) => self.load_read(record, tool, emit),
             Statement::SelectTool(number) => {
                 if self.loaded.map(|(loaded, ..)| loaded) != Some(*number) {
                     emit(Step::Command(Command::Preselect(*number)));
@@ -403,6 +432,7 @@ impl Interpreter {
                         _ => Vector3::z(),
                     };
                     self.check_axis = self.frame.turned().is_some();
+                    self.due = true;
                     // Where the tool stands is not known in the frame that begins here.
                     self.tip = None;
                 }
@@ -441,19 +471,19 @@ impl Interpreter {
                 // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
                 self.axis = Vector3::z();
                 self.tool_name = tool.clone().unwrap_or_default();
+                self.path = Some(name.clone());
+                self.paths = true;
                 emit(Step::Command(Command::Operation(name.clone())));
             }
             Statement::EndOfPath => {
                 self.end_spline(record, emit);
+                self.path = None;
                 emit(Step::Command(Command::OperationEnd));
             }
             Statement::PartName(text) | Statement::Print(text) => {
                 emit(Step::Command(Command::Comment(text.clone())))
             }
-            Statement::Insert(text) => match self.reading.insert {
-                Insert::Comment => emit(Step::Command(Command::Comment(text.clone()))),
-                Insert::Literal => emit(Step::Command(Command::Literal(text.clone()))),
-            },
+            Statement::Insert(text) => self.insert(record, text, emit),
             Statement::Csys(_) | Statement::Remark(_) => {
                 self.count(record.statement.word(), record, Usage::Ignored);
             }
@@ -462,181 +492,11 @@ impl Interpreter {
                 self.finished = true;
                 self.count("FINI", record, Usage::Used);
             }
-            Statement::Other { word, .. } => {
-                let usage = record.statement.usage();
-                self.count(word, record, usage);
-                if usage == Usage::Refused {
-                    self.fault(
-                        record,
-                        "refused-word",
-                        format!("{word} changes where the tool goes, and post does not know how"),
-                        "let the CAM system write the result instead",
-                    );
-                }
-                if usage == Usage::Unknown && self.reading.unknown == Unknown::Pass {
-                    emit(Step::Command(Command::Comment(record.text().into_owned())));
-                }
-            }
-        }
-    }
-
-    /// A `GOTO` that neither ends a curve nor stands in a cycle: nearly all of a file.
-    #[inline]
-    fn plain_goto(
-        &mut self,
-        record: &Record<'_>,
-        point: [f64; 3],
-        axis: Option<[f64; 3]>,
-        emit: &mut impl FnMut(Step),
-    ) {
-        if !self.set_axis(record, axis) {
-            return;
-        }
-        if self.check_axis || self.loaded.is_none() || self.cutter_changed {
-            self.before_move(record, emit);
-        }
-        let tip = self.point(point);
-        if let Some(pace) = self.pace(record) {
-            self.arrive(tip);
-            emit(Step::Move(self.motion(tip, pace)));
-        }
-    }
-
-    fn goto(
-        &mut self,
-        record: &Record<'_>,
-        point: [f64; 3],
-        axis: Option<[f64; 3]>,
-        emit: &mut impl FnMut(Step),
-    ) {
-        let pending = match self.pending.take() {
-            Some(Pending::Arc(circle)) => Some(circle),
-            Some(spline) => {
-                self.pending = Some(spline);
-                self.end_spline(record, emit);
-                None
-            }
-            None => None,
-        };
-        if pending.is_none() && self.cycle.is_none() {
-            self.plain_goto(record, point, axis, emit);
-            return;
-        }
-        let start_axis = self.axis;
-        if !self.set_axis(record, axis) {
-            return;
-        }
-        self.before_move(record, emit);
-        let tip = self.point(point);
-        if let Some(circle) = pending {
-            self.arc(record, &circle, tip, start_axis, emit);
-        } else if let Some((drill, feed)) = self.cycle
-            && let Some(pace) = self.resolved(record, feed)
-        {
-            self.drill(drill, pace, tip, emit);
-        }
-    }
-
-    /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
-    /// cutter without a tool.
-    #[cold]
-    fn before_move(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
-        if std::mem::take(&mut self.check_axis)
-            && let (Some(turned), Some(told)) = (self.frame.turned(), self.told_axis)
-            && (turned * self.axis - told).norm() > 1e-3
-        {
-            self.fault(
-                record,
-                "rotabl",
-                "the index angles (ROTABL) do not turn the tool to the axis that TLAXIS names"
-                    .to_owned(),
-                "one of the two is wrong: check the operation's set-up in the CAM system",
-            );
-        }
-        if self.loaded.is_none() {
-            self.load_told(record, emit);
-        }
-        if self.cutter_changed && !self.told_cutter {
-            self.told_cutter = true;
-            self.warn(
-                record,
-                "cutter",
-                "another cutter was described (CUTTER, TLDATA), but no tool was loaded for it: this is cut with the tool before".to_owned(),
-            );
-        }
-    }
-
-    /// Takes the axis of a six-number point; false if it is none.
-    #[inline]
-    fn set_axis(&mut self, record: &Record<'_>, axis: Option<[f64; 3]>) -> bool {
-        let Some(axis) = axis else {
-            return true;
-        };
-        let axis = Vector3::from(axis);
-        let square = axis.norm_squared();
-        if square < 1e-12 {
-            self.fault(
-                record,
-                "axis",
-                "the tool axis is null".to_owned(),
-                "i, j, k are a direction, from the tip to the holder",
-            );
-            return false;
-        }
-        self.axis = axis * (1.0 / square.sqrt());
-        true
-    }
-
-    #[inline]
-    fn point(&self, point: [f64; 3]) -> Vector3<f64> {
-        Vector3::from(point) * self.scale
-    }
-
-    /// How fast the next move goes; a fault if nothing says so.
-    #[inline]
-    fn pace(&mut self, record: &Record<'_>) -> Option<Pace> {
-        if std::mem::take(&mut self.rapid) || self.rapid_feed {
-            return Some(Pace::Rapid);
-        }
-        let Some(feed) = self.feed else {
-            if self.tip.is_none() {
-                // The first approach of a file that names no feed yet comes from the tool change.
-                return Some(Pace::Rapid);
-            }
-            self.fault(
-                record,
-                "no-feed",
-                "this move has no feed: no FEDRAT before it, and no RAPID".to_owned(),
-                "the CAM system must write a FEDRAT",
-            );
-            return None;
-        };
-        self.resolved(record, feed)
-    }
-
-    /// The tool comes to stand at `tip`.
-    #[inline]
-    fn arrive(&mut self, tip: Vector3<f64>) {
-        self.tip = Some(tip);
-        self.measured = true;
-        self.cut_any = true;
-    }
-
-    /// The motion to `tip` (frame of the file) with axis and edge in force.
-    #[inline]
-    fn motion(&self, tip: Vector3<f64>, pace: Pace) -> Motion {
-        let (tip, axis) = self.frame.to_part(tip, self.axis);
-        let edge = if self.edge == Vector3::zeros() {
-            self.edge
-        } else {
-            self.frame.direction_to_part(self.edge)
-        };
-        Motion {
-            tip,
-            axis,
-            edge,
-            pace,
-            chord: 0.0,
+            Statement::Other {
+                word,
+                arguments,
+                directive,
+            } => self.other_word(record, word, arguments, *directive, emit),
         }
     }
 
@@ -647,6 +507,12 @@ impl Interpreter {
 
     fn place(&self, record: &Record<'_>) -> Option<Place> {
         Some(record_place(&self.reading.file, record))
+    }
+
+    /// A word that is not carried out because the user takes it upon himself.
+    fn allow(&mut self, word: &str, instead: &'static str, record: &Record<'_>) {
+        let place = record_place(&self.reading.file, record);
+        self.census.allow(word, instead, place);
     }
 
     #[cold]

@@ -1,9 +1,11 @@
 //! Tools, cutters, spindle and radius compensation.
 
-use post_grammar::{Cutcom, LoadTool, Record, Sense, Side, Spindle as SpindleWord, SpindleUnit};
+use post_grammar::{
+    Argument, Cutcom, LoadTool, Record, Sense, Side, Spindle as SpindleWord, SpindleUnit,
+};
 use post_plugin::{Compensation, Spindle, SpindleSense};
 
-use super::Interpreter;
+use super::{Described, Interpreter};
 use crate::program::{Command, Step, Tool};
 use post_machine::description::ToolLength;
 
@@ -14,6 +16,8 @@ impl Interpreter {
         spindle: SpindleWord,
         emit: &mut impl FnMut(Step),
     ) {
+        self.spindle_said = true;
+        self.may_cut = self.need_not_turn();
         let step = match spindle {
             SpindleWord::Off => Spindle::Off,
             SpindleWord::Orient => Spindle::Orient,
@@ -30,6 +34,7 @@ impl Interpreter {
                             Some(surface / (std::f64::consts::PI * diameter))
                         }
                         _ => {
+                            self.may_cut = true;
                             self.fault(
                                 record,
                                 "spindle",
@@ -46,12 +51,19 @@ impl Interpreter {
                         Sense::CounterClockwise => SpindleSense::CounterClockwise,
                     };
                 }
+                // Whatever is wrong with it, that it does not turn is not said too.
+                self.may_cut = true;
+                // CAM systems write 0 where nobody gave a speed.
+                self.rpm = self
+                    .rpm
+                    .filter(|rpm| *rpm > 0.0)
+                    .or(self.reading.spindle.speed());
                 let Some(rpm) = self.rpm else {
                     self.fault(
                         record,
                         "spindle",
-                        "the spindle is switched on, and no speed was given".to_owned(),
-                        "",
+                        "the spindle is switched on, and no speed above zero was given".to_owned(),
+                        "the CAM system must write one; --spindle RPM is for spindles without one",
                     );
                     return;
                 };
@@ -95,7 +107,10 @@ impl Interpreter {
         self.measured |= tool.length.is_some();
         self.register = None;
         self.cutter_changed = false;
+        self.cutter_due = None;
         self.cut_any = false;
+        self.spindle_said = false;
+        self.due = true;
         if self.compensated {
             self.compensated = false;
             emit(Step::Command(Command::Compensate(Compensation::Off)));
@@ -120,25 +135,82 @@ impl Interpreter {
         })));
     }
 
-    /// Loads the tool that the user names, before the first record that needs one.
+    /// Loads the tool that the user names or that belongs to the cutter, before the first record that needs one.
     pub(super) fn load_told(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
-        if self.loaded.is_none()
-            && let Some(number) = self.reading.tool.take()
-        {
+        let told = match self.loaded {
+            None => self.reading.tool.take(),
+            Some(_) => None,
+        };
+        if let Some(number) = told.or(self.cutter_due) {
             let tool = LoadTool {
                 number,
                 ..LoadTool::default()
             };
             self.load(record, &tool, emit);
+            self.cutter_due = None;
         }
+    }
+
+    /// A `LOADTL` of the file.
+    pub(super) fn load_read(
+        &mut self,
+        record: &Record<'_>,
+        tool: &LoadTool,
+        emit: &mut impl FnMut(Step),
+    ) {
+        self.file_loads = true;
+        if self.reading.tool_from_cutter {
+            self.fault(
+                record,
+                "tool",
+                "the file loads its tools itself: their numbers are not those of --tool-from-cutter".to_owned(),
+                "leave --tool-from-cutter out",
+            );
+            return;
+        }
+        if !tool.rest.is_empty() {
+            let rest: Vec<String> = tool
+                .rest
+                .iter()
+                .map(|argument| match argument {
+                    Argument::Number(number) => number.to_string(),
+                    Argument::Word(word) => word.clone(),
+                })
+                .collect();
+            let message = format!("of this tool change is left out: {}", rest.join(", "));
+            self.warn(record, "tool", message);
+        }
+        self.load(record, tool, emit);
     }
 
     /// A cutter's description; `length` is where its length stands.
     pub(super) fn cutter(&mut self, numbers: &[f64], length: usize) {
-        let diameter = numbers.first().map(|diameter| diameter * self.scale);
+        let cutter = Described {
+            length,
+            numbers: numbers.to_vec(),
+            name: self.tool_name.clone(),
+        };
         // Files that load their tools describe the cutter just before or after that.
-        self.cutter_changed |= self.diameter.is_some() && self.diameter != diameter && self.cut_any;
-        self.diameter = diameter;
+        let other = self.described.as_ref().is_some_and(|before| {
+            if before.length == length {
+                before.numbers != cutter.numbers
+            } else {
+                before.numbers.first() != cutter.numbers.first()
+            }
+        });
+        if self.reading.tool_from_cutter {
+            let known = self.cutters.iter().position(|known| *known == cutter);
+            let place = known.unwrap_or(self.cutters.len());
+            if known.is_none() {
+                self.cutters.push(cutter.clone());
+            }
+            self.cutter_due = u32::try_from(place + 1).ok();
+        } else {
+            self.cutter_changed |= other && self.cut_any;
+        }
+        self.due = true;
+        self.described = Some(cutter);
+        self.diameter = numbers.first().map(|diameter| diameter * self.scale);
         let size = |place: usize| numbers.get(place).map(|size| size * self.scale);
         self.cutter = [size(0), size(1)];
         self.cutter_length = numbers.get(length).map(|length| length * self.scale);

@@ -117,7 +117,11 @@ fn no_numbers_make_it_stumble() {
 fn the_first_fault_of_a_file_is_told_first() {
     let model = model("trunnion", false, WIDE, &[]);
     let mut text = "UNITS/MM\nFEDRAT/500\nGOTO/0,0,0\nGOTO/100000,0,0\n".to_owned();
-    text += &"GOTO/1,2\n".repeat(2 * MOST_FAULTS);
+    // Sentences that differ in more than a number: each is told.
+    for count in 0..2 * MOST_FAULTS {
+        let letters = "x".repeat(count + 1);
+        text += &format!("GOTO/1,2,{letters}\n");
+    }
     let run = model.run(&text);
     let errors: Vec<_> = run
         .findings

@@ -11,6 +11,13 @@ fn tools_and_registers() {
         ("LOAD/TOOL,0", "", "error tool"),
         ("LOADTL/3,ADJUST,0", "", "error tool"),
         ("LOADTL/3,OSETNO,0", "", "error tool"),
+        // CATIA writes a register behind the number, others pockets: nothing of it goes without a word.
+        ("LOADTL/3,5;GOTO/1,0,0", "T3/3; F100 1,0,0", "warning tool"),
+        (
+            "LOADTL/3,IN,4;GOTO/1,0,0",
+            "T3/3; F100 1,0,0",
+            "warning tool",
+        ),
         (
             "LOADTL/3;GOTO/1,0,0;LOADTL/3;GOTO/2,0,0;LOADTL/3,ADJUST,3",
             "T3/3; F100 1,0,0; F100 2,0,0",
@@ -96,19 +103,24 @@ fn the_register_of_compensation_does_not_outlive_its_tool() {
 
 /// Another cutter described and none loaded: the path of a small tool is cut with a large one.
 #[test]
-fn a_second_cutter_without_a_tool_change_is_told_once() {
+fn a_second_cutter_without_a_tool_change_is_refused() {
     for (text, findings) in [
         (
             "CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/6;GOTO/2,0,0",
-            "warning cutter",
+            "error cutter",
         ),
         (
             "CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/6;GOTO/2,0,0;GOTO/3,0,0;CUTTER/4;GOTO/4,0,0",
-            "warning cutter",
+            "error cutter; error cutter",
+        ),
+        // The same diameter, and a ball.
+        (
+            "CUTTER/10,0;GOTO/1,0,0;CUTTER/10,5;GOTO/2,0,0",
+            "error cutter",
         ),
         (
             "CUTTER/10;GOTO/1,0,0;TLDATA/MILL,6,0;GOTO/2,0,0",
-            "warning cutter",
+            "error cutter",
         ),
         ("CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/10;GOTO/2,0,0", ""),
         (

@@ -1,0 +1,72 @@
+//! How fast the spindle turns: `[spindle]`.
+
+use super::build::Builder;
+use super::file::SpindleFile;
+use crate::diagnostic::Diagnostic;
+
+/// The speeds that a spindle can turn at, rpm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpindleSpeeds {
+    /// Least speed; 0 if the file does not say.
+    pub min: f64,
+    /// Largest speed; infinite if the file does not say.
+    pub max: f64,
+}
+
+impl Default for SpindleSpeeds {
+    fn default() -> Self {
+        Self {
+            min: 0.0,
+            max: f64::INFINITY,
+        }
+    }
+}
+
+impl SpindleSpeeds {
+    /// What is wrong with a speed, rpm: the finding has no place yet.
+    pub fn refuse(&self, rpm: f64) -> Option<Diagnostic> {
+        let (end, key, limit) = if rpm < self.min {
+            ("least", "min_speed", self.min)
+        } else if rpm > self.max {
+            ("largest", "max_speed", self.max)
+        } else {
+            return None;
+        };
+        let message =
+            format!("the spindle would turn at {rpm} rpm, its {end} speed is {limit} rpm");
+        let help = format!(
+            "another speed in the CAM system; {key} of [spindle] in the machine file is the limit"
+        );
+        Some(Diagnostic::error("spindle-speed", message).help(help))
+    }
+}
+
+impl Builder<'_> {
+    pub(super) fn spindle(&mut self, file: &SpindleFile) -> SpindleSpeeds {
+        let mut speeds = SpindleSpeeds::default();
+        for (key, quantity, speed) in [
+            ("min_speed", &file.min_speed, &mut speeds.min),
+            ("max_speed", &file.max_speed, &mut speeds.max),
+        ] {
+            let Some(quantity) = quantity else { continue };
+            *speed = self.number(quantity);
+            if *speed < 0.0 || (key == "max_speed" && *speed == 0.0) {
+                let message = format!("{key} is {speed} rpm");
+                self.fault(
+                    "machine-spindle",
+                    quantity.span(),
+                    message,
+                    "speeds are above zero",
+                );
+            }
+        }
+        if let (Some(max), true) = (&file.max_speed, speeds.min > speeds.max) {
+            let message = format!(
+                "the least speed, {} rpm, lies above the largest, {} rpm",
+                speeds.min, speeds.max
+            );
+            self.fault("machine-spindle", max.span(), message, "");
+        }
+        speeds
+    }
+}

@@ -1,0 +1,144 @@
+//! Points become motions: axis, feed and frame in force at each.
+
+use nalgebra::Vector3;
+use post_grammar::Record;
+
+use super::{Interpreter, Pending};
+use crate::program::{Motion, Pace, Step};
+
+impl Interpreter {
+    /// A `GOTO` that neither ends a curve nor stands in a cycle: nearly all of a file.
+    #[inline]
+    pub(super) fn plain_goto(
+        &mut self,
+        record: &Record<'_>,
+        point: [f64; 3],
+        axis: Option<[f64; 3]>,
+        emit: &mut impl FnMut(Step),
+    ) {
+        if !self.set_axis(record, axis) {
+            return;
+        }
+        if self.due {
+            self.before_move(record, emit);
+        }
+        let tip = self.point(point);
+        if let Some(pace) = self.pace(record) {
+            self.arrive(tip);
+            emit(Step::Move(self.motion(tip, pace)));
+        }
+    }
+
+    pub(super) fn goto(
+        &mut self,
+        record: &Record<'_>,
+        point: [f64; 3],
+        axis: Option<[f64; 3]>,
+        emit: &mut impl FnMut(Step),
+    ) {
+        let pending = match self.pending.take() {
+            Some(Pending::Arc(circle)) => Some(circle),
+            Some(spline) => {
+                self.pending = Some(spline);
+                self.end_spline(record, emit);
+                None
+            }
+            None => None,
+        };
+        if self.cycle_lost {
+            self.lost_hole(record, point, axis);
+            return;
+        }
+        if pending.is_none() && self.cycle.is_none() {
+            self.plain_goto(record, point, axis, emit);
+            return;
+        }
+        let start_axis = self.axis;
+        if !self.set_axis(record, axis) {
+            return;
+        }
+        self.before_move(record, emit);
+        let tip = self.point(point);
+        if let Some(circle) = pending {
+            self.arc(record, &circle, tip, start_axis, emit);
+        } else if let Some((drill, feed)) = self.cycle
+            && let Some(pace) = self.resolved(record, feed)
+        {
+            self.drill(drill, pace, tip, emit);
+        }
+    }
+
+    /// Takes the axis of a six-number point; false if it is none.
+    #[inline]
+    pub(super) fn set_axis(&mut self, record: &Record<'_>, axis: Option<[f64; 3]>) -> bool {
+        let Some(axis) = axis else {
+            return true;
+        };
+        let axis = Vector3::from(axis);
+        let square = axis.norm_squared();
+        if square < 1e-12 {
+            self.fault(
+                record,
+                "axis",
+                "the tool axis is null".to_owned(),
+                "i, j, k are a direction, from the tip to the holder",
+            );
+            return false;
+        }
+        self.axis = axis * (1.0 / square.sqrt());
+        true
+    }
+
+    #[inline]
+    pub(super) fn point(&self, point: [f64; 3]) -> Vector3<f64> {
+        Vector3::from(point) * self.scale
+    }
+
+    /// How fast the next move goes; a fault if nothing says so.
+    #[inline]
+    pub(super) fn pace(&mut self, record: &Record<'_>) -> Option<Pace> {
+        if std::mem::take(&mut self.rapid) || self.rapid_feed {
+            return Some(Pace::Rapid);
+        }
+        if self.feed.is_none() && self.tip.is_none() {
+            // The first approach of a file that names no feed yet comes from the tool change.
+            return Some(Pace::Rapid);
+        }
+        let Some(feed) = self.feed.or_else(|| self.told_feed()) else {
+            self.fault(
+                record,
+                "no-feed",
+                "this move has no feed: no FEDRAT before it, and no RAPID".to_owned(),
+                "the CAM system must write a FEDRAT; --feed MM_A_MINUTE is for cuts without one",
+            );
+            return None;
+        };
+        self.resolved(record, feed)
+    }
+
+    /// The tool comes to stand at `tip`.
+    #[inline]
+    pub(super) fn arrive(&mut self, tip: Vector3<f64>) {
+        self.tip = Some(tip);
+        self.measured = true;
+        self.cut_any = true;
+    }
+
+    /// The motion to `tip` (frame of the file) with axis and edge in force.
+    #[inline]
+    pub(super) fn motion(&self, tip: Vector3<f64>, pace: Pace) -> Motion {
+        let (tip, axis) = self.frame.to_part(tip, self.axis);
+        let edge = if self.edge == Vector3::zeros() {
+            self.edge
+        } else {
+            self.frame.direction_to_part(self.edge)
+        };
+        Motion {
+            tip,
+            axis,
+            edge,
+            pace,
+            chord: 0.0,
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What must be in order before the tool moves and before it cuts: axis, tool, cutter, spindle.
+
+use post_grammar::Record;
+use post_plugin::Spindle;
+
+use super::{Interpreter, ToldSpindle};
+use crate::program::{Command, Step};
+
+impl Interpreter {
+    /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
+    /// cutter without a tool, the speed that the user names.
+    #[cold]
+    pub(super) fn before_move(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+        if std::mem::take(&mut self.check_axis)
+            && let (Some(turned), Some(told)) = (self.frame.turned(), self.told_axis)
+            && (turned * self.axis - told).norm() > 1e-3
+        {
+            self.fault(
+                record,
+                "rotabl",
+                "the index angles (ROTABL) do not turn the tool to the axis that TLAXIS names"
+                    .to_owned(),
+                "one of the two is wrong: check the operation's set-up in the CAM system",
+            );
+        }
+        self.load_told(record, emit);
+        if std::mem::take(&mut self.cutter_changed) {
+            self.refuse_cutter(record);
+        }
+        if let (false, Some(rpm)) = (self.spindle_said, self.reading.spindle.speed()) {
+            self.spindle_said = true;
+            self.may_cut = true;
+            self.rpm = Some(rpm);
+            emit(Step::Command(Command::Spindle(Spindle::On {
+                rpm,
+                sense: self.sense,
+            })));
+        }
+        self.due = false;
+    }
+
+    /// Another cutter was described, and no tool was loaded for it.
+    fn refuse_cutter(&mut self, record: &Record<'_>) {
+        if self.reading.allows("CUTTER") {
+            self.allow("CUTTER", "is cut with the tool before", record);
+            return;
+        }
+        let (message, help) = match self.loaded {
+            Some((number, ..)) if self.file_loads => (
+                format!("another cutter is described (CUTTER, TLDATA), and tool {number} is still in the spindle: this would be cut with it"),
+                "the CAM system must load it as another tool (LOADTL); --allow CUTTER cuts on with the one before",
+            ),
+            _ => (
+                "another cutter is described (CUTTER, TLDATA), and the file loads no tools: all would be cut with one".to_owned(),
+                "--tool-from-cutter numbers tools in the order of their cutters; --allow CUTTER cuts all with one",
+            ),
+        };
+        self.fault(record, "cutter", message, help);
+    }
+
+    /// The tool cuts though the spindle stands: the file switched it off, or never on.
+    #[cold]
+    pub(super) fn cut_standing(&mut self, record: &Record<'_>) {
+        // Said once, until the spindle is spoken of again.
+        self.may_cut = true;
+        let (message, help) = if self.spindle_said {
+            (
+                "the tool cuts, and the file has switched the spindle off",
+                "the CAM system should write SPINDL before this line; --spindle off cuts with a spindle that stands",
+            )
+        } else {
+            (
+                "the tool cuts, and the spindle was not switched on",
+                "the CAM system should write SPINDL before this line; --spindle RPM switches it on at each tool for which the file does not, --spindle off lets it stand",
+            )
+        };
+        self.fault(record, "spindle", message.to_owned(), help);
+    }
+
+    /// The tool cuts without turning: a knife, or as the user says.
+    pub(super) fn need_not_turn(&self) -> bool {
+        self.reading.knife || self.reading.spindle == ToldSpindle::Still
+    }
+}

@@ -1,0 +1,72 @@
+//! How a file is to be read: what the user says of it, and what the machine file does.
+
+use post_grammar::{MajorWord, Units};
+use post_machine::description::{Insert, ToolLength, WordRule};
+
+use crate::program::Unknown;
+
+/// How a file is to be read.
+#[derive(Clone, Debug, Default)]
+pub struct Reading {
+    /// The file's name in messages.
+    pub file: String,
+    /// Units of the numbers, whatever the file says.
+    pub units: Option<Units>,
+    /// The tool that a file without `LOADTL` works with.
+    pub tool: Option<u32>,
+    /// Take points and axes into the frame of `MSYS`.
+    pub apply_msys: bool,
+    /// What to do with unknown words.
+    pub unknown: Unknown,
+    /// What becomes of `INSERT`.
+    pub insert: Insert,
+    /// Which tool length counts.
+    pub tool_length: ToolLength,
+    /// How far chords may stray from arcs and splines, mm.
+    pub chord_tolerance: f64,
+    /// What the spindle does where the file does not say.
+    pub spindle: ToldSpindle,
+    /// Feed of the cuts that the file gives none, mm/min.
+    pub feed: Option<f64>,
+    /// The file loads no tools: they are numbered in the order of their cutters.
+    pub tool_from_cutter: bool,
+    /// Words that the user takes upon himself, in capitals.
+    pub allowed: Vec<String>,
+    /// Lines of the program that the machine has for words.
+    pub rules: Vec<WordRule>,
+    /// The tool has an edge that leads: it cuts without turning.
+    pub knife: bool,
+}
+
+/// What the spindle does where the file does not say.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ToldSpindle {
+    /// Nobody said: a cut is refused.
+    #[default]
+    Unknown,
+    /// It stands still, and the tool cuts so.
+    Still,
+    /// It turns at so many revolutions a minute.
+    On(f64),
+}
+
+impl ToldSpindle {
+    /// The speed, rpm, if it turns.
+    pub(super) fn speed(self) -> Option<f64> {
+        match self {
+            Self::On(rpm) => Some(rpm),
+            Self::Unknown | Self::Still => None,
+        }
+    }
+}
+
+impl Reading {
+    /// The user takes upon himself what becomes of the word, in any of its spellings.
+    pub(super) fn allows(&self, word: &str) -> bool {
+        let same = |allowed: &String| {
+            allowed == word
+                || MajorWord::find(allowed).is_some_and(|row| row.spellings.contains(&word))
+        };
+        self.allowed.iter().any(same)
+    }
+}

@@ -1,0 +1,68 @@
+//! A command that is interrupted leaves nothing behind.
+
+use crate::common::{command, names};
+
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What a CL file begins with; more of it never comes.
+const BEGUN: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,0,50\n";
+
+/// Waits until `done`, or fails.
+#[track_caller]
+fn until(what: &str, mut done: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !done() {
+        assert!(start.elapsed() < Duration::from_secs(20), "{what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn interrupted(folder: &Path, arguments: &[&str], files: usize, signal: &str) -> Option<i32> {
+    let mut child: Child = command()
+        .args(arguments)
+        .current_dir(folder)
+        // What goes to standard output waits in a file, too.
+        .env("TMPDIR", folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    stdin.write_all(BEGUN.as_bytes()).unwrap();
+    stdin.flush().unwrap();
+    until("the temporary files are there", || {
+        names(folder).len() == files
+    });
+    let kill = Command::new("kill")
+        .args([signal, &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    let code = child.wait().unwrap().code();
+    drop(stdin);
+    code
+}
+
+#[test]
+fn an_interrupted_command_leaves_no_temporary_file() {
+    for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
+        let folder = tempfile::tempdir().unwrap();
+        let to_file = &[
+            "-m",
+            "ac-trunnion",
+            "-",
+            "-o",
+            "part.nc",
+            "--summary",
+            "s.json",
+        ];
+        let found = interrupted(folder.path(), to_file, 2, signal);
+        assert_eq!((found, names(folder.path())), (Some(code), Vec::new()));
+        let to_stream = &["-m", "ac-trunnion", "-", "-o", "-"];
+        let found = interrupted(folder.path(), to_stream, 1, signal);
+        assert_eq!((found, names(folder.path())), (Some(code), Vec::new()));
+    }
+}

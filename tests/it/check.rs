@@ -738,7 +738,7 @@ fn the_commissioning_program_moves_one_axis_at_a_time() {
         let head: String = run
             .out
             .lines()
-            .take(12)
+            .take(30)
             .collect::<Vec<_>>()
             .join(" ")
             .to_uppercase();

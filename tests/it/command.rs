@@ -300,7 +300,8 @@ fn check_summary(summary: &Value, program: &str, machine: &str) {
         .filter(|line| line.starts_with("GOTO"))
         .count() as u64;
     assert_eq!(count("moves"), points);
-    assert!(count("blocks") <= count("moves") + count("points_added"));
+    // A head that leans is drawn back along the tool at the end.
+    assert!(count("blocks") <= count("moves") + count("points_added") + 1);
     assert!(count("blocks") + 10 > count("moves") + count("points_added"));
     let lines: Vec<&str> = program.lines().collect();
     assert_eq!(count("nc_lines"), lines.len() as u64);

@@ -27,13 +27,21 @@ const GOOD: &[(&str, &str, &str)] = &[
         "dmu50",
         "--tcp post --units mm --mount -140,21,0 --tool-length 120",
     ),
-    ("nx_HumMan_ust_a2.cls", "head-head-360", "--tcp post"),
+    (
+        "nx_HumMan_ust_a2.cls",
+        "head-head-360",
+        "--tcp post --set control.retract.Z=9000",
+    ),
     (
         "nx_HumMan_ust_a2.cls",
         "head-head",
         "--tcp post --msys apply",
     ),
-    ("nx_HumMan_ust_a.cls", "head-head-360", ""),
+    (
+        "nx_HumMan_ust_a.cls",
+        "head-head-360",
+        "--set control.retract.Z=9000",
+    ),
     (
         "nx_HumMan_ust_a.cls",
         "head-head",

@@ -214,7 +214,7 @@ fn real_files_are_read_back() {
         check(
             "nx_HumMan_ust_a2.cls",
             "head-head-360",
-            "",
+            "--set control.retract.Z=9000",
             "XYZAC",
             head_head,
         ),

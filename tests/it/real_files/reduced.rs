@@ -91,6 +91,12 @@ fn read_loosely(file: &Path, check: &Check) {
                 Some((at, t))
             });
             let Some((at, t)) = found else {
+                // Ahead of a retract a head that leans draws the tool back along its own axis.
+                let stood = (check.forward)(last.words, mount, tool);
+                if block.rapid && beside(pose.tip, stood.tip, stood.tip + stood.axis * 101.0) < 0.5
+                {
+                    break;
+                }
                 panic!("{name}: block {number} at {t} is off the path behind point {leg}");
             };
             passed.extend((leg..at).map(|index| (index + 1, tips.len())));
@@ -198,7 +204,7 @@ fn reduced_programs_are_read_back() {
             check(
                 "nx_HumMan_ust_a2.cls",
                 "head-head-360",
-                "--tcp post",
+                "--tcp post --set control.retract.Z=9000",
                 "XYZAC",
                 head_head,
             ),

@@ -90,7 +90,13 @@ impl Blocks<'_> {
                 pace: Pace::feed_or_rapid(feed),
                 ..away
             };
-            match placer.settled(pose(&motion), 1.0, &last.trace.joints) {
+            let joints = &last.trace.joints;
+            let placed = match placer.solver().closed_form() {
+                true => placer.settled(pose(&motion), 1.0, joints),
+                // The rotary axes are needed for the way.
+                false => placer.place(pose(&motion), 1.0, joints),
+            };
+            match placed {
                 Ok(node) => {
                     let out = Leg {
                         line,

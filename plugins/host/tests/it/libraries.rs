@@ -382,7 +382,7 @@ fn a_plugin_that_panics_does_not_take_the_host_with_it() {
     let message = &fault.message;
     assert!(
         message.starts_with(
-            "dialect `panics`, event Home: the plugin panicked: the sky fell on Home ("
+            "dialect `panics`, event Park: the plugin panicked: the sky fell on Park ("
         ) && message.contains("post_panics.rs:"),
         "{message}"
     );

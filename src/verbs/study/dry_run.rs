@@ -47,7 +47,10 @@ impl<'a> DryRun<'a> {
     pub fn machine(&self, more: &[Setting]) -> Result<Machine, Failure> {
         let mut settings = vec![Setting::Reduce(false)];
         settings.extend_from_slice(more);
-        job::machine(self.arguments, &settings)
+        let mut machine = job::machine(self.arguments, &settings)?;
+        // The path is studied, not the way off the part behind it.
+        machine.frame.retract.clear();
+        Ok(machine)
     }
 
     /// Posts the file, and throws the text away.

@@ -17,6 +17,7 @@ mod real_files;
 mod schema;
 mod snapshots;
 mod study;
+mod writable;
 
 #[path = "../bench/generate.rs"]
 #[expect(dead_code, reason = "its `main` is that of the example")]

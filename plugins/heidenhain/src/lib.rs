@@ -5,8 +5,8 @@
 mod options;
 
 use post_plugin::{
-    Axes, Block, Compensation, Coolant, Dialect, Event, Feed, Format, Group, Modal, NumberStyle,
-    OptionSpec, Setup, Spindle, SpindleSense, Units, ascii, export_dialect,
+    Axes, AxisNames, Block, Compensation, Coolant, Dialect, Event, Feed, Format, Group, Modal,
+    NumberStyle, OptionSpec, Setup, Spindle, SpindleSense, Units, ascii, export_dialect,
 };
 
 use crate::options::OPTIONS;
@@ -59,6 +59,7 @@ impl Dialect for Heidenhain {
     }
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        AxisNames::ISO.check(setup)?;
         let inch = setup.units == Units::Inch;
         let decimals = setup.integer(if inch { "decimals_inch" } else { "decimals" });
         let rotary = setup.integer("rotary_decimals");

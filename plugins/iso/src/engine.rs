@@ -52,6 +52,7 @@ impl Engine {
         if setup.tcp && matches!(table.tcp, Tcp::None) {
             return Err("this control has no tool centre point control: tcp = \"post\"".to_owned());
         }
+        table.axes.check(setup)?;
         let inch = setup.units == Units::Inch;
         let style = NumberStyle {
             point: true,

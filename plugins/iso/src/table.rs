@@ -1,6 +1,6 @@
 //! What differs from control to control.
 
-use post_plugin::{OptionSpec, remark};
+use post_plugin::{AxisNames, OptionSpec, remark};
 
 /// How a control of the family differs from the others. Begin with [`Table::ISO`] and say what is different.
 ///
@@ -10,6 +10,8 @@ use post_plugin::{OptionSpec, remark};
 pub struct Table {
     /// The options of `[control.<name>]`; [`crate::options`] has those that the engine knows.
     pub options: &'static [OptionSpec],
+    /// Names of axes that the control reads; a machine with others is refused.
+    pub axes: AxisNames,
     /// Usual ending of a program's file name.
     pub extension: &'static str,
     /// `%` before and after the program. Option `percent`.
@@ -154,6 +156,7 @@ impl Table {
     /// What most controls have in common: a beginning for a table of one's own.
     pub const ISO: Table = Table {
         options: &[],
+        axes: AxisNames::ISO,
         extension: "nc",
         percent: true,
         remark,

@@ -46,7 +46,7 @@ impl Control for LinuxCnc {
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
         if let Some(word) = setup.words.iter().find(|word| word.wrapped) {
             return Err(format!(
-                "{} has a range, but LinuxCNC takes the sign of a wrapped rotary word for its direction: leave the range out, its words are endless",
+                "axis {}: it has a range, but LinuxCNC takes the sign of a wrapped rotary word for its direction: leave the range out, its words are endless",
                 word.name
             ));
         }

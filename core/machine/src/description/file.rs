@@ -49,7 +49,7 @@ pub(crate) struct MachineFile {
     #[schemars(with = "BTreeMap<String, Number>", extend("propertyNames" = { "pattern": "^[0-9]+$" }))]
     pub tools: BTreeMap<String, Quantity>,
     /// The axes of the chain by their letters.
-    #[schemars(with = "BTreeMap<String, AxisFile>", extend("propertyNames" = { "pattern": "^[A-Z][0-9]*$" }))]
+    #[schemars(with = "BTreeMap<String, AxisFile>", extend("propertyNames" = { "pattern": "^[A-CEI-LPQRU-Z][0-9]*$" }))]
     pub axis: BTreeMap<String, Spanned<AxisFile>>,
     /// The control and its language.
     #[schemars(with = "ControlFile")]

@@ -83,6 +83,8 @@ pub struct Head {
 pub struct Axis {
     /// Its address, `X`, `C`.
     pub name: String,
+    /// Where the file describes it.
+    pub place: Option<Place>,
     /// It carries the workpiece (primed in the chain), else the tool.
     pub carries_part: bool,
     /// Kind, direction and line.

@@ -1,0 +1,71 @@
+//! What the control of a machine can read: names of axes, long lines, lines of the user's own, compensation.
+
+use crate::common;
+
+use std::fs;
+
+use common::{Run, root, run};
+
+/// A CL file from standard input, posted to standard output.
+fn text(arguments: &[&str], cl: &str) -> Run {
+    let mut command = common::command();
+    command.args(arguments).args(["-o", "-", "-"]);
+    run(&mut command, cl.as_bytes())
+}
+
+const MOVES: &str =
+    "UNITS/MM\nLOADTL/1\nSPINDL/RPM,1000,CLW\nFEDRAT/MMPM,200\nGOTO/0,0,50\nGOTO/1,0,0\nFINI\n";
+
+/// `vmc` with its Y called otherwise, in a folder of its own.
+fn renamed(name: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let vmc = fs::read_to_string(root().join("machines/vmc.toml")).unwrap();
+    let vmc = vmc
+        .replace(" Y' ", &format!(" {name}' "))
+        .replace(" Y ", &format!(" {name} "))
+        .replace("[axis.Y]", &format!("[axis.{name}]"));
+    assert!(vmc.contains(&format!("[axis.{name}]")));
+    fs::write(folder.path().join("renamed.toml"), vmc).unwrap();
+    folder
+}
+
+#[test]
+fn an_axis_that_the_control_cannot_name_is_refused_where_it_is_described() {
+    for (name, why) in [
+        ("Y1", "it would read Y1450. as Y at 1450."),
+        ("Q", "Q means something else to it"),
+    ] {
+        let folder = renamed(name);
+        let machine = folder.path().join("renamed.toml");
+        let machine = machine.to_str().unwrap();
+        for dialect in ["fanuc", "linuxcnc", "heidenhain"] {
+            let setting = format!("control.dialect={dialect}");
+            let run = text(&["-m", machine, "--set", &setting], MOVES);
+            assert_eq!((run.code, run.out.as_str()), (1, ""), "{name}, {dialect}");
+            let line = format!("[axis.{name}]");
+            for part in [why, "rename the axis", &line, "renamed.toml:"] {
+                assert!(run.err.contains(part), "{part}\n{}", run.err);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_machine_of_the_library_has_axes_that_every_dialect_writes() {
+    let files = fs::read_dir(root().join("machines")).unwrap().flatten();
+    let names = files.map(|file| file.file_name().into_string().unwrap());
+    let mut opened = 0;
+    for name in names.filter(|name| name.ends_with(".toml")) {
+        for dialect in ["fanuc", "linuxcnc", "heidenhain"] {
+            let setting = format!("control.dialect={dialect}");
+            let machine = format!("machines/{name}");
+            let run = text(&["-m", &machine, "--set", &setting], "FINI\n");
+            // Nothing is in the file; the dialect was opened before anyone could tell.
+            let found = run.err.contains("error[plugin]");
+            let wrapped = dialect == "linuxcnc" && run.err.contains("it has a range");
+            assert!(!found || wrapped, "{name}, {dialect}\n{}", run.err);
+            opened += usize::from(!found);
+        }
+    }
+    assert!(opened > 90, "{opened}");
+}

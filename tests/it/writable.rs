@@ -69,3 +69,56 @@ fn every_machine_of_the_library_has_axes_that_every_dialect_writes() {
     }
     assert!(opened > 90, "{opened}");
 }
+
+/// An upright tool on a machine that turns: the one plane in which the control could offset.
+const COMPENSATED: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,1000,CLW\nFEDRAT/MMPM,200\nGOTO/0,0,50\nGOTO/0,0,10\nCUTCOM/LEFT,4\nGOTO/9,0,10\nGOTO/9,20,10\nCUTCOM/OFF\nGOTO/0,0,50\nFINI\n";
+
+#[test]
+fn compensation_under_tcp_is_written_where_the_control_has_it() {
+    for (dialect, tcp, written) in [
+        ("fanuc", "control", None),
+        ("fanuc", "post", Some("G41 D4")),
+        ("heidenhain", "control", None),
+        ("heidenhain", "post", Some(" RL")),
+        ("linuxcnc", "control", Some("G41 D4")),
+    ] {
+        let setting = format!("control.dialect={dialect}");
+        let arguments = ["-m", "ac-trunnion", "--tcp", tcp, "--set", &setting];
+        let run = text(&arguments, COMPENSATED);
+        let Some(word) = written else {
+            assert_eq!((run.code, run.out.as_str()), (1, ""), "{dialect}");
+            for part in [
+                "cutter radius compensation (CUTCOM) under tool centre point control",
+                "standard input:7:1",
+                "--tcp post",
+            ] {
+                assert!(run.err.contains(part), "{part}\n{}", run.err);
+            }
+            continue;
+        };
+        assert_eq!(run.code, 0, "{}", run.err);
+        assert!(run.out.contains(word), "{dialect}, {tcp}\n{}", run.out);
+    }
+}
+
+/// The head of a real file of Creo, with compensation in its path.
+#[test]
+fn the_option_for_compensation_on_the_tools_centre_is_named() {
+    let cl = format!("$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_CENTER\n{COMPENSATED}");
+    let run = text(&["-m", "vmc"], &cl);
+    assert_eq!((run.code, run.out.as_str()), (1, ""));
+    assert!(
+        run.err.contains("compensation_on_centre = \"wear\""),
+        "{}",
+        run.err
+    );
+    let arguments = ["-m", "vmc", "--set", "control.compensation_on_centre=wear"];
+    let run = text(&arguments, &cl);
+    assert!(run.out.contains("G41 D4"), "{}", run.err);
+    assert!(
+        run.err
+            .contains("register 4 must hold the tool's wear alone"),
+        "{}",
+        run.err
+    );
+}

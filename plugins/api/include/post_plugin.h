@@ -347,6 +347,9 @@ typedef struct {
 #define POST_WRITES_SUBPROGRAM 0x0000000080000000u
 /* Probe. */
 #define POST_WRITES_PROBE 0x0000000100000000u
+/* Compensate also while tool centre point control is on: the control offsets by the whole radius in the plane of
+ * X and Y of the part. */
+#define POST_WRITES_COMPENSATE_TCP 0x0000000200000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */
@@ -380,7 +383,8 @@ typedef struct {
 #define POST_EVENT_COOLANT 7u
 /* POST_COOLANT_…. */
 #define POST_COOLANT_COOLANT 0u
-/* Cutter radius compensation, in force from the next move on. */
+/* Cutter radius compensation, in force from the next move on. Under Setup::tcp it is sent under COMPENSATE_TCP
+ * alone. */
 #define POST_EVENT_COMPENSATE 8u
 /* 2 numbers: POST_COMPENSATE_… and the register of the radius. */
 #define POST_COMPENSATE_COMPENSATION 0u

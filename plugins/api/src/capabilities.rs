@@ -106,6 +106,9 @@ capabilities! {
     31 SUBPROGRAM;
     /// `Probe`.
     32 PROBE;
+    /// `Compensate` also while tool centre point control is on: the control offsets by the whole radius in the plane
+    /// of X and Y of the part.
+    33 COMPENSATE_TCP;
 }
 
 impl Capabilities {

@@ -3,7 +3,7 @@
 //! What it assumes about the control stands in `plugins/README.md`.
 
 use post_iso::{Control, Dwell, Engine, Iso, Length, Offset, Retract, Step, Table, Tcp, options};
-use post_plugin::{NumberStyle, OptionSpec, Setup, export_dialect, remark};
+use post_plugin::{Capabilities, NumberStyle, OptionSpec, Setup, export_dialect, remark};
 
 struct LinuxCnc {
     /// P of G64, program units; 0: exact path.
@@ -52,6 +52,11 @@ impl Control for LinuxCnc {
         }
         let blend = setup.number("blend");
         Ok(LinuxCnc { blend })
+    }
+
+    /// Its interpreter offsets the programmed path, ahead of whatever kinematics is switched on.
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::COMPENSATE_TCP
     }
 
     fn begin(&self, engine: &mut Engine, out: &mut String) {

@@ -320,6 +320,17 @@ pub enum Insert {
     Literal,
 }
 
+/// What becomes of `CUTCOM` on points of the tool's centre (`CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER`).
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum CompensationOnCentre {
+    /// It is refused: a register that holds the radius would cut the part off by it.
+    #[default]
+    Refuse,
+    /// It is written, with a warning: the register holds the tool's wear alone.
+    Wear,
+}
+
 /// Units of the NC program.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -355,6 +366,9 @@ pub(crate) struct ControlFile {
     /// What becomes of `INSERT text`; comment if not said.
     #[serde(default)]
     pub insert: Insert,
+    /// What becomes of CUTCOM on points of the tool's centre; refuse if not said.
+    #[serde(default)]
+    pub compensation_on_centre: CompensationOnCentre,
 }
 
 /// Where points are put in.

@@ -19,8 +19,8 @@ pub use accuracy::{Accuracy, ControlPoint};
 pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use file::{
-    EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement, Pole, Side, Tcp,
-    ToolLength,
+    CompensationOnCentre, EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement,
+    Pole, Side, Tcp, ToolLength,
 };
 pub use layers::Source;
 pub use schema::schema;
@@ -212,6 +212,8 @@ pub struct Control {
     pub tool_length: ToolLength,
     /// What becomes of `INSERT`.
     pub insert: Insert,
+    /// What becomes of `CUTCOM` on points of the tool's centre.
+    pub compensation_on_centre: CompensationOnCentre,
 }
 
 /// An option for a plugin.

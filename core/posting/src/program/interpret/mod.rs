@@ -14,7 +14,7 @@ use post_plugin::{Coolant, SpindleSense};
 use super::frame::Frame;
 use super::word_census::{Unknown, WordCensus};
 use super::{Command, DrillCycle, Motion, Pace, PlaneStep, Step};
-use post_machine::description::{Insert, ToolLength};
+use post_machine::description::{CompensationOnCentre, Insert, ToolLength};
 use post_machine::diagnostic::{Diagnostic, Place};
 
 /// How a file is to be read.
@@ -32,6 +32,8 @@ pub struct Reading {
     pub unknown: Unknown,
     /// What becomes of `INSERT`.
     pub insert: Insert,
+    /// What becomes of `CUTCOM` on points of the tool's centre.
+    pub compensation_on_centre: CompensationOnCentre,
     /// Which tool length counts.
     pub tool_length: ToolLength,
     /// How far chords may stray from arcs and splines, mm.
@@ -82,6 +84,10 @@ pub struct Interpreter {
     /// Cutter compensation is in force, and its register.
     compensated: bool,
     register: Option<u32>,
+    /// The file says that its points are the tool's centre, whatever `CUTCOM` says.
+    on_centre: bool,
+    /// Set once it was told what becomes of `CUTCOM` then.
+    told_on_centre: bool,
     tool_name: String,
     diameter: Option<f64>,
     /// Diameter and corner radius of the cutter described since the last tool was loaded, mm.
@@ -143,6 +149,8 @@ impl Interpreter {
             told_cutter: false,
             compensated: false,
             register: None,
+            on_centre: false,
+            told_on_centre: false,
             tool_name: String::new(),
             diameter: None,
             cutter: [None; 2],
@@ -387,8 +395,9 @@ impl Interpreter {
             Statement::Cycle(cycle) => self.cycle(record, cycle, emit),
             Statement::Cutcom(cutcom) => {
                 self.load_told(record, emit);
-                self.cutcom(*cutcom, emit);
+                self.cutcom(record, *cutcom, emit);
             }
+            Statement::CutcomOnCentre(on_centre) => self.on_centre = *on_centre,
             Statement::Rotate(rotate) => match self.frame.rotate(rotate) {
                 Ok((axis, angle)) => {
                     emit(Step::Command(Command::Index { axis, angle }));

@@ -350,6 +350,8 @@ typedef struct {
 /* Compensate also while tool centre point control is on: the control offsets by the whole radius in the plane of
  * X and Y of the part. */
 #define POST_WRITES_COMPENSATE_TCP 0x0000000200000000u
+/* No registers: length and radius are those that the control's own table has for the tool in the spindle. */
+#define POST_WRITES_TOOL_TABLE 0x0000000400000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

@@ -109,6 +109,8 @@ capabilities! {
     /// `Compensate` also while tool centre point control is on: the control offsets by the whole radius in the plane
     /// of X and Y of the part.
     33 COMPENSATE_TCP;
+    /// No registers: length and radius are those that the control's own table has for the tool in the spindle.
+    34 TOOL_TABLE;
 }
 
 impl Capabilities {

@@ -5,8 +5,9 @@
 mod options;
 
 use post_plugin::{
-    Axes, AxisNames, Block, Compensation, Coolant, Dialect, Event, Feed, Format, Group, Modal,
-    NumberStyle, OptionSpec, Setup, Spindle, SpindleSense, Units, ascii, export_dialect,
+    Axes, AxisNames, Block, Capabilities, Compensation, Coolant, Dialect, Event, Feed, Format,
+    Group, Modal, NumberStyle, OptionSpec, Setup, Spindle, SpindleSense, Units, ascii,
+    export_dialect,
 };
 
 use crate::options::OPTIONS;
@@ -112,6 +113,11 @@ impl Dialect for Heidenhain {
             feed_per_revolution: 3,
             extension: "h".to_owned(),
         }
+    }
+
+    /// Length and radius are those of the tool table.
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::TOOL_TABLE
     }
 
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {

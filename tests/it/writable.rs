@@ -122,3 +122,103 @@ fn the_option_for_compensation_on_the_tools_centre_is_named() {
         run.err
     );
 }
+
+/// A remark of 300 letters, of `post` or of the CAM system.
+#[test]
+fn long_remarks_are_as_many_lines_as_the_control_needs() {
+    let long = "CHECK THE CLAMPS ON BOTH SIDES ".repeat(10);
+    let cl = MOVES.replacen("UNITS/MM\n", &format!("UNITS/MM\nPPRINT {long}\n"), 1);
+    for (dialect, most) in [("fanuc", 80), ("linuxcnc", 252), ("heidenhain", 90)] {
+        let setting = format!("control.dialect={dialect}");
+        let run = text(&["-m", "vmc", "--set", &setting], &cl);
+        assert_eq!(run.code, 0, "{}", run.err);
+        for line in run.out.lines() {
+            assert!(line.len() <= most, "{dialect}: {} characters", line.len());
+        }
+        assert_eq!(
+            run.out.matches("CLAMPS").count(),
+            10,
+            "{dialect}\n{}",
+            run.out
+        );
+    }
+}
+
+#[test]
+fn the_name_of_a_program_is_as_long_as_the_control_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = "a_name_of_much_more_than_twenty-four_letters";
+    let path = folder.path().join(format!("{name}.cls"));
+    fs::write(&path, MOVES).unwrap();
+    let run = common::post(&[
+        "-m",
+        "vmc",
+        "--set",
+        "control.dialect=heidenhain",
+        "-o",
+        "-",
+        path.to_str().unwrap(),
+    ]);
+    assert!(
+        run.out
+            .starts_with("0 BEGIN PGM A_NAME_OF_MUCH_MORE_THAN MM\n"),
+        "{}",
+        run.out
+    );
+    assert!(run.out.ends_with(" END PGM A_NAME_OF_MUCH_MORE_THAN MM\n"));
+}
+
+/// Lines of the user's own: from options, which may be several, and from `INSERT`.
+#[test]
+fn lines_of_the_users_own_are_numbered_and_may_be_several() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = folder.path().join("own.toml");
+    let options = |home: &str| {
+        format!(
+            "extends = \"vmc\"\n[control]\ninsert = \"literal\"\n[control.fanuc]\nblock_numbers = true\nhome = {home}\n"
+        )
+    };
+    let cl = MOVES.replacen(
+        "GOTO/1",
+        "INSERT M77\nINSERT (AS IT IS)\nINSERT N5 M78\nGOTO/1",
+        1,
+    );
+    let machines = ["-m", machine.to_str().unwrap(), "--machines", "machines"];
+    fs::write(&machine, options("[\"G91 G28 X0.\", \"G91 G28 Y0.\"]")).unwrap();
+    let run = text(&machines, &cl);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let numbered = |words: &str| {
+        run.out
+            .lines()
+            .filter_map(|line| line.split_once(' '))
+            .any(|(number, rest)| number.starts_with('N') && rest == words)
+    };
+    for words in ["M77", "G91 G28 X0.", "G91 G28 Y0."] {
+        assert!(numbered(words), "{words}\n{}", run.out);
+    }
+    for line in ["(AS IT IS)", "N5 M78"] {
+        assert!(
+            run.out.lines().any(|found| found == line),
+            "{line}\n{}",
+            run.out
+        );
+    }
+    // Lines are lines; other options take one text.
+    fs::write(&machine, options("[\"G91 G28 X0.\", 7]")).unwrap();
+    let run = text(&machines, &cl);
+    assert!(
+        run.err
+            .contains("a flag, a number, a text or an array of lines"),
+        "{}",
+        run.err
+    );
+    let offset = options("\"\"").replace("home = \"\"", "work_offset = [\"G54\", \"G55\"]");
+    fs::write(&machine, offset).unwrap();
+    let run = text(&machines, &cl);
+    assert!(
+        run.err
+            .contains("option `work_offset`: must be one line of text"),
+        "{}",
+        run.err
+    );
+}

@@ -51,7 +51,8 @@ typedef struct {
     void (*write)(void *ctx, const uint8_t *ptr, size_t len);
 } PostSink;
 
-/* `kind` is POST_OPTION_FLAG (`integer` is 0 or 1), _INTEGER, _NUMBER or _TEXT (also for a choice). */
+/* `kind` is POST_OPTION_FLAG (`integer` is 0 or 1), _INTEGER, _NUMBER or _TEXT (also for a choice, and
+ * for lines, with line feeds between). */
 typedef struct {
     uint32_t kind;
     uint32_t reserved;
@@ -252,6 +253,7 @@ typedef struct {
 #define POST_OPTION_NUMBER 3u
 #define POST_OPTION_TEXT 4u
 #define POST_OPTION_CHOICE 5u
+#define POST_OPTION_LINES 6u
 #define POST_UNITS_MILLIMETRE 1u
 #define POST_UNITS_INCH 2u
 #define POST_FEED_NONE 0u

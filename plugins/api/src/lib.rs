@@ -35,4 +35,4 @@ pub use number::{fixed, quantise};
 pub use setup::{
     Accuracy, Ahead, AxisWord, Kinematics, OptionKind, OptionSpec, Setup, Tool, Units, Value,
 };
-pub use text::{ascii, remark};
+pub use text::{ascii, remark, wrapped};

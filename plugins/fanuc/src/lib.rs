@@ -54,12 +54,12 @@ const OPTIONS: &[OptionSpec] = &[
     options::feed_decimals(1),
     options::inverse_time_decimals(3),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
-    OptionSpec::text(
+    OptionSpec::lines(
         "retract",
         "",
         "Block that clears the depth axis; empty: G91 G28 with its word. G90 follows.",
     ),
-    OptionSpec::text(
+    OptionSpec::lines(
         "home",
         "",
         "Block after the retract at the end and at GOHOME: G91 G28 X0. Y0. G90 follows.",

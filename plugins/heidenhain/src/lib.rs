@@ -7,7 +7,7 @@ mod options;
 use post_plugin::{
     Axes, AxisNames, Block, Capabilities, Compensation, Coolant, Dialect, Event, Feed, Format,
     Group, Modal, NumberStyle, OptionSpec, Setup, Spindle, SpindleSense, Units, ascii,
-    export_dialect,
+    export_dialect, wrapped,
 };
 
 use crate::options::OPTIONS;
@@ -17,6 +17,12 @@ const SIGNED: NumberStyle = NumberStyle {
     point: false,
     trim: false,
 };
+
+/// Characters of a program's name that the control shows (TNC 640, ISO programming 1/2015, p. 112).
+const NAME_LENGTH: usize = 24;
+
+/// Longer remarks become several; no manual gives a limit, and the screen shows as many.
+const REMARK_LENGTH: usize = 80;
 
 struct Heidenhain {
     block: Block,
@@ -138,10 +144,10 @@ impl Dialect for Heidenhain {
             Event::Start => self.start(out),
             Event::Comment { text } => self.comment(text, out),
             Event::Literal { text } => {
-                self.block.line(text, out);
+                self.own(text, out);
                 self.forget();
             }
-            Event::Word { text } => self.block.line(text, out),
+            Event::Word { text } => self.own(text, out),
             Event::ToolChange { number, name, .. } => {
                 self.clear(out);
                 if self.spindle_on.is(true) {
@@ -227,8 +233,23 @@ impl Heidenhain {
     fn comment(&mut self, text: &str, out: &mut String) {
         // A tilde at the end would continue the block.
         let text = ascii(text).replace('~', "-");
-        self.block
-            .line(format!("; {}", text.trim()).trim_end(), out);
+        for piece in wrapped(text.trim(), REMARK_LENGTH) {
+            self.block.line(format!("; {piece}").trim_end(), out);
+        }
+    }
+
+    /// Lines of the user's own, a block each; one behind a tilde goes on with its block and has no number.
+    fn own(&mut self, lines: &str, out: &mut String) {
+        let mut goes_on = false;
+        for line in lines.lines().filter(|line| !line.is_empty()) {
+            if goes_on {
+                out.push_str(line);
+                out.push('\n');
+            } else {
+                self.block.line(line, out);
+            }
+            goes_on = line.trim_end().ends_with('~');
+        }
     }
 
     /// The tool call that waits, with its speed if one is known, and what waited for it.
@@ -273,14 +294,14 @@ impl Heidenhain {
             // A tool call, even one for the speed alone, is not allowed under TCP.
             let tcp = self.tcp_active.is(true);
             if tcp {
-                self.block.line(&self.tcp_off, out);
+                self.own(&self.tcp_off.clone(), out);
             }
             self.block.word("TOOL CALL");
             self.block
                 .number("S", rpm, 0, NumberStyle::default())
                 .end(out);
             if tcp {
-                self.block.line(&self.tcp_on, out);
+                self.own(&self.tcp_on.clone(), out);
             }
         }
         self.block.line(
@@ -331,7 +352,7 @@ impl Heidenhain {
             }
         }
         if self.tcp && self.tcp_active.set(true) {
-            self.block.line(&self.tcp_on, out);
+            self.own(&self.tcp_on.clone(), out);
         }
         if self.axes.moved(words) {
             self.block.word("L");
@@ -378,7 +399,7 @@ impl Heidenhain {
 
     fn release(&mut self, out: &mut String) {
         if self.tcp && self.tcp_active.set(false) {
-            self.block.line(&self.tcp_off, out);
+            self.own(&self.tcp_off.clone(), out);
         }
         self.axes.forget();
     }
@@ -388,7 +409,7 @@ impl Heidenhain {
             self.release(out);
         }
         if self.retracted.set(true) {
-            self.block.line(&self.retract, out);
+            self.own(&self.retract.clone(), out);
             self.axes.forget();
             self.radius.forget();
         }
@@ -409,7 +430,7 @@ impl Heidenhain {
     fn go_home(&mut self, out: &mut String) {
         self.clear(out);
         if !self.home.is_empty() {
-            self.block.line(&self.home, out);
+            self.own(&self.home.clone(), out);
             self.axes.forget();
         }
     }
@@ -436,7 +457,7 @@ impl Heidenhain {
     }
 }
 
-/// A name that the control takes: letters, digits, `_` and `-`.
+/// A name that the control takes: letters, digits, `_` and `-`, as many as it shows.
 fn program_name(name: &str) -> String {
     let plain = ascii(name);
     let allowed = |letter: char| match letter {
@@ -445,7 +466,7 @@ fn program_name(name: &str) -> String {
     };
     match plain.trim() {
         "" => "PROGRAM".to_owned(),
-        plain => plain.chars().map(allowed).collect(),
+        plain => plain.chars().take(NAME_LENGTH).map(allowed).collect(),
     }
 }
 

@@ -19,18 +19,18 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         default: Value::Text("M127"),
         help: "M127: the way that is programmed; M126: the shortest, for a display below 360.",
     },
-    OptionSpec::text(
+    OptionSpec::lines(
         "retract",
         "M140 MB MAX",
         "Block that clears the depth axis.",
     ),
-    OptionSpec::text(
+    OptionSpec::lines(
         "home",
         "",
         "Block after the retract at the end and at GOHOME: L X+0 Y+0 R0 FMAX M91.",
     ),
-    OptionSpec::text("tcp_on", "M128", "Block that switches TCP on."),
-    OptionSpec::text("tcp_off", "M129", "Block that switches TCP off."),
+    OptionSpec::lines("tcp_on", "M128", "Block that switches TCP on."),
+    OptionSpec::lines("tcp_off", "M129", "Block that switches TCP off."),
     OptionSpec::text("coolant_mist", "", "M codes of mist."),
     OptionSpec::text(
         "coolant_through",

@@ -5,6 +5,7 @@ use post_plugin::{
     SpindleSense, Units,
 };
 
+use crate::lines::{fits, program_name, remark_lines};
 use crate::options::{flag, integer, text};
 use crate::table::{Dwell, Step, Table, Tcp};
 use crate::{FeedDecimals, Motion};
@@ -99,7 +100,7 @@ impl Engine {
         Ok(Engine {
             table,
             motion: Motion::new(&table.codes, block, axes, feeds),
-            program: setup.program.to_owned(),
+            program: program_name(table, setup.program),
             machine: setup.machine.to_owned(),
             percent: flag(setup, "percent", table.percent),
             inch,
@@ -129,7 +130,7 @@ impl Engine {
         &self.program
     }
 
-    /// A block of these words; none for no words.
+    /// A block of these words, or of each line of them; none for no words.
     pub fn line(&mut self, words: &str, out: &mut String) {
         self.motion.line(words, out);
     }
@@ -140,9 +141,11 @@ impl Engine {
         out.push('\n');
     }
 
-    /// A remark in a line of its own.
+    /// A remark in a line of its own, or in as many as it needs.
     pub fn remark(&self, text: &str, out: &mut String) {
-        self.bare(&(self.table.remark)(text), out);
+        for line in remark_lines(self.table, text) {
+            self.bare(&line, out);
+        }
     }
 
     pub(crate) fn start(&mut self, title: &str, out: &mut String) {
@@ -199,10 +202,14 @@ impl Engine {
             }
             Event::Comment { text } => self.remark(text, out),
             Event::Literal { text } => {
-                self.bare(text, out);
+                fits(self.table, text)?;
+                self.line(text, out);
                 self.forget();
             }
-            Event::Word { text } => self.bare(text, out),
+            Event::Word { text } => {
+                fits(self.table, text)?;
+                self.line(text, out);
+            }
             Event::ToolChange {
                 number,
                 register,

@@ -18,6 +18,11 @@ pub struct Table {
     pub percent: bool,
     /// A text as a remark of this control.
     pub remark: fn(&str) -> String,
+    /// Most characters of a remark: a longer one becomes several, the program's name is cut.
+    pub remark_length: usize,
+    /// Most characters that the control reads in a line, where that is known: a longer one of the user's own is
+    /// refused.
+    pub line_length: Option<usize>,
     /// Words of motion, feed and compensation.
     pub codes: Codes,
     /// Behind the units in the first block: what puts the control into a known state.
@@ -160,6 +165,9 @@ impl Table {
         extension: "nc",
         percent: true,
         remark,
+        // No manual gives a limit; a line of any control's screen is as long.
+        remark_length: 80,
+        line_length: None,
         codes: Codes::ISO,
         safe: "G17 G40 G49 G80 G90 G94",
         largest_number: 99_999,

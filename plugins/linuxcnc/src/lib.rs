@@ -16,6 +16,9 @@ impl Control for LinuxCnc {
         extension: "ngc",
         percent: false,
         remark: passive,
+        // LINELEN, and what it reads of it: a line of 253 stops the interpreter.
+        remark_length: 252,
+        line_length: Some(252),
         offset: Offset {
             known: |text| {
                 (Table::ISO.offset.known)(text) || matches!(text, "G59.1" | "G59.2" | "G59.3")
@@ -101,22 +104,22 @@ const OPTIONS: &[OptionSpec] = &[
         0.0,
         "P of G64, program units: the control leaves the path by up to as much; 0: G61, exact path.",
     ),
-    OptionSpec::text(
+    OptionSpec::lines(
         "retract",
         "",
         "Block that clears the depth axis; empty: G53 G0 with its word at 0.",
     ),
-    OptionSpec::text(
+    OptionSpec::lines(
         "home",
         "",
         "Block after the retract at the end and at GOHOME.",
     ),
-    OptionSpec::text(
+    OptionSpec::lines(
         "tcp_on",
         "M428",
         "Remap that switches to the TCP kinematics.",
     ),
-    OptionSpec::text("tcp_off", "M429", "Remap that switches back."),
+    OptionSpec::lines("tcp_off", "M429", "Remap that switches back."),
     options::COOLANT_THROUGH,
     options::COOLANT_AIR,
 ];

@@ -236,7 +236,7 @@ pub enum OptionValue {
     Integer(i64),
     /// A number.
     Number(f64),
-    /// Text.
+    /// Text; of an array of lines, with line feeds between.
     Text(String),
 }
 

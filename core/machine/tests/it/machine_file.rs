@@ -187,7 +187,7 @@ const SLIPS: &[Slip] = &[
         "program = 7",
         "program = [7]",
         "46 program",
-        "a flag, a number or a text",
+        "a flag, a number, a text or an array of lines",
         false,
     ),
     (

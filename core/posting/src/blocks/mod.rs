@@ -12,9 +12,7 @@ use std::rc::Rc;
 
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Tcp};
-use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::orientation::angle;
-use post_plugin::{Capabilities, Compensation, ModelSession};
+use post_plugin::{Capabilities, ModelSession};
 
 use crate::accuracy::{Bound, Linearise, Move, Node, PlacedBatch, Placer, Run};
 use crate::configuration::{Chosen, Configured, pose};

@@ -256,7 +256,11 @@ fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>> {
     };
     let last = positions.len().saturating_sub(1);
     let cut = |index: usize| {
-        let feed = if index % 5 == 0 { 900.0 } else { 400.0 };
+        let feed = if index.is_multiple_of(5) {
+            900.0
+        } else {
+            400.0
+        };
         Event::linear(words(index), Feed::PerMinute(feed))
     };
     let mut events = vec![

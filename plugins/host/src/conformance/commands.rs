@@ -190,6 +190,9 @@ pub(super) fn commands(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault
             (Err(fault), _) | (_, Err(fault)) if pair.needed => {
                 case.wrong(format!("{} is refused: {fault}", pair.what));
             }
+            (Err(fault), _) if pair.other.is_none() => {
+                case.note(format!("{} is refused: {fault}", pair.what));
+            }
             (Err(_), _) | (_, Err(_)) => {}
         }
     }

@@ -123,8 +123,7 @@ pub(super) fn test(
     Ok(cases)
 }
 
-/// From the start to the first position, and to a rotary cut behind it: where units and tool centre point control
-/// are switched.
+/// From the start to the first position: where units and tool centre point control are switched.
 fn begin(pen: &Pen<'_>) -> Result<Option<String>, PluginFault> {
     let words = [0.0; 5];
     let text = pen.write(&|program| {
@@ -191,8 +190,8 @@ fn every_event(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFaul
     Ok(case)
 }
 
-/// The program's text, if what it cannot do without is written. Other events that are refused are left out
-/// and noted.
+/// The program's text, if its moves are written. Other events that are refused are left out: it is wrong where
+/// programs need them, else noted.
 fn program(
     plugin: &Plugin,
     setup: &ProgramSetup,

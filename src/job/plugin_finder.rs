@@ -56,11 +56,8 @@ pub fn dialect(
 ) -> Result<(OpenedDialect, PluginUse), Vec<Diagnostic>> {
     let control = &machine.control;
     let fault = |fault: PluginFault| {
-        vec![diagnostic(
-            &fault,
-            &control.options,
-            control.dialect_place.clone(),
-        )]
+        let place = refused_axis(machine, &fault).or_else(|| control.dialect_place.clone());
+        vec![diagnostic(&fault, &control.options, place)]
     };
     let plugin = finder.find(&control.dialect).map_err(fault)?;
     let setup = ProgramSetup {
@@ -148,6 +145,16 @@ fn given(options: &[GivenOption]) -> Vec<(String, GivenValue)> {
             (option.key.clone(), value)
         })
         .collect()
+}
+
+/// Where the axis is described about which the dialect complains: its sentence begins with `axis C:`.
+fn refused_axis(machine: &Machine, fault: &PluginFault) -> Option<Place> {
+    let Reason::Refused { message } = &fault.reason else {
+        return None;
+    };
+    let (name, _) = message.strip_prefix("axis ")?.split_once(':')?;
+    let axis = machine.axes.iter().find(|axis| axis.name == name)?;
+    axis.place.clone()
 }
 
 fn used(plugin: &Plugin) -> PluginUse {

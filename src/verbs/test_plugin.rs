@@ -27,8 +27,9 @@ enum PluginCommand {
 ///
 /// An error model is fitted to deviations of known peak (bows, waves, skewed ones, jumps, tiny and huge, no
 /// numbers), and its answers must hold together: peaks and curve, one move after another, in a turned frame.
-/// What a model may miss is said and not held against it: the certificate finds it. A dialect writes a short
-/// five-axis program, whole and in batches of every size.
+/// What a model may miss is said and not held against it: the certificate finds it. A dialect writes short
+/// five-axis programs, whole, in batches of every size, and with one number changed at a time: the text must show each,
+/// to the last decimal that the dialect declares.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post plugin test target/release/libpost_mine.so

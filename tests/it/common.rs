@@ -42,7 +42,11 @@ pub const CASES: &[Case] = &[
     case("dmu50", "blade.cls", &["--tcp", "post"]),
     case("dmu50", "facets.apt", &[]),
     case("dmu50", "knife.ncl", &[]),
-    case("dmu50", "plate.ncl", &["--mount", "0,0,40"]),
+    case(
+        "dmu50",
+        "plate.ncl",
+        &["--tcp", "post", "--mount", "0,0,40"],
+    ),
     case("head-head", "blade.cls", LENGTH),
     case("head-head", "facets.apt", LENGTH),
     case("head-head", "knife.ncl", LENGTH),
@@ -59,7 +63,11 @@ pub const CASES: &[Case] = &[
     ),
     case("nutating-head", "facets.apt", &[]),
     case("nutating-head", "knife.ncl", &[]),
-    case("nutating-head", "plate.ncl", &[]),
+    case(
+        "nutating-head",
+        "plate.ncl",
+        &["--tcp", "post", "--tool-length", "120"],
+    ),
     case("vmc", "plate.ncl", &[]),
 ];
 

@@ -8,6 +8,7 @@ mod axes;
 mod check;
 mod command;
 mod common;
+mod guide;
 mod library;
 #[cfg(target_os = "linux")]
 mod linuxcnc;
@@ -23,6 +24,7 @@ mod signals;
 mod snapshots;
 mod study;
 mod words;
+mod writable;
 
 #[path = "../bench/generate.rs"]
 #[expect(dead_code, reason = "its `main` is that of the example")]

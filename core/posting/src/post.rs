@@ -142,6 +142,7 @@ impl<'a> Post<'a> {
         // Half of the tolerance goes to chords of arcs and splines, half is left for the axes.
         job.reading.chord_tolerance = machine.accuracy.tolerance / 2.0;
         job.reading.insert = machine.control.insert;
+        job.reading.compensation_on_centre = machine.control.compensation_on_centre;
         job.reading.tool_length = machine.control.tool_length;
         job.reading.rules.clone_from(&machine.word_rules);
         job.reading.knife = machine.edge.is_some();
@@ -152,7 +153,7 @@ impl<'a> Post<'a> {
             timing: Timing::new(machine, &format)?,
             configuration: Configuration::new(machine, &format, job.tool_length)?,
             configured: Vec::new(),
-            blocks: Blocks::new(machine, model, job.trust_model),
+            blocks: Blocks::new(machine, dialect.capabilities(), model, job.trust_model),
             made: Vec::new(),
             observers: Observers::default(),
             emit: Emit::new(machine, dialect, output),

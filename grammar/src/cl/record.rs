@@ -116,6 +116,9 @@ pub enum Statement {
     Cycle(Cycle),
     /// `CUTCOM/`.
     Cutcom(Cutcom),
+    /// `CUTCOM_GEOMETRY_TYPE/`: with `OUTPUT_ON_CENTER` the points are the tool's centre, as in every path without
+    /// `CUTCOM`; else (false) those of the contour that `CUTCOM` offsets.
+    CutcomOnCentre(bool),
     /// `ROTABL/`, `ROTATE/`: an index move of a rotary axis.
     Rotate(Rotate),
     /// `TLAXIS/i,j,k`: the tool axis of the moves that follow, in the part frame.
@@ -184,6 +187,7 @@ impl Statement {
             Self::Control { .. } => "CNTRL",
             Self::Cycle(_) => "CYCLE",
             Self::Cutcom(_) => "CUTCOM",
+            Self::CutcomOnCentre(_) => "CUTCOM_GEOMETRY_TYPE",
             Self::Rotate(_) => "ROTABL",
             Self::ToolAxis(_) => "TLAXIS",
             Self::Delay(_) => "DELAY",

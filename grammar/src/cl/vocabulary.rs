@@ -15,7 +15,9 @@ use super::statements::geometry::{
 use super::statements::technology::{
     coolnt, delay, end_of_path, fedrat, fini, opstop, rapid, spindl, stop, units,
 };
-use super::statements::tooling::{cutcom, cutter, load_tool, select_tool, tldata};
+use super::statements::tooling::{
+    cutcom, cutcom_on_centre, cutter, load_tool, select_tool, tldata,
+};
 use super::statements::{ReadItems, ReadText};
 
 /// What `post` does with a word.
@@ -240,7 +242,7 @@ static WORDS: &[MajorWord] = &[
     ignored(&["CSI_SET_FLUTE_LENGTH"], "the tool in the CAM system's library"),
     ignored_as(&["CSYS"], Behind::Items(csys), ["CSYS/1,0,0,0,0,1,0,0,0,0,1,0", "the CAM system's frame; points are meant in the part's"]),
     used(&["CUTCOM"], cutcom, ["CUTCOM/LEFT,XYPLAN", "cutter radius compensation"]).else_refused(),
-    ignored(&["CUTCOM_GEOMETRY_TYPE"], "how the CAM system computed the path"),
+    used(&["CUTCOM_GEOMETRY_TYPE"], cutcom_on_centre, ["CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER", "the points are the tool's centre, or the contour that CUTCOM offsets (Creo)"]),
     used(&["CUTTER"], cutter, ["CUTTER/10,1", "the cutter: diameter, corner radius"]),
     used(&["CYCLE"], cycle, ["CYCLE/DRILL,FEDTO,-10,MMPM,200,RAPTO,3", "cycle at the points that follow"]).else_refused(),
     refused(&["DEFSUB"], "defines a subprogram"),

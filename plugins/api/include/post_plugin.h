@@ -51,7 +51,8 @@ typedef struct {
     void (*write)(void *ctx, const uint8_t *ptr, size_t len);
 } PostSink;
 
-/* `kind` is POST_OPTION_FLAG (`integer` is 0 or 1), _INTEGER, _NUMBER or _TEXT (also for a choice). */
+/* `kind` is POST_OPTION_FLAG (`integer` is 0 or 1), _INTEGER, _NUMBER or _TEXT (also for a choice, and
+ * for lines, with line feeds between). */
 typedef struct {
     uint32_t kind;
     uint32_t reserved;
@@ -254,6 +255,7 @@ typedef struct {
 #define POST_OPTION_NUMBER 3u
 #define POST_OPTION_TEXT 4u
 #define POST_OPTION_CHOICE 5u
+#define POST_OPTION_LINES 6u
 #define POST_UNITS_MILLIMETRE 1u
 #define POST_UNITS_INCH 2u
 #define POST_FEED_NONE 0u
@@ -349,9 +351,14 @@ typedef struct {
 #define POST_WRITES_SUBPROGRAM 0x0000000080000000u
 /* Probe. */
 #define POST_WRITES_PROBE 0x0000000100000000u
+/* Compensate also while tool centre point control is on: the control offsets by the whole radius in the plane of
+ * X and Y of the part. */
+#define POST_WRITES_COMPENSATE_TCP 0x0000000200000000u
+/* No registers: length and radius are those that the control's own table has for the tool in the spindle. */
+#define POST_WRITES_TOOL_TABLE 0x0000000400000000u
 /* Tool centre point control is switched on in a block that moves nothing, so that a first position can go in the
  * plane and then in depth under it. */
-#define POST_WRITES_TCP_STILL 0x0000000400000000u
+#define POST_WRITES_TCP_STILL 0x0000000800000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */
@@ -385,7 +392,8 @@ typedef struct {
 #define POST_EVENT_COOLANT 7u
 /* POST_COOLANT_…. */
 #define POST_COOLANT_COOLANT 0u
-/* Cutter radius compensation, in force from the next move on. */
+/* Cutter radius compensation, in force from the next move on. Under Setup::tcp it is sent under COMPENSATE_TCP
+ * alone. */
 #define POST_EVENT_COMPENSATE 8u
 /* 2 numbers: POST_COMPENSATE_… and the register of the radius. */
 #define POST_COMPENSATE_COMPENSATION 0u

@@ -3,7 +3,7 @@
 //! Nothing here is needed to write a dialect; it saves an author the usual hundred lines.
 
 use crate::number::{Front, Look};
-use crate::{Setup, fixed};
+use crate::{AxisWord, Setup, fixed};
 
 /// How numbers look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -189,11 +189,17 @@ pub enum Group {
 }
 
 impl Axes {
-    /// The words of `setup`, with these decimals for linear and rotary ones.
+    /// The words of `setup`, with these decimals for linear and rotary ones. A name of more than a letter gets an
+    /// equals sign (`X1=450.`); whether the control reads that, [`AxisNames`](crate::AxisNames) says.
     pub fn new(setup: &Setup<'_>, linear: u8, rotary: u8, style: NumberStyle) -> Self {
-        let axes = setup.words.iter().map(|word| Axis {
-            name: word.name.to_owned(),
-            front: Front::blank(word.name),
+        let address = |word: &AxisWord<'_>| match word.name.len() {
+            0 | 1 => word.name.to_owned(),
+            _ => format!("{}=", word.name),
+        };
+        let axes = setup.words.iter().map(|word| (word, address(word)));
+        let axes = axes.map(|(word, name)| Axis {
+            front: Front::blank(&name),
+            name,
             group: match (word.rotary, word.depth) {
                 (true, _) => Group::Rotary,
                 (false, true) => Group::Depth,

@@ -106,9 +106,14 @@ capabilities! {
     31 SUBPROGRAM;
     /// `Probe`.
     32 PROBE;
+    /// `Compensate` also while tool centre point control is on: the control offsets by the whole radius in the plane
+    /// of X and Y of the part.
+    33 COMPENSATE_TCP;
+    /// No registers: length and radius are those that the control's own table has for the tool in the spindle.
+    34 TOOL_TABLE;
     /// Tool centre point control is switched on in a block that moves nothing, so that a first position can go in
     /// the plane and then in depth under it.
-    34 TCP_STILL;
+    35 TCP_STILL;
 }
 
 impl Capabilities {

@@ -14,7 +14,8 @@ pub trait Dialect: Sized + Send + 'static {
     /// Called once a program, before anything else.
     ///
     /// # Errors
-    /// A sentence for the user, if the machine or its options cannot be served.
+    /// A sentence for the user, if the machine or its options cannot be served. One that begins with `axis C:` is
+    /// shown where the machine file describes that axis.
     fn open(setup: &Setup<'_>) -> Result<Self, String>;
 
     /// How numbers are written; asked once, after [`Dialect::open`].

@@ -209,7 +209,8 @@ events! { <'a>
         /// POST_COOLANT_….
         coolant: Coolant
     );
-    /// Cutter radius compensation, in force from the next move on.
+    /// Cutter radius compensation, in force from the next move on. Under
+    /// [`Setup::tcp`](crate::Setup::tcp) it is sent under `COMPENSATE_TCP` alone.
     8 COMPENSATE "cutter radius compensation" Compensate(
         /// POST_COMPENSATE_… and the register of the radius.
         compensation: Compensation

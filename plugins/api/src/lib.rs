@@ -3,6 +3,7 @@
 //! An author implements [`Dialect`] or [`ErrorModel`] and writes one export line; everything else here
 //! is what those traits speak of. Nothing in this crate depends on another crate.
 
+mod axis_names;
 mod batch;
 mod block;
 mod capabilities;
@@ -19,6 +20,7 @@ pub mod raw;
 mod setup;
 mod text;
 
+pub use axis_names::AxisNames;
 pub use batch::Batch;
 pub use block::{Axes, Block, Group, Modal, NumberStyle};
 pub use capabilities::{CAPABILITIES, Capabilities, CapabilitySpec};
@@ -33,4 +35,4 @@ pub use number::{fixed, quantise};
 pub use setup::{
     Accuracy, Ahead, AxisWord, Kinematics, OptionKind, OptionSpec, Setup, Tool, Units, Value,
 };
-pub use text::{ascii, remark};
+pub use text::{ascii, remark, wrapped};

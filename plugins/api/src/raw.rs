@@ -82,6 +82,8 @@ pub const OPTION_NUMBER: u32 = 3;
 pub const OPTION_TEXT: u32 = 4;
 /// One of several texts.
 pub const OPTION_CHOICE: u32 = 5;
+/// A [`PostOption`] that takes lines of the program, or a text of one.
+pub const OPTION_LINES: u32 = 6;
 
 /// An option that has a value.
 #[derive(Clone, Copy, Debug)]
@@ -472,6 +474,7 @@ pub fn with_option(spec: &OptionSpec, take: impl FnOnce(&PostOption)) {
         OptionKind::Integer { min, max } => (OPTION_INTEGER, min as f64, max as f64, &[][..]),
         OptionKind::Number { min, max } => (OPTION_NUMBER, min, max, &[][..]),
         OptionKind::Text => (OPTION_TEXT, 0.0, 0.0, &[][..]),
+        OptionKind::Lines => (OPTION_LINES, 0.0, 0.0, &[][..]),
         OptionKind::Choice(choices) => (OPTION_CHOICE, 0.0, 0.0, choices),
     };
     let choices: Vec<PostText> = choices.iter().map(|text| PostText::new(text)).collect();

@@ -120,7 +120,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// A text, or a choice, that was declared.
+    /// A text, lines or a choice that was declared.
     pub fn text(&self, key: &str) -> &'a str {
         match self.option(key) {
             Some(Value::Text(text)) => text,
@@ -226,7 +226,17 @@ impl OptionSpec {
         }
     }
 
-    /// Any text.
+    /// Lines of the program.
+    pub const fn lines(key: &'static str, default: &'static str, help: &'static str) -> Self {
+        OptionSpec {
+            key,
+            kind: OptionKind::Lines,
+            default: Value::Text(default),
+            help,
+        }
+    }
+
+    /// Any text, of one line.
     pub const fn text(key: &'static str, default: &'static str, help: &'static str) -> Self {
         OptionSpec {
             key,
@@ -256,8 +266,11 @@ pub enum OptionKind {
         /// Largest.
         max: f64,
     },
-    /// Any text.
+    /// Any text, of one line.
     Text,
+    /// Lines of the program, letter for letter: the machine file gives a text or an array of them. They come as one
+    /// text with line feeds between.
+    Lines,
     /// One of these.
     Choice(&'static [&'static str]),
 }

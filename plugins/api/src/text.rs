@@ -68,9 +68,57 @@ pub fn remark(text: &str) -> String {
     format!("({inner})")
 }
 
+/// `text` in pieces of at most `most` bytes, parted at blanks where it has some: a remark that is longer than the
+/// control's lines. One piece, the text as it is, if it is short enough.
+pub fn wrapped(text: &str, most: usize) -> Vec<String> {
+    if text.len() <= most {
+        return vec![text.to_owned()];
+    }
+    let mut pieces = vec![String::new()];
+    for word in text.split_whitespace() {
+        for part in parts(word, most.max(4)) {
+            match pieces.last_mut() {
+                Some(last) if last.is_empty() => last.push_str(part),
+                Some(last) if last.len() + 1 + part.len() <= most => {
+                    last.push(' ');
+                    last.push_str(part);
+                }
+                _ => pieces.push(part.to_owned()),
+            }
+        }
+    }
+    pieces
+}
+
+/// A word in pieces of at most `most` bytes.
+fn parts(mut word: &str, most: usize) -> Vec<&str> {
+    let mut parts = Vec::new();
+    while word.len() > most {
+        let end = (0..=most).rev().find(|end| word.is_char_boundary(*end));
+        let (part, rest) = word.split_at(end.unwrap_or(word.len()));
+        parts.push(part);
+        word = rest;
+    }
+    parts.push(word);
+    parts
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_text_is_parted_at_blanks_and_nothing_of_it_is_lost() {
+        assert_eq!(wrapped("as  it is", 9), ["as  it is"]);
+        assert_eq!(wrapped("one two three", 8), ["one two", "three"]);
+        assert_eq!(wrapped("abcdefghij kl", 4), ["abcd", "efgh", "ij", "kl"]);
+        let text = "é".repeat(30) + " " + &"x".repeat(31);
+        for most in 4..70 {
+            let pieces = wrapped(&text, most);
+            assert!(pieces.iter().all(|piece| piece.len() <= most), "{most}");
+            assert_eq!(pieces.concat().replace(' ', ""), text.replace(' ', ""));
+        }
+    }
 
     #[test]
     fn remarks_stay_in_one_pair_of_parentheses() {

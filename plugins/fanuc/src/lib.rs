@@ -56,7 +56,7 @@ const OPTIONS: &[OptionSpec] = &[
     options::inverse_time_decimals(3),
     options::most_inverse_time(9999.999),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
-    OptionSpec::text(
+    OptionSpec::lines(
         "cancel",
         CANCEL,
         "Block at the start that cancels scaling, mirror and rotation; less on a control without one of them.",

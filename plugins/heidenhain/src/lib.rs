@@ -5,8 +5,9 @@
 mod options;
 
 use post_plugin::{
-    Axes, Block, Capabilities, Compensation, Coolant, Dialect, Event, Feed, Format, Group, Modal,
-    NumberStyle, OptionSpec, Setup, Spindle, SpindleSense, Units, ascii, export_dialect,
+    Axes, AxisNames, Block, Capabilities, Compensation, Coolant, Dialect, Event, Feed, Format,
+    Group, Modal, NumberStyle, OptionSpec, Setup, Spindle, SpindleSense, Units, ascii,
+    export_dialect, wrapped,
 };
 
 use crate::options::OPTIONS;
@@ -16,6 +17,12 @@ const SIGNED: NumberStyle = NumberStyle {
     point: false,
     trim: false,
 };
+
+/// Characters of a program's name that the control shows (TNC 640, ISO programming 1/2015, p. 112).
+const NAME_LENGTH: usize = 24;
+
+/// Longer remarks become several; no manual gives a limit, and the screen shows as many.
+const REMARK_LENGTH: usize = 80;
 
 struct Heidenhain {
     block: Block,
@@ -66,6 +73,7 @@ impl Dialect for Heidenhain {
     }
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        AxisNames::ISO.check(setup)?;
         let inch = setup.units == Units::Inch;
         let decimals = setup.integer(if inch { "decimals_inch" } else { "decimals" });
         let rotary = setup.integer("rotary_decimals");
@@ -112,8 +120,9 @@ impl Dialect for Heidenhain {
         })
     }
 
+    /// M128 moves nothing; length and radius are those of the tool table.
     fn capabilities(&self) -> Capabilities {
-        Capabilities::TCP_STILL
+        Capabilities::TCP_STILL | Capabilities::TOOL_TABLE
     }
 
     fn format(&self) -> Format {
@@ -145,10 +154,10 @@ impl Dialect for Heidenhain {
             Event::Start => self.start(out),
             Event::Comment { text } => self.comment(text, out),
             Event::Literal { text } => {
-                self.block.line(text, out);
+                self.own(text, out);
                 self.forget();
             }
-            Event::Word { text } => self.block.line(text, out),
+            Event::Word { text } => self.own(text, out),
             Event::ToolChange { number, name, .. } => {
                 if !name.is_empty() {
                     self.comment(&format!("T{number} {name}"), out);
@@ -235,7 +244,7 @@ impl Heidenhain {
     fn cancel(&mut self, out: &mut String) {
         if self.rotary {
             // M128 outlives the end of a program; in a tilted plane M91 would still be the machine's own.
-            self.block.line(&self.tcp_off, out);
+            self.own(&self.tcp_off.clone(), out);
             self.tcp_active.set(false);
             self.block.line("PLANE RESET STAY", out);
         }
@@ -264,8 +273,23 @@ impl Heidenhain {
     fn comment(&mut self, text: &str, out: &mut String) {
         // A tilde at the end would continue the block.
         let text = ascii(text).replace('~', "-");
-        self.block
-            .line(format!("; {}", text.trim()).trim_end(), out);
+        for piece in wrapped(text.trim(), REMARK_LENGTH) {
+            self.block.line(format!("; {piece}").trim_end(), out);
+        }
+    }
+
+    /// Lines of the user's own, a block each; one behind a tilde goes on with its block and has no number.
+    fn own(&mut self, lines: &str, out: &mut String) {
+        let mut goes_on = false;
+        for line in lines.lines().filter(|line| !line.is_empty()) {
+            if goes_on {
+                out.push_str(line);
+                out.push('\n');
+            } else {
+                self.block.line(line, out);
+            }
+            goes_on = line.trim_end().ends_with('~');
+        }
     }
 
     /// The tool call that waits, with its speed if one is known, and what waited for it.
@@ -312,14 +336,14 @@ impl Heidenhain {
             // A tool call, even one for the speed alone, is not allowed under TCP.
             let tcp = self.tcp_active.is(true);
             if tcp {
-                self.block.line(&self.tcp_off, out);
+                self.own(&self.tcp_off.clone(), out);
             }
             self.block.word("TOOL CALL");
             self.block
                 .number("S", rpm, 0, NumberStyle::default())
                 .end(out);
             if tcp {
-                self.block.line(&self.tcp_on, out);
+                self.own(&self.tcp_on.clone(), out);
             }
         }
         self.block.line(turns(sense), out);
@@ -382,7 +406,7 @@ impl Heidenhain {
         // The rotary axes have been turned; what is left of them here moves nothing else.
         self.rapid_group(words, Group::Rotary, out)?;
         if self.tcp && self.tcp_active.set(true) {
-            self.block.line(&self.tcp_on, out);
+            self.own(&self.tcp_on.clone(), out);
         }
         if plane_first {
             self.rapid_group(words, Group::Plane, out)?;
@@ -432,12 +456,12 @@ impl Heidenhain {
     /// The tool leaves the part; the control keeps the tip no longer, as M91 asks for.
     fn leave(&mut self, axes: u32, words: &[f64], out: &mut String) {
         if self.rotary && self.tcp_active.set(false) {
-            self.block.line(&self.tcp_off, out);
+            self.own(&self.tcp_off.clone(), out);
         }
         if self.retract.is_empty() {
             self.in_machine_coordinates(axes, words, out);
         } else {
-            self.block.line(&self.retract, out);
+            self.own(&self.retract.clone(), out);
         }
         self.axes.forget();
         self.radius.forget();
@@ -490,7 +514,7 @@ fn turns(sense: SpindleSense) -> &'static str {
     }
 }
 
-/// A name that the control takes: letters, digits, `_` and `-`.
+/// A name that the control takes: letters, digits, `_` and `-`, as many as it shows.
 fn program_name(name: &str) -> String {
     let plain = ascii(name);
     let allowed = |letter: char| match letter {
@@ -499,7 +523,7 @@ fn program_name(name: &str) -> String {
     };
     match plain.trim() {
         "" => "PROGRAM".to_owned(),
-        plain => plain.chars().map(allowed).collect(),
+        plain => plain.chars().take(NAME_LENGTH).map(allowed).collect(),
     }
 }
 

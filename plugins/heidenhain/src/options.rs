@@ -24,13 +24,13 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         true,
         "M129, PLANE RESET and the cycles 7, 8, 10, 11 at the start cancel what was in force before.",
     ),
-    OptionSpec::text(
+    OptionSpec::lines(
         "retract",
         "",
         "Block that takes the place of the retract in machine coordinates (M140 MB MAX): nobody proves where it leads.",
     ),
-    OptionSpec::text("tcp_on", "M128", "Block that switches TCP on."),
-    OptionSpec::text("tcp_off", "M129", "Block that switches TCP off."),
+    OptionSpec::lines("tcp_on", "M128", "Block that switches TCP on."),
+    OptionSpec::lines("tcp_off", "M129", "Block that switches TCP off."),
     OptionSpec::text("coolant_mist", "", "M codes of mist."),
     OptionSpec::text(
         "coolant_through",

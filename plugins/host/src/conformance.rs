@@ -10,8 +10,11 @@
 //! # }
 //! ```
 
+mod commands;
 mod dialect;
 mod model;
+mod pen;
+mod print;
 mod shapes;
 
 use std::fmt::{self, Write as _};

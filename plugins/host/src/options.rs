@@ -85,9 +85,16 @@ pub(crate) fn check(spec: &OptionSpec, value: &GivenValue) -> Result<GivenValue,
         })
     };
     match (spec.kind, value) {
-        (OptionKind::Flag, GivenValue::Flag(_)) | (OptionKind::Text, GivenValue::Text(_)) => {
-            Ok(value.clone())
+        (OptionKind::Flag, GivenValue::Flag(_)) => Ok(value.clone()),
+        (OptionKind::Text, GivenValue::Text(text)) if text.contains(char::is_control) => {
+            fault("must be one line of text".to_owned(), &[])
         }
+        (OptionKind::Lines, GivenValue::Text(text))
+            if text.contains(|letter: char| letter.is_control() && letter != '\n') =>
+        {
+            fault("holds a character that no line has".to_owned(), &[])
+        }
+        (OptionKind::Text | OptionKind::Lines, GivenValue::Text(_)) => Ok(value.clone()),
         (OptionKind::Integer { min, max }, GivenValue::Integer(integer)) => {
             if (min..=max).contains(integer) {
                 Ok(value.clone())
@@ -118,6 +125,10 @@ pub(crate) fn check(spec: &OptionSpec, value: &GivenValue) -> Result<GivenValue,
         (OptionKind::Integer { .. }, _) => fault("must be a whole number".to_owned(), &[]),
         (OptionKind::Number { .. }, _) => fault("must be a number".to_owned(), &[]),
         (OptionKind::Text, _) => fault("must be text, in quotes".to_owned(), &[]),
+        (OptionKind::Lines, _) => fault(
+            "must be text, in quotes, or an array of such lines".to_owned(),
+            &[],
+        ),
         (OptionKind::Choice(choices), _) => fault("must be text, in quotes".to_owned(), choices),
     }
 }
@@ -145,6 +156,8 @@ mod tests {
             default: Value::Text("short"),
             help: "",
         },
+        OptionSpec::text("note", "", ""),
+        OptionSpec::lines("block", "", ""),
     ];
 
     fn fault(key: &str, value: GivenValue) -> OptionFault {
@@ -160,6 +173,8 @@ mod tests {
                 ("step".to_owned(), GivenValue::Integer(10)),
                 ("ratio".to_owned(), GivenValue::Number(1.0)),
                 ("way".to_owned(), GivenValue::Text("short".to_owned())),
+                ("note".to_owned(), GivenValue::Text(String::new())),
+                ("block".to_owned(), GivenValue::Text(String::new())),
             ]
         );
     }
@@ -167,7 +182,7 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_refused() {
         let unknown = fault("stepp", GivenValue::Integer(1));
-        assert_eq!(unknown.allowed, ["step", "ratio", "way"]);
+        assert_eq!(unknown.allowed, ["step", "ratio", "way", "note", "block"]);
         assert_eq!(
             fault("step", GivenValue::Integer(0)).to_string(),
             "option `step`: 0 is not between 1 and 100"
@@ -179,6 +194,20 @@ mod tests {
         assert_eq!(
             fault("ratio", GivenValue::Number(f64::NAN)).message,
             "NaN is not between 0 and 1"
+        );
+        let text = |text: &str| GivenValue::Text(text.to_owned());
+        assert_eq!(
+            fault("note", text("A\nB")).message,
+            "must be one line of text"
+        );
+        assert_eq!(
+            fault("block", text("G0\rX")).message,
+            "holds a character that no line has"
+        );
+        let lines = [("block".to_owned(), text("G91 G28 Z0.\nG90"))];
+        assert_eq!(
+            check_options(SPECS, &lines).unwrap()[4].1,
+            text("G91 G28 Z0.\nG90")
         );
         let choice = fault("way", GivenValue::Text("round".to_owned()));
         assert_eq!(choice.allowed, ["long", "short"]);

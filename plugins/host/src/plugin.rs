@@ -383,6 +383,7 @@ unsafe fn keep(option: &PostOption) -> Option<OptionSpec> {
             max: option.max,
         },
         raw::OPTION_TEXT => OptionKind::Text,
+        raw::OPTION_LINES => OptionKind::Lines,
         raw::OPTION_CHOICE => {
             let choices = unsafe { raw::slice(option.choices, option.choices_len) };
             let choices: Option<Vec<&'static str>> = choices

@@ -5,6 +5,7 @@ use post_plugin::{
     SpindleSense, Units, Value,
 };
 
+use crate::lines::{fits, program_name, remark_lines};
 use crate::options::{flag, integer, text};
 use crate::table::{Dwell, Leave, Table, Tcp};
 use crate::{FeedDecimals, Motion};
@@ -61,6 +62,7 @@ impl Engine {
         if setup.tcp && matches!(table.tcp, Tcp::None) {
             return Err("this control has no tool centre point control: tcp = \"post\"".to_owned());
         }
+        table.axes.check(setup)?;
         let inch = setup.units == Units::Inch;
         let style = NumberStyle {
             point: true,
@@ -111,7 +113,7 @@ impl Engine {
         Ok(Engine {
             table,
             motion: Motion::new(&table.codes, block, axes, feeds),
-            program: setup.program.to_owned(),
+            program: program_name(table, setup.program),
             machine: setup.machine.to_owned(),
             percent: flag(setup, "percent", table.percent),
             inch,
@@ -150,7 +152,7 @@ impl Engine {
         &self.program
     }
 
-    /// A block of these words; none for no words.
+    /// A block of these words, or of each line of them; none for no words.
     pub fn line(&mut self, words: &str, out: &mut String) {
         self.motion.line(words, out);
     }
@@ -161,9 +163,11 @@ impl Engine {
         out.push('\n');
     }
 
-    /// A remark in a line of its own.
+    /// A remark in a line of its own, or in as many as it needs.
     pub fn remark(&self, text: &str, out: &mut String) {
-        self.bare(&(self.table.remark)(text), out);
+        for line in remark_lines(self.table, text) {
+            self.bare(&line, out);
+        }
     }
 
     pub(crate) fn start(&mut self, title: &str, out: &mut String) {
@@ -221,10 +225,14 @@ impl Engine {
             }
             Event::Comment { text } => self.remark(text, out),
             Event::Literal { text } => {
-                self.bare(text, out);
+                fits(self.table, text)?;
+                self.line(text, out);
                 self.forget();
             }
-            Event::Word { text } => self.bare(text, out),
+            Event::Word { text } => {
+                fits(self.table, text)?;
+                self.line(text, out);
+            }
             Event::ToolChange {
                 number,
                 register,

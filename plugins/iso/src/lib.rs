@@ -5,6 +5,7 @@
 //! opinion on any control, and this may change without it.
 
 mod engine;
+mod lines;
 mod motion;
 pub mod options;
 mod table;

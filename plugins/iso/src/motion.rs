@@ -5,6 +5,7 @@
 
 use post_plugin::{Axes, Block, Compensation, Feed, Format, Group, Modal, NumberStyle};
 
+use crate::lines::takes_number;
 use crate::table::Codes;
 
 /// The moving part of a G-code dialect.
@@ -80,10 +81,16 @@ impl Motion {
         self.feed_mode.set(self.codes.feed[0]);
     }
 
-    /// A block of its own; none for no words.
+    /// A block of its own, or one for each line; none for no words. A remark, or a line that is numbered already, is
+    /// written as it is.
     pub fn line(&mut self, words: &str, out: &mut String) {
-        if !words.is_empty() {
-            self.block.line(words, out);
+        for line in words.lines().filter(|line| !line.is_empty()) {
+            if takes_number(line) {
+                self.block.line(line, out);
+            } else {
+                out.push_str(line);
+                out.push('\n');
+            }
         }
     }
 

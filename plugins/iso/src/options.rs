@@ -32,7 +32,7 @@ pub const COOLANT_AIR_OFF: OptionSpec = OptionSpec::text(
     "M codes that end it; empty: those of coolant_off.",
 );
 /// The way out in the user's own words.
-pub const RETRACT: OptionSpec = OptionSpec::text(
+pub const RETRACT: OptionSpec = OptionSpec::lines(
     "retract",
     "",
     "Block that takes the place of the retract in machine coordinates: nobody proves where it leads.",

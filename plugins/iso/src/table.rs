@@ -1,6 +1,6 @@
 //! What differs from control to control.
 
-use post_plugin::{OptionSpec, remark};
+use post_plugin::{AxisNames, OptionSpec, remark};
 
 /// How a control of the family differs from the others. Begin with [`Table::ISO`] and say what is different.
 ///
@@ -10,12 +10,19 @@ use post_plugin::{OptionSpec, remark};
 pub struct Table {
     /// The options of `[control.<name>]`; [`crate::options`] has those that the engine knows.
     pub options: &'static [OptionSpec],
+    /// Names of axes that the control reads; a machine with others is refused.
+    pub axes: AxisNames,
     /// Usual ending of a program's file name.
     pub extension: &'static str,
     /// `%` before and after the program. Option `percent`.
     pub percent: bool,
     /// A text as a remark of this control.
     pub remark: fn(&str) -> String,
+    /// Most characters of a remark: a longer one becomes several, the program's name is cut.
+    pub remark_length: usize,
+    /// Most characters that the control reads in a line, where that is known: a longer one of the user's own is
+    /// refused.
+    pub line_length: Option<usize>,
     /// Words of motion, feed and compensation.
     pub codes: Codes,
     /// The block behind that of the units: plane, compensation, cycles, way of counting and feed mode in a known state.
@@ -162,9 +169,13 @@ impl Table {
     /// What most controls have in common: a beginning for a table of one's own.
     pub const ISO: Table = Table {
         options: &[],
+        axes: AxisNames::ISO,
         extension: "nc",
         percent: true,
         remark,
+        // No manual gives a limit; a line of any control's screen is as long.
+        remark_length: 80,
+        line_length: None,
         codes: Codes::ISO,
         safe: "G17 G40 G80 G90 G94",
         cancel: "",

@@ -10,8 +10,8 @@
 //! the text is the same in every cut of the batches, and through the C contract.
 
 use post_plugin::{
-    AxisWord, Batch, Compensation, Coolant, Event, Feed, Linked, LinkedDialect, Promise, Setup,
-    Spindle, SpindleSense, Units, Value,
+    AxisWord, Batch, Capabilities, Compensation, Coolant, Event, Feed, Linked, LinkedDialect,
+    Promise, Setup, Spindle, SpindleSense, Units, Value,
 };
 
 /// A dialect on the bench, with the axis words X Y Z A C.
@@ -79,14 +79,19 @@ impl Bench {
         self.write_with(&mut *self.open()?, events)
     }
 
-    /// The text of [`job`], without inverse time if the control has none.
+    /// The text of [`job`], without inverse time if the control has none, and without cutter compensation where the
+    /// control keeps the tip and cannot do both.
     ///
     /// # Errors
     /// As [`Bench::write`].
     pub fn write_job(&self) -> Result<String, String> {
         let mut dialect = self.open()?;
-        let timed = dialect.format()?.0.inverse_time.is_some();
-        self.write_with(&mut *dialect, &job(timed))
+        let (format, writes) = dialect.format()?;
+        let mut events = job(format.inverse_time.is_some());
+        if self.tcp && !writes.has(Capabilities::COMPENSATE_TCP) {
+            events.retain(|event| !matches!(event, Event::Compensate(_)));
+        }
+        self.write_with(&mut *dialect, &events)
     }
 
     fn open(&self) -> Result<Box<dyn LinkedDialect>, String> {

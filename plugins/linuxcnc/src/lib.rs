@@ -3,7 +3,7 @@
 //! What it assumes about the control stands in `plugins/README.md`.
 
 use post_iso::{Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, Tcp, options};
-use post_plugin::{NumberStyle, OptionSpec, Setup, export_dialect, remark};
+use post_plugin::{Capabilities, NumberStyle, OptionSpec, Setup, export_dialect, remark};
 
 struct LinuxCnc {
     /// P of G64, program units; 0: exact path.
@@ -16,6 +16,9 @@ impl Control for LinuxCnc {
         extension: "ngc",
         percent: false,
         remark: passive,
+        // LINELEN, and what it reads of it: a line of 253 stops the interpreter.
+        remark_length: 252,
+        line_length: Some(252),
         offset: Offset {
             known: |text| {
                 (Table::ISO.offset.known)(text) || matches!(text, "G59.1" | "G59.2" | "G59.3")
@@ -51,12 +54,17 @@ impl Control for LinuxCnc {
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
         if let Some(word) = setup.words.iter().find(|word| word.wrapped) {
             return Err(format!(
-                "{} has a range, but LinuxCNC takes the sign of a wrapped rotary word for its direction: leave the range out, its words are endless",
+                "axis {}: it has a range, but LinuxCNC takes the sign of a wrapped rotary word for its direction: leave the range out, its words are endless",
                 word.name
             ));
         }
         let blend = setup.number("blend");
         Ok(LinuxCnc { blend })
+    }
+
+    /// Its interpreter offsets the programmed path, ahead of whatever kinematics is switched on.
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::COMPENSATE_TCP
     }
 
     fn begin(&self, engine: &mut Engine, out: &mut String) {
@@ -102,12 +110,12 @@ const OPTIONS: &[OptionSpec] = &[
         "P of G64, program units: the control leaves the path by up to as much; 0: G61, exact path.",
     ),
     options::RETRACT,
-    OptionSpec::text(
+    OptionSpec::lines(
         "tcp_on",
         "M428",
         "Remap that switches to the TCP kinematics.",
     ),
-    OptionSpec::text(
+    OptionSpec::lines(
         "tcp_off",
         "",
         "Remap that switches back; empty: M429 under tcp = \"control\", else nothing is written about it.",

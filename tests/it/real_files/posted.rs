@@ -77,7 +77,11 @@ const GOOD: &[(&str, &str, &str)] = &[
     ("nx_HumMan__8_SVERL_63_N2.cls", "head-head", "--tool 1"),
     ("nx_HumMan__8_SVERL_63_N2.cls", "disc-cutter", "--tool 1"),
     ("swcam_aamorim_basemach.apt", "vmc", "--mount -170,-75,0"),
-    ("swcam_aamorim_basemach.apt", "nutating-head", ""),
+    (
+        "swcam_aamorim_basemach.apt",
+        "nutating-head",
+        "--tcp post --tool-length 100",
+    ),
     // It has no word for its units; it is in inches.
     ("own_ncl_form.as", "ac-trunnion", "--units inch"),
     ("own_ncl_form.as", "dmu50", "--units inch"),

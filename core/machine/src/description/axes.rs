@@ -15,6 +15,22 @@ use crate::kinematics::{Joint, MAX_AXES, Second};
 /// The largest value of a rotary axis, degrees.
 const MOST_TRAVEL: f64 = 36_000.0;
 
+/// What a letter means in the programs of all controls, whatever the axes are called, if it is no axis there.
+fn meaning_elsewhere(name: &str) -> Option<&'static str> {
+    Some(match name.chars().next()? {
+        'D' => "D is the register of a tool's radius, or its edge",
+        'F' => "F is the feed",
+        'G' => "G prepares a function",
+        'H' => "H is the register of a tool's length, or an auxiliary function",
+        'M' => "M switches the machine",
+        'N' => "N numbers a block",
+        'O' => "O numbers the program",
+        'S' => "S is the speed of the spindle",
+        'T' => "T is the tool",
+        _ => return None,
+    })
+}
+
 impl Builder<'_> {
     /// The axes in the order of the chain, each checked against its side of the bed.
     pub(super) fn axes(&mut self, file: &MachineFile) -> Option<Vec<Axis>> {
@@ -64,6 +80,16 @@ impl Builder<'_> {
                             span,
                             format!("{name} stands twice in the chain"),
                             "",
+                        );
+                        continue;
+                    }
+                    if let Some(meaning) = meaning_elsewhere(&name) {
+                        sound = false;
+                        self.fault(
+                            "machine-axis",
+                            span,
+                            format!("an axis cannot be called {name}: in the program of every control {meaning}"),
+                            "rename it, here and in [axis]: X Y Z, U V W and P Q R slide, A B C turn (ISO 841)",
                         );
                         continue;
                     }
@@ -233,6 +259,7 @@ impl Builder<'_> {
         let range = self.range(name, spanned, unit);
         Some(Axis {
             name: name.to_owned(),
+            place: self.sources.place(spanned.span()),
             carries_part,
             joint: Joint {
                 rotary,

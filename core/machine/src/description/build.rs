@@ -259,6 +259,7 @@ impl Builder<'_> {
                 feed_length: control.feed_length,
                 tool_length: control.tool_length,
                 insert: control.insert,
+                compensation_on_centre: control.compensation_on_centre,
             },
             spindle,
             word_rules,

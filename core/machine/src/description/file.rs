@@ -49,7 +49,7 @@ pub(crate) struct MachineFile {
     #[schemars(with = "BTreeMap<String, Number>", extend("propertyNames" = { "pattern": "^[0-9]+$" }))]
     pub tools: BTreeMap<String, Quantity>,
     /// The axes of the chain by their letters.
-    #[schemars(with = "BTreeMap<String, AxisFile>", extend("propertyNames" = { "pattern": "^[A-Z][0-9]*$" }))]
+    #[schemars(with = "BTreeMap<String, AxisFile>", extend("propertyNames" = { "pattern": "^[A-CEI-LPQRU-Z][0-9]*$" }))]
     pub axis: BTreeMap<String, Spanned<AxisFile>>,
     /// The control and its language.
     #[schemars(with = "ControlFile")]
@@ -371,6 +371,17 @@ pub enum Insert {
     Literal,
 }
 
+/// What becomes of `CUTCOM` on points of the tool's centre (`CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER`).
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum CompensationOnCentre {
+    /// It is refused: a register that holds the radius would cut the part off by it.
+    #[default]
+    Refuse,
+    /// It is written, with a warning: the register holds the tool's wear alone.
+    Wear,
+}
+
 /// Units of the NC program.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -406,6 +417,9 @@ pub(crate) struct ControlFile {
     /// What becomes of `INSERT text`; comment if not said.
     #[serde(default)]
     pub insert: Insert,
+    /// What becomes of CUTCOM on points of the tool's centre; refuse if not said.
+    #[serde(default)]
+    pub compensation_on_centre: CompensationOnCentre,
     /// Where linear axes stand when the tool is retracted, machine coordinates, mm; the end of travel of the depth
     /// axis away from the part if not said.
     #[serde(default)]

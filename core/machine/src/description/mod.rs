@@ -23,8 +23,8 @@ pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
-    EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement, Pole, Side, Tcp,
-    ToolLength,
+    CompensationOnCentre, EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement,
+    Pole, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
@@ -95,6 +95,8 @@ pub struct Head {
 pub struct Axis {
     /// Its address, `X`, `C`.
     pub name: String,
+    /// Where the file describes it.
+    pub place: Option<Place>,
     /// It carries the workpiece (primed in the chain), else the tool.
     pub carries_part: bool,
     /// Kind, direction and line.
@@ -222,6 +224,8 @@ pub struct Control {
     pub tool_length: ToolLength,
     /// What becomes of `INSERT`.
     pub insert: Insert,
+    /// What becomes of `CUTCOM` on points of the tool's centre.
+    pub compensation_on_centre: CompensationOnCentre,
 }
 
 /// An option for a plugin.
@@ -244,7 +248,7 @@ pub enum OptionValue {
     Integer(i64),
     /// A number.
     Number(f64),
-    /// Text.
+    /// Text; of an array of lines, with line feeds between.
     Text(String),
 }
 

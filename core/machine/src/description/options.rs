@@ -37,7 +37,7 @@ pub(super) fn take_options(
         let mut given = Vec::new();
         for (key, value) in options {
             let place = sources.place(key.span());
-            let text = value.get_ref().as_str().map(str::to_owned);
+            let text = text_or_lines(value.get_ref());
             let value = match value.get_ref() {
                 DeValue::Boolean(flag) => Some(OptionValue::Flag(*flag)),
                 DeValue::Integer(number) => {
@@ -64,7 +64,7 @@ pub(super) fn take_options(
                     Diagnostic::error(
                         "machine-option",
                         format!(
-                            "{} of [{section}.{name}] takes a flag, a number or a text",
+                            "{} of [{section}.{name}] takes a flag, a number, a text or an array of lines",
                             key.get_ref()
                         ),
                     )
@@ -75,4 +75,13 @@ pub(super) fn take_options(
         taken.insert(name, given);
     }
     taken
+}
+
+/// A text; or lines of one each, as one text with line feeds between.
+fn text_or_lines(value: &DeValue<'_>) -> Option<String> {
+    let DeValue::Array(lines) = value else {
+        return value.as_str().map(str::to_owned);
+    };
+    let lines: Option<Vec<&str>> = lines.iter().map(|line| line.get_ref().as_str()).collect();
+    Some(lines?.join("\n"))
 }

@@ -24,7 +24,10 @@ pub fn schema() -> Value {
         schema["definitions"][name]["additionalProperties"] = json!({
             "description": whose,
             "type": "object",
-            "additionalProperties": { "type": ["boolean", "number", "string"] },
+            "additionalProperties": {
+                "type": ["boolean", "number", "string", "array"],
+                "items": { "type": "string" },
+            },
         });
     }
     let needed = take_required(&mut schema);

@@ -187,7 +187,7 @@ const SLIPS: &[Slip] = &[
         "program = 7",
         "program = [7]",
         "46 program",
-        "a flag, a number or a text",
+        "a flag, a number, a text or an array of lines",
         false,
     ),
     (
@@ -322,6 +322,20 @@ const SLIPS: &[Slip] = &[
         "",
         "41 [control]",
         "who keeps the tip",
+        true,
+    ),
+    (
+        "b Y X Z (S) t]\"",
+        "b Y X S t]\"\naxis.S = { linear = [0, 0, 1], travel = [0, 1] }",
+        "2 S",
+        "an axis cannot be called S: in the program of every control S is the speed of the spindle",
+        true,
+    ),
+    (
+        "b Y X Z (S) t]\"",
+        "b Y X Z H2 t]\"",
+        "2 H2",
+        "an axis cannot be called H2",
         true,
     ),
     // The chain.

@@ -2,6 +2,7 @@
 
 mod audience;
 mod block;
+mod cutter;
 mod gathered;
 mod nominal;
 mod off_part;
@@ -11,9 +12,7 @@ use std::rc::Rc;
 
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Tcp};
-use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::orientation::angle;
-use post_plugin::{Compensation, ModelSession};
+use post_plugin::{Capabilities, ModelSession};
 
 use crate::accuracy::{Bound, Linearise, Move, Node, PlacedBatch, Placer, Run};
 use crate::configuration::{Chosen, Configured, pose};
@@ -124,6 +123,8 @@ pub(crate) struct Blocks<'a> {
     placed: Option<Box<PlacedBatch>>,
     /// The last move was a cut: the tool is on the part.
     on_part: bool,
+    /// The control has cutter radius compensation, the way it keeps the tip here.
+    compensates: bool,
     /// Cutter radius compensation is in force.
     compensating: bool,
     /// Set once the fault that compensation cannot be was given.
@@ -136,9 +137,11 @@ pub(crate) struct Blocks<'a> {
 impl<'a> Blocks<'a> {
     pub(crate) fn new(
         machine: &'a Machine,
+        writes: Capabilities,
         model: &'a mut dyn ModelSession,
         trust_model: bool,
     ) -> Self {
+        let tcp = machine.control.tcp == Tcp::Control;
         Self {
             machine,
             base: machine,
@@ -152,6 +155,7 @@ impl<'a> Blocks<'a> {
             spare: None,
             placed: None,
             on_part: false,
+            compensates: !tcp || writes.has(Capabilities::COMPENSATE_TCP),
             compensating: false,
             told_compensation: false,
             largest: Largest::default(),
@@ -251,7 +255,7 @@ impl<'a> Blocks<'a> {
                 }
             }
             Command::Compensate(compensation) => {
-                self.compensating = *compensation != Compensation::Off;
+                self.compensate(line, *compensation, to.findings);
             }
             _ => {}
         }
@@ -563,39 +567,5 @@ impl<'a> Blocks<'a> {
             nominal: Nominal::default(),
             time: Time::default(),
         }
-    }
-
-    /// Radius compensation works in the plane of X and Y of the machine (of the part, where the control keeps
-    /// the tip): a tool that does not stand upright in it would be moved sideways into the part.
-    fn check_compensation(&mut self, placer: &Placer, line: u64, node: &Node, findings: &Findings) {
-        let machine = self.machine;
-        let axis = match machine.control.tcp {
-            Tcp::Control => node.trace.pose.axis,
-            Tcp::Post => self.in_machine(placer, node),
-        };
-        let tilt = angle(axis, machine.tool_axis);
-        let turned = self
-            .last
-            .as_ref()
-            .is_some_and(|last| self.turn_between(last, node) > 0.0);
-        let what = if tilt > 1e-3 {
-            format!("the tool tilted by {:.3}°", tilt.to_degrees())
-        } else if turned {
-            "rotary axes turning".to_owned()
-        } else {
-            return;
-        };
-        self.compensating = false;
-        if std::mem::replace(&mut self.told_compensation, true) {
-            return;
-        }
-        findings.at(
-            line,
-            Diagnostic::error(
-                "compensation",
-                format!("cutter radius compensation (CUTCOM) with {what}: the control would offset in the wrong plane"),
-            )
-            .help("let the CAM system write the tool centre path, with CUTCOM/OFF"),
-        );
     }
 }

@@ -24,10 +24,10 @@ pub(super) type ReadItems = fn(&mut Items<'_, '_>) -> Read<Statement>;
 /// Takes the text behind one word: its spelling in capitals, the text without blanks around it.
 pub(super) type ReadText = fn(&'static str, String) -> Statement;
 
-/// A directive. Only the two that carry facts are typed; the rest is meant for one program and comes as it stands.
+/// A directive. Only those that carry facts are typed; the rest is meant for one program and comes as it stands.
 pub(super) fn directive(line: &Line<'_>) -> Read<Statement> {
     match line.word.as_ref() {
-        "CUTTER" | "CSYS" => match statement(line)? {
+        "CUTTER" | "CSYS" | "CUTCOM_GEOMETRY_TYPE" => match statement(line)? {
             Statement::Other { .. } => Ok(other(line, true)),
             statement => Ok(statement),
         },

@@ -75,6 +75,11 @@ pub(crate) fn cutter(items: &mut Items<'_, '_>) -> Read<Statement> {
     }
 }
 
+pub(crate) fn cutcom_on_centre(items: &mut Items<'_, '_>) -> Read<Statement> {
+    let said = items.take().map(word).unwrap_or_default();
+    Ok(Statement::CutcomOnCentre(said == "OUTPUT_ON_CENTER"))
+}
+
 pub(crate) fn cutcom(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str =
         "CUTCOM/LEFT, RIGHT, ON or OFF, then XYPLAN, YZPLAN or ZXPLAN and a register as needed";

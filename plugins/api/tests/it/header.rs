@@ -29,7 +29,7 @@ fn generated() -> String {
     writeln!(text, "#define POST_LAYOUT 0x{:016x}u", raw::LAYOUT).unwrap();
     define! {
         ABI KIND_DIALECT KIND_MODEL MAX_WORDS
-        OPTION_FLAG OPTION_INTEGER OPTION_NUMBER OPTION_TEXT OPTION_CHOICE
+        OPTION_FLAG OPTION_INTEGER OPTION_NUMBER OPTION_TEXT OPTION_CHOICE OPTION_LINES
     }
     for codes in CODES {
         for (name, code) in codes.codes {

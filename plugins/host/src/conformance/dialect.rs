@@ -1,12 +1,15 @@
 //! Dialects on a short five-axis program. What a control should say is its author's; that every event becomes
-//! whole lines of finite numbers, the same however the program is cut into batches, is the kit's.
+//! whole lines of finite numbers, the same however the program is cut into batches, and that nothing of it is left
+//! out, is the kit's.
 
 use post_plugin::{
-    Batch, Capabilities, Coolant, DialectSession, Event, Feed, Format, Spindle, SpindleSense,
-    Units, quantise,
+    Batch, Capabilities, Coolant, DialectSession, Event, Feed, Format, Spindle, Units, quantise,
 };
 
 use super::Case;
+use super::commands::commands;
+use super::pen::{Pen, TURNING};
+use super::print::moves;
 use crate::{GivenValue, Plugin, PluginFault, ProgramSetup, ProgramWord};
 
 /// A kind of event that no version of the contract has.
@@ -50,22 +53,25 @@ pub(super) fn test(
         return Ok(cases);
     };
 
-    let run = |batch: usize, shift: f64| {
-        let positions = positions(&format, shift);
-        write(plugin, &setup, &events(&positions, &left_out), batch)
-    };
-    cases.push(same("again", &text, run(usize::MAX, 0.0)?));
-    cases.push(same("one by one", &text, run(1, 0.0)?));
-    cases.push(same("by sevens", &text, run(7, 0.0)?));
+    let positions = positions(&format);
+    let run = |batch: usize| write(plugin, &setup, &events(&positions, &left_out), batch);
+    cases.push(same("again", &text, run(usize::MAX)?));
+    cases.push(same("one by one", &text, run(1)?));
+    cases.push(same("by sevens", &text, run(7)?));
 
-    let mut case = Case::named("words");
-    if run(usize::MAX, 1.0)?.is_ok_and(|other| other == text) {
-        case.wrong(format!(
-            "cut {} goes 1 mm further in X, and the program is the same",
-            CUTS / 2
-        ));
-    }
+    let pen = Pen {
+        plugin,
+        setup: &setup,
+        left_out: &left_out,
+    };
+    let mut case = Case::named("words and feeds");
+    moves(&pen, &mut case)?;
     cases.push(case);
+    let mut case = Case::named("commands");
+    commands(&pen, &mut case)?;
+    cases.push(case);
+    cases.push(axis_names(&pen)?);
+    let plain = begin(&pen)?;
 
     let mut case = Case::named("unknown event");
     let events = [Event::Start, Event::Unknown { kind: UNKNOWN }];
@@ -90,13 +96,71 @@ pub(super) fn test(
             Ok(opened) => {
                 let format = opened.format().clone();
                 drop(opened);
-                program(plugin, &setup, &format, &mut left_out.clone(), &mut case)?;
+                let mut left_out = left_out.clone();
+                if program(plugin, &setup, &format, &mut left_out, &mut case)?.is_some() {
+                    let pen = Pen {
+                        plugin,
+                        setup: &setup,
+                        left_out: &left_out,
+                    };
+                    if begin(&pen)? == plain {
+                        case.wrong(format!(
+                            "the program begins as it does without: it must say so to the control, or refuse to open ({})",
+                            if tcp { "tcp" } else { "units" }
+                        ));
+                    }
+                    moves(&pen, &mut case)?;
+                    commands(&pen, &mut case)?;
+                    let told =
+                        |sentence: &String| cases.iter().any(|case| case.wrong.contains(sentence));
+                    case.wrong.retain(|sentence| !told(sentence));
+                }
             }
             Err(fault) => case.note(format!("it refuses to open: {}", fault)),
         }
         cases.push(case);
     }
     Ok(cases)
+}
+
+/// From the start to the first position: where units and tool centre point control are switched.
+fn begin(pen: &Pen<'_>) -> Result<Option<String>, PluginFault> {
+    let words = [0.0; 5];
+    let text = pen.write(&|program| {
+        program.begin();
+        program.push(Event::position(&words, None));
+    })?;
+    // Decimals apart, which an inch program may have more of.
+    Ok(text.ok().map(|(text, _)| text.replace(['0', '.'], "")))
+}
+
+/// A name with a number, as `X1`: refused, or told from the value behind it.
+fn axis_names(pen: &Pen<'_>) -> Result<Case, PluginFault> {
+    let mut case = Case::named("axis names");
+    let mut setup = pen.setup.clone();
+    setup.words[0].name = "X1".to_owned();
+    let pen = Pen {
+        setup: &setup,
+        ..*pen
+    };
+    if pen.plugin.dialect(&setup).is_err() {
+        return Ok(case);
+    }
+    let words = [450.0, -12.0, 7.0, 30.0, 40.0];
+    let text = pen.write(&|program| {
+        program.begin();
+        program.push(Event::position(&words, None));
+    })?;
+    if let Ok((text, _)) = text
+        && let Some(at) = text.find("X1")
+        && let Some(word) = text[at..].split_whitespace().next()
+        && word[2..].starts_with(|next: char| next.is_ascii_digit() || "+-.".contains(next))
+    {
+        case.wrong(format!(
+            "an axis called X1 is written `{word}`, which is a value of X: it must refuse the axis"
+        ));
+    }
+    Ok(case)
 }
 
 /// Each kind of event by itself, behind the start: written or refused in words, never passed over.
@@ -126,8 +190,8 @@ fn every_event(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFaul
     Ok(case)
 }
 
-/// The program's text, if what it cannot do without is written. Other events that are refused are left out
-/// and noted.
+/// The program's text, if its moves are written. Other events that are refused are left out: it is wrong where
+/// programs need them, else noted.
 fn program(
     plugin: &Plugin,
     setup: &ProgramSetup,
@@ -135,72 +199,68 @@ fn program(
     left_out: &mut Vec<&'static str>,
     case: &mut Case,
 ) -> Result<Option<String>, PluginFault> {
-    let positions = positions(format, 0.0);
+    let positions = positions(format);
     loop {
         let events = events(&positions, left_out);
         let (index, fault) = match write(plugin, setup, &events, usize::MAX)? {
             Ok(text) => return Ok(Some(text)),
             Err(fault) => fault,
         };
-        let refused = events
-            .get(index)
-            .map(|event| (event.name(), optional(event)));
-        match refused {
-            Some((name, true)) if !fault.contains("the plugin panicked") => {
+        let Some(event) = events.get(index).filter(|event| can_do_without(event)) else {
+            case.wrong(fault);
+            return Ok(None);
+        };
+        let name = event.name();
+        match event {
+            Event::Preselect { .. } | Event::Compensate(_) => {
                 case.note(format!("it refuses {name}: {fault}"));
-                left_out.push(name);
             }
-            _ => {
-                case.wrong(fault);
-                return Ok(None);
-            }
+            _ => case.wrong(format!("it refuses {name}, which programs need: {fault}")),
         }
+        left_out.push(name);
     }
 }
 
-/// A control may do without it.
-fn optional(event: &Event<'_>) -> bool {
-    matches!(
-        event,
-        Event::Comment { .. }
-            | Event::Coolant(_)
-            | Event::Dwell { .. }
-            | Event::Stop
-            | Event::OptionalStop
-            | Event::Retract { .. }
-            | Event::Park { .. }
-            | Event::Spindle(_)
-            | Event::ToolChange { .. }
-    )
+/// The rest of the program can be looked at without it.
+fn can_do_without(event: &Event<'_>) -> bool {
+    !event.moves() && !matches!(event, Event::Start | Event::End)
 }
 
-/// The words of every motion, rounded to what the dialect prints; cut `CUTS / 2` goes `shift` further in X.
-fn positions(format: &Format, shift: f64) -> Vec<[f64; 5]> {
+/// The words of every motion, rounded to what the dialect prints.
+fn positions(format: &Format) -> Vec<[f64; 5]> {
     (0..CUTS)
         .map(|cut| {
             let step = cut as f64;
-            let further = if cut == CUTS / 2 { shift } else { 0.0 };
-            let words = [
-                step * 1.37 - 20.0 + further,
+            let mut words = [
+                step * 1.37 - 20.0,
                 -step * 0.731,
                 50.0 - step / 7.0,
                 step * 0.9 - 10.0,
                 370.0 - step * 2.2,
             ];
-            let mut rounded = words;
-            for (word, decimals) in rounded.iter_mut().zip(&format.words) {
+            for (word, decimals) in words.iter_mut().zip(&format.words) {
                 *word = quantise(*word, *decimals);
             }
-            rounded
+            words
         })
         .collect()
 }
 
+/// A program with all kinds of events that every dialect is sent.
 fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>> {
     let words = |index: usize| {
         positions
             .get(index)
             .map_or(&[] as &[f64], |it| it.as_slice())
+    };
+    let last = positions.len().saturating_sub(1);
+    let cut = |index: usize| {
+        let feed = if index.is_multiple_of(5) {
+            900.0
+        } else {
+            400.0
+        };
+        Event::linear(words(index), Feed::PerMinute(feed))
     };
     let mut events = vec![
         Event::Start,
@@ -212,25 +272,20 @@ fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>> {
             text: "naïve (µ); % ~",
         },
         Event::tool_change(1, 1, "ball 6"),
-        Event::Spindle(Spindle::On {
-            rpm: 3000.0,
-            sense: SpindleSense::Clockwise,
-        }),
+        TURNING,
         Event::Coolant(Coolant::Flood),
         Event::Turn { words: words(0) },
         Event::position(words(0), None),
+        Event::Preselect { number: 2 },
     ];
-    events.extend((1..positions.len() - 1).map(|cut| {
-        Event::linear(
-            words(cut),
-            Feed::PerMinute(if cut % 5 == 0 { 900.0 } else { 400.0 }),
-        )
-    }));
+    events.extend((1..last).map(cut));
     events.extend([
         Event::Dwell { seconds: 0.5 },
-        Event::rapid(words(positions.len() - 1)),
+        Event::rapid(words(last)),
         Event::Stop,
         Event::OptionalStop,
+        Event::Word { text: "M77" },
+        Event::Literal { text: "M78" },
         Event::Coolant(Coolant::Off),
         Event::Spindle(Spindle::Off),
         Event::Retract {
@@ -292,4 +347,21 @@ fn same(name: &'static str, text: &str, other: Written) -> Case {
         Ok(_) => {}
     }
     case
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Compensation apart, which is tried where the control has it.
+    #[test]
+    fn the_program_has_every_kind_that_every_dialect_is_sent() {
+        let positions = [[0.0; 5]; CUTS];
+        let events = events(&positions, &[]);
+        for sample in Event::samples() {
+            let tried = matches!(sample, Event::Compensate(_));
+            let found = events.iter().any(|event| event.kind() == sample.kind());
+            assert_eq!(found || tried, sample.kind() <= LAST, "{}", sample.name());
+        }
+    }
 }

@@ -10,8 +10,12 @@
 
 typedef struct {
     char names[32][8];
+    uint32_t rotary[32];
+    uint32_t depth[32];
     size_t words_len;
     int decimals;
+    int inch;
+    int length_register;
     char error[128];
 } Context;
 
@@ -42,9 +46,22 @@ static void *open_(const PostSetup *setup, const PostSink *error) {
         return NULL;
     }
     c->words_len = setup->words_len;
-    for (size_t i = 0; i < setup->words_len; i++)
-        snprintf(c->names[i], sizeof c->names[i], "%.*s", (int)setup->words[i].name.len,
-                 (const char *)setup->words[i].name.ptr);
+    c->inch = setup->units == POST_UNITS_INCH;
+    for (size_t i = 0; i < setup->words_len; i++) {
+        const PostAxisWord *word = &setup->words[i];
+        /* X1 at 450 would be X at 1450 */
+        if (word->name.len != 1 || strchr("XYZABCUVW", *(const char *)word->name.ptr) == NULL) {
+            char refusal[64];
+            snprintf(refusal, sizeof refusal, "axis %.*s: this control has no such axis", (int)word->name.len,
+                     (const char *)word->name.ptr);
+            put(error, refusal);
+            free(c);
+            return NULL;
+        }
+        snprintf(c->names[i], sizeof c->names[i], "%c", *(const char *)word->name.ptr);
+        c->rotary[i] = word->rotary;
+        c->depth[i] = word->depth;
+    }
     c->decimals = (int)setup->options[0].value.integer;
     return c;
 }
@@ -59,53 +76,134 @@ static int32_t format(void *ctx, PostFormat *f) {
     return 0;
 }
 
-/* `feed` and `words`: where they stand among the event's numbers; -1 if there is no feed. */
-static int move_(Context *c, const PostEvent *e, int feed, size_t words, char *line, size_t size, int *len) {
+/* Of all words, of the rotary ones, of the linear ones but the depth, of the depth. */
+enum Group { ALL, ROTARY, PLANE, DEPTH };
+
+/* A block with the words of a group; none if it has no words. `feed` and `words`: where they stand among the event's
+ * numbers; -1 if there is no feed. Returns its length, negative if it cannot be written. */
+static int move_(Context *c, const PostEvent *e, enum Group group, int feed, size_t words, char *line, size_t size) {
     double code = feed < 0 ? POST_FEED_NONE : e->numbers[feed];
     if (code > POST_FEED_PER_MINUTE) {
         snprintf(c->error, sizeof c->error, "it knows feeds a minute alone");
-        return 0;
+        return -1;
     }
     int n = snprintf(line, size, "%s", code == POST_FEED_NONE ? "G0" : "G1");
-    for (size_t w = 0; w < (size_t)e->numbers[words] && n < 400; w++)
-        n += snprintf(line + n, size - n, " %s%.*f", c->names[w], c->decimals, e->numbers[words + 1 + w]);
+    if (group == DEPTH)
+        n += snprintf(line + n, size - n, " G43 H%d", c->length_register);
+    int start = n;
+    for (size_t w = 0; w < (size_t)e->numbers[words] && n < 400; w++) {
+        enum Group own = c->rotary[w] ? ROTARY : c->depth[w] ? DEPTH : PLANE;
+        if (group == ALL || group == own)
+            n += snprintf(line + n, size - n, " %s%.*f", c->names[w], c->decimals, e->numbers[words + 1 + w]);
+    }
+    if (n == start)
+        return 0;
     if (code != POST_FEED_NONE)
         n += snprintf(line + n, size - n, " F%.1f", e->numbers[feed + 1]);
-    *len = n + snprintf(line + n, size - n, "\n");
-    return 1;
+    return n + snprintf(line + n, size - n, "\n");
+}
+
+/* The plane first, then the depth with the tool's length. */
+static int position(Context *c, const PostEvent *e, char *text, size_t size) {
+    if (c->length_register == 0) {
+        snprintf(c->error, sizeof c->error, "no tool was loaded, so its length is not known");
+        return -1;
+    }
+    int n = move_(c, e, PLANE, -1, POST_POSITION_WORDS, text, size);
+    int last = move_(c, e, DEPTH, POST_POSITION_FEED, POST_POSITION_WORDS, text + n, size - n);
+    return last < 0 ? last : n + last;
+}
+
+/* Axes to positions of the machine; `axes` and `words`: where they stand among the event's numbers. */
+static int machine(Context *c, const PostEvent *e, size_t axes, size_t words, char *text, size_t size) {
+    unsigned which = (unsigned)e->numbers[axes];
+    int n = snprintf(text, size, "G53 G0");
+    for (size_t w = 0; w < c->words_len; w++)
+        if (which >> w & 1)
+            n += snprintf(text + n, size - n, " %s%.*f", c->names[w], c->decimals, e->numbers[words + 1 + w]);
+    return n + snprintf(text + n, size - n, "\n");
+}
+
+/* The text of the event in a line, between these; what is no plain letter becomes a question mark in a remark. */
+static int line_of(Context *c, const PostEvent *e, const char *front, const char *behind, char *text, size_t size) {
+    if (e->texts[0].len > 200) {
+        snprintf(c->error, sizeof c->error, "a line has 200 characters at most");
+        return -1;
+    }
+    int n = snprintf(text, size, "%s", front);
+    for (size_t i = 0; i < e->texts[0].len; i++) {
+        char letter = ((const char *)e->texts[0].ptr)[i];
+        int odd = letter < ' ' || letter > '~' || strchr("()%", letter) != NULL;
+        text[n++] = (char)(*front && odd ? '?' : letter);
+    }
+    return n + snprintf(text + n, size - n, "%s\n", behind);
+}
+
+/* The text of one event; its length, negative if it cannot be written. */
+static int text_of(Context *c, const PostEvent *e, char *text, size_t size) {
+    switch (e->kind) {
+    case POST_EVENT_START:
+        return snprintf(text, size, "%s\nG17 G40 G80 G90 G94\n", c->inch ? "G20" : "G21");
+    case POST_EVENT_COMMENT:
+        return line_of(c, e, "(", ")", text, size);
+    case POST_EVENT_LITERAL:
+    case POST_EVENT_WORD:
+        return line_of(c, e, "", "", text, size);
+    case POST_EVENT_TOOL_CHANGE:
+        c->length_register = (int)e->numbers[POST_TOOL_CHANGE_REGISTER];
+        return snprintf(text, size, "T%.0f M6\n", e->numbers[POST_TOOL_CHANGE_NUMBER]);
+    case POST_EVENT_SPINDLE: {
+        double how = e->numbers[POST_SPINDLE_SPINDLE];
+        if (how == POST_SPINDLE_OFF)
+            return snprintf(text, size, "M5\n");
+        if (how == POST_SPINDLE_ORIENT)
+            break;
+        const char *sense = how == POST_SPINDLE_CLOCKWISE ? "M3" : "M4";
+        return snprintf(text, size, "S%.0f %s\n", e->numbers[POST_SPINDLE_SPINDLE + 1], sense);
+    }
+    case POST_EVENT_COOLANT: {
+        double kind = e->numbers[POST_COOLANT_COOLANT];
+        if (kind > POST_COOLANT_FLOOD)
+            break;
+        return snprintf(text, size, kind == POST_COOLANT_OFF ? "M9\n" : "M8\n");
+    }
+    case POST_EVENT_POSITION:
+        return position(c, e, text, size);
+    case POST_EVENT_RAPID:
+        return move_(c, e, ALL, -1, POST_RAPID_WORDS, text, size);
+    case POST_EVENT_LINEAR:
+        return move_(c, e, ALL, POST_LINEAR_FEED, POST_LINEAR_WORDS, text, size);
+    case POST_EVENT_DWELL:
+        return snprintf(text, size, "G4 P%.0f\n", e->numbers[POST_DWELL_SECONDS] * 1000);
+    case POST_EVENT_STOP:
+        return snprintf(text, size, "M0\n");
+    case POST_EVENT_OPTIONAL_STOP:
+        return snprintf(text, size, "M1\n");
+    case POST_EVENT_TURN:
+        return move_(c, e, ROTARY, -1, POST_TURN_WORDS, text, size);
+    case POST_EVENT_RETRACT: { /* up, and only there the length away */
+        int n = machine(c, e, POST_RETRACT_AXES, POST_RETRACT_WORDS, text, size);
+        return n + snprintf(text + n, size - n, "G49\n");
+    }
+    case POST_EVENT_PARK:
+        return machine(c, e, POST_PARK_AXES, POST_PARK_WORDS, text, size);
+    case POST_EVENT_END:
+        return snprintf(text, size, "M30\n");
+    }
+    /* never drop what is not known */
+    snprintf(c->error, sizeof c->error, "it has no words for kind %u", e->kind);
+    return -1;
 }
 
 static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSink *out, uint64_t *ends) {
     Context *c = ctx;
     uint64_t end = 0;
     for (size_t i = 0; i < n; i++) {
-        const PostEvent *e = &events[i];
-        char line[512];
-        int len = 0;
-        switch (e->kind) {
-        case POST_EVENT_START:
-            len = snprintf(line, sizeof line, "G21 G90 G94\n");
-            break;
-        case POST_EVENT_POSITION:
-            if (!move_(c, e, POST_POSITION_FEED, POST_POSITION_WORDS, line, sizeof line, &len))
-                return i;
-            break;
-        case POST_EVENT_RAPID:
-            if (!move_(c, e, -1, POST_RAPID_WORDS, line, sizeof line, &len))
-                return i;
-            break;
-        case POST_EVENT_LINEAR:
-            if (!move_(c, e, POST_LINEAR_FEED, POST_LINEAR_WORDS, line, sizeof line, &len))
-                return i;
-            break;
-        case POST_EVENT_END:
-            len = snprintf(line, sizeof line, "M30\n");
-            break;
-        default: /* never drop what is not known */
-            snprintf(c->error, sizeof c->error, "it has no words for kind %u", e->kind);
+        char text[1024];
+        int len = text_of(c, &events[i], text, sizeof text);
+        if (len < 0)
             return i;
-        }
-        out->write(out->ctx, (const uint8_t *)line, (size_t)len);
+        out->write(out->ctx, (const uint8_t *)text, (size_t)len);
         end += (uint64_t)len;
         ends[i] = end;
     }

@@ -9,6 +9,8 @@ use post_host::conformance::{self, Report, Verdict};
 use post_host::{GivenValue, Kind, Plugin};
 use post_plugin::Linked;
 
+use crate::sloppy;
+
 /// A plugin that is part of the product.
 fn stock(name: &str) -> Linked {
     post_stock::plugin(name).unwrap()
@@ -190,9 +192,10 @@ fn dialects_are_run_too() {
     let tiny = conformance::test(&example("tiny"), &[]).unwrap();
     assert_eq!(tiny.kind, Kind::Dialect);
     assert!(tiny.is_good(), "{tiny}");
+    // What not every control has.
     assert!(
         tiny.table()
-            .contains("program: it refuses Spindle: dialect `tiny`")
+            .contains("program: it refuses Preselect: dialect `tiny`")
     );
 
     let gcode = conformance::test(&example("gcode"), &[]).unwrap();
@@ -206,6 +209,25 @@ fn dialects_are_run_too() {
             .any(|wrong| wrong.contains("the plugin panicked")),
         "{panics}"
     );
+}
+
+/// What a certificate speaks of must be in the text: each of these dialects leaves some of it out.
+#[test]
+fn every_word_that_is_not_printed_is_found() {
+    let sloppy = |fault: &str| {
+        let fault = GivenValue::Text(fault.to_owned());
+        run(sloppy::plugin(), &[("fault", fault)])
+    };
+    let good = sloppy("");
+    assert!(good.is_good(), "{good}");
+    let mut missed = Vec::new();
+    for (fault, sentence) in sloppy::FAULTS {
+        let report = sloppy(fault);
+        if !report.wrong().any(|found| found.contains(sentence)) {
+            missed.push(format!("{fault}: {sentence}\n{report}"));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
 }
 
 #[test]

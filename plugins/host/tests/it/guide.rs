@@ -39,6 +39,7 @@ fn the_guide_lists_the_options_of_the_stock_plugins() {
                 OptionKind::Integer { min, max } => format!("{min} to {max}"),
                 OptionKind::Number { min, max } => format!("{min} to {max}, any number"),
                 OptionKind::Text => "text".to_owned(),
+                OptionKind::Lines => "a line, or an array of lines".to_owned(),
                 OptionKind::Choice(choices) => choices.join(", "),
             };
             let default = match spec.default {

@@ -218,26 +218,29 @@ fn a_panic_of_the_host_passes_through_a_model_unharmed() {
 }
 
 #[test]
-fn a_dialect_in_thirty_lines_of_rust() {
+fn a_small_dialect_of_rust() {
     let plugin = Plugin::open(&example("tiny")).unwrap();
-    let mut session = plugin.dialect(&setup(&["X", "C"])).unwrap();
+    let mut session = plugin.dialect(&setup(&["X", "Z", "C"])).unwrap();
     let mut batch = Batch::default();
-    batch.push(1, Event::Start);
-    batch.push(2, Event::rapid(&[1.5, 90.0]));
-    batch.push(3, Event::linear(&[-2.0, 90.0], Feed::PerMinute(250.0)));
-    batch.push(4, Event::Stop);
+    batch.push(1, Event::tool_change(1, 11, ""));
+    batch.push(2, Event::position(&[1.5, 50.0, 90.0], None));
+    batch.push(
+        3,
+        Event::linear(&[-2.0, 50.0, 90.0], Feed::PerMinute(250.0)),
+    );
+    batch.push(4, Event::Spindle(Spindle::Orient));
     let (mut out, mut ends) = (String::new(), Vec::new());
     let fault = session
         .write_batch(&batch, &mut out, &mut ends)
         .unwrap_err();
     assert_eq!(
         out,
-        "G21 G90 G94\nG0 X1.500 C90.000\nG1 X-2.000 C90.000 F250.0\n"
+        "T1 M6\nG0 C90.000\nG0 X1.5000\nG0 G43 H11 Z50.0000\nG1 X-2.0000 Z50.0000 C90.000 F250.0\n"
     );
     assert_eq!((ends.len(), fault.index), (3, 3));
     assert_eq!(
         fault.message,
-        "dialect `tiny`, event Stop: this dialect has no words for a stop"
+        "dialect `tiny`, event Spindle: this dialect has no words for a spindle command"
     );
 }
 
@@ -254,7 +257,7 @@ fn a_dialect_in_c() {
     assert_eq!(session.format().inverse_time, None);
     assert_eq!(session.format().extension, "tap");
     let mut batch = Batch::default();
-    batch.push(1, Event::Start);
+    batch.push(1, Event::Stop);
     batch.push(2, Event::rapid(&[1.5, 90.0]));
     batch.push(3, Event::Unknown { kind: 4711 });
     let mut out = "before\n".to_owned();
@@ -262,12 +265,15 @@ fn a_dialect_in_c() {
     let fault = session
         .write_batch(&batch, &mut out, &mut ends)
         .unwrap_err();
-    assert_eq!(out, "before\nG21 G90 G94\nG0 X1.50 C90.00\n");
-    assert_eq!(ends, [19, 35]);
+    assert_eq!(out, "before\nM0\nG0 X1.50 C90.00\n");
+    assert_eq!(ends, [10, 26]);
     assert_eq!(
         fault.message,
         "dialect `minimal`, event Unknown: it has no words for kind 4711"
     );
+    // It is good by the kit, which is asked through the contract.
+    let report = post_host::conformance::test(&plugin, &[]).unwrap();
+    assert!(report.is_good(), "{report}");
     setup.tcp = true;
     let refused = plugin.dialect(&setup).unwrap_err();
     assert!(refused.to_string().ends_with("this control has no TCP"));

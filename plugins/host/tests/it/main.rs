@@ -4,3 +4,4 @@ mod conformance;
 mod guide;
 mod libraries;
 mod papers;
+mod sloppy;

@@ -80,6 +80,10 @@ pub struct Interpreter {
     /// Cutter compensation is in force, and its register.
     compensated: bool,
     register: Option<u32>,
+    /// The file says that its points are the tool's centre, whatever `CUTCOM` says.
+    on_centre: bool,
+    /// Set once it was told what becomes of `CUTCOM` then.
+    told_on_centre: bool,
     tool_name: String,
     diameter: Option<f64>,
     /// A cycle was refused: the points that it acts at are no moves.
@@ -166,6 +170,8 @@ impl Interpreter {
             described: None,
             compensated: false,
             register: None,
+            on_centre: false,
+            told_on_centre: false,
             tool_name: String::new(),
             diameter: None,
             cycle_lost: false,
@@ -416,8 +422,9 @@ impl Interpreter {
             Statement::Cycle(cycle) => self.cycle(record, cycle, emit),
             Statement::Cutcom(cutcom) => {
                 self.load_told(record, emit);
-                self.cutcom(*cutcom, emit);
+                self.cutcom(record, *cutcom, emit);
             }
+            Statement::CutcomOnCentre(on_centre) => self.on_centre = *on_centre,
             Statement::Rotate(rotate) => match self.frame.rotate(rotate) {
                 Ok((axis, angle)) => {
                     emit(Step::Command(Command::Index { axis, angle }));

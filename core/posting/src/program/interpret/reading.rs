@@ -1,7 +1,7 @@
 //! How a file is to be read: what the user says of it, and what the machine file does.
 
 use post_grammar::{MajorWord, Units};
-use post_machine::description::{Insert, ToolLength, WordRule};
+use post_machine::description::{CompensationOnCentre, Insert, ToolLength, WordRule};
 
 use crate::program::Unknown;
 
@@ -20,6 +20,8 @@ pub struct Reading {
     pub unknown: Unknown,
     /// What becomes of `INSERT`.
     pub insert: Insert,
+    /// What becomes of `CUTCOM` on points of the tool's centre.
+    pub compensation_on_centre: CompensationOnCentre,
     /// Which tool length counts.
     pub tool_length: ToolLength,
     /// How far chords may stray from arcs and splines, mm.

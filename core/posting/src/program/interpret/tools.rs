@@ -7,7 +7,8 @@ use post_plugin::{Compensation, Spindle, SpindleSense};
 
 use super::{Described, Interpreter};
 use crate::program::{Command, Step, Tool};
-use post_machine::description::ToolLength;
+use post_machine::description::{CompensationOnCentre, ToolLength};
+use post_machine::diagnostic::Diagnostic;
 
 impl Interpreter {
     pub(super) fn spindle(
@@ -216,7 +217,12 @@ impl Interpreter {
         self.cutter_length = numbers.get(length).map(|length| length * self.scale);
     }
 
-    pub(super) fn cutcom(&mut self, cutcom: Cutcom, emit: &mut impl FnMut(Step)) {
+    pub(super) fn cutcom(
+        &mut self,
+        record: &Record<'_>,
+        cutcom: Cutcom,
+        emit: &mut impl FnMut(Step),
+    ) {
         let side = match cutcom.side {
             Some(Side::Off) => {
                 self.compensated = false;
@@ -233,6 +239,9 @@ impl Interpreter {
         let tool = self.loaded.map(|(number, ..)| number);
         let register = self.register.or(tool).unwrap_or(1);
         self.compensated |= matches!(side, Some(Side::Left | Side::Right));
+        if side.is_some() {
+            self.check_on_centre(record, register);
+        }
         match side {
             Some(Side::Left) => emit(Step::Command(Command::Compensate(Compensation::Left {
                 register,
@@ -243,5 +252,30 @@ impl Interpreter {
             // CAMWorks switches it ON first and names the side in the next record.
             Some(Side::Off) | None => {}
         }
+    }
+
+    /// Points of the tool's centre are already off the contour by its radius: a register that holds the radius would
+    /// add it once more. Told once a file.
+    fn check_on_centre(&mut self, record: &Record<'_>, register: u32) {
+        if !self.on_centre || std::mem::replace(&mut self.told_on_centre, true) {
+            return;
+        }
+        let place = self.place(record);
+        let path = "the points are the tool's centre (CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER)";
+        let finding = match self.reading.compensation_on_centre {
+            CompensationOnCentre::Refuse => Diagnostic::error(
+                "compensation",
+                format!("CUTCOM where {path}: with the radius in register {register} the part would be off by the radius"),
+            )
+            .help(
+                "let the CAM system put out the contour; or, where that register holds the tool's wear alone, \
+                 [control] compensation_on_centre = \"wear\"",
+            ),
+            CompensationOnCentre::Wear => Diagnostic::warning(
+                "compensation",
+                format!("CUTCOM where {path}: register {register} must hold the tool's wear alone, not its radius"),
+            ),
+        };
+        self.findings.push(finding.at(place));
     }
 }

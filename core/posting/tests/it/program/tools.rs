@@ -101,6 +101,49 @@ fn the_register_of_compensation_does_not_outlive_its_tool() {
     )]);
 }
 
+/// Points of the tool's centre and the radius in the register: the part would be off by the radius.
+#[test]
+fn compensation_on_the_tools_centre_is_wear_or_refused() {
+    use post_machine::description::CompensationOnCentre::{Refuse, Wear};
+    let centre = "$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_CENTER";
+    let remark = "REMARK -> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_CENTER";
+    let contour = "$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_PROFILE";
+    let cut = "CUTCOM/LEFT,7;GOTO/1,0,0;CUTCOM/OFF;GOTO/2,0,0;CUTCOM/RIGHT,7;GOTO/3,0,0";
+    for (before, on_centre, findings) in [
+        (centre, Refuse, "error compensation"),
+        (remark, Refuse, "error compensation"),
+        (centre, Wear, "warning compensation"),
+        (contour, Refuse, ""),
+    ] {
+        let reading = Reading {
+            compensation_on_centre: on_centre,
+            ..Reading::default()
+        };
+        let text = format!("UNITS/MM;FEDRAT/100;LOADTL/1;{before};{cut}");
+        let run = Run::of(reading.clone(), &text);
+        assert_eq!(run.findings(), findings, "{before}");
+        assert_eq!(
+            run.steps(),
+            "T1/1; G41 7; F100 1,0,0; G40; F100 2,0,0; G42 7; F100 3,0,0"
+        );
+        // It says whose register, and names the option.
+        if let [told] = run.findings.as_slice() {
+            let text = format!(
+                "{}; {}",
+                told.message,
+                told.help.clone().unwrap_or_default()
+            );
+            assert!(text.contains("register 7"), "{text}");
+            let names_it = text.contains("compensation_on_centre = \"wear\"");
+            assert_eq!(names_it, on_centre == Refuse, "{text}");
+            assert_eq!(told.place.as_ref().map(|place| place.line), Some(5));
+        }
+        // Without CUTCOM nobody cares, and the next operation may say otherwise.
+        let text = format!("UNITS/MM;FEDRAT/100;{before};GOTO/1,0,0;{contour};{cut}");
+        assert_eq!(Run::of(reading, &text).findings(), "", "{before}");
+    }
+}
+
 /// Another cutter described and none loaded: the path of a small tool is cut with a large one.
 #[test]
 fn a_second_cutter_without_a_tool_change_is_refused() {

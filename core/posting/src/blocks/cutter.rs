@@ -1,0 +1,71 @@
+//! Cutter radius compensation: the control's, refused where it would offset in the wrong plane.
+
+use post_machine::description::Tcp;
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::orientation::angle;
+use post_plugin::Compensation;
+
+use super::Blocks;
+use crate::accuracy::{Node, Placer};
+use crate::findings::Findings;
+
+impl Blocks<'_> {
+    /// Compensation is switched on or off.
+    pub(super) fn compensate(&mut self, line: u64, to: Compensation, findings: &Findings) {
+        self.compensating = to != Compensation::Off;
+        if self.compensating && !self.compensates {
+            self.compensating = false;
+            self.refuse_compensation(
+                line,
+                "under tool centre point control: this dialect does not say that its control can",
+                "tcp = \"post\" writes axis positions (--tcp post); or let the CAM system write the tool centre \
+                 path, with CUTCOM/OFF",
+                findings,
+            );
+        }
+    }
+
+    /// Radius compensation works in the plane of X and Y of the machine (of the part, where the control keeps
+    /// the tip): a tool that does not stand upright in it would be moved sideways into the part.
+    pub(super) fn check_compensation(
+        &mut self,
+        placer: &Placer,
+        line: u64,
+        node: &Node,
+        findings: &Findings,
+    ) {
+        let machine = self.machine;
+        let axis = match machine.control.tcp {
+            Tcp::Control => node.trace.pose.axis,
+            Tcp::Post => self.in_machine(placer, node),
+        };
+        let tilt = angle(axis, machine.tool_axis);
+        let turned = self
+            .last
+            .as_ref()
+            .is_some_and(|last| self.turn_between(last, node) > 0.0);
+        let what = if tilt > 1e-3 {
+            format!("the tool tilted by {:.3}°", tilt.to_degrees())
+        } else if turned {
+            "rotary axes turning".to_owned()
+        } else {
+            return;
+        };
+        self.compensating = false;
+        self.refuse_compensation(
+            line,
+            &format!("with {what}: the control would offset in the wrong plane"),
+            "let the CAM system write the tool centre path, with CUTCOM/OFF",
+            findings,
+        );
+    }
+
+    /// Told once a program.
+    fn refuse_compensation(&mut self, line: u64, why: &str, help: &str, findings: &Findings) {
+        if std::mem::replace(&mut self.told_compensation, true) {
+            return;
+        }
+        let message = format!("cutter radius compensation (CUTCOM) {why}");
+        findings.at(line, Diagnostic::error("compensation", message).help(help));
+    }
+}

@@ -1,0 +1,288 @@
+//! The certificate speaks of the printed text: whatever a move says, to its last declared decimal, must be in it.
+//!
+//! A short program is written twice, with one number changed; where the text of the move stays the same, the dialect
+//! does not print it.
+
+use post_plugin::{Event, Feed, Format, quantise};
+
+use super::Case;
+use super::pen::{Pen, Program, Text};
+use crate::{PluginFault, ProgramWord};
+
+/// Where the tool stands, but for the word that is looked at.
+const PLACE: [f64; 5] = [11.0, -21.5, 31.25, -17.0, 41.0];
+/// Where it comes from, and goes to.
+pub(super) const ELSEWHERE: [f64; 5] = [1.0, 2.0, 90.0, 3.0, 4.0];
+
+/// mm or inch.
+const LINEAR: [f64; 5] = [0.0, 12.345_678, -12.345_678, 123.456_789, 2_345.678_9];
+/// Degrees, past a turn too.
+const ROTARY: [f64; 5] = [0.0, 12.345_678, -179.999_999, 359.999_999, -1_234.567_89];
+/// Lengths a minute, or 1/min.
+const FEEDS: [f64; 4] = [0.0, 1.25, 123.456_78, 5000.0];
+
+/// A kind of move that every program has.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Retract,
+    Park,
+    Turn,
+    Position,
+    PositionAtFeed,
+    Rapid,
+    Cut,
+    CutInInverseTime,
+}
+
+use Kind::{Cut, CutInInverseTime, Park, Position, PositionAtFeed, Rapid, Retract, Turn};
+
+impl Kind {
+    fn all(format: &Format) -> Vec<Kind> {
+        let mut kinds = vec![Retract, Park, Turn, Position, PositionAtFeed, Rapid, Cut];
+        kinds.extend(format.inverse_time.map(|_| CutInInverseTime));
+        kinds
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Retract => "a retract",
+            Park => "a position of the machine",
+            Turn => "a turn of the rotary axes",
+            Position => "a first position",
+            PositionAtFeed => "a first position at a feed",
+            Rapid => "a rapid",
+            Cut => "a cut",
+            CutInInverseTime => "a cut in inverse time",
+        }
+    }
+
+    fn comes_first(self) -> bool {
+        matches!(self, Retract | Park | Turn | Position | PositionAtFeed)
+    }
+
+    /// It has this word: a retract that of the depth, a turn those of rotary axes, a first position the others.
+    fn has(self, word: &ProgramWord) -> bool {
+        match self {
+            Retract => word.depth,
+            Turn => word.rotary,
+            Position | PositionAtFeed => !word.rotary,
+            Park | Rapid | Cut | CutInInverseTime => true,
+        }
+    }
+
+    /// Decimals of its feed.
+    fn feed_decimals(self, format: &Format) -> Option<u8> {
+        match self {
+            Retract | Park | Turn | Position | Rapid => None,
+            PositionAtFeed | Cut => Some(format.feed),
+            CutInInverseTime => format.inverse_time,
+        }
+    }
+
+    fn event(self, words: &[f64], feed: f64) -> Event<'_> {
+        match self {
+            Retract => Event::Retract { axes: 0b100, words },
+            Park => Event::Park {
+                axes: 0b1_1111,
+                words,
+            },
+            Turn => Event::Turn { words },
+            Position => Event::position(words, None),
+            PositionAtFeed => Event::position(words, Some(Feed::PerMinute(feed))),
+            Rapid => Event::rapid(words),
+            Cut => Event::linear(words, Feed::PerMinute(feed)),
+            CutInInverseTime => Event::linear(words, Feed::InverseTime(feed)),
+        }
+    }
+}
+
+/// A move with its numbers.
+#[derive(Clone, Copy)]
+struct Move {
+    kind: Kind,
+    words: [f64; 5],
+    feed: f64,
+}
+
+impl Move {
+    fn event(&self) -> Event<'_> {
+        self.kind.event(&self.words, self.feed)
+    }
+}
+
+/// Runs all kinds of moves, with every word and feed.
+pub(super) fn moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    let format = pen.format()?;
+    for kind in Kind::all(&format) {
+        if let Err(fault) = kind_alone(pen, &format, kind)? {
+            case.wrong(format!("{} is refused: {fault}", kind.name()));
+            continue;
+        }
+        for word in 0..format.words.len() {
+            if !kind.has(&pen.setup.words[word]) {
+                continue;
+            }
+            if let Some(fault) = word_fault(pen, &format, kind, word)? {
+                case.wrong(format!("{}: {fault}", kind.name()));
+            }
+        }
+        if let Some(fault) = feed_fault(pen, &format, kind)? {
+            case.wrong(format!("{}: {fault}", kind.name()));
+        }
+    }
+    Ok(())
+}
+
+/// The text of a move of this kind.
+fn kind_alone(pen: &Pen<'_>, format: &Format, kind: Kind) -> Result<Text, PluginFault> {
+    let alone = Move {
+        kind,
+        words: rounded(PLACE, format),
+        feed: 500.0,
+    };
+    pen.write(&|program| {
+        program.begin();
+        if !kind.comes_first() {
+            program.push(Event::position(&ELSEWHERE, None));
+        }
+        program.look_at(alone.event());
+    })
+}
+
+/// What is wrong with a word of a kind of move.
+fn word_fault(
+    pen: &Pen<'_>,
+    format: &Format,
+    kind: Kind,
+    word: usize,
+) -> Result<Option<String>, PluginFault> {
+    let (name, rotary) = (&pen.setup.words[word].name, pen.setup.words[word].rotary);
+    let decimals = format.words[word];
+    let unit = unit(decimals);
+    for value in if rotary { ROTARY } else { LINEAR } {
+        let value = quantise(value, decimals);
+        let mut base = Move {
+            kind,
+            words: rounded(PLACE, format),
+            feed: 500.0,
+        };
+        base.words[word] = value;
+        let mut changes = vec![(value + unit, LAST_DECIMAL), (value - unit, LAST_DECIMAL)];
+        if value != 0.0 {
+            changes.push((-value, "the other sign"));
+        }
+        if rotary {
+            changes.push((value + 360.0, "a turn"));
+        }
+        for before in befores(format, &base) {
+            for (changed, what) in &changes {
+                let changed = quantise(*changed, decimals);
+                let mut other = base;
+                other.words[word] = changed;
+                if let Some(fault) = same_text(pen, before, &base, &other)? {
+                    return Ok(Some(format!(
+                        "with {name} {changed} instead of {value} ({what}) {fault}"
+                    )));
+                }
+            }
+        }
+    }
+    Ok(None)
+}
+
+const LAST_DECIMAL: &str = "the last declared decimal";
+
+/// What is wrong with the feed of a kind of move.
+fn feed_fault(pen: &Pen<'_>, format: &Format, kind: Kind) -> Result<Option<String>, PluginFault> {
+    let Some(decimals) = kind.feed_decimals(format) else {
+        return Ok(None);
+    };
+    let unit = unit(decimals);
+    for value in FEEDS {
+        let value = quantise(value, decimals).max(unit);
+        let base = Move {
+            kind,
+            words: rounded(PLACE, format),
+            feed: value,
+        };
+        for before in befores(format, &base) {
+            for changed in [value + unit, value - unit] {
+                let feed = quantise(changed, decimals);
+                let other = Move { feed, ..base };
+                // A move to where the tool stands already needs no feed.
+                let still = before.is_some_and(|before| before.words == base.words);
+                if feed <= 0.0 || still {
+                    continue;
+                }
+                if let Some(fault) = same_text(pen, before, &base, &other)? {
+                    return Ok(Some(format!(
+                        "with the feed {feed} instead of {value} ({LAST_DECIMAL}) {fault}"
+                    )));
+                }
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// What may come before a move: none before a first position; else each kind, from elsewhere, and from where the move
+/// itself ends, so that a word of it is written alone.
+fn befores(format: &Format, base: &Move) -> Vec<Option<Move>> {
+    if base.kind.comes_first() {
+        return vec![None];
+    }
+    let kinds = Kind::all(format);
+    let kinds = kinds.into_iter().filter(|kind| !kind.comes_first());
+    kinds
+        .flat_map(|kind| {
+            let from = |words| {
+                Some(Move {
+                    kind,
+                    words,
+                    ..*base
+                })
+            };
+            [from(base.words), from(rounded(ELSEWHERE, format))]
+        })
+        .collect()
+}
+
+/// Both moves have the same text, or are not written: what to say of it.
+fn same_text(
+    pen: &Pen<'_>,
+    before: Option<Move>,
+    one: &Move,
+    other: &Move,
+) -> Result<Option<String>, PluginFault> {
+    let write = |looked_at: &Move| {
+        pen.write(&|program: &mut Program<'_>| {
+            program.begin();
+            if let Some(before) = &before {
+                program.push(Event::position(&[9.0; 5], None));
+                program.push(before.event());
+            }
+            program.look_at(looked_at.event());
+            program.end();
+        })
+    };
+    Ok(match (write(one)?, write(other)?) {
+        (Ok((_, one)), Ok((_, other))) if one == other => {
+            Some(format!("its text is the same: `{}`", one.trim_end()))
+        }
+        (Ok(_), Ok(_)) => None,
+        (Err(fault), _) | (_, Err(fault)) => Some(format!("it is refused: {fault}")),
+    })
+}
+
+/// One in the last of so many decimals.
+fn unit(decimals: u8) -> f64 {
+    let unit = (0..decimals).fold(1.0, |unit, _| unit / 10.0);
+    quantise(unit, decimals)
+}
+
+fn rounded(mut words: [f64; 5], format: &Format) -> [f64; 5] {
+    for (word, decimals) in words.iter_mut().zip(&format.words) {
+        *word = quantise(*word, *decimals);
+    }
+    words
+}

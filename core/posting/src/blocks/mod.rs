@@ -1,6 +1,7 @@
 //! Points whose axis values are chosen become blocks: points put in or left out, every block certified.
 
 mod audience;
+mod between_words;
 mod block;
 mod gathered;
 mod nominal;
@@ -22,6 +23,8 @@ use crate::program::{Command, Motion, Pace};
 use crate::refusal;
 use crate::stream::{Flow, Outlet};
 pub(crate) use audience::Audience;
+pub(crate) use between_words::BetweenWords;
+pub use between_words::Follow;
 pub use block::{Block, MotionKind, Reason, Time};
 use gathered::Gathered;
 pub use nominal::Nominal;
@@ -112,6 +115,7 @@ pub(crate) struct Blocks<'a> {
     placer: Option<Rc<Placer>>,
     linearise: Linearise,
     kinds: Kinds,
+    between: BetweenWords,
     /// CL points that wait for those behind them.
     gathered: Gathered,
     /// What each leg of the run in hand is due.
@@ -146,6 +150,7 @@ impl<'a> Blocks<'a> {
             placer: None,
             linearise: Linearise::new(&machine.accuracy, trust_model),
             kinds: Kinds::new(machine),
+            between: BetweenWords::new(machine),
             gathered: Gathered::default(),
             nominal: Vec::new(),
             last: None,
@@ -162,6 +167,11 @@ impl<'a> Blocks<'a> {
     /// Counts so far.
     pub(crate) fn counts(&self) -> Counts {
         self.counts
+    }
+
+    /// What the linear axes did between the words.
+    pub(crate) fn between_words(&self) -> &BetweenWords {
+        &self.between
     }
 
     /// Points that the certificate asked for over the model's head.
@@ -244,6 +254,7 @@ impl<'a> Blocks<'a> {
                 if let Some(head) = self.base.head(name) {
                     self.machine = &head.machine;
                     self.kinds = Kinds::new(self.machine);
+                    self.between.set(self.machine);
                     self.linearise.set(&self.machine.accuracy);
                 }
             }
@@ -347,7 +358,7 @@ impl<'a> Blocks<'a> {
         to.out.push(Flow::Point(Block {
             kind,
             // Nobody knows the way: the feed is that of a millimetre.
-            way: [1.0; 2],
+            way: 1.0,
             nominal: Nominal::of(leg.motion.pace, 1.0, Travels::default),
             ..block
         }));
@@ -432,7 +443,7 @@ impl<'a> Blocks<'a> {
                     bound
                 };
                 let nominal = self.nominal(leg, last, node);
-                self.push(leg, last, node, nominal, bound, to);
+                self.push(placer, leg, [last, node], nominal, bound, to);
             }
             None => self.split(placer, &[*leg], &[*last, *node], to),
         }
@@ -454,7 +465,7 @@ impl<'a> Blocks<'a> {
         let planned = Move::planned(self.machine, placer, chord, loose, [&nodes[0], &nodes[1]]);
         let moves = nodes
             .windows(2)
-            .any(|pair| (pair[1].target.tip - pair[0].target.tip).norm() > STILL);
+            .any(|pair| self.wanted_way(&pair[0], &pair[1]) > STILL);
         let run = Run {
             placer,
             nodes,
@@ -487,7 +498,8 @@ impl<'a> Blocks<'a> {
                         },
                         ..legs[piece.leg]
                     };
-                    self.push(&leg, &from, &piece.to, nominal, piece.bound, to);
+                    let ends = [&from, &piece.to];
+                    self.push(placer, &leg, ends, nominal, piece.bound, to);
                     (from, at) = (piece.to, end);
                 }
                 self.nominal = due;
@@ -505,40 +517,53 @@ impl<'a> Blocks<'a> {
     /// What a move is due.
     #[inline]
     fn nominal(&self, leg: &Leg<'_>, from: &Node, to: &Node) -> Nominal {
-        let length = (to.tip - from.tip).norm();
-        Nominal::of(leg.motion.pace, length, || {
+        Nominal::of(leg.motion.pace, self.way(from, to), || {
             self.kinds.travels(&from.trace.joints, &to.trace.joints)
         })
+    }
+
+    /// Way of the tip between two nodes as they are printed, mm: it has the feed, whichever point of the tool is
+    /// guided, and it is what a control that keeps the tip will time.
+    #[inline]
+    fn way(&self, from: &Node, to: &Node) -> f64 {
+        let way = to.tip - from.tip;
+        match self.machine.control_point.along {
+            0.0 => way.norm(),
+            along => (way - (to.trace.pose.axis - from.trace.pose.axis) * along).norm(),
+        }
+    }
+
+    /// [`Blocks::way`] as the CL file asks for it.
+    fn wanted_way(&self, from: &Node, to: &Node) -> f64 {
+        let along = self.machine.control_point.along;
+        let tip = |node: &Node| node.target.tip - node.target.axis * along;
+        (tip(to) - tip(from)).norm()
     }
 
     /// One block.
     #[inline]
     fn push(
         &mut self,
+        placer: &Placer,
         leg: &Leg<'_>,
-        from: &Node,
-        node: &Node,
+        [from, node]: [&Node; 2],
         nominal: Nominal,
         bound: Bound,
         to: &mut Surroundings<'_, '_>,
     ) {
-        // Between the printed tips: that is the way that the control will time.
-        let way = node.tip - from.tip;
-        let length = way.norm();
-        let along = self.machine.control_point.along;
-        let tip_length = if along == 0.0 {
-            length
-        } else {
-            (way - (node.trace.pose.axis - from.trace.pose.axis) * along).norm()
-        };
         self.largest.keep(leg, bound);
-        let block = self.block(leg, node, bound);
-        to.out.push(Flow::Point(Block {
+        let mut block = Block {
             still: from.words == node.words,
-            way: [length, tip_length],
+            way: self.way(from, node),
             nominal,
-            ..block
-        }));
+            ..self.block(leg, node, bound)
+        };
+        if self.kinds.turning(&from.trace.joints, &node.trace.joints) {
+            let (machine, asked) = (self.machine, block.asked());
+            let way = (placer, leg, [from, node]);
+            block.follow = self.between.block(machine, way, asked, to.findings);
+        }
+        to.out.push(Flow::Point(block));
     }
 
     #[inline]
@@ -562,8 +587,9 @@ impl<'a> Blocks<'a> {
                 tip: bound.tip + leg.motion.chord,
                 ..bound
             },
-            way: [0.0; 2],
+            way: 0.0,
             nominal: Nominal::default(),
+            follow: Follow::default(),
             time: Time::default(),
         }
     }

@@ -46,7 +46,7 @@ impl Nominal {
         }
     }
 
-    /// Of a move that goes `length` mm along the control point's path.
+    /// Of a move in which the tip goes `length` mm.
     #[inline]
     pub(crate) fn of(pace: Pace, length: f64, travels: impl FnOnce() -> Travels) -> Self {
         let moves = length > STILL;

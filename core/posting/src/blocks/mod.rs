@@ -514,32 +514,6 @@ impl<'a> Blocks<'a> {
         self.linearise = linearise;
     }
 
-    /// What a move is due.
-    #[inline]
-    fn nominal(&self, leg: &Leg<'_>, from: &Node, to: &Node) -> Nominal {
-        Nominal::of(leg.motion.pace, self.way(from, to), || {
-            self.kinds.travels(&from.trace.joints, &to.trace.joints)
-        })
-    }
-
-    /// Way of the tip between two nodes as they are printed, mm: it has the feed, whichever point of the tool is
-    /// guided, and it is what a control that keeps the tip will time.
-    #[inline]
-    fn way(&self, from: &Node, to: &Node) -> f64 {
-        let way = to.tip - from.tip;
-        match self.machine.control_point.along {
-            0.0 => way.norm(),
-            along => (way - (to.trace.pose.axis - from.trace.pose.axis) * along).norm(),
-        }
-    }
-
-    /// [`Blocks::way`] as the CL file asks for it.
-    fn wanted_way(&self, from: &Node, to: &Node) -> f64 {
-        let along = self.machine.control_point.along;
-        let tip = |node: &Node| node.target.tip - node.target.axis * along;
-        (tip(to) - tip(from)).norm()
-    }
-
     /// One block.
     #[inline]
     fn push(

@@ -25,6 +25,7 @@ pub(super) struct FeedWriter {
     most: f64,
     unit: f64,
     feed: Printed,
+    /// None where the machine or the dialect has no feed by time.
     inverse: Option<Printed>,
 }
 
@@ -61,7 +62,10 @@ impl FeedWriter {
             most: most(machine),
             unit: unit_length(machine.control.units),
             feed: Printed::new(format.feed),
-            inverse: format.inverse_time.map(Printed::new),
+            inverse: match machine.control.feed {
+                FeedMode::PerMinute => None,
+                _ => format.inverse_time.map(Printed::new),
+            },
         })
     }
 

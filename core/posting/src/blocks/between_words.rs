@@ -135,7 +135,7 @@ impl BetweenWords {
         Some(follow)
     }
 
-    #[cold]
+    #[inline(never)]
     fn look_into(
         &mut self,
         machine: &Machine,

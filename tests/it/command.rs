@@ -285,6 +285,7 @@ fn check_summary(summary: &Value, program: &str, machine: &str) {
         "time_s",
         "cutting_time_s",
         "blocks_limited",
+        "fast_rapids",
         "ignored_words",
         "plugins",
         "warnings",

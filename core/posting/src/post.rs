@@ -82,7 +82,7 @@ impl Stages<'_> {
         };
         let finish = last_line.is_some();
         let mut to_emit = |made: &mut Vec<Flow<Block>>| {
-            timing.take(made);
+            timing.take(made, findings);
             observers.blocks(made);
             emit.take(made, findings);
         };
@@ -245,6 +245,9 @@ impl<'a> Post<'a> {
                     .help("is it a cutter-location file (APT, CLSF, NCL)?"),
             );
         }
+        if let Some(warning) = self.stages.timing.low_feeds() {
+            self.findings.add(warning);
+        }
         let report = (!self.findings.failed()).then(|| self.report());
         (report, self.findings.sorted())
     }
@@ -263,6 +266,7 @@ impl<'a> Post<'a> {
         let counts = stages.blocks.counts();
         let durations = stages.timing.statistics();
         let extremes = stages.emit.extremes();
+        let between = stages.blocks.between_words();
         let [tip, axis, rapid] = extremes.deviations;
         let axes = axis_words::order(machine)
             .into_iter()
@@ -270,12 +274,12 @@ impl<'a> Post<'a> {
                 let axis = &machine.axes[index];
                 AxisRange {
                     name: axis.name.clone(),
-                    min: axis.reading(extremes.least[index]),
-                    max: axis.reading(extremes.most[index]),
+                    min: axis.reading(extremes.least[index].min(between.least(index))),
+                    max: axis.reading(extremes.most[index].max(between.most(index))),
                     travel: axis
                         .travel
                         .map(|travel| travel.map(|end| axis.reading(end))),
-                    way: extremes.travel[index] / axis.unit(),
+                    way: (extremes.travel[index] + between.beside(index)) / axis.unit(),
                 }
             })
             .collect();
@@ -312,6 +316,7 @@ impl<'a> Post<'a> {
             time_s: (durations.cutting + durations.other) * 60.0,
             cutting_time_s: durations.cutting * 60.0,
             blocks_limited: durations.limited,
+            fast_rapids: stages.timing.rapids().found().clone(),
             ignored_words: self
                 .interpreter
                 .ignored()

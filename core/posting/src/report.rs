@@ -52,18 +52,34 @@ pub struct Report {
     pub rewinds: u64,
     /// Points at which a rotary axis was held or turned early close to a pole, within the tolerance of the axis.
     pub points_eased: u64,
-    /// Time of cuts, rapids and dwells, s; tool changes not among it.
+    /// Time of cuts, rapids and dwells as the control understands the printed feeds, s; first approaches, retracts and
+    /// tool changes not among it.
     pub time_s: f64,
     /// Of it, in cuts, s.
     pub cutting_time_s: f64,
     /// Blocks slowed down because an axis would have gone faster than its `max_feed`.
     pub blocks_limited: u64,
+    /// Rapids that the control runs by itself and in which an axis may pass its `max_feed`.
+    pub fast_rapids: FastRapids,
     /// Words of the CL file that say nothing to a machine, and how often.
     pub ignored_words: Vec<(String, u64)>,
     /// Plugins that took part.
     pub plugins: Vec<PluginUse>,
     /// Warnings, as sentences.
     pub warnings: Vec<String>,
+}
+
+/// Rapids in which an axis passes its `max_feed` if the control keeps the tip and limits the axes of the program alone.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FastRapids {
+    /// How many.
+    pub count: u64,
+    /// The axis that passes it farthest; empty if there is none.
+    pub axis: String,
+    /// Its speed there over its `max_feed`.
+    pub factor: f64,
+    /// Line of the CL file.
+    pub line: u64,
 }
 
 /// A deviation and where it stands.
@@ -82,13 +98,13 @@ pub struct Deviation {
 pub struct AxisRange {
     /// Its address.
     pub name: String,
-    /// Least axis position, mm or degrees.
+    /// Least axis position, mm or degrees; between the words too where the control keeps the tip.
     pub min: f64,
-    /// Largest axis position, mm or degrees.
+    /// Largest axis position, mm or degrees, likewise.
     pub max: f64,
     /// Its travel; none for a cyclic axis.
     pub travel: Option<[f64; 2]>,
-    /// Its way over all blocks, mm or degrees.
+    /// Its way over all blocks, mm or degrees; between the words too where the control keeps the tip.
     pub way: f64,
 }
 

@@ -132,6 +132,16 @@ pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
             }
         ),
     );
+    let fast = &report.fast_rapids;
+    if fast.count > 0 {
+        row(
+            "fast rapids",
+            format!(
+                "{}, {} up to {:.2} times its max_feed (CL line {}) if the control limits the axes of the program alone; [control] rapid = \"linear\" writes them as feed moves",
+                fast.count, fast.axis, fast.factor, fast.line
+            ),
+        );
+    }
     if !report.ignored_words.is_empty() {
         let words: Vec<String> = report
             .ignored_words

@@ -1,6 +1,6 @@
 //! Whole runs, from CL text to the events a dialect is asked to write, and the way back from their words.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use post_grammar::{ReadError, Reader};
 use post_machine::description::{Machine, Source, Tcp, load};
 use post_machine::diagnostic::Diagnostic;
@@ -311,24 +311,8 @@ impl Bench {
     }
 
     /// The linear axes where they put the tip on `tip`, the rotary ones standing as they do.
-    pub fn put(&self, tip: Vector3<f64>, mut joints: Joints) -> Joints {
-        let linear = self.reference.linear();
-        for place in &linear {
-            joints[*place] = 0.0;
-        }
-        let columns: Vec<Vector3<f64>> = linear
-            .iter()
-            .map(|place| self.reference.direction(&joints, *place))
-            .collect();
-        let way = tip - self.reference.forward(&joints).0;
-        let values = Matrix3::from_columns(&columns)
-            .try_inverse()
-            .expect("linear axes that span the space")
-            * way;
-        for (place, value) in linear.iter().zip(values.iter()) {
-            joints[*place] = *value;
-        }
-        joints
+    pub fn put(&self, tip: Vector3<f64>, joints: Joints) -> Joints {
+        self.reference.put(tip, joints)
     }
 
     /// Axis values of printed words, whoever keeps the tip.

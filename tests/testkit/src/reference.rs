@@ -85,6 +85,27 @@ impl Reference {
         Matrix3::from_columns(&columns).determinant().abs()
     }
 
+    /// The three linear joints where they put the tip on `tip` (part frame), the rotary ones standing as they do.
+    pub fn put(&self, tip: Vector3<f64>, mut joints: Joints) -> Joints {
+        let linear = self.linear();
+        for place in &linear {
+            joints[*place] = 0.0;
+        }
+        let columns: Vec<Vector3<f64>> = linear
+            .iter()
+            .map(|place| self.direction(&joints, *place))
+            .collect();
+        let way = tip - self.forward(&joints).0;
+        let values = Matrix3::from_columns(&columns)
+            .try_inverse()
+            .expect("linear axes that span the space")
+            * way;
+        for (place, value) in linear.iter().zip(values.iter()) {
+            joints[*place] = *value;
+        }
+        joints
+    }
+
     /// The chain under test.
     pub fn chain(&self) -> Chain {
         Chain::new(self.joints.clone(), self.mount, self.tip, self.axis)

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
-use super::file::{MachineFile, Quantity, Tcp};
+use super::file::{MachineFile, Quantity, Rapid, Tcp};
 use super::layers::{Source, Sources, overlay};
 use super::options::take_options;
 use super::setting::Setting;
@@ -226,6 +226,7 @@ impl Builder<'_> {
         if control.tcp == Some(Tcp::Control) {
             self.check_tip_words(&axes, file.chain.span());
         }
+        self.check_rapid(&axes, file);
         let accuracy = self.accuracy(&file.accuracy, &mut model_options);
         let control_point = self.control_point(&file.tool.control_point);
         let spindle = self.spindle(&file.spindle);
@@ -257,6 +258,7 @@ impl Builder<'_> {
                 units: control.units,
                 feed: control.feed,
                 feed_length: control.feed_length,
+                rapid: control.rapid,
                 tool_length: control.tool_length,
                 insert: control.insert,
                 compensation_on_centre: control.compensation_on_centre,
@@ -283,6 +285,22 @@ impl Builder<'_> {
         Some(machine)
     }
 
+    /// A rapid is written as a feed move at the feed of its slowest axis, so that each must have one.
+    fn check_rapid(&mut self, axes: &[Axis], file: &MachineFile) {
+        let endless = axes.iter().find(|axis| axis.max_feed.is_infinite());
+        if let (Rapid::Linear, Some(axis)) = (file.control.get_ref().rapid, endless) {
+            self.fault(
+                "machine-feed",
+                file.control.span(),
+                format!(
+                    "[control] rapid = \"linear\" writes rapids at the largest feed of the axes, and {} has no max_feed",
+                    axis.name
+                ),
+                "give every axis its max_feed, or leave rapids to the control: rapid = \"rapid\"",
+            );
+        }
+    }
+
     /// Where the control keeps the tip, the linear words are its coordinates.
     fn check_tip_words(&mut self, axes: &[Axis], span: Range<usize>) {
         let linear: BTreeSet<&str> = axes
@@ -293,12 +311,24 @@ impl Builder<'_> {
         if linear != BTreeSet::from(["X", "Y", "Z"]) {
             self.fault(
                 "machine-tcp",
-                span,
+                span.clone(),
                 format!(
                     "with tcp = \"control\" the linear words are the tip's X, Y and Z, but the linear axes are called {}",
                     linear.into_iter().collect::<Vec<_>>().join(", ")
                 ),
                 "rename the axes, or use tcp = \"post\"",
+            );
+        }
+        let held = |axis: &&Axis| !axis.joint.rotary && axis.indexed.is_some();
+        if let Some(axis) = axes.iter().find(held) {
+            self.fault(
+                "machine-tcp",
+                span,
+                format!(
+                    "with tcp = \"control\" the control moves all linear axes, and {} stands between cuts (indexed)",
+                    axis.name
+                ),
+                "let the axis go, or use tcp = \"post\"",
             );
         }
     }

@@ -348,6 +348,18 @@ pub enum FeedLength {
     Longest,
 }
 
+/// How a rapid is written.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rapid {
+    /// As a rapid: how its axes go is for the control.
+    #[default]
+    Rapid,
+    /// As a feed move at the highest feed that holds every `max_feed`, where a rotary axis turns or an axis would go
+    /// too fast.
+    Linear,
+}
+
 /// Which of the lengths that the CL file knows is the tool length.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -411,6 +423,9 @@ pub(crate) struct ControlFile {
     /// The length that the control divides by F when it does not keep the tip; linear if not said.
     #[serde(default)]
     pub feed_length: FeedLength,
+    /// How a rapid is written in which a rotary axis turns, or an axis would pass its max_feed; rapid if not said.
+    #[serde(default)]
+    pub rapid: Rapid,
     /// Which of the lengths that the CL file knows is the tool length; assembly if not said.
     #[serde(default)]
     pub tool_length: ToolLength,

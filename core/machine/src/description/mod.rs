@@ -24,7 +24,7 @@ pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
     CompensationOnCentre, EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement,
-    Pole, Side, Tcp, ToolLength,
+    Pole, Rapid, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
@@ -220,6 +220,8 @@ pub struct Control {
     pub feed: FeedMode,
     /// What a feed a minute is meant along.
     pub feed_length: FeedLength,
+    /// How a rapid is written in which a rotary axis turns, or an axis would pass its largest feed.
+    pub rapid: Rapid,
     /// Which tool length counts.
     pub tool_length: ToolLength,
     /// What becomes of `INSERT`.
@@ -319,6 +321,15 @@ impl Machine {
         }
         pointing.sort_unstable();
         pointing
+    }
+
+    /// Minutes that each axis needs for one mm or radian at its largest feed; zero if it has none.
+    pub fn slowness(&self) -> Joints {
+        let mut slowness = Joints::default();
+        for (slowness, axis) in slowness.iter_mut().zip(&self.axes) {
+            *slowness = 1.0 / axis.max_feed;
+        }
+        slowness
     }
 
     /// The head that `HEAD/name` swaps in.

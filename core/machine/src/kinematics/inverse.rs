@@ -143,6 +143,15 @@ impl Solver {
         }
     }
 
+    /// The three linear axes that place the tip, if they do it alone.
+    #[inline]
+    pub(super) fn linear(&self) -> Option<&Linear> {
+        match &self.form {
+            Form::Closed { linear, .. } if !linear.more => Some(linear),
+            _ => None,
+        }
+    }
+
     /// The rotary angles of a branch.
     #[inline]
     pub fn angles(&self, branches: &Branches, index: usize) -> RotarySet {

@@ -27,15 +27,17 @@ pub enum Second {
 /// Which linear joints place the tip, and what the others do.
 #[derive(Clone, Debug)]
 pub(super) struct Linear {
-    joints: [usize; 3],
-    /// Joints in front of the first linear one, and behind the last.
-    first: usize,
-    last: usize,
+    pub(super) joints: [usize; 3],
+    /// Places of the first and the last linear joint.
+    pub(super) first: usize,
+    pub(super) last: usize,
     /// Inverse of the three directions, if no rotary axis stands between them and there is no further one.
-    inverse: Option<Matrix3<f64>>,
+    pub(super) inverse: Option<Matrix3<f64>>,
+    /// Length of its longest row: no axis goes farther than this times what they go together. Infinite without it.
+    pub(super) reach: f64,
     seconds: Vec<Quill>,
     /// There are linear axes beside the three.
-    more: bool,
+    pub(super) more: bool,
 }
 
 /// A linear axis that moves along with another.
@@ -51,7 +53,7 @@ struct Quill {
 }
 
 /// The volume that three directions must span.
-const FLAT: f64 = 1e-6;
+pub(super) const FLAT: f64 = 1e-6;
 
 impl Linear {
     /// `held` tells which linear joints stand still, `seconds` which move along with another, and the travel
@@ -110,6 +112,7 @@ impl Linear {
             joints,
             first: joints[0],
             last: joints[2],
+            reach: inverse.as_ref().map_or(f64::INFINITY, longest_row),
             inverse,
             seconds,
             more,
@@ -270,6 +273,12 @@ impl Linear {
         }
         Ok(())
     }
+}
+
+/// The length of the longest row.
+pub(super) fn longest_row(matrix: &Matrix3<f64>) -> f64 {
+    let square = |row: usize| matrix.row(row).norm_squared();
+    square(0).max(square(1)).max(square(2)).sqrt()
 }
 
 fn solve(columns: &[Vector3<f64>; 3], way: Vector3<f64>) -> Result<Vector3<f64>, Unreachable> {

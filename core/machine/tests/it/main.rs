@@ -7,6 +7,7 @@
 mod batch;
 mod check;
 mod freedom;
+mod kept_tip;
 mod kinematics;
 mod linuxcnc;
 mod machine_file;

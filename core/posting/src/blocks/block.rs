@@ -5,7 +5,8 @@ use post_machine::axis_words::WordValues;
 use post_machine::kinematics::Joints;
 use post_plugin::Feed;
 
-use super::nominal::Nominal;
+use super::between_words::Follow;
+use super::nominal::{Nominal, STILL};
 use crate::accuracy::Bound;
 use crate::program::Pace;
 
@@ -34,12 +35,25 @@ pub struct Block {
     pub axis: Vector3<f64>,
     /// Certified: the block stays this close to the CL path, chords of arcs and splines counted in.
     pub deviation: Bound,
-    /// Way of the control point and of the tip, mm.
-    pub way: [f64; 2],
+    /// Way of the tip, mm.
+    pub way: f64,
     /// The time that the CL file asks for.
     pub nominal: Nominal,
+    /// How fast the linear axes can follow where the control keeps the tip.
+    pub follow: Follow,
     /// How long it takes; filled in by the timing stage.
     pub time: Time,
+}
+
+impl Block {
+    /// The time that the CL file leaves it at least, minutes.
+    #[inline]
+    pub fn asked(&self) -> f64 {
+        match self.pace {
+            Pace::PerMinute(feed) if self.nominal.moves && self.way > STILL => self.way / feed,
+            _ => self.nominal.minutes,
+        }
+    }
 }
 
 /// How the tool comes to the end of a block.
@@ -75,9 +89,9 @@ pub enum Reason {
 /// How long a block takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Time {
-    /// Minutes.
+    /// Minutes, as the control understands what is printed.
     pub minutes: f64,
-    /// The feed as written; none in a rapid.
+    /// The feed as written; none in a rapid, unless it is written as a feed move.
     pub feed: Option<Feed>,
     /// The limit that made it slower than asked for.
     pub limit: Option<&'static str>,

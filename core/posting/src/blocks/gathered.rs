@@ -74,7 +74,7 @@ impl Blocks<'_> {
     /// The tip as good as stands still while the axes turn. Such a move is paced by the axes: together with others
     /// it would be paced by the way of the tip, and they would turn in no time.
     fn stands(&self, last: &Node, node: &Node) -> bool {
-        let way = (node.target.tip - last.target.tip).norm();
+        let way = self.wanted_way(last, node);
         way <= STILL && self.turn_between(last, node).to_degrees() > way
     }
 

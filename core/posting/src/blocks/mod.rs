@@ -1,6 +1,7 @@
 //! Points whose axis values are chosen become blocks: points put in or left out, every block certified.
 
 mod audience;
+mod between_words;
 mod block;
 mod cutter;
 mod gathered;
@@ -21,6 +22,8 @@ use crate::program::{Command, Motion, Pace};
 use crate::refusal;
 use crate::stream::{Flow, Outlet};
 pub(crate) use audience::Audience;
+pub(crate) use between_words::BetweenWords;
+pub use between_words::Follow;
 pub use block::{Block, MotionKind, Reason, Time};
 use gathered::Gathered;
 pub use nominal::Nominal;
@@ -111,6 +114,7 @@ pub(crate) struct Blocks<'a> {
     placer: Option<Rc<Placer>>,
     linearise: Linearise,
     kinds: Kinds,
+    between: BetweenWords,
     /// CL points that wait for those behind them.
     gathered: Gathered,
     /// What each leg of the run in hand is due.
@@ -149,6 +153,7 @@ impl<'a> Blocks<'a> {
             placer: None,
             linearise: Linearise::new(&machine.accuracy, trust_model),
             kinds: Kinds::new(machine),
+            between: BetweenWords::new(machine),
             gathered: Gathered::default(),
             nominal: Vec::new(),
             last: None,
@@ -166,6 +171,11 @@ impl<'a> Blocks<'a> {
     /// Counts so far.
     pub(crate) fn counts(&self) -> Counts {
         self.counts
+    }
+
+    /// What the linear axes did between the words.
+    pub(crate) fn between_words(&self) -> &BetweenWords {
+        &self.between
     }
 
     /// Points that the certificate asked for over the model's head.
@@ -251,6 +261,7 @@ impl<'a> Blocks<'a> {
                 if let Some(head) = self.base.head(name) {
                     self.machine = &head.machine;
                     self.kinds = Kinds::new(self.machine);
+                    self.between.set(self.machine);
                     self.linearise.set(&self.machine.accuracy);
                 }
             }
@@ -348,7 +359,7 @@ impl<'a> Blocks<'a> {
         to.out.push(Flow::Point(Block {
             kind,
             // Nobody knows the way: the feed is that of a millimetre.
-            way: [1.0; 2],
+            way: 1.0,
             nominal: Nominal::of(leg.motion.pace, 1.0, Travels::default),
             ..block
         }));
@@ -433,7 +444,7 @@ impl<'a> Blocks<'a> {
                     bound
                 };
                 let nominal = self.nominal(leg, last, node);
-                self.push(leg, last, node, nominal, bound, to);
+                self.push(placer, leg, [last, node], nominal, bound, to);
             }
             None => self.split(placer, &[*leg], &[*last, *node], to),
         }
@@ -455,7 +466,7 @@ impl<'a> Blocks<'a> {
         let planned = Move::planned(self.machine, placer, chord, loose, [&nodes[0], &nodes[1]]);
         let moves = nodes
             .windows(2)
-            .any(|pair| (pair[1].target.tip - pair[0].target.tip).norm() > STILL);
+            .any(|pair| self.wanted_way(&pair[0], &pair[1]) > STILL);
         let run = Run {
             placer,
             nodes,
@@ -488,7 +499,8 @@ impl<'a> Blocks<'a> {
                         },
                         ..legs[piece.leg]
                     };
-                    self.push(&leg, &from, &piece.to, nominal, piece.bound, to);
+                    let ends = [&from, &piece.to];
+                    self.push(placer, &leg, ends, nominal, piece.bound, to);
                     (from, at) = (piece.to, end);
                 }
                 self.nominal = due;
@@ -503,43 +515,30 @@ impl<'a> Blocks<'a> {
         self.linearise = linearise;
     }
 
-    /// What a move is due.
-    #[inline]
-    fn nominal(&self, leg: &Leg<'_>, from: &Node, to: &Node) -> Nominal {
-        let length = (to.tip - from.tip).norm();
-        Nominal::of(leg.motion.pace, length, || {
-            self.kinds.travels(&from.trace.joints, &to.trace.joints)
-        })
-    }
-
     /// One block.
     #[inline]
     fn push(
         &mut self,
+        placer: &Placer,
         leg: &Leg<'_>,
-        from: &Node,
-        node: &Node,
+        [from, node]: [&Node; 2],
         nominal: Nominal,
         bound: Bound,
         to: &mut Surroundings<'_, '_>,
     ) {
-        // Between the printed tips: that is the way that the control will time.
-        let way = node.tip - from.tip;
-        let length = way.norm();
-        let along = self.machine.control_point.along;
-        let tip_length = if along == 0.0 {
-            length
-        } else {
-            (way - (node.trace.pose.axis - from.trace.pose.axis) * along).norm()
-        };
         self.largest.keep(leg, bound);
-        let block = self.block(leg, node, bound);
-        to.out.push(Flow::Point(Block {
+        let mut block = Block {
             still: from.words == node.words,
-            way: [length, tip_length],
+            way: self.way(from, node),
             nominal,
-            ..block
-        }));
+            ..self.block(leg, node, bound)
+        };
+        if self.kinds.turning(&from.trace.joints, &node.trace.joints) {
+            let (machine, asked) = (self.machine, block.asked());
+            let way = (placer, leg, [from, node]);
+            block.follow = self.between.block(machine, way, asked, to.findings);
+        }
+        to.out.push(Flow::Point(block));
     }
 
     #[inline]
@@ -563,8 +562,9 @@ impl<'a> Blocks<'a> {
                 tip: bound.tip + leg.motion.chord,
                 ..bound
             },
-            way: [0.0; 2],
+            way: 0.0,
             nominal: Nominal::default(),
+            follow: Follow::default(),
             time: Time::default(),
         }
     }

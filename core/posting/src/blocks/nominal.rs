@@ -3,6 +3,8 @@
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, MAX_AXES};
 
+use super::{Blocks, Leg};
+use crate::accuracy::Node;
 use crate::program::Pace;
 
 /// A tip that moves by no more than this stands still but for the rounding of the words, mm.
@@ -46,7 +48,7 @@ impl Nominal {
         }
     }
 
-    /// Of a move that goes `length` mm along the control point's path.
+    /// Of a move in which the tip goes `length` mm.
     #[inline]
     pub(crate) fn of(pace: Pace, length: f64, travels: impl FnOnce() -> Travels) -> Self {
         let moves = length > STILL;
@@ -58,6 +60,34 @@ impl Nominal {
             Pace::Rapid => 0.0,
         };
         Self { minutes, moves }
+    }
+}
+
+impl Blocks<'_> {
+    /// What a move is due.
+    #[inline]
+    pub(super) fn nominal(&self, leg: &Leg<'_>, from: &Node, to: &Node) -> Nominal {
+        Nominal::of(leg.motion.pace, self.way(from, to), || {
+            self.kinds.travels(&from.trace.joints, &to.trace.joints)
+        })
+    }
+
+    /// Way of the tip between two nodes as they are printed, mm: it has the feed, whichever point of the tool is
+    /// guided, and it is what a control that keeps the tip will time.
+    #[inline]
+    pub(super) fn way(&self, from: &Node, to: &Node) -> f64 {
+        let way = to.tip - from.tip;
+        match self.machine.control_point.along {
+            0.0 => way.norm(),
+            along => (way - (to.trace.pose.axis - from.trace.pose.axis) * along).norm(),
+        }
+    }
+
+    /// [`Blocks::way`] as the CL file asks for it.
+    pub(super) fn wanted_way(&self, from: &Node, to: &Node) -> f64 {
+        let along = self.machine.control_point.along;
+        let tip = |node: &Node| node.target.tip - node.target.axis * along;
+        (tip(to) - tip(from)).norm()
     }
 }
 

@@ -1,5 +1,6 @@
 //! How a feed is written: per minute of what the control will divide by it, or as an inverse time.
 
+use nalgebra::Matrix3;
 use post_machine::axis_words::unit_length;
 use post_machine::description::{FeedLength, FeedMode, Machine, Tcp};
 use post_machine::kinematics::Joints;
@@ -8,6 +9,9 @@ use post_plugin::{Feed, Format};
 use crate::blocks::{Block, Kinds, STILL, Travels};
 use crate::program::Pace;
 
+/// What a length of the control's may differ from the way of the tip to be the same.
+const SAME: f64 = 1e-9;
+
 /// Writes feeds for one machine and dialect.
 #[derive(Clone, Debug)]
 pub(super) struct FeedWriter {
@@ -15,9 +19,25 @@ pub(super) struct FeedWriter {
     tcp: Tcp,
     inverse_time: bool,
     length: FeedLength,
+    /// Where nothing turns, the control's length is the way of the tip.
+    square: bool,
+    /// No linear axis passes its largest feed if the tool goes no faster, mm/min.
+    most: f64,
     unit: f64,
     feed: Printed,
-    inverse: Printed,
+    /// None where the machine or the dialect has no feed by time.
+    inverse: Option<Printed>,
+}
+
+/// A feed as it is written, and what comes of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Written {
+    /// As written.
+    pub feed: Feed,
+    /// What the control takes for the block, minutes.
+    pub minutes: f64,
+    /// The feed that it should have, if that is below the least that is printed.
+    pub raised_from: Option<f64>,
 }
 
 impl FeedWriter {
@@ -32,38 +52,104 @@ impl FeedWriter {
         if wanted && format.inverse_time.is_none() {
             return None;
         }
+        let (tcp, length) = (machine.control.tcp, machine.control.feed_length);
         Some(Self {
             kinds: Kinds::new(machine),
-            tcp: machine.control.tcp,
+            tcp,
             inverse_time: wanted,
-            length: machine.control.feed_length,
+            length,
+            square: length != FeedLength::Longest && square(machine),
+            most: most(machine),
             unit: unit_length(machine.control.units),
             feed: Printed::new(format.feed),
-            inverse: Printed::new(format.inverse_time.unwrap_or(0)),
+            inverse: match machine.control.feed {
+                FeedMode::PerMinute => None,
+                _ => format.inverse_time.map(Printed::new),
+            },
         })
     }
 
-    /// The feed of a block that takes `minutes` from `from`; it is never faster than the CL file asks for.
+    /// The least feed a minute that is printed.
+    pub(super) fn least(&self) -> f64 {
+        self.feed.per_scale
+    }
+
+    /// The feed of a block from `from` that must take `least` minutes; it is never faster than the CL file asks for.
     #[inline]
-    pub(super) fn write(&self, block: &Block, from: &Joints, minutes: f64) -> Feed {
-        let (to, [_, tip]) = (&block.joints, block.way);
-        let turning = self.kinds.turning(from, to);
-        if self.inverse_time && (turning || self.tcp == Tcp::Control) {
-            return Feed::InverseTime(self.inverse.floor(1.0 / minutes));
-        }
-        let per_minute = match block.pace {
-            // No detour over lengths where the feed of the CL file can stand as it is.
-            Pace::PerMinute(feed)
-                if block.time.limit.is_none()
-                    && block.nominal.moves
-                    && tip > STILL
-                    && (!turning || self.tcp == Tcp::Control) =>
-            {
-                feed / self.unit
-            }
-            _ => self.measured(&self.kinds.travels(from, to), tip) / minutes,
+    pub(super) fn write(&self, block: &Block, from: &Joints, least: f64) -> Written {
+        let turning = self.kinds.turning(from, &block.joints);
+        let tip = block.way;
+        let asked = match block.pace {
+            Pace::PerMinute(feed) if block.nominal.moves => block.nominal.minutes.max(tip / feed),
+            _ => block.nominal.minutes,
         };
-        Feed::PerMinute(self.feed.floor(per_minute))
+        let minutes = asked.max(least).max(1e-9);
+        if self.inverse_time
+            && (turning || self.tcp == Tcp::Control)
+            && let Some(printed) = self.inverse
+        {
+            return printed.inverse(1.0 / minutes);
+        }
+        // No detour over the axes where their ways make no difference.
+        let plain = match self.tcp {
+            Tcp::Control => tip > SAME,
+            Tcp::Post => !turning && self.square,
+        };
+        let length = if plain {
+            tip / self.unit
+        } else {
+            self.measured(&self.kinds.travels(from, &block.joints), tip)
+        };
+        if let Pace::PerMinute(feed) = block.pace
+            && block.nominal.moves
+            && tip > STILL
+            && (plain || (length * self.unit - tip).abs() <= SAME * tip)
+            && least <= block.asked() * (1.0 + SAME)
+        {
+            // The feed of the CL file can stand as it is.
+            return self.per_minute(feed / self.unit, length);
+        }
+        self.per_minute(length / minutes, length)
+    }
+
+    /// The feed of a way that nobody knows, but that the tool comes linearly, the rotary axes standing.
+    pub(super) fn approach(&self, feed: f64) -> (Written, bool) {
+        let allowed = feed.min(self.most);
+        (
+            self.per_minute(allowed / self.unit, 1.0),
+            allowed < feed * (1.0 - SAME),
+        )
+    }
+
+    /// A feed of `value` a minute along `length`; where none so low is printed, the time of it, if there is a word for
+    /// that.
+    #[inline]
+    fn per_minute(&self, value: f64, length: f64) -> Written {
+        let feed = self.feed.floor(value);
+        if feed > 0.0 {
+            return Written {
+                feed: Feed::PerMinute(feed),
+                minutes: length / feed,
+                raised_from: None,
+            };
+        }
+        self.too_low(value, length)
+    }
+
+    #[cold]
+    fn too_low(&self, value: f64, length: f64) -> Written {
+        if let Some(printed) = self.inverse {
+            let written = printed.inverse(value / length);
+            if written.raised_from.is_none() {
+                return written;
+            }
+        }
+        let feed = self.least();
+        Written {
+            feed: Feed::PerMinute(feed),
+            minutes: length / feed,
+            raised_from: Some(value),
+        }
     }
 
     /// The length that the control will divide by F, in the units of the program or degrees.
@@ -71,9 +157,9 @@ impl FeedWriter {
         let tip = tip / self.unit;
         let linear = travels.linear / self.unit;
         match (self.tcp, self.length) {
-            (Tcp::Control, _) if tip > 1e-9 => tip,
+            (Tcp::Control, _) if tip > SAME => tip,
             (Tcp::Control, _) => travels.rotary_longest,
-            (Tcp::Post, FeedLength::Linear) if linear > 1e-9 => linear,
+            (Tcp::Post, FeedLength::Linear) if linear > SAME => linear,
             (Tcp::Post, FeedLength::Linear) => travels.rotary,
             (Tcp::Post, FeedLength::Combined) => {
                 libm::sqrt(linear * linear + travels.rotary * travels.rotary)
@@ -83,6 +169,42 @@ impl FeedWriter {
             }
         }
     }
+}
+
+/// The linear axes stand square on one another whatever the rotary ones do, so that the root of the squares of their
+/// ways is the way of the tool.
+fn square(machine: &Machine) -> bool {
+    let axes = &machine.axes;
+    let sliding: Vec<usize> = (0..axes.len())
+        .filter(|index| !axes[*index].joint.rotary)
+        .collect();
+    let between = match (sliding.first(), sliding.last()) {
+        (Some(first), Some(last)) => axes[*first..*last].iter().any(|axis| axis.joint.rotary),
+        _ => false,
+    };
+    let across = |a: &usize, b: &usize| {
+        let dot = axes[*a].joint.direction.dot(&axes[*b].joint.direction);
+        a == b || dot.abs() < SAME
+    };
+    !between && sliding.iter().all(|a| sliding.iter().all(|b| across(a, b)))
+}
+
+/// How fast the tool can go in any direction, mm/min, so that no linear axis passes its largest feed.
+fn most(machine: &Machine) -> f64 {
+    let sliding = machine.axes.iter().filter(|axis| !axis.joint.rotary);
+    let directions: Vec<_> = sliding.clone().map(|axis| axis.joint.direction).collect();
+    // The control divides the ways of the axes themselves, or the way of the tip that they make together.
+    let rows = match directions.as_slice() {
+        [x, y, z] if machine.control.tcp == Tcp::Control => {
+            Matrix3::from_columns(&[*x, *y, *z]).try_inverse()
+        }
+        _ => None,
+    };
+    let speeds = sliding.enumerate().map(|(row, axis)| {
+        let share = rows.map_or(1.0, |rows| rows.row(row).norm());
+        axis.max_feed / share
+    });
+    speeds.fold(f64::INFINITY, f64::min)
 }
 
 /// Numbers with so many decimals.
@@ -102,10 +224,22 @@ impl Printed {
         }
     }
 
-    /// The largest printed number not above `value`; a feed below the least printed number becomes that.
+    /// The largest printed number not above `value`, zero if none is.
     #[inline]
     fn floor(&self, value: f64) -> f64 {
         // A value that is a printed number but for its last bits is that number.
-        (value * self.scale + 1e-6).floor().max(1.0) * self.per_scale
+        (value * self.scale * (1.0 + 1e-12)).floor() * self.per_scale
+    }
+
+    /// `value` blocks a minute; the least printed number if it is below that.
+    #[inline]
+    fn inverse(&self, value: f64) -> Written {
+        let printed = self.floor(value);
+        let feed = printed.max(self.per_scale);
+        Written {
+            feed: Feed::InverseTime(feed),
+            minutes: 1.0 / feed,
+            raised_from: (printed <= 0.0).then_some(value),
+        }
     }
 }

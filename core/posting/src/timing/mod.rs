@@ -1,21 +1,25 @@
 //! How long a block takes, and how its feed is written.
 //!
 //! The feed of a CL file is that of the tip against the part. It fixes the nominal time of a block; no limit of the
-//! machine may be passed in it; the time is then written as the control understands it.
+//! machine may be passed in it; the time is then written as the control understands it, and what counts is what the
+//! control makes of the printed numbers.
 
 mod feed;
 pub mod limits;
+mod rapids;
 
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Extreme};
 use post_machine::kinematics::Joints;
-use post_plugin::Format;
+use post_plugin::{Feed, Format};
 
 use crate::blocks::{Block, MotionKind};
+use crate::findings::Findings;
 use crate::program::{Command, Pace};
 use crate::stream::Flow;
-use feed::FeedWriter;
+use feed::{FeedWriter, Written};
 use limits::Limit;
+use rapids::Rapids;
 
 /// The stage that gives every block its time and feed.
 #[derive(Debug)]
@@ -24,9 +28,11 @@ pub(crate) struct Timing<'a> {
     format: Format,
     feeds: FeedWriter,
     limits: Vec<Box<dyn Limit>>,
+    rapids: Rapids,
     /// Where the axes stand.
     last: Joints,
     statistics: Durations,
+    low: LowFeeds,
 }
 
 /// Sums of times, minutes.
@@ -38,6 +44,18 @@ pub(crate) struct Durations {
     pub other: f64,
     /// Blocks slowed down by a limit.
     pub limited: u64,
+}
+
+/// Feeds below the least that is printed.
+#[derive(Clone, Copy, Debug, Default)]
+struct LowFeeds {
+    count: u64,
+    /// The lowest, as it would be printed.
+    lowest: f64,
+    /// Its line of the CL file.
+    line: u64,
+    /// What is written instead.
+    least: f64,
 }
 
 impl<'a> Timing<'a> {
@@ -60,8 +78,10 @@ impl<'a> Timing<'a> {
             format: format.clone(),
             feeds,
             limits: limits::of(machine),
+            rapids: Rapids::new(machine),
             last: Joints::default(),
             statistics: Durations::default(),
+            low: LowFeeds::default(),
         })
     }
 
@@ -70,11 +90,38 @@ impl<'a> Timing<'a> {
         self.statistics
     }
 
+    /// Rapids so far in which an axis passes its largest feed.
+    pub(crate) fn rapids(&self) -> &Rapids {
+        &self.rapids
+    }
+
+    /// The warning that feeds are higher than the CL file asks for, because none so low is printed.
+    pub(crate) fn low_feeds(&self) -> Option<Diagnostic> {
+        let low = &self.low;
+        let blocks = match low.count {
+            0 => return None,
+            1 => "the feed of a block is".to_owned(),
+            count => format!("the feeds of {count} blocks are"),
+        };
+        let message = format!(
+            "{blocks} below F{}, the least that the dialect {} prints, and F{} is written: the lowest would be F{}, on CL line {}",
+            plain(low.least),
+            self.base.control.dialect,
+            plain(low.least),
+            plain(low.lowest),
+            low.line
+        );
+        Some(
+            Diagnostic::warning("low-feed", message)
+                .help("a higher FEDRAT, or more decimals for feeds among the dialect's options"),
+        )
+    }
+
     /// Fills in the times of a batch.
-    pub(crate) fn take(&mut self, batch: &mut [Flow<Block>]) {
+    pub(crate) fn take(&mut self, batch: &mut [Flow<Block>], findings: &Findings) {
         for next in batch {
             match next {
-                Flow::Point(block) => self.block(block),
+                Flow::Point(block) => self.block(block, findings),
                 Flow::Command { command, .. } => self.command(command),
             }
         }
@@ -91,50 +138,92 @@ impl<'a> Timing<'a> {
                     self.feeds = feeds;
                 }
                 self.limits = limits::of(&head.machine);
+                self.rapids.set(&head.machine);
             }
             _ => {}
         }
     }
 
     #[inline]
-    fn block(&mut self, block: &mut Block) {
+    fn block(&mut self, block: &mut Block, findings: &Findings) {
         if block.still {
             return;
         }
         match block.kind {
-            MotionKind::Position | MotionKind::Reference => {
-                self.last = block.joints;
-                // A time for a way that nobody knows has no meaning; the way is made at rapid.
-                if matches!(block.pace, Pace::PerMinute(_)) {
-                    let minutes = block.nominal.minutes.max(1e-9);
-                    block.time.feed = Some(self.feeds.write(block, &self.last, minutes));
-                }
-            }
-            MotionKind::Rapid => {
-                block.time.minutes = self.least(block).0;
-                self.statistics.other += block.time.minutes;
-            }
-            MotionKind::Linear => self.cut(block),
+            MotionKind::Position | MotionKind::Reference => self.approach(block),
+            MotionKind::Rapid => self.rapid(block, findings),
+            MotionKind::Linear => self.cut(block, findings),
         }
         self.last = block.joints;
+        self.rapids.stand(block.tip);
+    }
+
+    /// A time for a way that nobody knows has no meaning; without a feed a minute the way is made at rapid.
+    fn approach(&mut self, block: &mut Block) {
+        if let Pace::PerMinute(feed) = block.pace {
+            let (written, limited) = self.feeds.approach(feed);
+            if limited {
+                block.time.limit = Some("max_feed");
+                self.statistics.limited += 1;
+            }
+            self.note_raised(block.line, &written);
+            block.time.feed = Some(written.feed);
+        }
+    }
+
+    /// A rapid takes what its slowest axis needs; where its axes would go too fast, or each for itself, it is written
+    /// as a feed move, if the machine file says so.
+    fn rapid(&mut self, block: &mut Block, findings: &Findings) {
+        let (least, _) = self.least(block);
+        block.time.minutes = least;
+        if self.rapids.is_fed(&self.last, block, least) {
+            let written = self.feeds.write(block, &self.last, least);
+            self.put(block, written, least, findings);
+        }
+        self.statistics.other += block.time.minutes;
     }
 
     #[inline]
-    fn cut(&mut self, block: &mut Block) {
-        let asked = match block.pace {
-            Pace::PerMinute(feed) if block.nominal.moves => {
-                block.nominal.minutes.max(block.way[0] / feed)
-            }
-            _ => block.nominal.minutes,
-        };
+    fn cut(&mut self, block: &mut Block, findings: &Findings) {
         let (least, limit) = self.least(block);
-        block.time.minutes = asked.max(least).max(1e-9);
         block.time.limit = limit
-            .filter(|_| least > asked * (1.0 + 1e-9))
+            .filter(|_| least > block.asked() * (1.0 + 1e-9))
             .map(Limit::name);
-        block.time.feed = Some(self.feeds.write(block, &self.last, block.time.minutes));
+        let written = self.feeds.write(block, &self.last, least);
+        self.put(block, written, least, findings);
         self.statistics.limited += u64::from(block.time.limit.is_some());
         self.statistics.cutting += block.time.minutes;
+    }
+
+    /// Puts a feed into a block that must take `least` minutes.
+    #[inline]
+    fn put(&mut self, block: &mut Block, written: Written, least: f64, findings: &Findings) {
+        block.time.minutes = written.minutes;
+        block.time.feed = Some(written.feed);
+        let Some(asked) = written.raised_from else {
+            return;
+        };
+        if written.minutes < least * (1.0 - 1e-9) {
+            findings.at(block.line, too_fast(asked, &written));
+        } else {
+            self.note_raised(block.line, &written);
+        }
+    }
+
+    #[inline]
+    fn note_raised(&mut self, line: u64, written: &Written) {
+        let Some(lowest) = written.raised_from else {
+            return;
+        };
+        if self.low.count == 0 || lowest < self.low.lowest {
+            self.low = LowFeeds {
+                lowest,
+                line,
+                least: number(written.feed),
+                ..self.low
+            };
+        }
+        self.low.count += 1;
     }
 
     /// The least time that all limits leave a block, minutes, and the limit that asks for it.
@@ -149,4 +238,41 @@ impl<'a> Timing<'a> {
         }
         least
     }
+}
+
+fn number(feed: Feed) -> f64 {
+    match feed {
+        Feed::PerMinute(value) | Feed::InverseTime(value) | Feed::PerRevolution(value) => value,
+    }
+}
+
+/// A small number as people write it: no more than three digits behind the zeros.
+fn plain(value: f64) -> String {
+    let zeros = if value > 0.0 {
+        libm::floor(-libm::log10(value)).max(0.0)
+    } else {
+        0.0
+    };
+    let text = format!("{value:.0$}", zeros.min(12.0) as usize + 3);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// The least feed that is printed is too fast for the axes.
+fn too_fast(asked: f64, written: &Written) -> Diagnostic {
+    let least = number(written.feed);
+    let factor = least / asked;
+    Diagnostic::error(
+        "low-feed",
+        format!(
+            "so that no axis passes its max_feed this block needs F{}, and the least that is printed is F{}: an axis would go {factor:.1} times too fast",
+            plain(asked),
+            plain(least)
+        ),
+    )
+    .extreme(Extreme {
+        key: u64::MAX,
+        by: factor,
+        value: format!("{factor:.1} times"),
+    })
+    .help("its linear axes hardly move while others turn: a feed by time ([control] feed = \"inverse-time\") where the dialect has one, feed_length as the control has it, or more decimals for feeds")
 }

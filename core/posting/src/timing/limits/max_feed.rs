@@ -10,16 +10,14 @@ use crate::blocks::Block;
 #[derive(Debug)]
 pub(super) struct MaxFeed {
     /// Minutes that each axis needs for one mm or radian at its largest feed; none for places without an axis.
-    slowness: [f64; MAX_AXES],
+    slowness: Joints,
 }
 
 impl MaxFeed {
     pub(super) fn new(machine: &Machine) -> Self {
-        let mut slowness = [0.0; MAX_AXES];
-        for (slowness, axis) in slowness.iter_mut().zip(&machine.axes) {
-            *slowness = 1.0 / axis.max_feed;
+        Self {
+            slowness: machine.slowness(),
         }
-        Self { slowness }
     }
 }
 
@@ -30,7 +28,8 @@ impl Limit for MaxFeed {
 
     fn least_minutes(&self, from: &Joints, block: &Block) -> f64 {
         let to = &block.joints;
-        let mut least: f64 = 0.0;
+        // Between the words too, where the control keeps the tip.
+        let mut least = block.follow.minutes;
         for index in 0..MAX_AXES {
             let minutes = (to[index] - from[index]).abs() * self.slowness[index];
             if minutes > least {

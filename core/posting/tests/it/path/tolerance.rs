@@ -73,6 +73,30 @@ fn judge(model: &Model, points: &[Point], run: &Run) -> Worst {
     worst
 }
 
+/// The words of all motions; where the control keeps the tip, those that the axes pass between them too.
+fn passed(model: &Model, run: &Run) -> Vec<Vec<f64>> {
+    let mut passed: Vec<Vec<f64>> = Vec::new();
+    for asked in run.motions() {
+        let from = passed.last().filter(|_| model.tcp).cloned();
+        let turns = |from: &[f64]| {
+            let pairs = from[3..].iter().zip(&asked.words[3..]);
+            pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
+        };
+        if let Some(from) = from
+            && asked.kind != "Position"
+        {
+            let count = 1.0 + (4.0 * turns(&from)).ceil();
+            for step in 1..count as u32 {
+                let t = f64::from(step) / count;
+                let pairs = from.iter().zip(&asked.words);
+                passed.push(pairs.map(|(a, b)| a * (1.0 - t) + b * t).collect());
+            }
+        }
+        passed.push(asked.words.clone());
+    }
+    passed
+}
+
 /// Runs a path and holds what came out against the tolerances and against what the report certifies.
 fn check(what: &str, model: &Model, points: &[Point]) -> Worst {
     let run = model.run(&cl(points, 1000.0));
@@ -97,9 +121,9 @@ fn check(what: &str, model: &Model, points: &[Point]) -> Worst {
         } else {
             1.0
         };
-        let motions = run.asked.iter().filter(|asked| !asked.words.is_empty());
-        let values: Vec<f64> = motions
-            .map(|asked| model.positions(&asked.words)[place] * unit)
+        let values: Vec<f64> = passed(model, &run)
+            .iter()
+            .map(|words| model.positions(words)[place] * unit)
             .collect();
         let (least, most) = values
             .iter()

@@ -1,0 +1,222 @@
+//! Where the control keeps the tip, the machine's own linear axes leave the straight line between the words: how far
+//! they go on the way, and how fast.
+//!
+//! A cheap bound clears nearly all blocks; the others are looked into ([`KeptTip`]).
+
+use post_machine::description::{Machine, Tcp};
+use post_machine::diagnostic::{Diagnostic, Extreme};
+use post_machine::kinematics::travel::{OverTravel, over};
+use post_machine::kinematics::{Joints, KeptTip, MAX_AXES};
+
+use super::Leg;
+use crate::accuracy::{Node, Placer};
+use crate::findings::Findings;
+
+/// No control resolves less, mm: an axis may pass the end of its travel by this between the words.
+const RESOLVED: f64 = 1e-4;
+
+/// What range and way of an axis may be off by in a block without its being looked into, mm.
+const UNSEEN: f64 = 1e-3;
+
+/// The least time of a block in which the linear axes keep up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Follow {
+    /// Minutes; zero where the control does not keep the tip, or nothing turns.
+    pub minutes: f64,
+    /// The axis that asks for it: its place in the chain.
+    pub joint: usize,
+}
+
+/// What the linear axes do between the words, over the program.
+#[derive(Clone, Debug)]
+pub(crate) struct BetweenWords {
+    /// The control keeps the tip.
+    keeps: bool,
+    /// Minutes that each axis needs for one mm or radian at its largest feed.
+    slowness: Joints,
+    /// Least and largest values in the blocks that were looked into, mm.
+    least: Joints,
+    most: Joints,
+    /// What each axis goes beside the way from word to word, mm.
+    beside: Joints,
+}
+
+impl BetweenWords {
+    pub(super) fn new(machine: &Machine) -> Self {
+        Self {
+            keeps: machine.control.tcp == Tcp::Control,
+            slowness: machine.slowness(),
+            least: [f64::INFINITY; MAX_AXES],
+            most: [f64::NEG_INFINITY; MAX_AXES],
+            beside: Joints::default(),
+        }
+    }
+
+    /// Another head is in.
+    pub(super) fn set(&mut self, machine: &Machine) {
+        self.keeps = machine.control.tcp == Tcp::Control;
+        self.slowness = machine.slowness();
+    }
+
+    /// The least value of an axis between the words, mm; infinite if nothing is known of one.
+    pub(crate) fn least(&self, joint: usize) -> f64 {
+        self.least[joint]
+    }
+
+    /// The largest value of an axis between the words, mm; infinitely small if nothing is known of one.
+    pub(crate) fn most(&self, joint: usize) -> f64 {
+        self.most[joint]
+    }
+
+    /// What an axis goes beside the way from word to word, mm.
+    pub(crate) fn beside(&self, joint: usize) -> f64 {
+        self.beside[joint]
+    }
+
+    /// A block in which something turns, and for which the CL file asks `asked` minutes at least. If it leaves travel on
+    /// the way, that is a finding.
+    #[inline]
+    pub(super) fn block(
+        &mut self,
+        machine: &Machine,
+        (placer, leg, [from, to]): (&Placer, &Leg<'_>, [&Node; 2]),
+        asked: f64,
+        findings: &Findings,
+    ) -> Follow {
+        if !self.keeps {
+            return Follow::default();
+        }
+        let along = placer.control_point().along;
+        let Some(kept) = KeptTip::new(placer.solver(), along, &from.trace, &to.trace) else {
+            return Follow::default();
+        };
+        if let Some(follow) = self.cleared(machine, &kept, [from, to], asked) {
+            return follow;
+        }
+        self.look_into(machine, &kept, (leg, [from, to]), asked, findings)
+    }
+
+    /// The least time, if the cheap bound says all that there is to know: inside travel, in time, and nothing of
+    /// range or way goes unseen.
+    #[inline]
+    fn cleared(
+        &self,
+        machine: &Machine,
+        kept: &KeptTip<'_>,
+        [from, to]: [&Node; 2],
+        asked: f64,
+    ) -> Option<Follow> {
+        let bend = kept.quick();
+        // A curve strays from its chord by an eighth of what its second derivative can be, its slope from the
+        // chord's by half of it, and a curve that turns back goes a quarter of it more at most.
+        let (strays, faster) = (bend / 8.0, bend / 2.0);
+        let mut follow = Follow::default();
+        for joint in kept.sliding() {
+            let (first, last) = (from.trace.joints[joint], to.trace.joints[joint]);
+            let chord = (last - first).abs();
+            let (low, high) = if first < last {
+                (first, last)
+            } else {
+                (last, first)
+            };
+            let goes_on = chord >= faster;
+            let stays = bend <= 4.0 * UNSEEN
+                && machine.axes[joint]
+                    .travel
+                    .is_none_or(|[least, most]| low - strays >= least && high + strays <= most);
+            let minutes = (chord + faster) * self.slowness[joint];
+            if !(goes_on || stays) || minutes > asked {
+                return None;
+            }
+            if minutes > follow.minutes {
+                follow = Follow { minutes, joint };
+            }
+        }
+        Some(follow)
+    }
+
+    #[inline(never)]
+    fn look_into(
+        &mut self,
+        machine: &Machine,
+        kept: &KeptTip<'_>,
+        (leg, [from, to]): (&Leg<'_>, [&Node; 2]),
+        asked: f64,
+        findings: &Findings,
+    ) -> Follow {
+        let Some(slides) = kept.slides(&self.slowness, asked) else {
+            findings.at(
+                leg.line,
+                Diagnostic::error(
+                    "out-of-reach",
+                    format!(
+                        "between the words the linear axes of {} cannot keep the tip on its line while {}",
+                        machine.name,
+                        turning(machine, [from, to])
+                    ),
+                )
+                .help("they lie in one plane on the way: a point between, or tcp = \"post\""),
+            );
+            return Follow::default();
+        };
+        for joint in kept.sliding() {
+            let (least, most) = (slides.least[joint], slides.most[joint]);
+            let (first, last) = (from.trace.joints[joint], to.trace.joints[joint]);
+            if least < first.min(last) - RESOLVED {
+                self.least[joint] = self.least[joint].min(least);
+            }
+            if most > first.max(last) + RESOLVED {
+                self.most[joint] = self.most[joint].max(most);
+            }
+            self.beside[joint] += (slides.way[joint] - (last - first).abs()).max(0.0);
+            for value in [least, most] {
+                let travel = machine.axes[joint].travel;
+                if let Err(over) = over(joint, travel, value, RESOLVED) {
+                    findings.at(leg.line, over_travel(machine, &over, [from, to]));
+                    break;
+                }
+            }
+        }
+        Follow {
+            minutes: slides.minutes,
+            joint: slides.slowest,
+        }
+    }
+}
+
+/// `B turns from -10.000° to 10.000°`.
+fn turning(machine: &Machine, [from, to]: [&Node; 2]) -> String {
+    let mut turns = Vec::new();
+    for (joint, axis) in machine.axes.iter().enumerate() {
+        let (first, last) = (from.trace.joints[joint], to.trace.joints[joint]);
+        if axis.joint.rotary && first != last {
+            turns.push(format!(
+                "{} turns from {:.3}° to {:.3}°",
+                axis.name,
+                axis.reading(first),
+                axis.reading(last)
+            ));
+        }
+    }
+    turns.join(" and ")
+}
+
+fn over_travel(machine: &Machine, over: &OverTravel, ends: [&Node; 2]) -> Diagnostic {
+    let axis = &machine.axes[over.joint];
+    let (value, limit) = (axis.reading(over.value), axis.reading(over.limit));
+    let side = u64::from(over.value > over.limit);
+    Diagnostic::error(
+        "over-travel",
+        format!(
+            "between the words of this block {} would be {value:.3} mm, its limit is {limit:.3} mm: the control keeps the tip on its line while {}",
+            axis.name,
+            turning(machine, ends)
+        ),
+    )
+    .extreme(Extreme {
+        key: over.joint as u64 * 2 + side,
+        by: (over.value - over.limit).abs(),
+        value: format!("{} {value:.3} mm", axis.name),
+    })
+    .help("set the part elsewhere with --mount X,Y,Z, give the tool's length, or retract before the axes turn")
+}

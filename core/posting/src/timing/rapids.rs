@@ -1,0 +1,126 @@
+//! Rapids in which an axis would pass its largest feed, or each axis would go for itself.
+//!
+//! A control that keeps the tip may limit the axes that the program names, the coordinates of the tip among them, and
+//! not the machine's own linear axes, which follow: at full speed these can be too slow.
+
+use nalgebra::Vector3;
+use post_machine::description::{Machine, Rapid, Tcp};
+use post_machine::kinematics::{Joints, MAX_AXES};
+
+use crate::blocks::Block;
+use crate::report::FastRapids;
+
+/// What is over its largest feed by this factor is over it.
+const OVER: f64 = 1.01;
+
+/// Watches rapids.
+#[derive(Debug)]
+pub(crate) struct Rapids {
+    tcp: Tcp,
+    mode: Rapid,
+    /// Minutes that each axis needs for one mm or radian at its largest feed.
+    slowness: Joints,
+    /// The same for the axes called X, Y and Z.
+    coordinates: [f64; 3],
+    rotary: [bool; MAX_AXES],
+    names: Vec<String>,
+    /// The tip, mm, part frame.
+    tip: Vector3<f64>,
+    found: FastRapids,
+}
+
+impl Rapids {
+    pub(super) fn new(machine: &Machine) -> Self {
+        let mut rapids = Self {
+            tcp: machine.control.tcp,
+            mode: machine.control.rapid,
+            slowness: Joints::default(),
+            coordinates: [0.0; 3],
+            rotary: [false; MAX_AXES],
+            names: Vec::new(),
+            tip: Vector3::zeros(),
+            found: FastRapids::default(),
+        };
+        rapids.set(machine);
+        rapids
+    }
+
+    /// Another head is in.
+    pub(super) fn set(&mut self, machine: &Machine) {
+        self.slowness = machine.slowness();
+        self.names.clear();
+        for (index, axis) in machine.axes.iter().enumerate() {
+            self.rotary[index] = axis.joint.rotary;
+            self.names.push(axis.name.clone());
+            if let Some(place) = ["X", "Y", "Z"].iter().position(|name| *name == axis.name) {
+                self.coordinates[place] = self.slowness[index];
+            }
+        }
+    }
+
+    /// The tip stands there.
+    #[inline]
+    pub(super) fn stand(&mut self, tip: Vector3<f64>) {
+        self.tip = tip;
+    }
+
+    /// Those found so far that are left to the control.
+    pub(crate) fn found(&self) -> &FastRapids {
+        &self.found
+    }
+
+    /// Is this rapid, whose axes need `least` minutes, to be written as a feed move? If it is left to the control and
+    /// an axis would be too fast, that is noted.
+    pub(super) fn is_fed(&mut self, last: &Joints, block: &Block, least: f64) -> bool {
+        // Without a largest feed there is none to write.
+        if least <= 0.0 {
+            return false;
+        }
+        let full_speed = self.full_speed(last, block, least);
+        let fast = least > full_speed * OVER;
+        if self.mode == Rapid::Linear {
+            return fast || self.turns(last, block);
+        }
+        if fast {
+            self.note(last, block, least / full_speed);
+        }
+        false
+    }
+
+    fn turns(&self, last: &Joints, block: &Block) -> bool {
+        (0..MAX_AXES).any(|index| self.rotary[index] && last[index] != block.joints[index])
+    }
+
+    /// What the control takes that looks at the axes of the program alone, minutes.
+    fn full_speed(&self, last: &Joints, block: &Block, least: f64) -> f64 {
+        if self.tcp == Tcp::Post {
+            return least;
+        }
+        let way = block.tip - self.tip;
+        let linear = way
+            .iter()
+            .zip(self.coordinates)
+            .map(|(way, slow)| way.abs() * slow);
+        let rotary = (0..MAX_AXES)
+            .filter(|index| self.rotary[*index])
+            .map(|index| (block.joints[index] - last[index]).abs() * self.slowness[index]);
+        linear.chain(rotary).fold(0.0, f64::max)
+    }
+
+    #[cold]
+    fn note(&mut self, last: &Joints, block: &Block, factor: f64) {
+        self.found.count += 1;
+        if factor <= self.found.factor {
+            return;
+        }
+        let minutes =
+            |index: &usize| (block.joints[*index] - last[*index]).abs() * self.slowness[*index];
+        let slowest = (0..MAX_AXES)
+            .max_by(|a, b| minutes(a).total_cmp(&minutes(b)))
+            .filter(|index| minutes(index) > block.follow.minutes)
+            .unwrap_or(block.follow.joint);
+        self.found.axis = self.names.get(slowest).cloned().unwrap_or_default();
+        self.found.factor = factor;
+        self.found.line = block.line;
+    }
+}

@@ -297,7 +297,7 @@ impl<'a> Post<'a> {
             axis_tolerance_deg: machine.accuracy.axis_tolerance.to_degrees(),
             axes,
             branch_changes: counts.branch_changes,
-            rewinds: counts.rewinds,
+            rewinds: counts.rewinds + stages.expand.rewinds(),
             points_eased: counts.eased,
             time_s: (durations.cutting + durations.other) * 60.0,
             cutting_time_s: durations.cutting * 60.0,

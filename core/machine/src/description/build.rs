@@ -226,13 +226,11 @@ impl Builder<'_> {
         }
         let accuracy = self.accuracy(&file.accuracy, &mut model_options);
         let control_point = self.control_point(&file.tool.control_point);
-        let stages = axes.iter().any(|axis| axis.range.is_some()) || !solution.exclusive.is_empty();
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
         let machine = Machine {
             clamps,
             indexes,
-            stages,
             name: file.name.get_ref().clone(),
             axes,
             mount,

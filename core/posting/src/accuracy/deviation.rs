@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
 use super::certificate::{self, Bend, Course, chord_angle};
+use super::heading;
 use super::node::{Node, Placer};
 use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::orientation::angle;
@@ -146,12 +147,12 @@ impl Move<'_> {
         // An upper bound on the sweep is enough, and cheaper than the angle.
         let (from, to) = (&self.from.target, &self.to.target);
         let chain = self.placer.solver().chain();
-        let mut sweep = (from.axis - to.axis).norm();
+        let sweep = chord_angle((from.axis - to.axis).norm());
+        let mut bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
         if chain.edge().is_some() {
-            sweep = sweep.max((from.edge - to.edge).norm());
+            // Never less than that of the tool axis: the wanted edge bends with it.
+            bend.axis = bend.axis.max(bend.turn + heading::bend(from, to));
         }
-        let sweep = chord_angle(sweep);
-        let bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
         (bend, sweep)
     }
 
@@ -179,17 +180,20 @@ impl Move<'_> {
             turn,
         };
         let mut bound = self.bound(bend);
-        if !self.control_keeps_tip {
+        if !self.control_keeps_tip && bound.tip.is_finite() {
             let followed = course.tip([from.off(), to.off()]) + self.edge_bow(bend);
             bound.tip = bound.tip.min(followed);
         }
         (bound, bend)
     }
 
-    /// The bound that a bend proves.
+    /// The bound that a bend proves; none is, where the control would go another way.
     #[inline]
     pub(super) fn bound(&self, bend: Bend) -> Bound {
         let (from, to) = (self.from, self.to);
+        if self.goes_another_way() {
+            return Bound::NONE;
+        }
         let axis_ends = certificate::larger(from.axis_error, to.axis_error);
         let tip_ends = certificate::larger(from.tip_error, to.tip_error);
         Bound {
@@ -219,7 +223,17 @@ impl Move<'_> {
         radius * certificate::deviation(ends, bend.turn)
     }
 
+    /// The control would turn an axis the other way round.
+    #[inline]
+    pub(super) fn goes_another_way(&self) -> bool {
+        let (from, to) = (&self.from.trace.joints, &self.to.trace.joints);
+        self.placer.turns_too_far(from, to)
+    }
+
     fn sampled(&self, bend: Bend) -> Bound {
+        if self.goes_another_way() {
+            return Bound::NONE;
+        }
         let tolerances = self.tolerances;
         let tip_bend = self.tip_bend(bend);
         let axis_bend = if tolerances.axis.is_infinite() {
@@ -246,17 +260,18 @@ impl Move<'_> {
     }
 
     /// What the CL file asks for at the share `t` of the way: the control point on the chord, the tool axis on the
-    /// great circle, a leading edge as near to its own as stands across the axis.
+    /// great circle, the heading of a leading edge on its own ([`super::heading`]).
     pub fn target(&self, t: f64) -> Pose {
         let (from, to) = (&self.from.target, &self.to.target);
-        let axis = Circle::new(from.axis, to.axis).at(t);
-        let edge = from.edge * (1.0 - t) + to.edge * t;
+        let edge = if self.placer.solver().chain().edge().is_some() {
+            Circle::new(from.edge, to.edge).at(t)
+        } else {
+            Vector3::zeros()
+        };
         Pose {
             tip: from.tip * (1.0 - t) + to.tip * t,
-            axis,
-            edge: (edge - axis * axis.dot(&edge))
-                .try_normalize(1e-9)
-                .unwrap_or(from.edge),
+            axis: Circle::new(from.axis, to.axis).at(t),
+            edge,
         }
     }
 
@@ -300,16 +315,17 @@ impl Move<'_> {
         Path {
             block: self,
             axis: Circle::new(from.axis, to.axis),
-            edge: follows.then(|| Circle::new(from.edge, to.edge)),
+            heading: follows.then(|| Circle::new(from.edge, to.edge)),
         }
     }
 }
 
-/// A block beside the great circles that tool axis and leading edge are to go along.
+/// A block beside the great circles that tool axis and heading are to go along.
 struct Path<'a> {
     block: &'a Move<'a>,
     axis: Circle,
-    edge: Option<Circle>,
+    /// Of a tool with a leading edge.
+    heading: Option<Circle>,
 }
 
 impl Path<'_> {
@@ -320,9 +336,15 @@ impl Path<'_> {
         let pose = self.block.placer.solver().chain().forward(&joints);
         let chord = from.target.tip * (1.0 - t) + to.target.tip * t;
         let tip = self.block.reached(&pose, t) - chord;
-        let mut turn = turned(self.axis.at(t), pose.axis);
-        if let Some(edge) = &self.edge {
-            let edge = turned(edge.at(t), pose.edge);
+        let axis = self.axis.at(t);
+        let mut turn = turned(axis, pose.axis);
+        if let Some(heading) = &self.heading {
+            let wanted = Pose {
+                axis,
+                edge: heading.at(t),
+                ..Pose::default()
+            };
+            let edge = turned(wanted.edge_across(), pose.edge);
             // Whichever of axis and edge is farther off.
             if edge.norm() > turn.norm() {
                 turn = edge;
@@ -344,6 +366,12 @@ impl Tolerances {
 }
 
 impl Bound {
+    /// Nothing is proven.
+    const NONE: Self = Self {
+        tip: f64::INFINITY,
+        axis: f64::INFINITY,
+    };
+
     /// The smaller of two bounds on the same block.
     pub fn least(self, other: Self) -> Self {
         Self {

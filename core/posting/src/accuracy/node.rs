@@ -48,12 +48,15 @@ impl Node {
         self.axis_error = chord_angle((reached.axis - wanted.axis).norm());
         // Zero for a tool that turns.
         if reached.edge != Vector3::zeros() {
-            let edge_error = chord_angle((reached.edge - wanted.edge).norm());
+            let edge_error = chord_angle((reached.edge - wanted.edge_across()).norm());
             self.axis_error = self.axis_error.max(edge_error);
         }
         self.tip_error = self.off().norm();
     }
 }
+
+/// A control that shows an axis over one turn takes the shorter way: no block turns it by more, radians.
+const LONGEST: f64 = 2.9;
 
 /// Why a point has no node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +86,8 @@ pub struct Placer {
     pub(super) words: Words,
     turning: Turning,
     pub(super) linear: Vec<Limit>,
+    /// Joints that the control shows over one turn.
+    shown: Vec<usize>,
     /// The branch of the last point: most likely that of the next.
     branch: Cell<usize>,
     axis_tolerance: f64,
@@ -153,6 +158,9 @@ impl Placer {
                 cyclic,
             },
             linear: limits(false),
+            shown: (0..machine.axes.len())
+                .filter(|joint| machine.axes[*joint].range.is_some())
+                .collect(),
             tip_rounding: if solver.closed_form() {
                 words.rounding() + 1e-6
             } else {
@@ -348,6 +356,13 @@ impl Placer {
                 axis: node.axis_error,
             })
         }
+    }
+
+    /// Does a block turn an axis that the control shows over one turn so far that it would go the other way round?
+    #[inline]
+    pub fn turns_too_far(&self, from: &Joints, to: &Joints) -> bool {
+        let mut shown = self.shown.iter();
+        shown.any(|joint| libm::fabs(to[*joint] - from[*joint]) > LONGEST)
     }
 
     /// The largest error of the tip that rounding can make, mm.

@@ -153,6 +153,9 @@ impl<'a> Run<'a> {
         (to, end): (&Node, Spot),
         way: &[f64],
     ) -> Option<Bound> {
+        if self.block(from, to).goes_another_way() {
+            return None;
+        }
         let mut bound = Bound::default();
         let mut last = Node { t: 0.0, ..*from };
         let chord = to.tip - from.tip;

@@ -5,6 +5,7 @@
 mod certified;
 mod commands;
 mod compensation;
+mod lead;
 mod order;
 mod placement;
 mod turns;

@@ -13,6 +13,7 @@ use crate::expand::{Expand, Line};
 use crate::findings::Findings;
 use crate::observer::{Observer, Observers, Output};
 use crate::program::{Interpreter, Reading, Step};
+use crate::refusal;
 use crate::report::{AxisRange, Deviation, Report};
 use crate::stream::{BATCH, Flow, Outlet};
 use crate::timing::Timing;
@@ -144,6 +145,9 @@ impl<'a> Post<'a> {
         job.reading.insert = machine.control.insert;
         job.reading.tool_length = machine.control.tool_length;
         let format = dialect.format().clone();
+        if let Some(fault) = refusal::too_fine(machine, &format) {
+            return Err(fault.boxed());
+        }
         let stages = Stages {
             expand: Expand::new(machine, job.reading.chord_tolerance),
             lines: Vec::new(),
@@ -261,12 +265,12 @@ impl<'a> Post<'a> {
                 let axis = &machine.axes[index];
                 AxisRange {
                     name: axis.name.clone(),
-                    min: axis.reading(extremes.least[index]),
-                    max: axis.reading(extremes.most[index]),
+                    min: tidy(axis.reading(extremes.least[index])),
+                    max: tidy(axis.reading(extremes.most[index])),
                     travel: axis
                         .travel
-                        .map(|travel| travel.map(|end| axis.reading(end))),
-                    way: extremes.travel[index] / axis.unit(),
+                        .map(|travel| travel.map(|end| tidy(axis.reading(end)))),
+                    way: tidy(extremes.travel[index] / axis.unit()),
                 }
             })
             .collect();
@@ -311,4 +315,9 @@ impl<'a> Post<'a> {
             warnings: self.findings.warnings(),
         }
     }
+}
+
+/// Without what radians and sums leave in the last bits: -119.99999999999999° is -120°, and no zero is negative.
+fn tidy(value: f64) -> f64 {
+    libm::rint(value * 1e9) / 1e9 + 0.0
 }

@@ -1,9 +1,13 @@
 //! The deviation of one block from one straight piece of the CL path, and what is proven of it.
 //!
 //! What is bounded is the deviation of the tool's control point from its chord at the same share of the block, and
-//! that of the tool axis from the great circle between its ends. With a cutting edge of radius R about the tool
-//! axis, every point of that circle is within the bound on the tip: it strays with the control point, and by R
-//! times what a direction across the tool bows from its own chord (eqs. 9 and 10 of Sha et al. 2022).
+//! that of the tool axis from the great circle between its ends. With a cutting edge of radius R, a circle about
+//! the tool axis, every point of it is within the bound on the tip from the circle that is wanted, that about the
+//! wanted axis: it strays with the control point, and the turn that takes one axis to the other takes one circle to
+//! the other and moves each of its points by no more than R times the difference of the axes.
+//!
+//! All of this is worked out in floating point. What that rounds off is smaller than [`Placer::margin`], which each
+//! bound holds.
 
 use nalgebra::Vector3;
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
@@ -150,8 +154,7 @@ impl Move<'_> {
         let sweep = chord_angle((from.axis - to.axis).norm());
         let mut bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
         if chain.edge().is_some() {
-            // Never less than that of the tool axis: the wanted edge bends with it.
-            bend.axis = bend.axis.max(bend.turn + heading::bend(from, to));
+            bend.lead = bend.turn + heading::bend(from, to);
         }
         (bend, sweep)
     }
@@ -162,26 +165,16 @@ impl Move<'_> {
         let chain = self.placer.solver().chain();
         let course = Course::new(chain, &from.trace, &to.trace);
         let tight = course.bend(from.target.axis, to.target.axis, sweep);
-        let turn = if self.placer.control_point().radius > 0.0 {
-            // Of the directions across the tool axis, and of the axis itself: either may bend more.
-            let rim = certificate::rim(chain, &from.trace, &to.trace);
-            quick.turn.min(rim.max(course.axis_bend()))
-        } else {
-            quick.turn
-        };
         let bend = Bend {
             tip: quick.tip.min(tight.tip),
-            // The bound from norms holds for every direction of the tool, the other for its axis alone.
-            axis: if chain.edge().is_some() {
-                quick.axis
-            } else {
-                quick.axis.min(tight.axis)
-            },
-            turn,
+            axis: quick.axis.min(tight.axis),
+            turn: quick.turn.min(tight.turn),
+            lead: quick.lead,
         };
         let mut bound = self.bound(bend);
         if !self.control_keeps_tip && bound.tip.is_finite() {
-            let followed = course.tip([from.off(), to.off()]) + self.edge_bow(bend);
+            let followed =
+                course.tip([from.off(), to.off()]) + self.edge_bow(bend) + self.margin().tip;
             bound.tip = bound.tip.min(followed);
         }
         (bound, bend)
@@ -196,9 +189,13 @@ impl Move<'_> {
         }
         let axis_ends = certificate::larger(from.axis_error, to.axis_error);
         let tip_ends = certificate::larger(from.tip_error, to.tip_error);
+        let turns = certificate::larger(bend.axis, bend.lead);
+        let margin = self.margin();
         Bound {
-            tip: certificate::deviation(tip_ends, self.tip_bend(bend)) + self.edge_bow(bend),
-            axis: chord_angle(certificate::deviation(axis_ends, bend.axis)),
+            tip: certificate::deviation(tip_ends, self.tip_bend(bend))
+                + self.edge_bow(bend)
+                + margin.tip,
+            axis: chord_angle(certificate::deviation(axis_ends, turns)) + margin.axis,
         }
     }
 
@@ -212,6 +209,13 @@ impl Move<'_> {
         }
     }
 
+    /// What floating point rounds off at most.
+    #[inline]
+    fn margin(&self) -> Bound {
+        let (from, to) = (&self.from.trace.joints, &self.to.trace.joints);
+        self.placer.margin(from, to)
+    }
+
     /// How far a cutting edge strays beyond the control point at most, mm; no model sees that.
     #[inline]
     pub(super) fn edge_bow(&self, bend: Bend) -> f64 {
@@ -220,7 +224,7 @@ impl Move<'_> {
             return 0.0;
         }
         let ends = self.from.axis_error.max(self.to.axis_error);
-        radius * certificate::deviation(ends, bend.turn)
+        radius * certificate::deviation(ends, bend.axis)
     }
 
     /// The control would turn an axis the other way round.
@@ -239,7 +243,7 @@ impl Move<'_> {
         let axis_bend = if tolerances.axis.is_infinite() {
             0.0
         } else {
-            bend.axis
+            bend.axis.max(bend.lead)
         };
         let needed = (tip_bend / (8.0 * BLIND * tolerances.tip))
             .max(axis_bend / (8.0 * BLIND * tolerances.axis));
@@ -254,8 +258,8 @@ impl Move<'_> {
         }
         let blind = 1.0 / (8.0 * count * count);
         Bound {
-            tip: tip + tip_bend * blind + self.edge_bow(bend),
-            axis: chord_angle(axis + axis_bend * blind),
+            tip: tip + tip_bend * blind + self.edge_bow(bend) + self.margin().tip,
+            axis: chord_angle(axis + axis_bend * blind) + self.margin().axis,
         }
     }
 

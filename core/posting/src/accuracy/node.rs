@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::certificate::chord_angle;
+use super::certificate::{chord_angle, larger};
+use super::deviation::Bound;
 use post_plugin::Format;
 
 use post_machine::axis_words::{WordValues, Words};
@@ -58,6 +59,13 @@ impl Node {
 /// A control that shows an axis over one turn takes the shorter way: no block turns it by more, radians.
 const LONGEST: f64 = 2.9;
 
+/// Sum of all that the chain is long, its linear axes at zero, mm.
+fn reach(machine: &Machine, solver: &Solver) -> f64 {
+    let chain = solver.chain();
+    let points = chain.joints().iter().map(|joint| 2.0 * joint.point.norm());
+    points.sum::<f64>() + chain.tip().norm() + machine.mount.norm()
+}
+
 /// Why a point has no node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refused {
@@ -88,6 +96,8 @@ pub struct Placer {
     pub(super) linear: Vec<Limit>,
     /// Joints that the control shows over one turn.
     shown: Vec<usize>,
+    /// How far the chain reaches beside its linear axes, mm.
+    reach: f64,
     /// The branch of the last point: most likely that of the next.
     branch: Cell<usize>,
     axis_tolerance: f64,
@@ -161,6 +171,7 @@ impl Placer {
             shown: (0..machine.axes.len())
                 .filter(|joint| machine.axes[*joint].range.is_some())
                 .collect(),
+            reach: reach(machine, &solver),
             tip_rounding: if solver.closed_form() {
                 words.rounding() + 1e-6
             } else {
@@ -363,6 +374,27 @@ impl Placer {
     pub fn turns_too_far(&self, from: &Joints, to: &Joints) -> bool {
         let mut shown = self.shown.iter();
         shown.any(|joint| libm::fabs(to[*joint] - from[*joint]) > LONGEST)
+    }
+
+    /// What floating point rounds off a tip and a tool axis at most, anywhere between two sets of axis values: 64 ulp
+    /// of the farthest that the chain reaches (up to eight joints, each a turn of a dozen operations), times the
+    /// largest angle where that is over a radian, for an angle is rounded before it turns anything.
+    #[inline]
+    pub fn margin(&self, from: &Joints, to: &Joints) -> Bound {
+        const ULPS: f64 = 64.0 * f64::EPSILON;
+        let (mut reach, mut angle) = (self.reach, 1.0);
+        for (index, joint) in self.solver.chain().joints().iter().enumerate() {
+            let value = larger(libm::fabs(from[index]), libm::fabs(to[index]));
+            if joint.rotary {
+                angle = larger(angle, value);
+            } else {
+                reach += value;
+            }
+        }
+        Bound {
+            tip: ULPS * angle * reach,
+            axis: ULPS * angle,
+        }
     }
 
     /// The largest error of the tip that rounding can make, mm.

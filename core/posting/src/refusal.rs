@@ -192,6 +192,11 @@ pub(crate) fn no_way(
     .help(help)
 }
 
+/// A number without what radians leave in its last bits.
+fn tidy(value: f64) -> f64 {
+    libm::rint(value * 1e14) / 1e14
+}
+
 /// Tolerances below what the words round off, told before anything is made: pieces without end would go in, and none
 /// of them help.
 pub(crate) fn too_fine(machine: &Machine, format: &Format) -> Option<Diagnostic> {
@@ -206,6 +211,8 @@ pub(crate) fn too_fine(machine: &Machine, format: &Format) -> Option<Diagnostic>
             ("axis_tolerance", accuracy.axis_tolerance.to_degrees(), turns, "°"),
         ]
         .into_iter()
+        // Degrees come from radians, whose last bits are not told.
+        .map(|(key, tolerance, half, unit)| (key, tidy(tolerance), tidy(half), unit))
         .find(|(_, tolerance, half, _)| tolerance < half)
         .map(|(key, tolerance, half, unit)| {
             Diagnostic::error(

@@ -362,9 +362,10 @@ impl<'a> Blocks<'a> {
         to: &mut Surroundings<'_, '_>,
     ) -> Box<Node> {
         if leg.loose && self.on_part {
-            // The tool leaves the part as it stands, and turns when it is away: where its axis stays, nothing turns.
+            // The tool leaves the part as it stands, and turns when it is away: where its axis stays, nothing turns
+            // (unless the tip depends on it, as it does without a closed form).
             let joints = &last.trace.joints;
-            let stay = if self.points_alike(&last, node) {
+            let stay = if placer.solver().closed_form() && self.points_alike(&last, node) {
                 placer.settled(node.target, 1.0, joints)
             } else {
                 placer.place(node.target, 1.0, joints)

@@ -75,6 +75,20 @@ fn given(rng: &mut Rng) -> Given {
     }
 }
 
+/// A vector as a machine file has it.
+fn list(v: V) -> String {
+    format!("[{}, {}, {}]", v.x, v.y, v.z)
+}
+
+/// The table of an endless rotary axis.
+fn endless(name: &str, direction: V, point: V) -> String {
+    format!(
+        "[axis.{name}]\nrotary = {}\npoint = {}\ncyclic = true\nmax_feed = 1e7\n",
+        list(direction),
+        list(point)
+    )
+}
+
 /// A machine file of no particular machine; what stands for `{more}` is a configuration.
 fn machine(rng: &mut Rng, given: &Given) -> String {
     let (mut first, mut second) = (rng.direction(), rng.direction());
@@ -92,7 +106,6 @@ fn machine(rng: &mut Rng, given: &Given) -> String {
     };
     let lean = if rng.pick(2) == 0 { 0.0 } else { 0.05 };
     let mut out = format!("name = \"random\"\nchain = \"{chain}\"\n");
-    let list = |v: V| format!("[{}, {}, {}]", v.x, v.y, v.z);
     writeln!(out, "[workpiece]\nmount = {}", list(rng.point(100.0))).unwrap();
     writeln!(
         out,
@@ -103,14 +116,7 @@ fn machine(rng: &mut Rng, given: &Given) -> String {
     )
     .unwrap();
     for (name, direction) in [("C", first), ("A", second)] {
-        let point = rng.point(300.0);
-        writeln!(
-            out,
-            "[axis.{name}]\nrotary = {}\npoint = {}\ncyclic = true\nmax_feed = 1e7",
-            list(direction),
-            list(point)
-        )
-        .unwrap();
+        out += &endless(name, direction, rng.point(300.0));
     }
     for (name, direction) in [("X", V::x()), ("Y", V::y()), ("Z", V::z())] {
         let direction = direction + rng.point(lean);

@@ -8,7 +8,7 @@ fn knife(rng: &mut Rng, usual: bool, more: &str) -> String {
     let (mut c, mut b, mut a) = (V::z(), V::y(), V::z());
     let mut edge = V::x();
     if !usual {
-        while a.cross(&b).norm() < 0.5 || b.cross(&c).norm() < 0.5 || usual {
+        while a.cross(&b).norm() < 0.5 || b.cross(&c).norm() < 0.5 {
             (c, b, a) = (rng.direction(), rng.direction(), rng.direction());
         }
         // The blade axis need not be the tool axis, nor the edge that of a square machine.
@@ -18,20 +18,13 @@ fn knife(rng: &mut Rng, usual: bool, more: &str) -> String {
         }
         edge = post_testkit::across(rng, V::z());
     }
-    let list = |v: V| format!("[{}, {}, {}]", v.x, v.y, v.z);
     let mut out = format!(
         "name = \"knife\"\nchain = \"[w b X Y Z C B A t]\"\n[tool]\ngauge = [0, 0, 600]\naxis = [0, 0, 1]\nedge = {}\n",
         list(edge)
     );
     for (name, direction) in [("C", c), ("B", b), ("A", a)] {
         let point = V::new(rng.range(-20.0, 20.0), rng.range(-20.0, 20.0), 760.0);
-        writeln!(
-            out,
-            "[axis.{name}]\nrotary = {}\npoint = {}\ncyclic = true\nmax_feed = 1e7",
-            list(direction),
-            list(point)
-        )
-        .unwrap();
+        out += &endless(name, direction, point);
     }
     format!("{out}{LINEAR}[control]\ndialect = \"recorder\"\ntcp = \"post\"\n{more}")
 }

@@ -145,3 +145,37 @@ fn a_heading_is_laid_across_the_axis_of_the_instant() {
     );
     assert!(off <= certified + 1e-3 && certified.to_degrees() <= 0.1);
 }
+
+/// At corners a knife with [rewind] is drawn back, which counts, and on the way out nothing turns; a short way out that
+/// the decimals of the file lay aside of the tool axis has no direction either.
+#[test]
+fn drawing_back_counts_and_turns_nothing() {
+    let more = "[rewind]\ndistance = 20\n[solution]\nedge = \"travel\"\ncorner = 15\n[accuracy]\ntolerance = 0.05\naxis_tolerance = 0.1\n";
+    let bench = Bench::new(&knife(&mut post_testkit::seeded(62), true, more), 4, 100.0);
+    let axis = V::new(0.1, 0.2, 1.0).normalize();
+    let cut = |tip: V| stop(tip, axis, Some(1000.0));
+    let corner = V::new(50.0, 50.0, 0.0);
+    let stops = [
+        stop(axis * 30.0, axis, None),
+        cut(V::zeros()),
+        cut(V::new(50.0, 0.0, 0.0)),
+        cut(corner),
+        cut(corner + axis * 0.05 + V::new(-0.001, 0.001, 0.0)),
+        stop(corner + axis * 30.0, axis, None),
+    ];
+    let run = bench.run(&text(&stops).0).good("a knife");
+    assert_eq!(run.report.as_ref().map(|report| report.rewinds), Some(1));
+    let [c, b, a] = ["C", "B", "A"].map(|name| bench.place(name));
+    let mut ways_out = 0;
+    for block in blocks(&bench, &run) {
+        let [(from, axis), (to, _)] = [block.at(&bench, 0.0), block.at(&bench, 1.0)];
+        let way = to - from;
+        if way.dot(&axis) > 0.99 * way.norm() && way.norm() > 0.01 {
+            ways_out += 1;
+            for joint in [c, b, a] {
+                assert_eq!(block.from[joint], block.to[joint], "{from:?} to {to:?}");
+            }
+        }
+    }
+    assert_eq!(ways_out, 3);
+}

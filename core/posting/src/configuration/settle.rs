@@ -157,6 +157,12 @@ impl Route<'_> {
                 Some(before) => self.rewound[before],
                 None => way.joints(trellis, layer),
             };
+            // Nothing turns and the axis hardly sweeps: the tip goes straight, and the tool axis is off by no more than
+            // at the ends.
+            let sweep = (at.motion.axis - before.motion.axis).norm();
+            if sweep <= 2.0 * trellis.freedom && trellis.axes.largest_turn(&from, &to) == 0.0 {
+                return true;
+            }
             judge.passes(
                 &self.settings[at.setting].1,
                 &at.motion,

@@ -264,7 +264,7 @@ impl Move<'_> {
     }
 
     /// What the CL file asks for at the share `t` of the way: the control point on the chord, the tool axis on the
-    /// great circle, the heading of a leading edge on its own ([`super::heading`]).
+    /// great circle, the heading of a leading edge on its own.
     pub fn target(&self, t: f64) -> Pose {
         let (from, to) = (&self.from.target, &self.to.target);
         let edge = if self.placer.solver().chain().edge().is_some() {

@@ -243,6 +243,15 @@ impl Words {
         [value(first), value(last)]
     }
 
+    /// Half of the last decimal of the coarsest linear word, mm, and of the coarsest rotary one, radians; zero if
+    /// there is none.
+    pub fn half_decimal(&self) -> [f64; 2] {
+        [&self.linear, &self.rotary].map(|words| {
+            let halves = words.iter().map(|word| 0.5 * word.unit / word.scale);
+            halves.fold(0.0, f64::max)
+        })
+    }
+
     /// The largest error of the tip that rounding the linear words can make, mm.
     pub fn rounding(&self) -> f64 {
         self.linear

@@ -13,6 +13,7 @@ use crate::expand::{Expand, Line};
 use crate::findings::Findings;
 use crate::observer::{Observer, Observers, Output};
 use crate::program::{Interpreter, Reading, Step};
+use crate::refusal;
 use crate::report::{AxisRange, Deviation, Report};
 use crate::stream::{BATCH, Flow, Outlet};
 use crate::timing::Timing;
@@ -147,6 +148,9 @@ impl<'a> Post<'a> {
         job.reading.rules.clone_from(&machine.word_rules);
         job.reading.knife = machine.edge.is_some();
         let format = dialect.format().clone();
+        if let Some(fault) = refusal::too_fine(machine, &format) {
+            return Err(fault.boxed());
+        }
         let stages = Stages {
             expand: Expand::new(machine, job.reading.chord_tolerance),
             lines: Vec::new(),
@@ -274,12 +278,12 @@ impl<'a> Post<'a> {
                 let axis = &machine.axes[index];
                 AxisRange {
                     name: axis.name.clone(),
-                    min: axis.reading(extremes.least[index].min(between.least(index))),
-                    max: axis.reading(extremes.most[index].max(between.most(index))),
+                    min: tidy(axis.reading(extremes.least[index].min(between.least(index)))),
+                    max: tidy(axis.reading(extremes.most[index].max(between.most(index)))),
                     travel: axis
                         .travel
-                        .map(|travel| travel.map(|end| axis.reading(end))),
-                    way: (extremes.travel[index] + between.beside(index)) / axis.unit(),
+                        .map(|travel| travel.map(|end| tidy(axis.reading(end)))),
+                    way: tidy((extremes.travel[index] + between.beside(index)) / axis.unit()),
                 }
             })
             .collect();
@@ -311,7 +315,7 @@ impl<'a> Post<'a> {
             axes,
             tools: stages.configuration.tools().to_vec(),
             branch_changes: counts.branch_changes,
-            rewinds: counts.rewinds,
+            rewinds: counts.rewinds + stages.expand.rewinds(),
             points_eased: counts.eased,
             time_s: (durations.cutting + durations.other) * 60.0,
             cutting_time_s: durations.cutting * 60.0,
@@ -326,4 +330,9 @@ impl<'a> Post<'a> {
             warnings: self.findings.warnings(),
         }
     }
+}
+
+/// Without what radians and sums leave in the last bits: -119.99999999999999° is -120°, and no zero is negative.
+fn tidy(value: f64) -> f64 {
+    libm::rint(value * 1e9) / 1e9 + 0.0
 }

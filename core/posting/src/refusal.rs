@@ -2,11 +2,13 @@
 
 use crate::accuracy::{Refused, Stuck};
 use crate::program::Motion;
+use post_machine::axis_words::Words;
 use post_machine::description::{Axis, Machine, Positions};
 use post_machine::diagnostic::{Diagnostic, Extreme};
 use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, Unreachable};
+use post_plugin::Format;
 
 /// Why a point has no axis values.
 pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
@@ -188,6 +190,41 @@ pub(crate) fn no_way(
         ),
     )
     .help(help)
+}
+
+/// A number without what radians leave in its last bits.
+fn tidy(value: f64) -> f64 {
+    libm::rint(value * 1e14) / 1e14
+}
+
+/// Tolerances below what the words round off, told before anything is made: pieces without end would go in, and none
+/// of them help.
+pub(crate) fn too_fine(machine: &Machine, format: &Format) -> Option<Diagnostic> {
+    let heads = machine.heads.iter().map(|head| &head.machine);
+    heads.chain([machine]).find_map(|machine| {
+        let accuracy = &machine.accuracy;
+        let [linear, rotary] = Words::new(machine, format).half_decimal();
+        let turns = rotary.to_degrees();
+        [
+            ("tolerance", accuracy.tolerance, linear, " mm"),
+            ("rapid_tolerance", accuracy.rapid_tolerance, linear, " mm"),
+            ("axis_tolerance", accuracy.axis_tolerance.to_degrees(), turns, "°"),
+        ]
+        .into_iter()
+        // Degrees come from radians, whose last bits are not told.
+        .map(|(key, tolerance, half, unit)| (key, tidy(tolerance), tidy(half), unit))
+        .find(|(_, tolerance, half, _)| tolerance < half)
+        .map(|(key, tolerance, half, unit)| {
+            Diagnostic::error(
+                "tolerance",
+                format!(
+                    "[accuracy] {key} is {tolerance}{unit}, and the words of {} are rounded by up to {half}{unit}: no program could keep it",
+                    machine.name
+                ),
+            )
+            .help(format!("widen {key}, or have the words written with more decimals, if the control takes them"))
+        })
+    })
 }
 
 /// Why a move cannot be brought within tolerance.

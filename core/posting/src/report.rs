@@ -48,7 +48,7 @@ pub struct Report {
     pub tools: Vec<ToolUse>,
     /// Times that another branch of the solution or another full turn was taken, off the part.
     pub branch_changes: u64,
-    /// Times that the tool was drawn back in a cut, turned and brought back.
+    /// Times that the tool was drawn back in a cut, or at a corner of a leading edge, turned and brought back.
     pub rewinds: u64,
     /// Points at which a rotary axis was held or turned early close to a pole, within the tolerance of the axis.
     pub points_eased: u64,

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use post_plugin::fixed;
 use post_posting::report::{Deviation, LengthSource, Report};
 
 use crate::files::PathArg;
@@ -83,14 +84,16 @@ pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
             continue;
         }
         let travel = match axis.travel {
-            Some([min, max]) => format!("of {min:.3} to {max:.3}"),
+            Some([min, max]) => format!("of {} to {}", number(min, 3), number(max, 3)),
             None => "endless".to_owned(),
         };
         row(
             &format!("axis {}", axis.name),
             format!(
-                "{:.3} to {:.3} {travel}, {:.1} in all",
-                axis.min, axis.max, axis.way
+                "{} to {} {travel}, {} in all",
+                number(axis.min, 3),
+                number(axis.max, 3),
+                number(axis.way, 1)
             ),
         );
     }
@@ -160,13 +163,23 @@ pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
     text
 }
 
-fn certified(deviation: Deviation, unit: &str, decimals: usize) -> String {
+/// A number with its decimals, no zero of it negative.
+fn number(value: f64, decimals: u8) -> String {
+    let mut text = String::new();
+    fixed(&mut text, value, decimals);
+    text
+}
+
+/// Rounded up, but for a thousandth of the last decimal.
+fn certified(deviation: Deviation, unit: &str, decimals: u8) -> String {
+    let scale = libm::pow(10.0, f64::from(decimals));
+    let value = number(libm::ceil(deviation.value * scale - 1e-3) / scale, decimals);
     if deviation.line == 0 {
-        return format!("{:.decimals$} {unit}", deviation.value);
+        return format!("{value} {unit}");
     }
     format!(
-        "certified at most {:.decimals$} {unit}, in line {} of the program, CL line {}",
-        deviation.value, deviation.block, deviation.line
+        "certified at most {value} {unit}, in line {} of the program, CL line {}",
+        deviation.block, deviation.line
     )
 }
 

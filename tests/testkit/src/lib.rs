@@ -4,6 +4,7 @@
 //!   test takes and from which seed;
 //! - [`posted`]: whole runs of posting, with the recorder of events, the sink and the models that go with them;
 //! - [`walk`]: a run's words held against the path of its CL file;
+//! - [`frechet`]: how far a curve and a path are apart, both gone along in order;
 //! - [`read_back`]: NC programs read back by a kinematics built from the machine's TOML;
 //! - [`repository`] and [`shared`]: where files are.
 #![allow(
@@ -15,6 +16,7 @@
 )]
 
 mod data;
+pub mod frechet;
 mod geometry;
 mod papers;
 pub mod posted;

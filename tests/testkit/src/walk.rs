@@ -211,7 +211,7 @@ impl<'a> Walk<'a> {
 }
 
 /// The shares of a line from `a` to `b` that are within `bound` of `point`.
-fn within(point: V, a: V, b: V, bound: f64) -> Option<[f64; 2]> {
+pub(crate) fn within(point: V, a: V, b: V, bound: f64) -> Option<[f64; 2]> {
     let (chord, to) = (b - a, point - a);
     let square = chord.norm_squared();
     if square < 1e-18 {

@@ -231,13 +231,11 @@ impl Builder<'_> {
         let control_point = self.control_point(&file.tool.control_point);
         let spindle = self.spindle(&file.spindle);
         let word_rules = self.word_rules(&file.cl);
-        let stages = axes.iter().any(|axis| axis.range.is_some()) || !solution.exclusive.is_empty();
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
         let mut machine = Machine {
             clamps,
             indexes,
-            stages,
             name: file.name.get_ref().clone(),
             axes,
             mount,

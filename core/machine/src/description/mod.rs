@@ -73,8 +73,6 @@ pub struct Machine {
     pub clamps: bool,
     /// Some axis moves off the part alone.
     pub indexes: bool,
-    /// Some moves cannot be made in one go: axes that the control shows over one turn, or that exclude others.
-    pub stages: bool,
     /// Heads that a word of the program (`HEAD/name`) swaps in.
     pub heads: Vec<Head>,
 }

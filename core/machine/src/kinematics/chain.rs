@@ -6,6 +6,8 @@
 
 use nalgebra::Vector3;
 
+use super::orientation::square;
+
 /// The longest chain; working values are arrays of this length, so that no point allocates.
 pub const MAX_AXES: usize = 8;
 
@@ -30,8 +32,21 @@ pub struct Pose {
     pub tip: Vector3<f64>,
     /// Tool axis, unit vector from the tip to the holder, part frame.
     pub axis: Vector3<f64>,
-    /// Leading edge of a knife or disc, unit vector across the tool axis, part frame; zero for a tool that turns.
+    /// Leading edge of a knife or disc, unit vector, part frame; zero for a tool that turns. Of a pose that was reached
+    /// it stands across the tool axis; of one that is wanted it may lean, and its part across the axis is meant:
+    /// [`Pose::edge_across`].
     pub edge: Vector3<f64>,
+}
+
+impl Pose {
+    /// The leading edge laid across the tool axis, unit vector, part frame; zero where the pose has none.
+    #[inline]
+    pub fn edge_across(&self) -> Vector3<f64> {
+        if self.edge == Vector3::zeros() {
+            return self.edge;
+        }
+        square(self.edge, self.axis)
+    }
 }
 
 /// Sine and cosine of every rotary joint, so that a set of angles is evaluated once.

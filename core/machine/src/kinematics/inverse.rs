@@ -372,6 +372,6 @@ impl Solver {
             1000.0 + pose.tip.norm() + joints[..MAX_AXES].iter().fold(0.0, |sum, q| sum + q.abs());
         (reached.tip - pose.tip).norm() < VERIFIED * reach / 1000.0
             && angle(reached.axis, pose.axis) < allowed
-            && (self.chain.edge().is_none() || angle(reached.edge, pose.edge) < allowed)
+            && (self.chain.edge().is_none() || angle(reached.edge, pose.edge_across()) < allowed)
     }
 }

@@ -148,7 +148,7 @@ fn linearised(
     residual.fixed_rows_mut::<3>(0).copy_from(&tip);
     residual.fixed_rows_mut::<3>(3).copy_from(&axis);
     if edged {
-        let edge = (reached.edge - pose.edge) * ARM;
+        let edge = (reached.edge - pose.edge_across()) * ARM;
         residual.fixed_rows_mut::<3>(6).copy_from(&edge);
     }
     for (column, index) in free.iter().enumerate() {

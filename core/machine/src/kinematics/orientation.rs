@@ -371,11 +371,11 @@ impl Two {
         match &self.third {
             None => (before(pose.axis), Vector3::zeros()),
             Some(third) => {
-                let edge = if pose.edge.norm_squared() > 0.5 {
-                    pose.edge
-                } else {
-                    // Nothing said: as it is with all axes at zero, as nearly as the axis allows.
+                // Nothing said: as it is with all axes at zero, as nearly as the axis allows.
+                let edge = if pose.edge == Vector3::zeros() {
                     square(third.edge, pose.axis)
+                } else {
+                    pose.edge_across()
                 };
                 let turn = frame(pose.axis, edge) * third.frame;
                 (before(turn * third.k), before(turn * third.p))
@@ -500,7 +500,7 @@ impl Two {
 }
 
 /// The direction across `axis` that is nearest to `edge`.
-fn square(edge: Vector3<f64>, axis: Vector3<f64>) -> Vector3<f64> {
+pub(super) fn square(edge: Vector3<f64>, axis: Vector3<f64>) -> Vector3<f64> {
     let across = |v: Vector3<f64>| (v - axis * axis.dot(&v)).try_normalize(1e-6);
     across(edge)
         .or_else(|| across(Vector3::x()))

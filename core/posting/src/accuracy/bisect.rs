@@ -7,7 +7,7 @@
 
 use post_plugin::ModelSession;
 
-use super::deviation::{Bound, Move, Tolerances, between};
+use super::deviation::{Bound, Move, between};
 use super::linearise::{Linearise, Stuck};
 use super::node::{Node, Refused};
 
@@ -29,18 +29,14 @@ enum Verdict {
 }
 
 impl Linearise {
-    /// Can the axes follow this move with the tool axis within tolerance, whatever points that takes? Nothing is
-    /// sampled, no model asked.
+    /// Can the axes follow this move within its tolerances, whatever points that takes? Nothing is sampled, no model
+    /// asked.
     pub fn comes_through(&mut self, whole: &Move<'_>) -> bool {
         self.take_back(0);
         let mut from = *whole.from;
         from.t = 0.0;
         let whole = Move {
             from: &from,
-            tolerances: Tolerances {
-                tip: f64::INFINITY,
-                ..whole.tolerances
-            },
             ..*whole
         };
         let judge = |_: &mut Self, piece: &Move<'_>| {

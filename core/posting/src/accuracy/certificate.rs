@@ -23,8 +23,10 @@ pub struct Bend {
     pub tip: f64,
     /// Of the tool axis' deviation, as a difference of unit vectors.
     pub axis: f64,
-    /// Of any unit vector that is fixed to the tool: what the cutting edge at radius R bends by.
+    /// Of the tool axis itself, whatever axis is wanted: what a point above a tip that the control keeps bends by.
     pub turn: f64,
+    /// Of the deviation of a leading edge, as a difference of unit vectors; zero for a tool that turns.
+    pub lead: f64,
 }
 
 /// A bound from norms: cheap, and at most a small multiple too large.
@@ -55,6 +57,7 @@ pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> Bend {
         tip,
         axis: turns * turns + sweep * sweep,
         turn: turns * turns,
+        lead: 0.0,
     }
 }
 
@@ -98,8 +101,7 @@ impl Course {
         }
     }
 
-    /// Bounds on the second derivatives; see [`tight`]. Nothing is said of other directions of the tool than its
-    /// axis.
+    /// Bounds on the second derivatives; see [`tight`]. Nothing is said of a leading edge.
     pub fn bend(&self, from_axis: Vector3<f64>, to_axis: Vector3<f64>, sweep: f64) -> Bend {
         let square = sweep * sweep;
         // The great circle's own second derivative is -sweep² times itself.
@@ -109,12 +111,13 @@ impl Course {
             tip: self.tip_bend() + self.fourth.tip / 8.0,
             axis: first_axis.norm().max(last_axis.norm())
                 + (self.fourth.axis + square * square) / 8.0,
-            turn: f64::INFINITY,
+            turn: self.axis_bend(),
+            lead: f64::INFINITY,
         }
     }
 
     /// A bound on the second derivative of the tool axis, whatever axis is wanted.
-    pub fn axis_bend(&self) -> f64 {
+    fn axis_bend(&self) -> f64 {
         self.axis[0].norm().max(self.axis[1].norm()) + self.fourth.axis / 8.0
     }
 
@@ -149,18 +152,6 @@ impl Course {
     }
 }
 
-/// A bound on the second derivative of any unit vector across the tool axis that is fixed to the tool, by the same
-/// means as [`tight`]: the largest singular value of the second derivatives of two such vectors.
-pub fn rim(chain: &Chain, from: &Trace, to: &Trace) -> f64 {
-    let directions = across(chain.axis());
-    let turns: f64 = joint_turns(chain, from, to).sum();
-    let at = |trace: &Trace| {
-        let [a, b] = directions.map(|vector| direction_bend(chain, vector, trace, from, to));
-        longest_around(a, b)
-    };
-    at(from).max(at(to)) + turns * turns * turns * turns / 8.0
-}
-
 /// Two unit vectors across the unit vector `axis` and each other.
 pub fn across(axis: Vector3<f64>) -> [Vector3<f64>; 2] {
     let beside = if libm::fabs(axis.x) < 0.8 {
@@ -177,34 +168,6 @@ pub fn longest_around(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
     let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.dot(&b));
     let difference = libm::hypot(aa - bb, 2.0 * ab);
     libm::sqrt((aa + bb + difference) / 2.0)
-}
-
-fn joint_turns(chain: &Chain, from: &Trace, to: &Trace) -> impl Iterator<Item = f64> {
-    let joints = chain.joints().iter().enumerate();
-    joints
-        .filter(|(_, joint)| joint.rotary)
-        .map(|(index, _)| (to.joints[index] - from.joints[index]).abs())
-}
-
-/// Second derivative of a direction that is fixed to the tool, at `at`, an end of the block.
-fn direction_bend(
-    chain: &Chain,
-    mut vector: Vector3<f64>,
-    at: &Trace,
-    from: &Trace,
-    to: &Trace,
-) -> Vector3<f64> {
-    let (mut slope, mut bend) = (Vector3::zeros(), Vector3::zeros());
-    for (index, joint) in chain.joints().iter().enumerate().rev() {
-        if joint.rotary {
-            let step = to.joints[index] - from.joints[index];
-            let rate = joint.direction.cross(&vector);
-            let turns = at.turns.of(index);
-            advance(rate, joint.direction, step, turns, &mut slope, &mut bend);
-            vector = turn(vector, joint.direction, turns.0, turns.1);
-        }
-    }
-    bend
 }
 
 /// Takes first and second derivative of what lies behind a rotary joint over it: `rate` is how it goes with the
@@ -279,7 +242,7 @@ fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> Bend {
     Bend {
         tip: tip[3],
         axis: axis[3],
-        turn: f64::INFINITY,
+        ..Bend::default()
     }
 }
 

@@ -1,14 +1,19 @@
 //! The deviation of one block from one straight piece of the CL path, and what is proven of it.
 //!
 //! What is bounded is the deviation of the tool's control point from its chord at the same share of the block, and
-//! that of the tool axis from the great circle between its ends. With a cutting edge of radius R about the tool
-//! axis, every point of that circle is within the bound on the tip: it strays with the control point, and by R
-//! times what a direction across the tool bows from its own chord (eqs. 9 and 10 of Sha et al. 2022).
+//! that of the tool axis from the great circle between its ends. With a cutting edge of radius R, a circle about
+//! the tool axis, every point of it is within the bound on the tip from the circle that is wanted, that about the
+//! wanted axis: it strays with the control point, and the turn that takes one axis to the other takes one circle to
+//! the other and moves each of its points by no more than R times the difference of the axes.
+//!
+//! All of this is worked out in floating point. What that rounds off is smaller than [`Placer::margin`], which each
+//! bound holds.
 
 use nalgebra::Vector3;
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
 use super::certificate::{self, Bend, Course, chord_angle};
+use super::heading;
 use super::node::{Node, Placer};
 use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::orientation::angle;
@@ -146,12 +151,11 @@ impl Move<'_> {
         // An upper bound on the sweep is enough, and cheaper than the angle.
         let (from, to) = (&self.from.target, &self.to.target);
         let chain = self.placer.solver().chain();
-        let mut sweep = (from.axis - to.axis).norm();
+        let sweep = chord_angle((from.axis - to.axis).norm());
+        let mut bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
         if chain.edge().is_some() {
-            sweep = sweep.max((from.edge - to.edge).norm());
+            bend.lead = bend.turn + heading::bend(from, to);
         }
-        let sweep = chord_angle(sweep);
-        let bend = certificate::quick(chain, &self.from.trace, &self.to.trace, sweep);
         (bend, sweep)
     }
 
@@ -161,40 +165,37 @@ impl Move<'_> {
         let chain = self.placer.solver().chain();
         let course = Course::new(chain, &from.trace, &to.trace);
         let tight = course.bend(from.target.axis, to.target.axis, sweep);
-        let turn = if self.placer.control_point().radius > 0.0 {
-            // Of the directions across the tool axis, and of the axis itself: either may bend more.
-            let rim = certificate::rim(chain, &from.trace, &to.trace);
-            quick.turn.min(rim.max(course.axis_bend()))
-        } else {
-            quick.turn
-        };
         let bend = Bend {
             tip: quick.tip.min(tight.tip),
-            // The bound from norms holds for every direction of the tool, the other for its axis alone.
-            axis: if chain.edge().is_some() {
-                quick.axis
-            } else {
-                quick.axis.min(tight.axis)
-            },
-            turn,
+            axis: quick.axis.min(tight.axis),
+            turn: quick.turn.min(tight.turn),
+            lead: quick.lead,
         };
         let mut bound = self.bound(bend);
-        if !self.control_keeps_tip {
-            let followed = course.tip([from.off(), to.off()]) + self.edge_bow(bend);
+        if !self.control_keeps_tip && bound.tip.is_finite() {
+            let followed =
+                course.tip([from.off(), to.off()]) + self.edge_bow(bend) + self.margin().tip;
             bound.tip = bound.tip.min(followed);
         }
         (bound, bend)
     }
 
-    /// The bound that a bend proves.
+    /// The bound that a bend proves; none is, where the control would go another way.
     #[inline]
     pub(super) fn bound(&self, bend: Bend) -> Bound {
         let (from, to) = (self.from, self.to);
+        if self.goes_another_way() {
+            return Bound::NONE;
+        }
         let axis_ends = certificate::larger(from.axis_error, to.axis_error);
         let tip_ends = certificate::larger(from.tip_error, to.tip_error);
+        let turns = certificate::larger(bend.axis, bend.lead);
+        let margin = self.margin();
         Bound {
-            tip: certificate::deviation(tip_ends, self.tip_bend(bend)) + self.edge_bow(bend),
-            axis: chord_angle(certificate::deviation(axis_ends, bend.axis)),
+            tip: certificate::deviation(tip_ends, self.tip_bend(bend))
+                + self.edge_bow(bend)
+                + margin.tip,
+            axis: chord_angle(certificate::deviation(axis_ends, turns)) + margin.axis,
         }
     }
 
@@ -208,6 +209,13 @@ impl Move<'_> {
         }
     }
 
+    /// What floating point rounds off at most.
+    #[inline]
+    fn margin(&self) -> Bound {
+        let (from, to) = (&self.from.trace.joints, &self.to.trace.joints);
+        self.placer.margin(from, to)
+    }
+
     /// How far a cutting edge strays beyond the control point at most, mm; no model sees that.
     #[inline]
     pub(super) fn edge_bow(&self, bend: Bend) -> f64 {
@@ -216,16 +224,26 @@ impl Move<'_> {
             return 0.0;
         }
         let ends = self.from.axis_error.max(self.to.axis_error);
-        radius * certificate::deviation(ends, bend.turn)
+        radius * certificate::deviation(ends, bend.axis)
+    }
+
+    /// The control would turn an axis the other way round.
+    #[inline]
+    pub(super) fn goes_another_way(&self) -> bool {
+        let (from, to) = (&self.from.trace.joints, &self.to.trace.joints);
+        self.placer.turns_too_far(from, to)
     }
 
     fn sampled(&self, bend: Bend) -> Bound {
+        if self.goes_another_way() {
+            return Bound::NONE;
+        }
         let tolerances = self.tolerances;
         let tip_bend = self.tip_bend(bend);
         let axis_bend = if tolerances.axis.is_infinite() {
             0.0
         } else {
-            bend.axis
+            bend.axis.max(bend.lead)
         };
         let needed = (tip_bend / (8.0 * BLIND * tolerances.tip))
             .max(axis_bend / (8.0 * BLIND * tolerances.axis));
@@ -240,23 +258,24 @@ impl Move<'_> {
         }
         let blind = 1.0 / (8.0 * count * count);
         Bound {
-            tip: tip + tip_bend * blind + self.edge_bow(bend),
-            axis: chord_angle(axis + axis_bend * blind),
+            tip: tip + tip_bend * blind + self.edge_bow(bend) + self.margin().tip,
+            axis: chord_angle(axis + axis_bend * blind) + self.margin().axis,
         }
     }
 
     /// What the CL file asks for at the share `t` of the way: the control point on the chord, the tool axis on the
-    /// great circle, a leading edge as near to its own as stands across the axis.
+    /// great circle, the heading of a leading edge on its own.
     pub fn target(&self, t: f64) -> Pose {
         let (from, to) = (&self.from.target, &self.to.target);
-        let axis = Circle::new(from.axis, to.axis).at(t);
-        let edge = from.edge * (1.0 - t) + to.edge * t;
+        let edge = if self.placer.solver().chain().edge().is_some() {
+            Circle::new(from.edge, to.edge).at(t)
+        } else {
+            Vector3::zeros()
+        };
         Pose {
             tip: from.tip * (1.0 - t) + to.tip * t,
-            axis,
-            edge: (edge - axis * axis.dot(&edge))
-                .try_normalize(1e-9)
-                .unwrap_or(from.edge),
+            axis: Circle::new(from.axis, to.axis).at(t),
+            edge,
         }
     }
 
@@ -300,16 +319,17 @@ impl Move<'_> {
         Path {
             block: self,
             axis: Circle::new(from.axis, to.axis),
-            edge: follows.then(|| Circle::new(from.edge, to.edge)),
+            heading: follows.then(|| Circle::new(from.edge, to.edge)),
         }
     }
 }
 
-/// A block beside the great circles that tool axis and leading edge are to go along.
+/// A block beside the great circles that tool axis and heading are to go along.
 struct Path<'a> {
     block: &'a Move<'a>,
     axis: Circle,
-    edge: Option<Circle>,
+    /// Of a tool with a leading edge.
+    heading: Option<Circle>,
 }
 
 impl Path<'_> {
@@ -320,9 +340,15 @@ impl Path<'_> {
         let pose = self.block.placer.solver().chain().forward(&joints);
         let chord = from.target.tip * (1.0 - t) + to.target.tip * t;
         let tip = self.block.reached(&pose, t) - chord;
-        let mut turn = turned(self.axis.at(t), pose.axis);
-        if let Some(edge) = &self.edge {
-            let edge = turned(edge.at(t), pose.edge);
+        let axis = self.axis.at(t);
+        let mut turn = turned(axis, pose.axis);
+        if let Some(heading) = &self.heading {
+            let wanted = Pose {
+                axis,
+                edge: heading.at(t),
+                ..Pose::default()
+            };
+            let edge = turned(wanted.edge_across(), pose.edge);
             // Whichever of axis and edge is farther off.
             if edge.norm() > turn.norm() {
                 turn = edge;
@@ -344,6 +370,12 @@ impl Tolerances {
 }
 
 impl Bound {
+    /// Nothing is proven.
+    const NONE: Self = Self {
+        tip: f64::INFINITY,
+        axis: f64::INFINITY,
+    };
+
     /// The smaller of two bounds on the same block.
     pub fn least(self, other: Self) -> Self {
         Self {

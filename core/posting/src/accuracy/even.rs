@@ -60,7 +60,7 @@ impl Linearise {
                 ..*whole
             };
             let bound = piece.certify();
-            if !whole.tolerances.hold(bound) && !self.trust_model {
+            if !whole.tolerances.hold(bound) && (!self.trust_model || piece.goes_another_way()) {
                 self.take_back(before);
                 return Ok(false);
             }

@@ -247,7 +247,7 @@ impl Linearise {
         }
         // A model that sees more than the certificate proves is wrong on the safe side: points go in.
         Ok(Judged {
-            good: content && (sure || self.trust_model),
+            good: content && (sure || (self.trust_model && !piece.goes_another_way())),
             bound,
             curve: Some(curve),
             peak,

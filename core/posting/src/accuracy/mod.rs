@@ -11,6 +11,7 @@ mod compensate;
 mod deviation;
 mod even;
 mod fewest;
+mod heading;
 mod linearise;
 mod node;
 mod placed_batch;

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::certificate::chord_angle;
+use super::certificate::{chord_angle, larger};
+use super::deviation::Bound;
 use post_plugin::Format;
 
 use post_machine::axis_words::{WordValues, Words};
@@ -48,11 +49,21 @@ impl Node {
         self.axis_error = chord_angle((reached.axis - wanted.axis).norm());
         // Zero for a tool that turns.
         if reached.edge != Vector3::zeros() {
-            let edge_error = chord_angle((reached.edge - wanted.edge).norm());
+            let edge_error = chord_angle((reached.edge - wanted.edge_across()).norm());
             self.axis_error = self.axis_error.max(edge_error);
         }
         self.tip_error = self.off().norm();
     }
+}
+
+/// A control that shows an axis over one turn takes the shorter way: no block turns it by more, radians.
+const LONGEST: f64 = 2.9;
+
+/// Sum of all that the chain is long, its linear axes at zero, mm.
+fn reach(machine: &Machine, solver: &Solver) -> f64 {
+    let chain = solver.chain();
+    let points = chain.joints().iter().map(|joint| 2.0 * joint.point.norm());
+    points.sum::<f64>() + chain.tip().norm() + machine.mount.norm()
 }
 
 /// Why a point has no node.
@@ -83,6 +94,10 @@ pub struct Placer {
     pub(super) words: Words,
     turning: Turning,
     pub(super) linear: Vec<Limit>,
+    /// Joints that the control shows over one turn.
+    shown: Vec<usize>,
+    /// How far the chain reaches beside its linear axes, mm.
+    reach: f64,
     /// The branch of the last point: most likely that of the next.
     branch: Cell<usize>,
     axis_tolerance: f64,
@@ -153,6 +168,10 @@ impl Placer {
                 cyclic,
             },
             linear: limits(false),
+            shown: (0..machine.axes.len())
+                .filter(|joint| machine.axes[*joint].range.is_some())
+                .collect(),
+            reach: reach(machine, &solver),
             tip_rounding: if solver.closed_form() {
                 words.rounding() + 1e-6
             } else {
@@ -347,6 +366,34 @@ impl Placer {
                 tip: missed,
                 axis: node.axis_error,
             })
+        }
+    }
+
+    /// Does a block turn an axis that the control shows over one turn so far that it would go the other way round?
+    #[inline]
+    pub fn turns_too_far(&self, from: &Joints, to: &Joints) -> bool {
+        let mut shown = self.shown.iter();
+        shown.any(|joint| libm::fabs(to[*joint] - from[*joint]) > LONGEST)
+    }
+
+    /// What floating point rounds off a tip and a tool axis at most, anywhere between two sets of axis values: 64 ulp
+    /// of the farthest that the chain reaches (up to eight joints, each a turn of a dozen operations), times the
+    /// largest angle where that is over a radian, for an angle is rounded before it turns anything.
+    #[inline]
+    pub fn margin(&self, from: &Joints, to: &Joints) -> Bound {
+        const ULPS: f64 = 64.0 * f64::EPSILON;
+        let (mut reach, mut angle) = (self.reach, 1.0);
+        for (index, joint) in self.solver.chain().joints().iter().enumerate() {
+            let value = larger(libm::fabs(from[index]), libm::fabs(to[index]));
+            if joint.rotary {
+                angle = larger(angle, value);
+            } else {
+                reach += value;
+            }
+        }
+        Bound {
+            tip: ULPS * angle * reach,
+            axis: ULPS * angle,
         }
     }
 

@@ -2,8 +2,9 @@
 //!
 //! A block may go along several legs of a run. It is held against each of them: where the axes stand when the block
 //! passes a CL point is put beside that point, and between two such places the block is a move like any other, so
-//! that the same bounds hold. Which share of the block belongs to which CL point is free as long as the order is
-//! kept; the share of the way is taken, which the tip goes at an almost even pace.
+//! that the same bounds hold. Which share of the block belongs to which CL point is free as long as the shares never
+//! decrease; the one at which the tip is beside the CL point is taken. So the bound is one on the Fréchet distance: tip
+//! and path are gone along in order, each at its own pace.
 
 use super::deviation::{Bound, Move, Tolerances, between};
 use super::node::{Node, Placer};
@@ -152,6 +153,9 @@ impl<'a> Run<'a> {
         (to, end): (&Node, Spot),
         way: &[f64],
     ) -> Option<Bound> {
+        if self.block(from, to).goes_another_way() {
+            return None;
+        }
         let mut bound = Bound::default();
         let mut last = Node { t: 0.0, ..*from };
         let chord = to.tip - from.tip;
@@ -160,12 +164,16 @@ impl<'a> Run<'a> {
             let target = self.nodes[leg + 1].target;
             let even = share(way, start, end, leg);
             let mut next = self.passed(from, to, even, target);
-            if square > 0.0 {
-                // The share at which the tip is beside the CL point, not before or behind it.
-                let beside = even - next.off().dot(&chord) / square;
-                if beside > last.t && beside < 1.0 {
-                    next = self.passed(from, to, beside, target);
-                }
+            // The share at which the tip is beside the CL point, not before or behind it; never before the share of
+            // the CL point ahead of it, or the order of the path would not be proven.
+            let beside = if square > 0.0 {
+                even - next.off().dot(&chord) / square
+            } else {
+                even
+            };
+            let share = beside.clamp(last.t, 1.0);
+            if share != even {
+                next = self.passed(from, to, share, target);
             }
             bound = bound.and(self.hold(&last, &next)?);
             last = next;

@@ -1,6 +1,6 @@
 //! CL points that wait for what comes behind them: along one stretch of path some of them may be needless.
 
-use super::{Blocks, LONGEST, Leg, Reason, STILL, Surroundings};
+use super::{Blocks, Leg, Reason, STILL, Surroundings};
 use crate::accuracy::Node;
 use crate::program::{Motion, Pace};
 use post_machine::description::Axis;
@@ -64,9 +64,8 @@ impl Blocks<'_> {
             && !self.machine.axes.iter().any(in_reserve);
         steady
             && self.last.as_ref().is_some_and(|last| {
-                let apart = self.stands(last, node)
-                    || (self.machine.indexes && self.indexes(last, node))
-                    || (self.machine.stages && self.special(last, node));
+                let apart =
+                    self.stands(last, node) || (self.machine.indexes && self.indexes(last, node));
                 !apart
             })
     }
@@ -87,24 +86,12 @@ impl Blocks<'_> {
         to: &mut Surroundings<'_, '_>,
     ) {
         let corner = self.machine.accuracy.corner;
-        if !self.gathered.joins(leg, node, corner) || self.turns_too_far(node) {
+        if !self.gathered.joins(leg, node, corner) {
             self.end_run(to);
             self.gathered.nodes.push(*last);
         }
         self.gathered.nodes.push(*node);
         self.gathered.legs.push((leg.line, *leg.motion));
-    }
-
-    /// With a move to `node`, a block of the run could turn an axis so far that a control which shows it over one
-    /// turn takes the other way round.
-    fn turns_too_far(&self, node: &Node) -> bool {
-        let axes = self.machine.axes.iter().enumerate();
-        let mut shown = axes.filter(|(_, axis)| axis.range.is_some());
-        shown.any(|(joint, _)| {
-            let value = node.trace.joints[joint];
-            let mut nodes = self.gathered.nodes.iter();
-            nodes.any(|node| (node.trace.joints[joint] - value).abs() > LONGEST)
-        })
     }
 
     /// Carries out the run that waits.

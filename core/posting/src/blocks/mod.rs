@@ -32,9 +32,6 @@ pub(crate) use nominal::{Kinds, STILL, Travels};
 /// Turns that differ by less are the same, radians.
 const TURN: f64 = 1e-6;
 
-/// A control that shows an axis over one turn takes the shorter way: no block turns it by more, radians.
-const LONGEST: f64 = 2.9;
-
 /// Fewer points are not worth being solved together.
 const LEAST_TOGETHER: usize = 4;
 
@@ -377,8 +374,15 @@ impl<'a> Blocks<'a> {
         to: &mut Surroundings<'_, '_>,
     ) -> Box<Node> {
         if leg.loose && self.on_part {
-            // The tool leaves the part as it stands, and turns when it is away.
-            if let Ok(stay) = placer.place(node.target, 1.0, &last.trace.joints)
+            // The tool leaves the part as it stands, and turns when it is away: where its axis stays, nothing turns
+            // (unless the tip depends on it, as it does without a closed form).
+            let joints = &last.trace.joints;
+            let stay = if placer.solver().closed_form() && self.points_alike(&last, node) {
+                placer.settled(node.target, 1.0, joints)
+            } else {
+                placer.place(node.target, 1.0, joints)
+            };
+            if let Ok(stay) = stay
                 && self.turn_between(&last, &stay) + TURN < self.turn_between(&last, node)
             {
                 let leaving = Leg {
@@ -389,7 +393,7 @@ impl<'a> Blocks<'a> {
                 *last = stay;
             }
         }
-        if self.machine.stages && self.special(&last, node) {
+        if !self.excluded(&last, node).is_empty() {
             self.by_stages(placer, leg, &last, node, to);
         } else if gathers {
             self.gather(leg, &last, node, to);
@@ -408,6 +412,13 @@ impl<'a> Blocks<'a> {
             }
         }
         placer.solver().chain().forward(&joints).axis
+    }
+
+    /// Are tool axis and leading edge wanted alike at two nodes?
+    fn points_alike(&self, from: &Node, to: &Node) -> bool {
+        let (from, to) = (&from.target, &to.target);
+        let apart = (from.axis - to.axis).norm() + (from.edge_across() - to.edge_across()).norm();
+        apart < TURN
     }
 
     /// The sum of all rotary moves between two nodes, radians.

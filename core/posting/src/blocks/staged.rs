@@ -1,9 +1,9 @@
-//! Moves that cannot be made in one block: index axes, axes that exclude one another, axes shown over one turn.
+//! Moves that cannot be made in one block: index axes, axes that exclude one another.
 
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Pose};
 
-use super::{Blocks, LONGEST, Leg, Reason, Surroundings, TURN};
+use super::{Blocks, Leg, Reason, Surroundings, TURN};
 use crate::accuracy::{Node, Placer};
 use crate::refusal;
 
@@ -18,18 +18,8 @@ impl Blocks<'_> {
             .any(|((axis, from), to)| axis.indexed.is_some() && (from - to).abs() > TURN)
     }
 
-    /// The move cannot be made in one go: an axis shown over one turn would take the other way round, or axes
-    /// that exclude one another would move together.
-    #[inline]
-    pub(super) fn special(&self, from: &Node, to: &Node) -> bool {
-        let way = |joint: usize| (to.trace.joints[joint] - from.trace.joints[joint]).abs();
-        let mut axes = self.machine.axes.iter().enumerate();
-        axes.any(|(joint, axis)| axis.range.is_some() && way(joint) > LONGEST)
-            || !self.excluded(from, to).is_empty()
-    }
-
     /// Axes that exclude one another and would move together, group by group.
-    fn excluded(&self, from: &Node, to: &Node) -> Vec<Vec<usize>> {
+    pub(super) fn excluded(&self, from: &Node, to: &Node) -> Vec<Vec<usize>> {
         let moves =
             |joint: &usize| (to.trace.joints[*joint] - from.trace.joints[*joint]).abs() > EQUAL;
         let groups = self.machine.solution.exclusive.iter();
@@ -39,6 +29,7 @@ impl Blocks<'_> {
             .collect()
     }
 
+    /// A move with axes that exclude one another: off the part one goes after the other, a cut is refused.
     pub(super) fn by_stages(
         &mut self,
         placer: &Placer,
@@ -79,29 +70,6 @@ impl Blocks<'_> {
                 joints[*joint] = last[*joint];
                 self.stage(placer, leg, &mut at, (turned_at, 1.0), &joints, to);
             }
-        }
-        let begin = at.trace.joints;
-        let longest = self
-            .machine
-            .axes
-            .iter()
-            .enumerate()
-            .filter(|(_, axis)| axis.range.is_some())
-            .map(|(joint, _)| (last[joint] - begin[joint]).abs())
-            .fold(0.0, f64::max);
-        let count = libm::ceil(longest / LONGEST).max(1.0) as u32;
-        for part in 1..count {
-            let t = f64::from(part) / f64::from(count);
-            let joints: Joints =
-                std::array::from_fn(|joint| begin[joint] * (1.0 - t) + last[joint] * t);
-            let target = Pose {
-                tip: turned_at.tip * (1.0 - t) + node.target.tip * t,
-                axis: (from.target.axis * (1.0 - t) + node.target.axis * t)
-                    .try_normalize(1e-6)
-                    .unwrap_or(node.target.axis),
-                ..node.target
-            };
-            self.stage(placer, leg, &mut at, (target, t), &joints, to);
         }
         self.cut(placer, leg, &at, node, to);
     }

@@ -61,7 +61,7 @@ pub(crate) struct Route<'a> {
     pub(super) near: Joints,
     /// Axis values before a rewind: see [`trellis::State::rewind`].
     pub(super) rewound: Vec<Joints>,
-    judge: Trial<'a>,
+    pub(super) judge: Trial<'a>,
     /// Redundant axes can be put elsewhere as long as the last rapid is not settled.
     pub(super) tries_positions: bool,
     pub(super) chosen: Vec<Chosen>,
@@ -92,9 +92,11 @@ fn tries_positions(machine: &Machine) -> bool {
 
 /// Tries whether a cut comes through, by cutting it into pieces.
 #[derive(Debug)]
-struct Trial<'a> {
+pub(super) struct Trial<'a> {
     machine: &'a Machine,
     linearise: Linearise,
+    /// The tip counts too, not the tool axis alone.
+    pub(super) strict: bool,
 }
 
 impl Judge for Trial<'_> {
@@ -110,8 +112,14 @@ impl Judge for Trial<'_> {
             return false;
         };
         let loose = motion.pace == Pace::Rapid;
-        let planned = Move::planned(self.machine, placer, motion.chord, loose, [&from, &to]);
-        planned.whole().is_some() || self.linearise.comes_through(&planned)
+        let mut planned = Move::planned(self.machine, placer, motion.chord, loose, [&from, &to]);
+        if planned.whole().is_some() {
+            return true;
+        }
+        if !self.strict {
+            planned.tolerances.tip = f64::INFINITY;
+        }
+        self.linearise.comes_through(&planned)
     }
 }
 
@@ -141,6 +149,7 @@ impl<'a> Route<'a> {
             judge: Trial {
                 machine,
                 linearise: Linearise::default(),
+                strict: false,
             },
             tries_positions: tries_positions(machine),
             chosen: Vec::new(),

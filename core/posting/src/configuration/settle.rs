@@ -4,8 +4,9 @@ use super::backtrace::Backtrace;
 use super::cost::Cost;
 use super::route::{Chosen, Route};
 use super::taut::{Gate, taut};
-use super::trellis::{HELD, Kind, State, Trellis, pose};
+use super::trellis::{HELD, Judge, Kind, State, Trellis, pose};
 use crate::program::{Motion, Pace};
+use post_machine::description::Pole;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::POLE;
 
@@ -91,21 +92,26 @@ impl Route<'_> {
 
     /// Settles the points up to `upto`; the best way to the newest point decides.
     fn settle(&mut self, upto: usize) {
-        let Some(best) = self.trellis.best() else {
-            return;
-        };
         let count = self.trellis.layers.len();
         if count <= usize::from(self.anchored) {
             return;
         }
         let mut way = std::mem::take(&mut self.way);
-        way.eased.clear();
-        way.states.clear();
-        way.states.resize(count, best);
-        for layer in (1..count).rev() {
-            way.states[layer - 1] = self.trellis.states[way.states[layer]].from;
-        }
+        let Some(mut best) = self.walk_back(&mut way) else {
+            self.way = way;
+            return;
+        };
         self.ease(&mut way);
+        let mut upto = upto;
+        if !self.comes_through(&way, 1..count)
+            && let Some(exact) = self.exact()
+        {
+            self.trellis.layers = exact.layers;
+            self.trellis.states = exact.states;
+            best = self.walk_back(&mut way).unwrap_or(best);
+            // What lies behind the newest point came from the way that is not gone.
+            upto = count - 1;
+        }
         self.hand_out(&way, upto);
         let joints = way.joints(&self.trellis, upto);
         let branch = self.trellis.states[way.states[upto]].branch;
@@ -113,59 +119,150 @@ impl Route<'_> {
         self.way = way;
     }
 
+    /// Walks the cheapest way back from its end; gives the state that it ends in.
+    fn walk_back(&self, way: &mut Backtrace) -> Option<usize> {
+        let best = self.trellis.best()?;
+        let count = self.trellis.layers.len();
+        way.eased.clear();
+        way.states.clear();
+        way.states.resize(count, best);
+        for layer in (1..count).rev() {
+            way.states[layer - 1] = self.trellis.states[way.states[layer]].from;
+        }
+        Some(best)
+    }
+
+    /// Can the cuts that lead to these points be made as the way has it? Only those are tried that the trellis did not
+    /// try: from and to points that are eased or held.
+    fn comes_through(&mut self, way: &Backtrace, points: std::ops::Range<usize>) -> bool {
+        if self.trellis.freedom == 0.0 {
+            return true;
+        }
+        let (trellis, judge) = (&self.trellis, &mut self.judge);
+        let turned = |layer: usize| {
+            let place = way.eased.binary_search_by_key(&layer, |(layer, _)| *layer);
+            // What was handed out may have been eased.
+            let out = layer == 0 && trellis.eased(trellis.layers[0].latitude.0);
+            out || place.is_ok() || trellis.states[way.states[layer]].branch == HELD
+        };
+        judge.strict = true;
+        let mut points = points;
+        let good = points.all(|layer| {
+            let [before, at] = [layer - 1, layer].map(|layer| &trellis.layers[layer]);
+            if at.kind != Kind::Cut || !(turned(layer - 1) || turned(layer)) {
+                return true;
+            }
+            let from = way.joints(trellis, layer - 1);
+            let to = match trellis.states[way.states[layer]].rewind {
+                Some(before) => self.rewound[before],
+                None => way.joints(trellis, layer),
+            };
+            // Nothing turns and the axis hardly sweeps: the tip goes straight, and the tool axis is off by no more than
+            // at the ends.
+            let sweep = (at.motion.axis - before.motion.axis).norm();
+            if sweep <= 2.0 * trellis.freedom && trellis.axes.largest_turn(&from, &to) == 0.0 {
+                return true;
+            }
+            judge.passes(
+                &self.settings[at.setting].1,
+                &at.motion,
+                (&pose(&before.motion), &from),
+                (&pose(&at.motion), &to),
+            )
+        });
+        judge.strict = false;
+        good
+    }
+
+    /// The trellis of the points that wait, every point met exactly; none where no way leads through it, or where the
+    /// tool is drawn back on the way.
+    fn exact(&mut self) -> Option<Trellis> {
+        let layers = &self.trellis.layers;
+        if self
+            .trellis
+            .states
+            .iter()
+            .any(|state| state.rewind.is_some())
+        {
+            return None;
+        }
+        let placer = &self.settings[layers[0].setting].1;
+        let mut exact = Trellis::close_to_poles(self.machine, placer, Pole::Exact);
+        let begun = usize::from(self.anchored);
+        exact.layers.extend(layers[..begun].iter().cloned());
+        exact.states.extend(&self.trellis.states[..begun]);
+        for at in &layers[begun..] {
+            let placer = &self.settings[at.setting].1;
+            let (near, judge) = (&self.near, &mut self.judge);
+            exact
+                .push(at.line, &at.motion, at.setting, placer, near, judge)
+                .ok()?;
+            if exact.layers.last()?.count == 0 {
+                return None;
+            }
+        }
+        exact.best().map(|_| exact)
+    }
+
     /// Pulls the pole joint taut wherever the tolerance leaves it room.
-    fn ease(&self, way: &mut Backtrace) {
+    fn ease(&mut self, way: &mut Backtrace) {
+        let mut at = usize::from(self.anchored);
+        while let Some(run) = self.ease_next(way, at) {
+            // The point behind the run is come to from it.
+            let end = (run.end + 1).min(self.trellis.layers.len());
+            if !self.comes_through(way, run.start.max(1)..end) {
+                way.eased.retain(|(layer, _)| *layer < run.start);
+            }
+            at = run.end;
+        }
+    }
+
+    /// Pulls the pole joint taut over the next points from `at` where the tolerance leaves it room; gives which they
+    /// are.
+    fn ease_next(&self, way: &mut Backtrace, at: usize) -> Option<std::ops::Range<usize>> {
         let trellis = &self.trellis;
         let layers = &trellis.layers;
-        let Some(pole) = self.settings[layers[0].setting].1.solver().pole_joint() else {
-            return;
-        };
+        let pole = self.settings[layers[0].setting].1.solver().pole_joint()?;
         let state = |way: &Backtrace, layer: usize| trellis.states[way.states[layer]];
         let roomy = |way: &Backtrace, layer: usize| {
             self.trellis.eased(layers[layer].latitude.0) && state(way, layer).rewind.is_none()
         };
-        let mut at = usize::from(self.anchored);
-        while at < layers.len() {
-            if !roomy(way, at) {
-                at += 1;
-                continue;
+        let at = (at..layers.len()).find(|layer| roomy(way, *layer))?;
+        let end = (at..layers.len())
+            .find(|layer| !roomy(way, *layer))
+            .unwrap_or(layers.len());
+        // The point behind the run, if there is one, is where the string must arrive.
+        let gates: Vec<Gate> = (at..end)
+            .chain((end < layers.len()).then_some(end))
+            .map(|layer| Gate {
+                time: match layers[layer].kind {
+                    Kind::Cut => Some(minutes(trellis, layer)),
+                    Kind::First | Kind::Rapid => None,
+                },
+                range: if layer < end {
+                    self.room(layer, &state(way, layer), pole)
+                } else {
+                    let state = state(way, layer);
+                    let value = match state.rewind {
+                        Some(before) => self.rewound[before][pole],
+                        None => state.joints[pole],
+                    };
+                    [value, value]
+                },
+            })
+            .collect();
+        let start = if at > 0 {
+            way.joints(trellis, at - 1)[pole]
+        } else {
+            self.near[pole]
+        };
+        let values = taut(Some(start), &gates);
+        for (layer, value) in (at..end).zip(values) {
+            if let Some(joints) = self.turned_to(way, layer, pole, value) {
+                way.eased.push((layer, joints));
             }
-            let end = (at..layers.len())
-                .find(|layer| !roomy(way, *layer))
-                .unwrap_or(layers.len());
-            // The point behind the run, if there is one, is where the string must arrive.
-            let gates: Vec<Gate> = (at..end)
-                .chain((end < layers.len()).then_some(end))
-                .map(|layer| Gate {
-                    time: match layers[layer].kind {
-                        Kind::Cut => Some(minutes(trellis, layer)),
-                        Kind::First | Kind::Rapid => None,
-                    },
-                    range: if layer < end {
-                        self.room(layer, &state(way, layer), pole)
-                    } else {
-                        let state = state(way, layer);
-                        let value = match state.rewind {
-                            Some(before) => self.rewound[before][pole],
-                            None => state.joints[pole],
-                        };
-                        [value, value]
-                    },
-                })
-                .collect();
-            let start = if at > 0 {
-                way.joints(trellis, at - 1)[pole]
-            } else {
-                self.near[pole]
-            };
-            let values = taut(Some(start), &gates);
-            for (layer, value) in (at..end).zip(values) {
-                if let Some(joints) = self.turned_to(way, layer, pole, value) {
-                    way.eased.push((layer, joints));
-                }
-            }
-            at = end;
         }
+        Some(at..end)
     }
 
     /// What the tolerance leaves the pole joint at a point.

@@ -144,7 +144,12 @@ pub(crate) fn pose(motion: &Motion) -> Pose {
 
 impl Trellis {
     pub(crate) fn new(machine: &Machine, placer: &Placer) -> Self {
-        let freedom = match machine.solution.pole {
+        Self::close_to_poles(machine, placer, machine.solution.pole)
+    }
+
+    /// With poles met in this way, whatever the machine file says.
+    pub(crate) fn close_to_poles(machine: &Machine, placer: &Placer, pole: Pole) -> Self {
+        let freedom = match pole {
             Pole::Blend => SHARE * machine.accuracy.axis_tolerance - placer.axis_rounding(),
             Pole::Exact => 0.0,
         }

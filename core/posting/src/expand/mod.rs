@@ -73,6 +73,11 @@ impl Expand {
         self.tangential.as_ref()?.first_line()
     }
 
+    /// Corners that a tool with a leading edge was drawn back at.
+    pub(crate) fn rewinds(&self) -> u64 {
+        self.tangential.as_ref().map_or(0, |edge| edge.rewinds)
+    }
+
     /// Takes a batch of steps, each with its line.
     pub(crate) fn take(&mut self, steps: &[(u64, Step)], out: &mut Out<'_>, findings: &Findings) {
         for (line, step) in steps {

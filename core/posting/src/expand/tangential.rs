@@ -1,8 +1,10 @@
-//! Tangential control: where the leading edge of a knife or disc points, along the direction of travel, or along the second vector
-//! of the CL points.
+//! Tangential control: where the leading edge of a knife or disc is headed, along the direction of travel, or along the
+//! second vector of the CL points.
 //!
-//! Along a path the edge at a point lies between the directions of the moves before and behind it, so that it
-//! turns steadily. At a corner it must be turned on the spot: drawn back first, if the machine has `[rewind]`.
+//! A heading is a direction of the path, not yet laid across the tool axis: that is done at each instant, with the axis
+//! of that instant. Along a path the heading at a point lies between the directions of the moves before and behind it,
+//! so that the edge turns steadily. At a corner it must be turned on the spot: drawn back first, if the machine has
+//! `[rewind]`.
 
 use std::collections::VecDeque;
 
@@ -19,6 +21,16 @@ use post_machine::kinematics::orientation::angle;
 /// Ways shorter than this have no direction, mm.
 const SHORT: f64 = 1e-6;
 
+/// A way that makes a smaller angle with the tool axis (its sine; 3°) leads straight into the part or out of it, and has
+/// no direction for an edge: the decimals of a CL file alone lay a short one anywhere across the axis.
+const STRAIGHT_IN: f64 = 0.05;
+
+/// Edges that differ by less are the same, radians.
+const STANDS: f64 = 1e-6;
+
+/// A heading leans if it is not square to the tool axis: by more than this cosine.
+const LEANS: f64 = 1e-6;
+
 /// A turn on the spot by more than this goes by the side, radians.
 const HALF: f64 = 2.0;
 
@@ -32,14 +44,18 @@ pub(super) struct Tangential {
     /// Radians.
     corner: f64,
     rewind: Option<Rewind>,
-    /// The edge in use.
+    /// The edge in use, across the tool axis.
     edge: Vector3<f64>,
-    /// The last point that was taken.
-    tip: Option<Vector3<f64>>,
-    /// The last cut with a direction, and that direction.
+    /// Tip and tool axis of the last point that was taken.
+    at: Option<[Vector3<f64>; 2]>,
+    /// The last cut with a direction, and that direction, of length one.
     cut: Option<(u64, Motion, Vector3<f64>)>,
+    /// There was such a cut since the tool came.
+    has_cut: bool,
     /// What came behind it: moves without a direction (rapids, straight in and out), and commands.
     behind: VecDeque<Flow<Line>>,
+    /// Corners that the tool was drawn back at.
+    pub(super) rewinds: u64,
 }
 
 impl Tangential {
@@ -50,9 +66,11 @@ impl Tangential {
             corner: machine.solution.corner,
             rewind: machine.rewind,
             edge: machine.edge?,
-            tip: None,
+            at: None,
             cut: None,
+            has_cut: false,
             behind: VecDeque::new(),
+            rewinds: 0,
         })
     }
 
@@ -71,7 +89,7 @@ impl Tangential {
             let along = if motion.edge == Vector3::zeros() {
                 self.edge
             } else {
-                if across(motion.edge, motion.axis).is_none() {
+                if across(motion.edge, motion.axis, 1e-3).is_none() {
                     fault(findings, line, "the leading edge lies along the tool axis");
                 }
                 motion.edge
@@ -79,12 +97,14 @@ impl Tangential {
             self.pass(line, motion, Some(along), out);
             return;
         }
-        let from = self.tip.replace(motion.tip);
+        let from = self.at.replace([motion.tip, motion.axis]);
         let way = from
             .filter(|_| motion.pace != Pace::Rapid)
-            .map(|from| motion.tip - from)
-            .filter(|way| way.norm() > SHORT)
-            .and_then(|way| across(way, motion.axis));
+            .and_then(|[from, axis]| {
+                let way = (motion.tip - from).try_normalize(SHORT)?;
+                let leads = |axis| across(way, axis, STRAIGHT_IN).is_some();
+                (leads(axis) && leads(motion.axis)).then_some(way)
+            });
         match way {
             Some(way) => {
                 self.settle(Some(way), out, findings);
@@ -107,8 +127,9 @@ impl Tangential {
             return;
         }
         self.settle(None, out, findings);
-        self.tip = match command {
-            Command::From { tip, .. } => Some(tip),
+        self.has_cut = false;
+        self.at = match command {
+            Command::From { tip, axis } => Some([tip, axis]),
             _ => None,
         };
         out.command(line, command);
@@ -133,13 +154,14 @@ impl Tangential {
             .iter()
             .any(|next| matches!(next, Flow::Point(_)));
         // Where no cut came before, the edge stands as the first cut wants it from the beginning.
-        let mut turned = self.cut.is_none();
+        self.has_cut |= self.cut.is_some();
+        let mut turned = !self.has_cut;
         let mut last = None;
         if let Some((line, motion, come)) = self.cut.take() {
             match go.filter(|_| !moves) {
-                Some(go) if angle(come, go) > self.corner => {
+                Some(go) if turn(come, go, motion.axis) > self.corner => {
                     self.pass(line, motion, Some(come), out);
-                    self.corner_turn(line, motion, go, out, findings);
+                    self.corner_turn((line, motion), [come, go], out, findings);
                 }
                 Some(go) => self.pass(line, motion, Some(come + go), out),
                 None => self.pass(line, motion, Some(come), out),
@@ -164,27 +186,34 @@ impl Tangential {
                 turned = true;
             }
         }
+        let (false, Some(go), Some((line, motion))) = (turned, go, last) else {
+            return;
+        };
         // Straight from one cut into another: a corner, if it is one.
-        if let (false, Some(go), Some((line, motion))) = (turned, go, last)
-            && angle(self.edge, go) > self.corner
-        {
-            self.corner_turn(line, motion, go, out, findings);
+        let angle = turn(self.edge, go, motion.axis);
+        if angle > self.corner {
+            self.corner_turn((line, motion), [self.edge, go], out, findings);
+        } else if angle < STANDS {
+            // The edge stands as the cut wants it, and the heading is that of the cut from its start.
+            self.pass(line, motion, Some(go), out);
         }
     }
 
-    /// Turns the edge at a corner.
+    /// Turns the edge at a corner from one heading to another.
     fn corner_turn(
         &mut self,
-        line: u64,
-        motion: Motion,
-        edge: Vector3<f64>,
+        (line, motion): (u64, Motion),
+        [come, heading]: [Vector3<f64>; 2],
         out: &mut Out<'_>,
         findings: &Findings,
     ) {
         let away = self
             .rewind
             .and_then(|rewind| Some((rewind, motion.drawn_back(&rewind, 0.0)?)));
+        let angle = turn(self.edge, heading, motion.axis);
+        let laid = across(heading, motion.axis, 1e-3);
         if let Some((rewind, away)) = away {
+            self.rewinds += 1;
             let away_from_part = Motion {
                 pace: Pace::feed_or_rapid(rewind.retract_feed),
                 ..away
@@ -192,17 +221,16 @@ impl Tangential {
             self.pass(line, away_from_part, None, out);
             let turn = Motion {
                 pace: rewind.turn_feed.map_or(Pace::Rapid, |feed| {
-                    let way = angle(self.edge, edge).to_degrees();
-                    Pace::InverseTime(feed / way.max(1e-3))
+                    Pace::InverseTime(feed / angle.to_degrees().max(1e-3))
                 }),
                 ..away
             };
-            self.pass(line, turn, Some(edge), out);
+            self.pass(line, turn, laid, out);
             let back = Motion {
                 pace: rewind.plunge_feed.map_or(motion.pace, Pace::PerMinute),
                 ..motion
             };
-            self.pass(line, back, Some(edge), out);
+            self.pass(line, back, Some(heading), out);
         } else {
             if self.rewind.is_some() {
                 fault(
@@ -211,30 +239,43 @@ impl Tangential {
                     "at this corner the tool must be drawn back and turned, and it cannot be: the plane of [rewind] lies below the tip, or the tool is nearly level",
                 );
             }
-            if angle(self.edge, edge) > HALF {
+            // The turn is even from edge to edge; headings that lean would have it begin and end in haste.
+            let leans = |heading: Vector3<f64>| heading.dot(&motion.axis).abs() > LEANS;
+            if leans(come) {
+                self.pass(line, motion, None, out);
+            }
+            if angle > HALF {
                 // Right about: by the side, for the way round must be said.
                 let side = motion.axis.cross(&self.edge);
                 self.pass(line, motion, Some(side), out);
             }
-            self.pass(line, motion, Some(edge), out);
+            self.pass(line, motion, laid, out);
+            if leans(heading) {
+                self.pass(line, motion, Some(heading), out);
+            }
         }
     }
 
+    /// Hands a move on that ends with this heading.
     fn pass(
         &mut self,
         line: u64,
         mut motion: Motion,
-        along: Option<Vector3<f64>>,
+        heading: Option<Vector3<f64>>,
         out: &mut Out<'_>,
     ) {
+        let laid = |heading: Vector3<f64>| across(heading, motion.axis, 1e-3);
+        let headed =
+            heading.and_then(|heading| Some((heading.try_normalize(1e-9)?, laid(heading)?)));
         // Straight into the part there is no direction of travel: the edge stays as it is.
-        let edge = along
-            .and_then(|along| across(along, motion.axis))
-            .or_else(|| across(self.edge, motion.axis))
-            .or_else(|| across(Vector3::x(), motion.axis))
-            .unwrap_or_else(Vector3::y);
+        let (heading, edge) = headed.unwrap_or_else(|| {
+            let edge = laid(self.edge)
+                .or_else(|| laid(Vector3::x()))
+                .unwrap_or_else(Vector3::y);
+            (edge, edge)
+        });
         self.edge = edge;
-        motion.edge = edge;
+        motion.edge = heading;
         out.push(Flow::Point(Line { line, motion }));
     }
 }
@@ -248,8 +289,14 @@ fn fault(findings: &Findings, line: u64, message: &str) {
     );
 }
 
-/// The part of a direction across the tool axis, of length one.
-fn across(direction: Vector3<f64>, axis: Vector3<f64>) -> Option<Vector3<f64>> {
+/// The part of a direction across the tool axis, of length one; none if they make an angle of a sine below `least`.
+fn across(direction: Vector3<f64>, axis: Vector3<f64>, least: f64) -> Option<Vector3<f64>> {
     let length = direction.norm();
-    (direction - axis * axis.dot(&direction)).try_normalize(1e-3 * length.max(1e-9))
+    (direction - axis * axis.dot(&direction)).try_normalize(least * length.max(1e-9))
+}
+
+/// How far an edge turns about the tool axis from one heading to another, radians.
+fn turn(from: Vector3<f64>, to: Vector3<f64>, axis: Vector3<f64>) -> f64 {
+    let laid = |heading| across(heading, axis, 1e-6).unwrap_or(heading);
+    angle(laid(from), laid(to))
 }

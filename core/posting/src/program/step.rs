@@ -91,8 +91,8 @@ pub struct Motion {
     pub tip: Vector3<f64>,
     /// The tool axis there, unit vector from the tip to the holder, part frame.
     pub axis: Vector3<f64>,
-    /// Leading edge of a knife or disc there, unit vector across the tool axis, part frame; zero if the file
-    /// does not say.
+    /// Where the leading edge of a knife or disc is headed there, unit vector, part frame; it may lean: its part across
+    /// the tool axis is meant. Zero if the file does not say.
     pub edge: Vector3<f64>,
     /// How fast.
     pub pace: Pace,

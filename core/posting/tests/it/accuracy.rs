@@ -5,6 +5,8 @@
 mod certified;
 mod commands;
 mod compensation;
+mod lead;
+mod order;
 mod placement;
 mod turns;
 
@@ -73,6 +75,20 @@ fn given(rng: &mut Rng) -> Given {
     }
 }
 
+/// A vector as a machine file has it.
+fn list(v: V) -> String {
+    format!("[{}, {}, {}]", v.x, v.y, v.z)
+}
+
+/// The table of an endless rotary axis.
+fn endless(name: &str, direction: V, point: V) -> String {
+    format!(
+        "[axis.{name}]\nrotary = {}\npoint = {}\ncyclic = true\nmax_feed = 1e7\n",
+        list(direction),
+        list(point)
+    )
+}
+
 /// A machine file of no particular machine; what stands for `{more}` is a configuration.
 fn machine(rng: &mut Rng, given: &Given) -> String {
     let (mut first, mut second) = (rng.direction(), rng.direction());
@@ -90,7 +106,6 @@ fn machine(rng: &mut Rng, given: &Given) -> String {
     };
     let lean = if rng.pick(2) == 0 { 0.0 } else { 0.05 };
     let mut out = format!("name = \"random\"\nchain = \"{chain}\"\n");
-    let list = |v: V| format!("[{}, {}, {}]", v.x, v.y, v.z);
     writeln!(out, "[workpiece]\nmount = {}", list(rng.point(100.0))).unwrap();
     writeln!(
         out,
@@ -101,14 +116,7 @@ fn machine(rng: &mut Rng, given: &Given) -> String {
     )
     .unwrap();
     for (name, direction) in [("C", first), ("A", second)] {
-        let point = rng.point(300.0);
-        writeln!(
-            out,
-            "[axis.{name}]\nrotary = {}\npoint = {}\ncyclic = true\nmax_feed = 1e7",
-            list(direction),
-            list(point)
-        )
-        .unwrap();
+        out += &endless(name, direction, rng.point(300.0));
     }
     for (name, direction) in [("X", V::x()), ("Y", V::y()), ("Z", V::z())] {
         let direction = direction + rng.point(lean);
@@ -345,7 +353,7 @@ fn hold(
         }
         if given.radius > 0.0 && !block.rapid {
             let legs = [leg(block.lines[0]), last];
-            edges_go_straight(bench, given, block, &path[legs[0]..=legs[1] + 1], tip)
+            edge_stays_near(bench, given, block, &path[legs[0]..=legs[1] + 1], tip)
                 .map_err(|fault| format!("edge of block {number}: {fault}"))?;
         }
     }
@@ -436,62 +444,37 @@ fn hold(
     })
 }
 
-/// Eqs. 9 and 10 of the parabolic paper, by sampling: how far a point of the cutting edge strays beyond the control
-/// point is how far its direction strays from the chord between the places where the block passes CL points.
-fn edges_go_straight(
+/// The circle of a cutting edge is near the circle that is wanted somewhere along the legs: none of its points is
+/// farther from that than their middles, and the radius times the difference of their axes.
+fn edge_stays_near(
     bench: &Bench,
     given: &Given,
     block: &post_testkit::walk::Block,
     path: &[(V, V)],
     certified: f64,
 ) -> Result<(), String> {
-    const STEPS: u32 = 40;
-    let even = |step: u32| f64::from(step) / f64::from(STEPS);
-    // Where the block passes CL points.
-    let mut passed = vec![0.0];
-    for (point, _) in &path[1..path.len() - 1] {
-        let off = |t: f64| (block.at(bench, t).0 - point).norm();
-        let nearest = (0..=STEPS)
-            .map(even)
-            .min_by(|a, b| off(*a).total_cmp(&off(*b)));
-        let (mut low, mut high) = nearest.map_or((0.0, 1.0), |t| (t - 0.025, t + 0.025));
-        for _ in 0..40 {
-            let third = (high - low) / 3.0;
-            if off(low + third) < off(high - third) {
-                high -= third;
-            } else {
-                low += third;
-            }
-        }
-        let t = (low + high) / 2.0;
-        if t > passed[passed.len() - 1] && t < 1.0 {
-            passed.push(t);
-        }
-    }
-    passed.push(1.0);
-    let axis = bench.reference.axis;
-    let flat = if axis.x.abs() < 0.8 { V::x() } else { V::y() };
-    let side = axis.cross(&flat).normalize();
-    let other = axis.cross(&side);
-    for pair in passed.windows(2) {
-        for around in 0..4 {
-            let (sine, cosine) = libm::sincos(f64::from(around) * std::f64::consts::FRAC_PI_4);
-            let arm = (side * cosine + other * sine) * given.radius;
-            let at = |t: f64| block.rotation(bench, t) * arm;
-            let ends = [at(pair[0]), at(pair[1])];
-            for step in 1..8 {
-                let share = f64::from(step) / 8.0;
-                let t = pair[0] * (1.0 - share) + pair[1] * share;
-                let bow = (at(t) - (ends[0] * (1.0 - share) + ends[1] * share)).norm();
-                let point = block.at(bench, t).0;
-                let legs = path.windows(2);
-                let off = legs
-                    .map(|leg| post_testkit::distance(point, leg[0].0, leg[1].0))
-                    .fold(f64::INFINITY, f64::min);
-                if off + bow > certified * (1.0 + 1e-3) + 1e-7 {
-                    return Err(format!("{off} and {bow}, certified {certified}"));
+    for step in 0..=20 {
+        let (point, axis) = block.at(bench, f64::from(step) / 20.0);
+        let mut nearest = f64::INFINITY;
+        for leg in path.windows(2) {
+            let off = |t: f64| {
+                let middle = leg[0].0 * (1.0 - t) + leg[1].0 * t;
+                let wanted = slerp(leg[0].1, leg[1].1, t);
+                (point - middle).norm() + given.radius * (axis - wanted).norm()
+            };
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..60 {
+                let third = (high - low) / 3.0;
+                if off(low + third) < off(high - third) {
+                    high -= third;
+                } else {
+                    low += third;
                 }
             }
+            nearest = nearest.min(off((low + high) / 2.0));
+        }
+        if nearest > certified * (1.0 + 1e-6) + 1e-7 {
+            return Err(format!("{nearest} mm, certified {certified}"));
         }
     }
     Ok(())

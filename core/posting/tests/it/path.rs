@@ -14,7 +14,7 @@ use post_machine::diagnostic::Severity;
 use post_machine::kinematics::{Joint, Joints};
 use post_plugin::Feed;
 use post_posting::program::Reading;
-use post_posting::{Job, MOST_FAULTS};
+use post_posting::{Job, MOST_FAULTS, Post};
 use post_testkit::posted::{self, Asked, Point, Run, Samples, cl, line, post};
 use post_testkit::{Reference, Rng, angle, between, distance, randomised, rounds, seeded, slerp};
 

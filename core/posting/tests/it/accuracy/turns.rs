@@ -236,3 +236,67 @@ fn a_turn_on_the_spot_is_told_in_what_the_control_measures() {
         );
     }
 }
+
+/// A control that shows C over one turn takes the shorter way between two words, and none between equal ones: what it
+/// does then is on the path, over the pole and beside it, with points left out and without.
+#[test]
+fn an_axis_shown_over_one_turn_never_goes_the_other_way() {
+    let (rounds, mut rng) = randomised(80, 91);
+    let (mut programs, mut faults) = (0, Vec::new());
+    for round in rounds {
+        let given = Given {
+            tables: 0,
+            usual: true,
+            tcp: ["post", "control"][rng.pick(2)],
+            along: 0.0,
+            radius: 0.0,
+            decimals: 4,
+            tolerance: 0.01,
+            axis_tolerance: 0.1,
+            pole: ["exact", "blend"][rng.pick(2)],
+            corner: [10.0, 180.0][rng.pick(2)],
+        };
+        let config = CONFIGS[round % CONFIGS.len()];
+        let prefer = ["", "prefer = { A = \"positive\" }\n"][rng.pick(2)];
+        let more = format!(
+            "[solution]\npole = \"{}\"\n{prefer}[accuracy]\ntolerance = 0.01\naxis_tolerance = 0.1\nrapid_tolerance = 0.5\ncorner = {}\n{config}",
+            given.pole, given.corner
+        );
+        let c = [
+            "cyclic = true\nrange = [0, 360]",
+            "cyclic = true\nrange = [-180, 180]",
+        ][rng.pick(2)];
+        let bench = Bench::new(&usual(rng.pick(2) == 0, given.tcp, c, &more), 4, 100.0);
+        let mut tip = V::zeros();
+        let mut azimuth = rng.range(-3.0, 3.0);
+        let stops: Vec<Stop> = (0..8)
+            .map(|index| {
+                let tilt = [0.0, 0.02, 0.3, 0.6][rng.pick(4)] * rng.range(0.5, 1.0);
+                azimuth += [0.1, 1.5, std::f64::consts::PI][rng.pick(3)];
+                let (sine, cosine) = libm::sincos(azimuth);
+                let axis = V::new(tilt * cosine, tilt * sine, 1.0).normalize();
+                let rapid = index == 0 || rng.pick(5) == 0;
+                let next = stop(tip, axis, (!rapid).then_some(1000.0));
+                tip += V::new(rng.range(1.0, 20.0), rng.range(-1.0, 1.0), 0.0);
+                next
+            })
+            .collect();
+        let (cl, lines) = text(&stops);
+        let run = bench.run_with(&cl, &mut Shape::Fine, false);
+        if run.report.is_none() {
+            faults.push(format!("round {round}, {config:?}: {}", run.told()));
+            continue;
+        }
+        programs += 1;
+        if let Err(fault) = hold(&bench, &given, &stops, &lines, &run, 40, config) {
+            faults.push(format!("round {round}, {config:?}, {given:?}: {fault}"));
+        }
+    }
+    println!("{programs} programs");
+    assert!(
+        faults.is_empty(),
+        "{} faults\n{}",
+        faults.len(),
+        faults.join("\n")
+    );
+}

@@ -104,8 +104,13 @@ fn inches_in_and_inches_out() {
     assert!(near(&last.words, &[25.4, -50.8, 0.0, 0.0, 0.0]), "{last:?}");
     assert_eq!(last.feed, Some(Feed::PerMinute(254.0)));
 
-    let inch = model("head", false, WIDE, &["control.units=inch"]);
-    let run = inch.run("UNITS/MM\nFEDRAT/254,MMPM\nGOTO/0,0,0\nGOTO/25.4,-50.8,0\nGOTO/25.4,-50.8,0,0,-0.5,0.8660254\n");
+    let inch = model(
+        "head",
+        false,
+        WIDE,
+        &["control.units=inch", "accuracy.tolerance=0.05"],
+    );
+    let run = inch.run("UNITS/MM\nFEDRAT/254,MMPM\nGOTO/0,0,0\nGOTO/25.4,-50.8,0\n");
     let last = run
         .asked
         .iter()
@@ -113,9 +118,45 @@ fn inches_in_and_inches_out() {
         .unwrap();
     assert!(near(&last.words, &[1.0, -2.0, 0.0, 0.0, 0.0]), "{last:?}");
     assert_eq!(last.feed, Some(Feed::PerMinute(10.0)));
-    // Thousandths of an inch are too coarse for five micrometres, and that is said.
-    assert_eq!(run.findings[0].code, "rounding", "{:?}", run.findings);
-    assert_eq!(run.findings[0].place.as_ref().unwrap().line, 5);
+}
+
+/// What no printed word can keep is refused before a record is read; half of the last decimal is what a word keeps.
+#[test]
+fn a_tolerance_below_the_decimals_is_refused_at_once() {
+    let opened = |settings: &[&str]| {
+        let machine = model("trunnion", false, WIDE, settings).machine;
+        let mut dialect = posted::Recorder::new(&machine, 3);
+        let (mut model, mut output) = (Samples, posted::Nowhere);
+        let opened = Post::new(
+            &machine,
+            Job::default(),
+            &mut dialect,
+            &mut model,
+            &mut output,
+        );
+        opened.err().map(|fault| (fault.code, fault.message))
+    };
+    assert_eq!(opened(&["accuracy.tolerance=0.00051"]), None);
+    for (settings, said) in [
+        // Thousandths of an inch are too coarse for five micrometres.
+        (vec!["control.units=inch"], "is 0.005 mm"),
+        (
+            vec!["accuracy.tolerance=1e-12"],
+            "rounded by up to 0.0005 mm",
+        ),
+        (
+            vec!["accuracy.tolerance=0.00049"],
+            "rounded by up to 0.0005 mm",
+        ),
+        (
+            vec!["accuracy.axis_tolerance=1e-6"],
+            "axis_tolerance is 0.000001°",
+        ),
+    ] {
+        let (code, message) = opened(&settings).expect("a refusal");
+        assert_eq!(code, "tolerance");
+        assert!(message.contains(said), "{message}");
+    }
 }
 
 #[test]

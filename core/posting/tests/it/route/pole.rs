@@ -426,3 +426,81 @@ fn full_turns_of_an_endless_axis_are_one_way() {
         "{exits} exits, {posted} posted"
     );
 }
+
+/// Cuts across the pole and beside it, points far apart and close, some of them within what blending takes up.
+fn over(rng: &mut Rng) -> Vec<Point> {
+    let (sine, cosine) = libm::sincos(rng.range(-3.0, 3.0));
+    let beside = if rng.pick(2) == 0 {
+        0.0
+    } else {
+        rng.order(-5.0, -2.0)
+    };
+    let mut along = rng.range(0.2, 0.7);
+    let mut tip = Vector3::new(0.0, 0.0, 10.0);
+    let count = 3 + rng.pick(5);
+    (0..count)
+        .map(|index| {
+            let axis = Vector3::new(
+                cosine * along - sine * beside,
+                sine * along + cosine * beside,
+                1.0,
+            );
+            let next = point(tip, axis.normalize(), index == 0);
+            tip += Vector3::new(rng.order(-0.5, 1.5), rng.range(-1.0, 1.0), 0.0);
+            along -= rng.order(-2.5, -0.1);
+            next
+        })
+        .collect()
+}
+
+/// Whatever is written with every point met exactly is written with poles blended.
+#[test]
+fn blending_refuses_nothing_that_can_be_met_exactly() {
+    let (rounds, mut rng) = randomised(150, 83);
+    let (mut both, mut blended, mut faults) = (0, 0, Vec::new());
+    for round in rounds {
+        let class = &CLASSES[rng.pick(CLASSES.len())];
+        let tcp = ["post", "control"][rng.pick(2)];
+        let second = [[-175.0, 175.0], [-120.0, 30.0], [-2.0, 110.0]][rng.pick(3)];
+        let points = over(&mut rng);
+        let [blend, exact] =
+            [BLEND, EXACT].map(|solution| outcome(class, tcp, second, solution, &points));
+        match (&blend, &exact) {
+            (Err(told), Ok(_)) => faults.push(format!("round {round}, {}: {told}", class.name)),
+            (Ok(outcome), exact) => {
+                both += usize::from(exact.is_ok());
+                blended += usize::from(outcome.eased > 0);
+                if outcome.axis > 0.05 + 1e-6 || outcome.tip > 0.005 + 1e-6 {
+                    faults.push(format!(
+                        "round {round}: {} mm, {}°",
+                        outcome.tip, outcome.axis
+                    ));
+                }
+            }
+            _ => {}
+        }
+    }
+    // Eased at the third point, the way from the second through the pole would end in a jump.
+    let tilts = [0.59847, 0.04158, -0.00841, -0.96577];
+    let points: Vec<Point> = [0.0, 12.0, 13.0, 39.0]
+        .iter()
+        .zip(tilts)
+        .map(|(x, tilt)| {
+            let axis = Vector3::new(0.0, tilt, 1.0).normalize();
+            point(Vector3::new(*x, 0.0, 10.0), axis, *x == 0.0)
+        })
+        .collect();
+    for tcp in ["post", "control"] {
+        if let Err(told) = outcome(&CLASSES[0], tcp, [-120.0, 30.0], BLEND, &points) {
+            faults.push(told);
+        }
+    }
+    println!("{both} by both, {blended} of them eased");
+    assert!(
+        faults.is_empty(),
+        "{} faults\n{}",
+        faults.len(),
+        faults.join("\n")
+    );
+    assert!(both > 40 && blended > 5, "{both}, {blended}");
+}

@@ -173,9 +173,9 @@ fn the_name_of_a_program_is_as_long_as_the_control_shows() {
 fn lines_of_the_users_own_are_numbered_and_may_be_several() {
     let folder = tempfile::tempdir().unwrap();
     let machine = folder.path().join("own.toml");
-    let options = |home: &str| {
+    let options = |retract: &str| {
         format!(
-            "extends = \"vmc\"\n[control]\ninsert = \"literal\"\n[control.fanuc]\nblock_numbers = true\nhome = {home}\n"
+            "extends = \"vmc\"\n[control]\ninsert = \"literal\"\n[control.fanuc]\nblock_numbers = true\nretract = {retract}\n"
         )
     };
     let cl = MOVES.replacen(
@@ -184,7 +184,7 @@ fn lines_of_the_users_own_are_numbered_and_may_be_several() {
         1,
     );
     let machines = ["-m", machine.to_str().unwrap(), "--machines", "machines"];
-    fs::write(&machine, options("[\"G91 G28 X0.\", \"G91 G28 Y0.\"]")).unwrap();
+    fs::write(&machine, options("[\"G91 G28 Z0.\", \"G91 G28 Y0.\"]")).unwrap();
     let run = text(&machines, &cl);
     assert_eq!(run.code, 0, "{}", run.err);
     let numbered = |words: &str| {
@@ -193,7 +193,7 @@ fn lines_of_the_users_own_are_numbered_and_may_be_several() {
             .filter_map(|line| line.split_once(' '))
             .any(|(number, rest)| number.starts_with('N') && rest == words)
     };
-    for words in ["M77", "G91 G28 X0.", "G91 G28 Y0."] {
+    for words in ["M77", "G91 G28 Z0.", "G91 G28 Y0."] {
         assert!(numbered(words), "{words}\n{}", run.out);
     }
     for line in ["(AS IT IS)", "N5 M78"] {
@@ -204,7 +204,7 @@ fn lines_of_the_users_own_are_numbered_and_may_be_several() {
         );
     }
     // Lines are lines; other options take one text.
-    fs::write(&machine, options("[\"G91 G28 X0.\", 7]")).unwrap();
+    fs::write(&machine, options("[\"G91 G28 Z0.\", 7]")).unwrap();
     let run = text(&machines, &cl);
     assert!(
         run.err
@@ -212,7 +212,7 @@ fn lines_of_the_users_own_are_numbered_and_may_be_several() {
         "{}",
         run.err
     );
-    let offset = options("\"\"").replace("home = \"\"", "work_offset = [\"G54\", \"G55\"]");
+    let offset = options("\"\"").replace("retract = \"\"", "work_offset = [\"G54\", \"G55\"]");
     fs::write(&machine, offset).unwrap();
     let run = text(&machines, &cl);
     assert!(

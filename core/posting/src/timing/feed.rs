@@ -38,6 +38,8 @@ pub(super) struct Written {
     pub minutes: f64,
     /// The feed that it should have, if that is below the least that is printed.
     pub raised_from: Option<f64>,
+    /// The control takes no larger F by time: the block is slowed down.
+    pub capped: bool,
 }
 
 impl FeedWriter {
@@ -64,7 +66,10 @@ impl FeedWriter {
             feed: Printed::new(format.feed),
             inverse: match machine.control.feed {
                 FeedMode::PerMinute => None,
-                _ => format.inverse_time.map(Printed::new),
+                _ => format.inverse_time.map(|decimals| {
+                    let most = format.most_inverse_time.unwrap_or(f64::INFINITY);
+                    Printed::new(decimals).up_to(most)
+                }),
             },
         })
     }
@@ -131,6 +136,7 @@ impl FeedWriter {
                 feed: Feed::PerMinute(feed),
                 minutes: length / feed,
                 raised_from: None,
+                capped: false,
             };
         }
         self.too_low(value, length)
@@ -149,6 +155,7 @@ impl FeedWriter {
             feed: Feed::PerMinute(feed),
             minutes: length / feed,
             raised_from: Some(value),
+            capped: false,
         }
     }
 
@@ -213,6 +220,8 @@ struct Printed {
     /// Ten to the number of decimals.
     scale: f64,
     per_scale: f64,
+    /// The largest of them.
+    most: f64,
 }
 
 impl Printed {
@@ -221,7 +230,13 @@ impl Printed {
         Self {
             scale,
             per_scale: 1.0 / scale,
+            most: f64::INFINITY,
         }
+    }
+
+    /// None above `most`.
+    fn up_to(self, most: f64) -> Self {
+        Self { most, ..self }
     }
 
     /// The largest printed number not above `value`, zero if none is.
@@ -234,12 +249,13 @@ impl Printed {
     /// `value` blocks a minute; the least printed number if it is below that.
     #[inline]
     fn inverse(&self, value: f64) -> Written {
-        let printed = self.floor(value);
+        let printed = self.floor(value.min(self.most));
         let feed = printed.max(self.per_scale);
         Written {
             feed: Feed::InverseTime(feed),
             minutes: 1.0 / feed,
             raised_from: (printed <= 0.0).then_some(value),
+            capped: value > self.most,
         }
     }
 }

@@ -190,6 +190,9 @@ impl<'a> Timing<'a> {
             .filter(|_| least > block.asked() * (1.0 + 1e-9))
             .map(Limit::name);
         let written = self.feeds.write(block, &self.last, least);
+        if written.capped {
+            block.time.limit = Some("most_inverse_time");
+        }
         self.put(block, written, least, findings);
         self.statistics.limited += u64::from(block.time.limit.is_some());
         self.statistics.cutting += block.time.minutes;

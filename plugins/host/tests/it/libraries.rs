@@ -235,7 +235,7 @@ fn a_small_dialect_of_rust() {
         .unwrap_err();
     assert_eq!(
         out,
-        "T1 M6\nG0 C90.000\nG0 X1.5000\nG0 G43 H11 Z50.0000\nG1 X-2.0000 Z50.0000 C90.000 F250.0\n"
+        "T1 M6\nG0 X1.5000\nG0 G43 H11 Z50.0000\nG1 X-2.0000 Z50.0000 C90.000 F250.0\n"
     );
     assert_eq!((ends.len(), fault.index), (3, 3));
     assert_eq!(

@@ -8,6 +8,7 @@ mod axes;
 mod check;
 mod command;
 mod common;
+mod frame;
 mod guide;
 mod library;
 #[cfg(target_os = "linux")]

@@ -19,6 +19,7 @@ impl Control for Fanuc {
             range: "G54 to G59 or G54.1 P1 to P300",
             ..Table::ISO.offset
         },
+        relies: RELIES,
         cancel: CANCEL,
         tcp: Tcp::Length("G43.4"),
         ..Table::ISO
@@ -62,6 +63,7 @@ const OPTIONS: &[OptionSpec] = &[
         "Block at the start that cancels scaling, mirror and rotation; less on a control without one of them.",
     ),
     options::RETRACT,
+    options::PARAMETERS,
     OptionSpec::integer(
         "length_register",
         (0, 999),
@@ -73,6 +75,15 @@ const OPTIONS: &[OptionSpec] = &[
     options::COOLANT_THROUGH_OFF,
     options::COOLANT_AIR,
     options::COOLANT_AIR_OFF,
+];
+
+/// Numbers of parameters are those of the 30i, 31i, 32i (B-63950EN, B-64490EN).
+const RELIES: &[&str] = &[
+    "1008#0 ROA, #1 RAB: a rotary word is where the axis stands, whole turns counted; roll-over off",
+    "1401#1 LRP = 1: rapids go straight; with 0 the axes arrive one after the other",
+    "5006#6 TOS: either; G53 has taken the length off before G49 cancels it",
+    "19696#5 WKP = 0: under G43.4 coordinates stay with the table",
+    "one M code a block is enough, G53 counts from the machine's zero",
 ];
 
 /// Scaling, programmable mirror image, rotation and tilted plane off.

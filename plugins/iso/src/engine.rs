@@ -22,6 +22,8 @@ pub struct Engine {
     program: String,
     machine: String,
     percent: bool,
+    /// The parameters that it relies on are written as remarks.
+    parameters: bool,
     inch: bool,
     tcp: bool,
     work_offset: String,
@@ -116,6 +118,7 @@ impl Engine {
             program: program_name(table, setup.program),
             machine: setup.machine.to_owned(),
             percent: flag(setup, "percent", table.percent),
+            parameters: flag(setup, "parameters", false),
             inch,
             tcp: setup.tcp,
             work_offset,
@@ -179,6 +182,11 @@ impl Engine {
         }
         if !self.machine.is_empty() {
             self.remark(&self.machine, out);
+        }
+        if self.parameters {
+            for sentence in self.table.relies {
+                self.remark(sentence, out);
+            }
         }
         self.line(self.table.codes.units[usize::from(self.inch)], out);
         let mut safe = self.table.safe.to_owned();

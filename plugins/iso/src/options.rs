@@ -31,6 +31,12 @@ pub const COOLANT_AIR_OFF: OptionSpec = OptionSpec::text(
     "",
     "M codes that end it; empty: those of coolant_off.",
 );
+/// What the program relies on.
+pub const PARAMETERS: OptionSpec = OptionSpec::flag(
+    "parameters",
+    false,
+    "Remarks at the start that name the parameters of the control on which the program relies.",
+);
 /// The way out in the user's own words.
 pub const RETRACT: OptionSpec = OptionSpec::lines(
     "retract",

@@ -28,6 +28,9 @@ pub struct Table {
     /// The block behind that of the units: plane, compensation, cycles, way of counting and feed mode in a known state.
     /// It moves nothing, whatever was in force.
     pub safe: &'static str,
+    /// What the program relies on among the control's parameters, one sentence each. Option `parameters` has them
+    /// written as remarks.
+    pub relies: &'static [&'static str],
     /// A block behind it that cancels what shifts, turns, scales or mirrors, and moves nothing; may be empty. Option
     /// `cancel`.
     pub cancel: &'static str,
@@ -178,6 +181,7 @@ impl Table {
         line_length: None,
         codes: Codes::ISO,
         safe: "G17 G40 G80 G90 G94",
+        relies: &[],
         cancel: "",
         largest_number: 99_999,
         trim: false,

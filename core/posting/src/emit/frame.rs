@@ -146,6 +146,19 @@ impl Emit<'_> {
         let positions = self.machine.frame.change.clone();
         self.park(line, &positions, findings);
         self.writer.tool_known();
+        if tool.register != tool.number && self.writer.knows(Capabilities::TOOL_TABLE) {
+            findings.at(
+                line,
+                Diagnostic::warning(
+                    "register",
+                    format!(
+                        "tool {} asks for the length in register {}, and this control takes that of the tool from its own table",
+                        tool.number, tool.register
+                    ),
+                )
+                .help("the length of the tool must stand in its own line of the table"),
+            );
+        }
         self.writer.push(
             line,
             Event::ToolChange {

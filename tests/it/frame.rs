@@ -1,0 +1,397 @@
+//! The frame around the moves: first lines, retracts, the way to the part, tool changes, stops, the end.
+
+use std::fs;
+
+use crate::common::{Run, command, run};
+
+/// Two tools upright, a stop in the second's cut.
+const UPRIGHT: &str = "UNITS/MM
+LOADTL/1
+SPINDL/RPM,3000,CLW
+COOLNT/FLOOD
+RAPID
+GOTO/ 20, 10, 50
+FEDRAT/600,MMPM
+GOTO/ 20, 10, 15
+RAPID
+GOTO/ 20, 10, 50
+LOADTL/2
+SPINDL/RPM,2000,CLW
+RAPID
+GOTO/ -20, 10, 50
+FEDRAT/600,MMPM
+GOTO/ -20, 10, 15
+STOP
+GOTO/ -30, 10, 15
+RAPID
+GOTO/ -30, 10, 50
+END
+FINI
+";
+
+/// A cut that ends in the part, the tool leaning by so much from Z to X.
+fn leaning(degrees: f64) -> String {
+    let (sine, cosine) = libm::sincos(degrees.to_radians());
+    format!(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/ 0, 0, 50, {sine:.7}, 0, {cosine:.7}\n\
+         FEDRAT/600,MMPM\nGOTO/ 0, 0, 15, {sine:.7}, 0, {cosine:.7}\nGOTO/ 0, 20, 15, {sine:.7}, 0, {cosine:.7}\nEND\nFINI\n"
+    )
+}
+
+/// Posts on a machine that is refined by `more`.
+fn post(machine: &str, more: &str, arguments: &[&str], cl: &str) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("machine.toml");
+    fs::write(&file, format!("extends = {machine:?}\n{more}")).unwrap();
+    let mut all = vec!["-q", "-m", file.to_str().unwrap(), "--tool-length", "100"];
+    all.extend(arguments);
+    all.extend(["-o", "-", "-"]);
+    run(command().args(all), cl.as_bytes())
+}
+
+fn lines(machine: &str, more: &str, arguments: &[&str], cl: &str) -> Vec<String> {
+    let done = post(machine, more, arguments, cl);
+    assert_eq!(done.code, 0, "{machine}: {}", done.err);
+    // Block numbers of the TNC say nothing here.
+    let plain = |line: &str| {
+        line.trim_start_matches(|c: char| c.is_ascii_digit())
+            .trim()
+            .to_owned()
+    };
+    done.out.lines().map(plain).collect()
+}
+
+/// `wanted` stand in `lines` one behind the other, without a gap.
+#[track_caller]
+fn assert_run(lines: &[String], wanted: &[&str]) {
+    let found = lines.windows(wanted.len()).any(|window| window == wanted);
+    assert!(found, "{wanted:#?} is not in:\n{}", lines.join("\n"));
+}
+
+const FANUC: &str = "[control]\ndialect = \"fanuc\"\ntcp = \"post\"\n";
+const TNC: &str = "[control]\ndialect = \"heidenhain\"\ntcp = \"control\"\n";
+const LINUXCNC: &str = "[control]\ndialect = \"linuxcnc\"\ntcp = \"control\"\n";
+
+/// Z goes from -120 to 120: zero would lead through the part.
+#[test]
+fn the_tool_retracts_to_the_end_of_travel() {
+    for (control, retract) in [
+        (FANUC, "G53 G0 Z120.000"),
+        (TNC, "L Z+120.000 R0 FMAX M91"),
+        (LINUXCNC, "G53 G0 Z120.0000"),
+    ] {
+        let lines = lines("xyzac-trt", control, &["--mount", "0,0,-60"], UPRIGHT);
+        // At the start, behind each tool change, ahead of the second, at the end.
+        let count = lines.iter().filter(|line| *line == retract).count();
+        assert_eq!(count, 5, "{}", lines.join("\n"));
+        assert!(
+            !lines
+                .iter()
+                .any(|line| line.contains("Z0.") || line.contains("G28"))
+        );
+    }
+    // A knee: the table carries the part, and goes down to lead it away.
+    let knee = "chain = \"[w Z' b X Y (S) t]\"\n[axis.Z]\nreversed = true\ntravel = [-20, 500]\n[control]\ntcp = \"post\"\n";
+    let lines = lines("vmc", knee, &[], UPRIGHT);
+    assert!(
+        lines.contains(&"G53 G0 Z-20.000".to_owned()),
+        "{}",
+        lines.join("\n")
+    );
+}
+
+#[test]
+fn what_was_in_force_before_is_cancelled_first() {
+    assert_run(
+        &lines("xyzac-trt", FANUC, &["--mount", "0,0,-60"], UPRIGHT),
+        &[
+            "G21",
+            "G17 G40 G80 G90 G94",
+            "G50 G50.1 G69",
+            "G53 G0 Z120.000",
+            "G49",
+            "T1 M6",
+        ],
+    );
+    assert_run(
+        &lines("xyzac-trt", LINUXCNC, &["--mount", "0,0,-60"], UPRIGHT),
+        &[
+            "G17 G40 G80 G90 G94 G54",
+            "G92.2",
+            "G61",
+            "M429",
+            "G53 G0 Z120.0000",
+            "G49",
+            "T1 M6",
+        ],
+    );
+    assert_run(
+        &lines("xyzac-trt", TNC, &["--mount", "0,0,-60"], UPRIGHT),
+        &["M129", "PLANE RESET STAY", "CYCL DEF 7.0 DATUM SHIFT"],
+    );
+    // A control with three axes knows neither M429 nor M129.
+    for dialect in ["linuxcnc", "heidenhain"] {
+        let more = format!("[control]\ndialect = {dialect:?}\n");
+        let lines = lines("vmc", &more, &[], UPRIGHT);
+        assert!(!lines.iter().any(|line| line == "M429" || line == "M129"));
+    }
+}
+
+/// Under TCP the length is on ahead of it, and off behind it, in the air.
+#[test]
+fn length_and_tcp_are_switched_in_the_order_of_the_control() {
+    let tilted = leaning(20.0);
+    let linuxcnc = lines("xyzbc-trt", LINUXCNC, &["--mount", "0,0,-60"], &tilted);
+    let at =
+        |lines: &[String], word: &str| lines.iter().rposition(|line| line.contains(word)).unwrap();
+    let across = linuxcnc
+        .iter()
+        .position(|line| line.starts_with("G53 G0 X"))
+        .unwrap();
+    assert_eq!(linuxcnc[across + 1..across + 3], ["G43 H1", "M428"]);
+    assert!(linuxcnc[across + 3].contains('X') && linuxcnc[across + 3].contains('Z'));
+    assert!(
+        at(&linuxcnc, "M429") < at(&linuxcnc, "G53") && at(&linuxcnc, "G53") < at(&linuxcnc, "G49")
+    );
+    let fanuc = lines(
+        "xyzbc-trt",
+        &FANUC.replace("post", "control"),
+        &["--mount", "0,0,-60"],
+        &tilted,
+    );
+    let across = fanuc
+        .iter()
+        .position(|line| line.starts_with("G53 G0 X"))
+        .unwrap();
+    assert!(
+        fanuc[across + 1].starts_with("G0 G43.4 H1 X"),
+        "{}",
+        fanuc[across + 1]
+    );
+    assert!(at(&fanuc, "G53") < at(&fanuc, "G49"));
+    // With nothing turned words are positions: first across, then down.
+    let upright = lines(
+        "xyzbc-trt",
+        &FANUC.replace("post", "control"),
+        &["--mount", "0,0,-60"],
+        UPRIGHT,
+    );
+    assert_run(
+        &upright,
+        &["G0 B0.000 C0.000", "X20.000 Y10.000", "G43.4 H1 Z50.000"],
+    );
+}
+
+#[test]
+fn positions_of_the_machine_file_are_gone_to() {
+    let more = format!(
+        "{FANUC}retract = {{ Z = 110 }}\npark = {{ X = -150, A = -30, C = 0 }}\nchange = {{ Y = 90 }}\n"
+    );
+    let lines = lines("xyzac-trt", &more, &["--mount", "0,0,-60"], UPRIGHT);
+    assert_run(
+        &lines,
+        &[
+            "G53 G0 Z110.000",
+            "G49",
+            "M5",
+            "M9",
+            "G53 G0 Y90.000",
+            "T2 M6",
+        ],
+    );
+    assert_run(
+        &lines,
+        &["G53 G0 A-30.000 C0.000", "G53 G0 X-150.000", "M30"],
+    );
+    // The rotary axes of park hold for a tool change too.
+    let more = format!("{FANUC}park = {{ X = -150, A = -30 }}\n");
+    let lines = self::lines("xyzac-trt", &more, &["--mount", "0,0,-60"], UPRIGHT);
+    assert_run(&lines, &["M5", "M9", "G53 G0 A-30.000", "T2 M6"]);
+    // GOHOME parks.
+    let home = UPRIGHT.replace("LOADTL/2\n", "GOHOME\nLOADTL/2\n");
+    let lines = self::lines("xyzac-trt", &more, &["--mount", "0,0,-60"], &home);
+    assert_run(
+        &lines,
+        &[
+            "G53 G0 Z120.000",
+            "G49",
+            "G53 G0 A-30.000",
+            "G53 G0 X-150.000",
+        ],
+    );
+
+    for (wrong, said) in [
+        (
+            "retract = { Z = 130 }",
+            "Z cannot stand at 130: its travel is -120 to 120",
+        ),
+        (
+            "retract = { A = 10 }",
+            "retract turns A: the tool leaves the part by its linear axes",
+        ),
+        ("park = { B = 10 }", "the machine has no axis B"),
+    ] {
+        let done = post("xyzac-trt", &format!("{FANUC}{wrong}\n"), &[], UPRIGHT);
+        assert_eq!(done.code, 1);
+        assert!(
+            done.err.contains(said) && done.err.contains(wrong),
+            "{}",
+            done.err
+        );
+    }
+    // Lower than the tool stands, a retract would come down.
+    let done = post(
+        "xyzac-trt",
+        &format!("{FANUC}retract = {{ Z = 10 }}\n"),
+        &[],
+        UPRIGHT,
+    );
+    assert_eq!(done.code, 1, "{}", done.out);
+    assert!(
+        done.err.contains("would bring the tool down"),
+        "{}",
+        done.err
+    );
+}
+
+/// 100 mm along the tool, then up; where travel ends sooner, less.
+#[test]
+fn a_head_that_leans_leaves_along_the_tool() {
+    for tcp in ["post", "control"] {
+        let lines = lines("head-head", "", &["--tcp", tcp], &leaning(30.0));
+        let up = lines
+            .iter()
+            .rposition(|line| line.contains("G53 G0 Z"))
+            .unwrap();
+        let value = |line: &str, name: char| {
+            let word = line.split(' ').find(|word| word.starts_with(name));
+            word.map(|word| word[1..].parse::<f64>().unwrap())
+        };
+        let leave = &lines[up - 1];
+        let before = |name| {
+            lines[..up - 1]
+                .iter()
+                .rev()
+                .find_map(|line| value(line, name))
+                .unwrap()
+        };
+        let way = ['X', 'Z'].map(|name| value(leave, name).unwrap() - before(name));
+        assert!(
+            (way[0] - 50.0).abs() < 0.01 && (way[1] - 86.603).abs() < 0.01,
+            "{tcp}: {leave}"
+        );
+        assert!(leave.starts_with("G0") || leave.starts_with('X'), "{leave}");
+    }
+}
+
+/// A tool that points up from below the part would be driven into it.
+#[test]
+fn a_retract_that_does_not_lead_away_is_refused() {
+    let below = leaning(120.0);
+    let done = post("head-head-360", "", &[], &below);
+    assert_eq!(done.code, 1, "{}", done.out);
+    assert!(
+        done.err
+            .contains("error[retract]: the tool leans by 120.0°")
+            && done.err.contains("[control] retract"),
+        "{}",
+        done.err
+    );
+    let answered = post(
+        "head-head-360",
+        "[control]\nretract = { Z = 9000 }\n",
+        &[],
+        &below,
+    );
+    assert_eq!(answered.code, 0, "{}", answered.err);
+    // Level, it has left along its axis, and the way up is free.
+    assert_eq!(post("head-head-360", "", &[], &leaning(90.0)).code, 0);
+}
+
+/// The TNC's M0 stops both; the tool does not move on before they are on again.
+#[test]
+fn after_a_stop_spindle_and_coolant_are_on_again() {
+    assert_run(
+        &lines("vmc", "[control]\ndialect = \"heidenhain\"\n", &[], UPRIGHT),
+        &["M0", "M3", "M8"],
+    );
+    assert_run(
+        &lines("vmc", "[control]\ndialect = \"fanuc\"\n", &[], UPRIGHT),
+        &["M0", "S2000 M3", "M8"],
+    );
+    // LinuxCNC leaves both as they are.
+    let lines = lines("vmc", "[control]\ndialect = \"linuxcnc\"\n", &[], UPRIGHT);
+    let stop = lines.iter().position(|line| line == "M0").unwrap();
+    assert!(lines[stop + 1].starts_with('X'), "{}", lines[stop + 1]);
+}
+
+#[test]
+fn coolant_rests_in_a_tool_change_and_each_kind_has_its_end() {
+    let through = UPRIGHT.replace("COOLNT/FLOOD", "COOLNT/THRU");
+    let more = "[control.fanuc]\ncoolant_through = \"M88\"\ncoolant_through_off = \"M89\"\n";
+    let lines = lines("vmc", more, &[], &through);
+    assert_run(&lines, &["G49", "M5", "M89", "T2 M6", "S2000 M3", "M88"]);
+    assert_run(&lines, &["G49", "M5", "M89", "M30"]);
+    assert!(!lines.contains(&"M9".to_owned()));
+}
+
+/// A spiral of ten turns.
+#[test]
+fn an_axis_is_not_left_wound_in_silence() {
+    let mut cl = "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/ 50, 0, 60, 0.5, 0, 0.8660254\nFEDRAT/600,MMPM\n".to_owned();
+    for step in 0..=120 {
+        let (sine, cosine) = libm::sincos(f64::from(step) * std::f64::consts::FRAC_PI_6);
+        cl += &format!(
+            "GOTO/ {:.6}, {:.6}, {:.4}, {:.7}, {:.7}, 0.8660254\n",
+            50.0 * cosine,
+            50.0 * sine,
+            40.0 - 0.1 * f64::from(step),
+            0.5 * cosine,
+            0.5 * sine
+        );
+    }
+    cl += "RAPID\nGOTO/ 80, 0, 80\nEND\nFINI\n";
+    let wound = post("ac-trunnion", "", &[], &cl);
+    assert_eq!(wound.code, 0, "{}", wound.err);
+    assert!(
+        wound
+            .err
+            .contains("warning[unwinding]: at the end C stands at"),
+        "{}",
+        wound.err
+    );
+    let parked = post("ac-trunnion", "[control]\npark = { C = 0 }\n", &[], &cl);
+    assert_eq!(parked.code, 0, "{}", parked.err);
+    assert!(parked.err.contains("turns back from"), "{}", parked.err);
+    let lines: Vec<&str> = parked.out.lines().collect();
+    let at = lines
+        .iter()
+        .position(|line| *line == "G53 G0 C0.000")
+        .unwrap();
+    assert!(
+        lines[..at]
+            .iter()
+            .rposition(|line| line.starts_with("G53 G0 Z"))
+            .unwrap()
+            + 4
+            >= at
+    );
+}
+
+/// A control with a ceiling for F under G93 has no block above it.
+#[test]
+fn blocks_by_time_end_where_the_control_does() {
+    let cl = "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,0,50,0,0,1\nFEDRAT/3000,MMPM\n\
+              GOTO/0,0,10,0,0,1\nGOTO/0.01,0,10,0.0001745,0,1\nGOTO/20,0,10,0.01,0,1\nRAPID\nGOTO/20,0,50,0.01,0,1\nEND\nFINI\n";
+    let feeds = |more: &str| -> Vec<f64> {
+        let lines = lines("ac-trunnion", more, &["--mount", "0,0,60"], cl);
+        let timed = lines.iter().skip_while(|line| !line.starts_with("G93"));
+        let words = timed.filter_map(|line| line.rsplit(' ').next()?.strip_prefix('F'));
+        words.map(|word| word.parse().unwrap()).collect()
+    };
+    let open = feeds("[control.fanuc]\nmost_inverse_time = 0\n");
+    assert!(open.iter().any(|feed| *feed > 12_000.0), "{open:?}");
+    let closed = feeds("");
+    assert!(closed.iter().all(|feed| *feed <= 9999.999), "{closed:?}");
+    assert_eq!(open.len(), closed.len());
+}

@@ -52,6 +52,12 @@ const RAPID_TOLERANCE: f64 = 0.5;
 /// What is the same but for the interpolation's last digits, mm or degrees.
 const SAME: f64 = 0.002;
 
+/// Tip and tool axis in the part frame.
+type Stand = (Vector3<f64>, Vector3<f64>);
+
+/// Where the tool stands, from joints X Y Z, tilting axis and C (radians), and the length in force.
+type Law = fn(Vector3<f64>, f64, f64, f64) -> Stand;
+
 /// A machine of LinuxCNC's.
 struct Machine {
     /// Ours.
@@ -63,8 +69,7 @@ struct Machine {
     top: f64,
     /// Where the part origin stands, mm along Z.
     part: f64,
-    /// Tip and tool axis in the part frame, from joints X Y Z, tilting axis, C (radians) and the length in force.
-    law: fn(Vector3<f64>, f64, f64, f64) -> (Vector3<f64>, Vector3<f64>),
+    law: Law,
 }
 
 fn table(
@@ -73,7 +78,7 @@ fn table(
     tilt: Rotation3<f64>,
     c: f64,
     length: f64,
-) -> (Vector3<f64>, Vector3<f64>) {
+) -> Stand {
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), -c);
     let carriage = joints - Vector3::z() * length;
     (

@@ -161,10 +161,12 @@ impl Motion {
 
     /// Axes at rapid to positions in machine coordinates; `front` is what says so (`G53 G0`).
     pub fn machine(&mut self, front: &str, axes: u32, words: &[f64], out: &mut String) {
-        self.block.word(front);
-        self.axes.write_machine(&mut self.block, axes, words);
-        self.block.end(out);
-        self.motion.forget();
+        if axes != 0 {
+            self.block.word(front);
+            self.axes.write_machine(&mut self.block, axes, words);
+            self.block.end(out);
+            self.motion.forget();
+        }
     }
 
     /// The rotary axes alone, at rapid.

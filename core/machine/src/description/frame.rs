@@ -34,16 +34,20 @@ impl Machine {
     }
 
     /// The end of travel of each depth axis on the side of the holder: there the tool is as far from the part as these
-    /// axes bring it.
+    /// axes bring it. A quill that stands between cuts stays, unless there is no other.
     fn depth_ends(&self) -> Vec<(usize, f64)> {
-        let axes = self.axes.iter().enumerate();
-        axes.filter(|(place, axis)| is_depth(self, *place) && axis.indexed.is_none())
-            .filter_map(|(place, axis)| {
-                let [least, most] = axis.travel?;
-                let away = axis.joint.direction.dot(&self.tool_axis) > 0.0;
-                Some((place, if away { most } else { least }))
-            })
-            .collect()
+        let ends = |stands: bool| -> Vec<(usize, f64)> {
+            let axes = self.axes.iter().enumerate();
+            axes.filter(|(place, axis)| is_depth(self, *place) && axis.indexed.is_some() == stands)
+                .filter_map(|(place, axis)| {
+                    let [least, most] = axis.travel?;
+                    let away = axis.joint.direction.dot(&self.tool_axis) > 0.0;
+                    Some((place, if away { most } else { least }))
+                })
+                .collect()
+        };
+        let free = ends(false);
+        if free.is_empty() { ends(true) } else { free }
     }
 }
 

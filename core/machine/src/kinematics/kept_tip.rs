@@ -139,8 +139,8 @@ impl<'a> KeptTip<'a> {
         self.linear.reach * (front + behind)
     }
 
-    /// Looks into the block: the range and way of each linear axis to [`STRAY`], the least time that `slowness`
-    /// (minutes that each joint needs for one mm or radian) leaves it to [`CLOSE`]; no closer than `enough` minutes.
+    /// Looks into the block: the range and way of each linear axis to `STRAY`, the least time that `slowness`
+    /// (minutes that each joint needs for one mm or radian) leaves it to `CLOSE`; no closer than `enough` minutes.
     /// None where the linear axes span no volume somewhere on the way, or nothing is proven of it.
     pub fn slides(&self, slowness: &Joints, enough: f64) -> Option<Slides> {
         let from = self.at(0.0, &self.from.turns)?;

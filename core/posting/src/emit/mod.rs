@@ -161,7 +161,11 @@ impl<'a> Emit<'a> {
             }
             Command::OperationEnd => return,
             Command::Operation(text) | Command::Comment(text) => Event::Comment { text },
-            Command::Literal(text) => Event::Literal { text },
+            Command::Literal(text) => {
+                // Nobody knows what it does.
+                self.clear = false;
+                Event::Literal { text }
+            }
             Command::Dwell(seconds) => Event::Dwell { seconds: *seconds },
             Command::Stop => Event::Stop,
             Command::OptionalStop => Event::OptionalStop,

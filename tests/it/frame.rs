@@ -91,10 +91,21 @@ fn the_tool_retracts_to_the_end_of_travel() {
         );
     }
     // A knee: the table carries the part, and goes down to lead it away.
-    let knee = "chain = \"[w Z' b X Y (S) t]\"\n[axis.Z]\nreversed = true\ntravel = [-20, 500]\n[control]\ntcp = \"post\"\n";
+    let knee = "chain = \"[w Z' b X Y (S) t]\"\n[control]\ntcp = \"post\"\n";
+    let down = post(
+        "vmc",
+        &format!("{knee}[axis.Z]\nreversed = true\ntravel = [-20, 500]\n"),
+        &[],
+        UPRIGHT,
+    );
+    assert!(
+        down.err.contains("error[machine-depth]: Z of"),
+        "{}",
+        down.err
+    );
     let lines = lines("vmc", knee, &[], UPRIGHT);
     assert!(
-        lines.contains(&"G53 G0 Z-20.000".to_owned()),
+        lines.contains(&"G53 G0 Z20.000".to_owned()),
         "{}",
         lines.join("\n")
     );
@@ -330,7 +341,18 @@ fn coolant_rests_in_a_tool_change_and_each_kind_has_its_end() {
     let through = UPRIGHT.replace("COOLNT/FLOOD", "COOLNT/THRU");
     let more = "[control.fanuc]\ncoolant_through = \"M88\"\ncoolant_through_off = \"M89\"\n";
     let lines = lines("vmc", more, &[], &through);
-    assert_run(&lines, &["G49", "M5", "M89", "T2 M6", "S2000 M3", "M88"]);
+    assert_run(
+        &lines,
+        &[
+            "G49",
+            "M5",
+            "M89",
+            "T2 M6",
+            "S2000 M3",
+            "G53 G0 Z20.000",
+            "M88",
+        ],
+    );
     assert_run(&lines, &["G49", "M5", "M89", "M30"]);
     assert!(!lines.contains(&"M9".to_owned()));
 }
@@ -394,4 +416,69 @@ fn blocks_by_time_end_where_the_control_does() {
     let closed = feeds("");
     assert!(closed.iter().all(|feed| *feed <= 9999.999), "{closed:?}");
     assert_eq!(open.len(), closed.len());
+}
+
+/// What a line of the user's own says of work offsets holds; what turned and flowed before it does so behind a stop.
+#[test]
+fn lines_of_the_users_own_are_not_undone() {
+    let own = UPRIGHT.replacen("RAPID\nGOTO/ 20", "INSERT/G55\nRAPID\nGOTO/ 20", 1);
+    let lines = lines(
+        "vmc",
+        "[control]\ninsert = \"literal\"\n",
+        &[],
+        &own.replace("INSERT/", "INSERT "),
+    );
+    assert!(
+        lines.contains(&"G55".to_owned()) && !lines.contains(&"G54".to_owned()),
+        "{lines:#?}"
+    );
+    let own = UPRIGHT.replace("STOP\n", "INSERT G05.1 Q1\nSTOP\n");
+    for (dialect, again) in [
+        ("fanuc", &["M0", "S2000 M3", "M8"]),
+        ("heidenhain", &["M0", "M3", "M8"]),
+    ] {
+        let more = format!("[control]\ninsert = \"literal\"\ndialect = {dialect:?}\n");
+        assert_run(&self::lines("vmc", &more, &[], &own), again);
+    }
+    // G91 of an own retract does not stay.
+    let more = "[control.fanuc]\nretract = \"G91 G28 Z0.\"\n";
+    assert_run(
+        &self::lines("vmc", more, &[], UPRIGHT),
+        &["G91 G28 Z0.", "G90", "G49", "T1 M6"],
+    );
+}
+
+/// A change position that is low, or a line that nobody can judge: the tool goes up again before it goes across.
+#[test]
+fn the_tool_goes_up_again_behind_what_may_have_lowered_it() {
+    let more = "[control]\nchange = { X = 300, Z = -200 }\n";
+    let lines = lines("vmc", more, &[], UPRIGHT);
+    assert_run(
+        &lines,
+        &[
+            "G53 G0 X300.000",
+            "G53 G0 Z-200.000",
+            "T2 M6",
+            "S2000 M3",
+            "G53 G0 Z20.000",
+            "M8",
+            "G54",
+        ],
+    );
+}
+
+/// A head that leans comes across in machine coordinates where TCP comes with the last block: its length is needed.
+#[test]
+fn a_way_that_depends_on_the_length_needs_it() {
+    let leaning = leaning(30.0);
+    let mut with = command();
+    with.args(["-q", "-m", "head-head", "--tcp", "control", "-o", "-", "-"]);
+    let done = run(&mut with, leaning.as_bytes());
+    assert_eq!(done.code, 1, "{}", done.out);
+    assert!(done.err.contains("error[tool-length]"), "{}", done.err);
+    // The TNC switches M128 on and then goes across.
+    with = command();
+    with.args(["-q", "-m", "gantry", "--tcp", "control", "-o", "-", "-"]);
+    let done = run(&mut with, leaning.as_bytes());
+    assert_eq!(done.code, 0, "{}", done.err);
 }

@@ -245,7 +245,7 @@ fn the_length_that_travel_was_checked_with_is_told() {
         ("vmc", "post"),
         ("ac-trunnion", "post"),
         ("ac-trunnion", "control"),
-        ("head-head", "control"),
+        ("gantry", "control"),
     ] {
         let (done, summary) = posted(machine, &["--tcp", tcp], &text);
         told(

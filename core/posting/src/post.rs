@@ -4,7 +4,7 @@ use post_grammar::{Record, SyntaxFault};
 use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{DialectSession, ModelSession};
+use post_plugin::{Capabilities, DialectSession, ModelSession};
 
 use crate::blocks::{Block, Blocks, Surroundings};
 use crate::configuration::{Configuration, Configured};
@@ -148,14 +148,21 @@ impl<'a> Post<'a> {
         job.reading.rules.clone_from(&machine.word_rules);
         job.reading.knife = machine.edge.is_some();
         let format = dialect.format().clone();
-        if let Some(fault) = refusal::too_fine(machine, &format) {
+        let fault =
+            refusal::too_fine(machine, &format).or_else(|| refusal::depth_counts_down(machine));
+        if let Some(fault) = fault {
             return Err(fault.boxed());
         }
         let stages = Stages {
             expand: Expand::new(machine, job.reading.chord_tolerance),
             lines: Vec::new(),
             timing: Timing::new(machine, &format)?,
-            configuration: Configuration::new(machine, &format, job.tool_length)?,
+            configuration: Configuration::new(
+                machine,
+                &format,
+                job.tool_length,
+                dialect.capabilities().has(Capabilities::TCP_STILL),
+            )?,
             configured: Vec::new(),
             blocks: Blocks::new(machine, dialect.capabilities(), model, job.trust_model),
             made: Vec::new(),

@@ -2,13 +2,32 @@
 
 use crate::accuracy::{Refused, Stuck};
 use crate::program::Motion;
+use post_machine::axis_words;
 use post_machine::axis_words::Words;
-use post_machine::description::{Axis, Machine, Positions};
+use post_machine::description::{Axis, Machine, Positions, Tcp};
 use post_machine::diagnostic::{Diagnostic, Extreme};
 use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, Unreachable};
 use post_plugin::Format;
+
+/// Where the words are axis positions, the control adds the tool's length to those of the depth axis: away from the part
+/// if they count that way.
+pub(crate) fn depth_counts_down(machine: &Machine) -> Option<Diagnostic> {
+    let axis = &machine.axes[axis_words::depth(machine)?];
+    // One that stands across the tool has no say in its length.
+    let towards = axis.joint.direction.dot(&machine.tool_axis) < -0.5;
+    (machine.control.tcp == Tcp::Post && towards).then(|| {
+        Diagnostic::error(
+            "machine-depth",
+            format!(
+                "{} of {} counts towards the part: the control's length compensation would take a longer tool deeper into it",
+                axis.name, machine.name
+            ),
+        )
+        .help("ISO 841 has it count away from the part, on whichever side it moves; if that is what the control shows, leave `reversed` out")
+    })
+}
 
 /// Why a point has no axis values.
 pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {

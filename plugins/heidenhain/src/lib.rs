@@ -334,7 +334,7 @@ impl Heidenhain {
             self.speed.set(rpm);
         } else if self.speed.set(rpm) {
             // A tool call, even one for the speed alone, is not allowed under TCP.
-            let tcp = self.tcp_active.is(true);
+            let tcp = self.tcp && !self.tcp_active.is(false);
             if tcp {
                 self.own(&self.tcp_off.clone(), out);
             }
@@ -374,6 +374,10 @@ impl Heidenhain {
     }
 
     fn cool(&mut self, wanted: Coolant, out: &mut String) -> Result<(), String> {
+        if wanted != Coolant::Off && self.flowing.is_some_and(|flowing| flowing != wanted) {
+            // One coolant takes the place of another.
+            self.coolant_codes(Coolant::Off, out);
+        }
         if !self.coolant_codes(wanted, out) {
             return Err(format!(
                 "the M code of {wanted:?} coolant is the machine builder's: set the option \
@@ -500,10 +504,9 @@ impl Heidenhain {
         self.radius.forget();
         self.axes.forget();
         self.tcp_active.forget();
+        // What turns and flows was asked for all the same: a stop behind it switches that off.
         self.spindle_on.forget();
-        self.sense = None;
         self.coolant_on.forget();
-        self.flowing = None;
     }
 }
 

@@ -40,6 +40,8 @@ pub struct Engine {
     /// Of the tool in use.
     register: Option<u32>,
     offset_active: Modal<bool>,
+    /// A line of the user's own has named a work offset: which one is in force is the user's from there on.
+    own_offset: bool,
     length_active: Modal<bool>,
     tcp_active: Modal<bool>,
     /// The spindle's last command, if that has it turning.
@@ -134,6 +136,7 @@ impl Engine {
             coolant_ends,
             register: (register != 0).then_some(register),
             offset_active: Modal::default(),
+            own_offset: false,
             length_active: Modal::default(),
             tcp_active: Modal::default(),
             turning: None,
@@ -236,6 +239,7 @@ impl Engine {
                 fits(self.table, text)?;
                 self.line(text, out);
                 self.forget();
+                self.own_offset |= names_offset(self.table, text);
             }
             Event::Word { text } => {
                 fits(self.table, text)?;
@@ -333,6 +337,10 @@ impl Engine {
                 false => "this control has no such coolant".to_owned(),
             });
         }
+        if self.flowing & !(1 << place) != 0 {
+            // One coolant takes the place of another.
+            self.end_coolant(out);
+        }
         self.coolant.set(true);
         self.flowing |= 1 << place;
         one_by_one(&self.coolant_codes[place], &mut self.motion, out);
@@ -370,6 +378,9 @@ impl Engine {
     }
 
     fn work_offset(&mut self, out: &mut String) {
+        if self.own_offset {
+            return;
+        }
         if self.offset_active.set(true) && !self.table.offset.at_start {
             self.motion.line(&self.work_offset, out);
         }
@@ -442,6 +453,9 @@ impl Engine {
                 }
                 Leave::Retract => {
                     self.motion.line(&self.retract, out);
+                    if counts_on(&self.retract) {
+                        self.motion.line("G90", out);
+                    }
                     self.motion.moved_by_line();
                 }
                 Leave::Length => {
@@ -479,10 +493,27 @@ impl Engine {
         self.offset_active.forget();
         self.length_active.forget();
         self.tcp_active.forget();
-        self.turning = None;
+        // What turns and flows was asked for all the same: a stop behind it switches that off.
         self.spindle.forget();
         self.coolant.forget();
     }
+}
+
+/// Own lines that end with counting from where the tool stands (`G91 G28 Z0.`) leave that in force.
+fn counts_on(lines: &str) -> bool {
+    let mut words = lines.split_whitespace().rev();
+    words.find(|word| ["G90", "G91"].contains(word)) == Some("G91")
+}
+
+/// A line names a work offset: alone, or with the number behind it (`G54.1 P12`).
+fn names_offset(table: &Table, line: &str) -> bool {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    (0..words.len()).any(|at| {
+        let next = words
+            .get(at + 1)
+            .map(|next| format!("{} {next}", words[at]));
+        (table.offset.known)(words[at]) || next.is_some_and(|pair| (table.offset.known)(&pair))
+    })
 }
 
 /// One M in a block, as most controls have it by default.

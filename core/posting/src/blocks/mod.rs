@@ -333,7 +333,7 @@ impl<'a> Blocks<'a> {
         match self.last.take() {
             None => self.first(leg, &node, MotionKind::Position, to),
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
-                // An index axis turns with the tool at the reference, not somewhere over the part.
+                // An index axis turns with the tool retracted, not somewhere over the part.
                 let last = self.leave_part(placer, leg.line, last, to);
                 self.first(leg, &node, MotionKind::Reference, to);
                 self.spare = Some(last);

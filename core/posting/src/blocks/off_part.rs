@@ -1,4 +1,4 @@
-//! The ways off the part and back that the CL file does not write: to the reference, and drawn back in a cut.
+//! The ways off the part and back that the CL file does not write: ahead of a retract, and drawn back in a cut.
 
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
@@ -85,7 +85,7 @@ impl Blocks<'_> {
         };
         // The rotary axes as they stand, an index axis among them; as far as the linear axes go.
         let mut refused = None;
-        for away in away {
+        for (place, away) in away.into_iter().enumerate() {
             let motion = Motion {
                 pace: Pace::feed_or_rapid(feed),
                 ..away
@@ -104,8 +104,9 @@ impl Blocks<'_> {
                         loose: true,
                         reason: Reason::Leave,
                     };
-                    self.on_part = false;
                     self.cut(placer, &out, &last, &node, to);
+                    // Cut short by the end of travel, it may still be in the part: from there it must not go sideways.
+                    self.on_part &= place > 0;
                     return Box::new(node);
                 }
                 Err(fault) => refused = refused.or(Some(fault)),

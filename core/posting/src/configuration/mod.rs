@@ -73,6 +73,9 @@ pub(crate) struct Configuration<'a> {
     /// Commands among them.
     commands: usize,
     chosen: Vec<Chosen>,
+    /// The dialect switches tool centre point control on in a block that moves nothing, so that no first position is
+    /// come to in machine coordinates by a head that turns.
+    tcp_still: bool,
     /// What the user says of every tool.
     told_length: Option<f64>,
     /// Length of the tool in use, if anybody gave it.
@@ -100,8 +103,10 @@ impl<'a> Configuration<'a> {
         machine: &'a Machine,
         format: &Format,
         told_length: Option<f64>,
+        tcp_still: bool,
     ) -> Result<Self, Box<Diagnostic>> {
         Ok(Self {
+            tcp_still,
             machine,
             base: machine,
             route: Route::new(machine, format, told_length.unwrap_or(0.0))?,
@@ -437,11 +442,11 @@ impl<'a> Configuration<'a> {
         }
     }
 
-    /// Does the program depend on the tool length? On a machine whose head turns, if the control does not
-    /// keep the tip.
+    /// Does the program depend on the tool length? On a machine whose head turns, if the control does not keep the tip,
+    /// or where a first position is come to in machine coordinates.
     fn length_matters(&self) -> bool {
         let machine = self.machine;
-        if machine.control.tcp == Tcp::Control {
+        if machine.control.tcp == Tcp::Control && self.tcp_still {
             return false;
         }
         let first_linear = machine.axes.iter().position(|axis| !axis.joint.rotary);

@@ -1,7 +1,7 @@
 //! The frame around the moves: retracts, positions of the machine, the way to a first position.
 
 use post_machine::axis_words::{self, WordValues, Words};
-use post_machine::description::Tcp;
+use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
@@ -16,6 +16,26 @@ const TURN: f64 = 360.0;
 
 /// Directions and angles that differ by less are the same, radians.
 const SAME: f64 = 1e-9;
+
+/// What an axis does for the tool on its way to the part.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Rotary,
+    Plane,
+    Depth,
+}
+
+impl Part {
+    fn of(machine: &Machine, joint: usize) -> Self {
+        if machine.axes[joint].joint.rotary {
+            Self::Rotary
+        } else if axis_words::is_depth(machine, joint) {
+            Self::Depth
+        } else {
+            Self::Plane
+        }
+    }
+}
 
 impl Emit<'_> {
     /// The depth axes to where the tool is clear of the part, and everything cancelled that a first position put in
@@ -33,18 +53,19 @@ impl Emit<'_> {
         self.writer.push(line, Event::Retract { axes, words });
     }
 
-    /// Axes to positions of the machine, the tool retracted: the rotary ones first.
+    /// Axes to positions of the machine, the tool retracted: the rotary ones, those across the tool, and the depth last.
     fn park(&mut self, line: u64, positions: &[(usize, f64)], findings: &Findings) {
-        for rotary in [true, false] {
-            let axes = &self.machine.axes;
+        for part in [Part::Rotary, Part::Plane, Part::Depth] {
             let group: Vec<(usize, f64)> = positions
                 .iter()
                 .copied()
-                .filter(|(joint, _)| axes[*joint].joint.rotary == rotary)
+                .filter(|(joint, _)| Part::of(self.base, *joint) == part)
                 .collect();
             if group.is_empty() {
                 continue;
             }
+            // From there the tool is retracted again before anything turns or goes across.
+            self.clear &= part != Part::Depth;
             for &(joint, value) in &group {
                 self.tell_unwinding(line, joint, value, findings);
                 self.set_clamp(line, joint, false, true);
@@ -171,7 +192,7 @@ impl Emit<'_> {
             },
         );
         // A changer may leave the depth axis anywhere.
-        self.clear = !self.machine.axes.iter().any(|axis| axis.joint.rotary);
+        self.clear = false;
     }
 
     /// Another head: the machine is that of the head from here on.
@@ -218,9 +239,7 @@ impl Emit<'_> {
         let line = block.line;
         self.extremes.reach(&block.joints);
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
-        if turns {
-            self.retract(line);
-        }
+        self.retract(line);
         self.wake(line, findings);
         let words = &block.words[..self.writer.words()];
         // Nobody knows whether they are clamped.
@@ -262,9 +281,11 @@ impl Emit<'_> {
     /// dialect writes them.
     fn plane_first(&self, joints: &Joints) -> bool {
         let machine = self.machine;
-        let (Tcp::Control, Some(depth), Some(chain)) =
-            (machine.control.tcp, axis_words::depth(machine), &self.chain)
-        else {
+        let (Tcp::Control, Some(depth), Some(chain)) = (
+            machine.control.tcp,
+            axis_words::depth(self.base),
+            &self.chain,
+        ) else {
             return true;
         };
         // Ahead of a block that switches it on with a move, words are axis positions: the same where nothing is turned.
@@ -288,12 +309,11 @@ impl Emit<'_> {
 
     /// Where the linear axes across the spindle stand.
     fn plane(&self, joints: &Joints) -> impl Iterator<Item = (usize, f64)> {
-        let machine = self.machine;
+        // The dialect knows the axes as the machine has them that carries the heads.
+        let machine = self.base;
         let joints = *joints;
         (0..machine.axes.len())
-            .filter(|joint| {
-                !machine.axes[*joint].joint.rotary && !axis_words::is_depth(machine, *joint)
-            })
+            .filter(|joint| Part::of(machine, *joint) == Part::Plane)
             .map(move |joint| (joint, joints[joint]))
     }
 

@@ -70,7 +70,7 @@ pub enum Command {
     Stop,
     /// Optional stop.
     OptionalStop,
-    /// To the machine's reference.
+    /// The tool is retracted and the axes are parked.
     Home,
 }
 

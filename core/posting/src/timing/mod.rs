@@ -168,6 +168,8 @@ impl<'a> Timing<'a> {
             }
             self.note_raised(block.line, &written);
             block.time.feed = Some(written.feed);
+        } else if let Some(feed) = self.rapids.feed_down(block) {
+            block.time.feed = Some(self.feeds.approach(feed).0.feed);
         }
     }
 

@@ -4,8 +4,9 @@
 //! not the machine's own linear axes, which follow: at full speed these can be too slow.
 
 use nalgebra::Vector3;
+use post_machine::axis_words;
 use post_machine::description::{Machine, Rapid, Tcp};
-use post_machine::kinematics::{Joints, MAX_AXES};
+use post_machine::kinematics::{Chain, Joints, MAX_AXES};
 
 use crate::blocks::Block;
 use crate::report::FastRapids;
@@ -24,6 +25,8 @@ pub(crate) struct Rapids {
     coordinates: [f64; 3],
     rotary: [bool; MAX_AXES],
     names: Vec<String>,
+    /// The machine's, with any tool in it, and the axis that a tool comes down by.
+    down: Option<(Chain, usize)>,
     /// The tip, mm, part frame.
     tip: Vector3<f64>,
     found: FastRapids,
@@ -38,6 +41,7 @@ impl Rapids {
             coordinates: [0.0; 3],
             rotary: [false; MAX_AXES],
             names: Vec::new(),
+            down: None,
             tip: Vector3::zeros(),
             found: FastRapids::default(),
         };
@@ -48,6 +52,11 @@ impl Rapids {
     /// Another head is in.
     pub(super) fn set(&mut self, machine: &Machine) {
         self.slowness = machine.slowness();
+        self.down = machine
+            .solver(0.0)
+            .ok()
+            .zip(axis_words::depth(machine))
+            .map(|(solver, depth)| (solver.chain().clone(), depth));
         self.names.clear();
         for (index, axis) in machine.axes.iter().enumerate() {
             self.rotary[index] = axis.joint.rotary;
@@ -85,6 +94,34 @@ impl Rapids {
             self.note(last, block, least / full_speed);
         }
         false
+    }
+
+    /// A first position is come to from above, by the depth axis alone: the feed, mm/min, if that is to be written as a
+    /// feed move. If it is left to the control and the axis would be too fast, that is noted.
+    pub(super) fn feed_down(&mut self, block: &Block) -> Option<f64> {
+        let (Tcp::Control, Some((chain, depth))) = (self.tcp, &self.down) else {
+            return None;
+        };
+        let (slow, depth) = (self.slowness[*depth], *depth);
+        let mut further = block.joints;
+        further[depth] += 1.0;
+        let way = chain.forward(&further).tip - chain.forward(&block.joints).tip;
+        let programmed = way.iter().zip(self.coordinates);
+        let full_speed = programmed.fold(0.0, |most: f64, (way, slow)| most.max(way.abs() * slow));
+        if slow <= full_speed * OVER {
+            return None;
+        }
+        if self.mode == Rapid::Linear {
+            return Some(1.0 / slow);
+        }
+        self.found.count += 1;
+        let factor = slow / full_speed;
+        if factor > self.found.factor {
+            self.found.axis = self.names.get(depth).cloned().unwrap_or_default();
+            self.found.factor = factor;
+            self.found.line = block.line;
+        }
+        None
     }
 
     fn turns(&self, last: &Joints, block: &Block) -> bool {

@@ -235,6 +235,21 @@ impl Interpreter {
             }
             None => self.side,
         };
+        if let Some(plane @ (0 | 1)) = cutcom.plane {
+            let place = self.place(record);
+            let name = if plane == 0 { "YZPLAN" } else { "ZXPLAN" };
+            self.findings.push(
+                Diagnostic::error(
+                    "compensation",
+                    format!(
+                        "CUTCOM in {name}: programs compensate in the plane of X and Y alone (G17)"
+                    ),
+                )
+                .help("let the CAM system write the tool centre path, with CUTCOM/OFF")
+                .at(place),
+            );
+            return;
+        }
         self.register = cutcom.register.or(self.register);
         let tool = self.loaded.map(|(number, ..)| number);
         let register = self.register.or(tool).unwrap_or(1);

@@ -85,15 +85,15 @@ impl Seek for Temporary {
     }
 }
 
-/// From here on SIGINT and SIGTERM delete the temporary files before they end the command, with the exit code of shells:
+/// From here on SIGINT, SIGTERM and SIGHUP delete the temporary files before they end the command, with the exit code of shells:
 /// 128 and the signal's number.
 #[cfg(unix)]
 pub fn delete_on_signals() {
-    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
 
     // Without a thread for it a signal ends the command as ever.
-    let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else {
+    let Ok(mut signals) = Signals::new([SIGHUP, SIGINT, SIGTERM]) else {
         return;
     };
     let waiting = move || {

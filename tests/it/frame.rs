@@ -448,6 +448,32 @@ fn lines_of_the_users_own_are_not_undone() {
     );
 }
 
+/// The depth goes first, whatever else the retract names.
+#[test]
+fn a_retract_goes_up_before_it_goes_aside() {
+    let more = "[control]\nretract = { X = 300 }\n";
+    assert_run(
+        &lines("vmc", more, &[], UPRIGHT),
+        &["G53 G0 Z20.000", "G49", "G53 G0 X300.000", "T1 M6"],
+    );
+    let more = "[control]\nretract = { X = 300, Z = -10 }\n";
+    assert_run(
+        &lines("vmc", more, &[], UPRIGHT),
+        &["G53 G0 Z-10.000", "G49", "G53 G0 X300.000", "T1 M6"],
+    );
+    // A quill comes in with the axis beside it.
+    let lines = lines(
+        "quill-mill",
+        "[control]\nretract = { Z = 0 }\n",
+        &[],
+        UPRIGHT,
+    );
+    assert!(
+        lines.iter().any(|line| line.starts_with("G53 G0 Z0.000 W")),
+        "{lines:#?}"
+    );
+}
+
 /// A change position that is low, or a line that nobody can judge: the tool goes up again before it goes across.
 #[test]
 fn the_tool_goes_up_again_behind_what_may_have_lowered_it() {

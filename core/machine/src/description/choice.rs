@@ -66,6 +66,9 @@ pub enum Retract {
     Plane(f64),
 }
 
+/// An endless axis stands no farther from zero, mm or radians: beyond it angles lose the decimals of their words.
+pub(super) const FARTHEST: f64 = 1e4 * std::f64::consts::TAU;
+
 /// Points that are looked at where the file does not say.
 const LOOK_AHEAD: u32 = 2000;
 
@@ -114,12 +117,12 @@ impl Builder<'_> {
             let axis = &axes[place];
             let unit = axis.unit();
             let value = self.number(value) * unit - axis.zero;
-            if passed(axis.travel, value, 0.0).is_some() {
+            if passed(axis.travel, value, 0.0).is_some() || libm::fabs(value) > FARTHEST {
                 self.fault(
                     "machine-travel",
                     name.span(),
                     format!("{} cannot start there: it is outside its travel", axis.name),
-                    "",
+                    "an endless axis starts within ten thousand turns of zero",
                 );
             }
             let stands = axis

@@ -3,6 +3,7 @@
 use toml::Spanned;
 
 use super::build::Builder;
+use super::choice::FARTHEST;
 use super::file::{ControlFile, Positions as Said};
 use super::{Axis, Machine};
 use crate::axis_words::is_depth;
@@ -13,6 +14,8 @@ use crate::kinematics::travel::passed;
 pub struct Frame {
     /// Where the depth axes stand when the tool is retracted: place in the chain and value, mm.
     pub retract: Vec<(usize, f64)>,
+    /// Where other linear axes go then, once it is: mm.
+    pub aside: Vec<(usize, f64)>,
     /// The machine file says so, and answers for it; else it is the end of travel away from the part.
     pub retract_said: bool,
     /// Where axes stand before a tool change, the tool retracted: mm or radians.
@@ -76,12 +79,19 @@ impl Builder<'_> {
             }
             false => self.positions(&said.change, machine),
         };
+        // The depth comes first, all of it: what the file does not say of it goes to the end of travel.
+        let said_of = |place: usize| {
+            let mut said = retract.iter();
+            said.find(|(joint, _)| *joint == place).copied()
+        };
+        let ends = machine.depth_ends().into_iter();
+        let depth = ends.map(|end| said_of(end.0).unwrap_or(end)).collect();
+        let aside = retract.iter().copied();
+        let aside = aside.filter(|(place, _)| !is_depth(machine, *place));
         machine.frame = Frame {
             retract_said: !retract.is_empty(),
-            retract: match retract.is_empty() {
-                true => machine.depth_ends(),
-                false => retract,
-            },
+            aside: aside.collect(),
+            retract: depth,
             change,
             park,
         };
@@ -119,6 +129,14 @@ impl Builder<'_> {
                         axis.reading(most)
                     ),
                     "positions of [control] are in machine coordinates, as the control shows them",
+                );
+            }
+            if axis.travel.is_none() && libm::fabs(position) > FARTHEST {
+                self.fault(
+                    "machine-travel",
+                    value.span(),
+                    format!("{} cannot stand at {shown}", axis.name),
+                    "an endless axis stands within ten thousand turns of zero",
                 );
             }
             if !stands(axis, position) {

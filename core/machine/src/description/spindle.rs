@@ -22,9 +22,20 @@ impl Default for SpindleSpeeds {
     }
 }
 
+/// No spindle turns as fast, rpm.
+const MOST: f64 = 1e6;
+
 impl SpindleSpeeds {
     /// What is wrong with a speed, rpm: the finding has no place yet.
     pub fn refuse(&self, rpm: f64) -> Option<Diagnostic> {
+        // S has no decimals.
+        if !(0.5..MOST).contains(&rpm) {
+            let message = format!("a spindle at {rpm} rpm is none");
+            return Some(
+                Diagnostic::error("spindle-speed", message)
+                    .help("another speed in the CAM system, in revolutions a minute"),
+            );
+        }
         let (end, key, limit) = if rpm < self.min {
             ("least", "min_speed", self.min)
         } else if rpm > self.max {

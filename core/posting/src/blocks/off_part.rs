@@ -73,16 +73,19 @@ impl Blocks<'_> {
         };
         let along = self.machine.control_point.along;
         let feed = self.machine.rewind.and_then(|rewind| rewind.retract_feed);
-        let away: Vec<Motion> = match &self.machine.rewind {
-            Some(rewind) => stands.drawn_back(rewind, along).into_iter().collect(),
-            None => LEAVE
-                .iter()
-                .map(|distance| Motion {
-                    tip: stands.tip + stands.axis * *distance,
-                    ..stands
-                })
-                .collect(),
+        let by = |distance: &f64| Motion {
+            tip: stands.tip + stands.axis * *distance,
+            ..stands
         };
+        let rewind = self.machine.rewind.as_ref();
+        let own = rewind.and_then(|rewind| stands.drawn_back(rewind, along));
+        // A plane that lies below the tool has been passed.
+        let passed = rewind.is_some() && own.is_none() && !self.on_part;
+        let first = own
+            .into_iter()
+            .chain(rewind.is_none().then(|| by(&LEAVE[0])));
+        let shorter = LEAVE[1..].iter().map(by).filter(|_| !passed);
+        let away: Vec<Motion> = first.chain(shorter).collect();
         // The rotary axes as they stand, an index axis among them; as far as the linear axes go.
         let mut refused = None;
         for (place, away) in away.into_iter().enumerate() {

@@ -51,6 +51,15 @@ impl Emit<'_> {
         }
         let words = &words[..self.writer.words()];
         self.writer.push(line, Event::Retract { axes, words });
+        let aside = self.machine.frame.aside.clone();
+        if !aside.is_empty() {
+            let (axes, words) = self.machine_words(aside.iter().copied());
+            let words = &words[..self.writer.words()];
+            self.writer.push(line, Event::Park { axes, words });
+            for (joint, value) in aside {
+                self.last[joint] = value;
+            }
+        }
     }
 
     /// Axes to positions of the machine, the tool retracted: the rotary ones, those across the tool, and the depth last.

@@ -197,7 +197,11 @@ impl<'a> Timing<'a> {
         }
         self.put(block, written, least, findings);
         self.statistics.limited += u64::from(block.time.limit.is_some());
-        self.statistics.cutting += block.time.minutes;
+        // Drawn back at a feed, the tool is off the part.
+        match block.loose {
+            true => self.statistics.other += block.time.minutes,
+            false => self.statistics.cutting += block.time.minutes,
+        }
     }
 
     /// Puts a feed into a block that must take `least` minutes.

@@ -355,6 +355,10 @@ fn coolant_rests_in_a_tool_change_and_each_kind_has_its_end() {
     );
     assert_run(&lines, &["G49", "M5", "M89", "M30"]);
     assert!(!lines.contains(&"M9".to_owned()));
+    let more = "[control]\ndialect = \"heidenhain\"\n[control.heidenhain]\ncoolant_through = \"M88\"\ncoolant_through_off = \"M89\"\n";
+    let lines = self::lines("vmc", more, &[], &through);
+    assert_run(&lines, &["M5", "M89", "TOOL CALL 2 Z S2000"]);
+    assert_run(&lines, &["M5", "M89", "M30"]);
 }
 
 /// A spiral of ten turns.

@@ -43,6 +43,8 @@ struct Heidenhain {
     tcp_on: String,
     tcp_off: String,
     coolant: [(Coolant, String); 5],
+    /// What ends mist, coolant through the tool and air, where they have an end of their own.
+    coolant_ends: [(Coolant, String); 3],
     /// A tool call that waits for its speed.
     tool: Option<u32>,
     /// What came between a tool change and its call.
@@ -99,6 +101,11 @@ impl Dialect for Heidenhain {
             retract: own("retract"),
             tcp_on: own("tcp_on"),
             tcp_off: own("tcp_off"),
+            coolant_ends: [
+                (Coolant::Mist, own("coolant_mist_off")),
+                (Coolant::Through, own("coolant_through_off")),
+                (Coolant::Air, own("coolant_air_off")),
+            ],
             coolant: [
                 (Coolant::Off, own("coolant_off")),
                 (Coolant::Flood, "M8".to_owned()),
@@ -363,6 +370,25 @@ impl Heidenhain {
         }
     }
 
+    /// What ends the coolant that is on; that of all, if it has no end of its own or nobody knows.
+    fn end_coolant(&mut self, out: &mut String) {
+        let flowing = self.flowing.take();
+        let own = self
+            .coolant_ends
+            .iter()
+            .find(|(coolant, _)| Some(*coolant) == flowing);
+        match own.map_or("", |(_, codes)| codes) {
+            "" => {
+                self.coolant_codes(Coolant::Off, out);
+            }
+            codes => {
+                for code in codes.split_whitespace() {
+                    self.block.line(code, out);
+                }
+            }
+        }
+    }
+
     /// The M codes of a coolant; false if it has none.
     fn coolant_codes(&mut self, wanted: Coolant, out: &mut String) -> bool {
         let codes = self.coolant.iter().find(|(coolant, _)| *coolant == wanted);
@@ -376,7 +402,12 @@ impl Heidenhain {
     fn cool(&mut self, wanted: Coolant, out: &mut String) -> Result<(), String> {
         if wanted != Coolant::Off && self.flowing.is_some_and(|flowing| flowing != wanted) {
             // One coolant takes the place of another.
-            self.coolant_codes(Coolant::Off, out);
+            self.end_coolant(out);
+        }
+        if wanted == Coolant::Off {
+            self.end_coolant(out);
+            self.coolant_on.set(false);
+            return Ok(());
         }
         if !self.coolant_codes(wanted, out) {
             return Err(format!(
@@ -385,8 +416,8 @@ impl Heidenhain {
                 format!("{wanted:?}").to_lowercase()
             ));
         }
-        self.coolant_on.set(wanted != Coolant::Off);
-        self.flowing = (wanted != Coolant::Off).then_some(wanted);
+        self.coolant_on.set(true);
+        self.flowing = Some(wanted);
         Ok(())
     }
 
@@ -484,10 +515,9 @@ impl Heidenhain {
         if self.spindle_on.set(false) {
             self.block.line("M5", out);
         }
-        if self.coolant_on.set(false) {
-            for code in self.coolant[0].1.split_whitespace() {
-                self.block.line(code, out);
-            }
+        if !self.coolant_on.is(false) {
+            self.end_coolant(out);
+            self.coolant_on.set(false);
         }
     }
 

@@ -2,6 +2,9 @@
 
 use post_plugin::{OptionKind, OptionSpec, Value};
 
+/// Of a coolant with an end of its own.
+const END: &str = "M codes that end it; empty: those of coolant_off.";
+
 pub(crate) const OPTIONS: &[OptionSpec] = &[
     OptionSpec::integer("decimals", (1, 4), 3, "Of linear words, mm."),
     OptionSpec::integer("decimals_inch", (1, 4), 4, "Of linear words, inch."),
@@ -38,5 +41,8 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         "M codes of coolant through the tool.",
     ),
     OptionSpec::text("coolant_air", "", "M codes of air."),
+    OptionSpec::text("coolant_mist_off", "", END),
+    OptionSpec::text("coolant_through_off", "", END),
+    OptionSpec::text("coolant_air_off", "", END),
     OptionSpec::text("coolant_off", "M9", "M codes that end all coolant."),
 ];

@@ -91,6 +91,15 @@ pub fn depth(machine: &Machine) -> Option<usize> {
         })
 }
 
+/// The coordinate of the part frame that a linear word means where the control keeps the tip.
+pub fn coordinate(name: &str) -> usize {
+    match name {
+        "X" => 0,
+        "Y" => 1,
+        _ => 2,
+    }
+}
+
 /// mm in one unit of the program.
 pub fn unit_length(units: OutputUnits) -> f64 {
     match units {
@@ -120,11 +129,7 @@ impl Words {
                     joint,
                     reading: axis.zero,
                     turn_from: axis.range.map(|[least, _]| least / unit),
-                    coordinate: match axis.name.as_str() {
-                        "X" => 0,
-                        "Y" => 1,
-                        _ => 2,
-                    },
+                    coordinate: coordinate(&axis.name),
                     unit,
                     per_unit: 1.0 / unit,
                     scale,

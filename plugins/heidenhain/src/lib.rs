@@ -377,16 +377,14 @@ impl Heidenhain {
             .coolant_ends
             .iter()
             .find(|(coolant, _)| Some(*coolant) == flowing);
-        match own.map_or("", |(_, codes)| codes) {
-            "" => {
-                self.coolant_codes(Coolant::Off, out);
-            }
-            codes => {
-                for code in codes.split_whitespace() {
-                    self.block.line(code, out);
-                }
-            }
+        let own = own.map_or("", |(_, codes)| codes);
+        for code in own.split_whitespace() {
+            self.block.line(code, out);
         }
+        if own.is_empty() {
+            self.coolant_codes(Coolant::Off, out);
+        }
+        self.coolant_on.set(false);
     }
 
     /// The M codes of a coolant; false if it has none.
@@ -400,14 +398,13 @@ impl Heidenhain {
     }
 
     fn cool(&mut self, wanted: Coolant, out: &mut String) -> Result<(), String> {
-        if wanted != Coolant::Off && self.flowing.is_some_and(|flowing| flowing != wanted) {
-            // One coolant takes the place of another.
-            self.end_coolant(out);
-        }
         if wanted == Coolant::Off {
             self.end_coolant(out);
-            self.coolant_on.set(false);
             return Ok(());
+        }
+        if self.flowing.is_some_and(|flowing| flowing != wanted) {
+            // One coolant takes the place of another.
+            self.end_coolant(out);
         }
         if !self.coolant_codes(wanted, out) {
             return Err(format!(
@@ -517,7 +514,6 @@ impl Heidenhain {
         }
         if !self.coolant_on.is(false) {
             self.end_coolant(out);
-            self.coolant_on.set(false);
         }
     }
 

@@ -48,8 +48,8 @@ pub struct Engine {
     turning: Option<Spindle>,
     spindle: Modal<bool>,
     coolant: Modal<bool>,
-    /// Coolants that are on: places in [`COOLANTS`], one bit each.
-    flowing: u8,
+    /// The coolant that is on: its place in [`COOLANTS`].
+    flowing: Option<usize>,
 }
 
 /// Coolants in the order of [`Table::coolant`], with the options that say what switches them on and off.
@@ -142,7 +142,7 @@ impl Engine {
             turning: None,
             spindle: Modal::default(),
             coolant: Modal::default(),
-            flowing: 0,
+            flowing: None,
         })
     }
 
@@ -337,27 +337,20 @@ impl Engine {
                 false => "this control has no such coolant".to_owned(),
             });
         }
-        if self.flowing & !(1 << place) != 0 {
+        if self.flowing.is_some_and(|flowing| flowing != place) {
             // One coolant takes the place of another.
             self.end_coolant(out);
         }
         self.coolant.set(true);
-        self.flowing |= 1 << place;
+        self.flowing = Some(place);
         one_by_one(&self.coolant_codes[place], &mut self.motion, out);
         Ok(())
     }
 
-    /// What ends the coolants that are on; where nobody knows, all of them.
+    /// What ends the coolant that is on; where nobody knows, all of them.
     fn end_coolant(&mut self, out: &mut String) {
-        let flowing = std::mem::take(&mut self.flowing);
-        let mut written: Vec<&str> = Vec::new();
-        for (place, end) in self.coolant_ends.iter().enumerate() {
-            let ends = flowing >> place & 1 == 1 || (flowing == 0 && place == 0);
-            if ends && !written.contains(&end.as_str()) {
-                one_by_one(end, &mut self.motion, out);
-                written.push(end);
-            }
-        }
+        let flowing = self.flowing.take().unwrap_or_default();
+        one_by_one(&self.coolant_ends[flowing], &mut self.motion, out);
         self.coolant.set(false);
     }
 
@@ -367,12 +360,8 @@ impl Engine {
         if let (true, Some(spindle)) = (self.table.stops.spindle, self.turning) {
             self.turn(spindle, out)?;
         }
-        if self.table.stops.coolant {
-            for place in 1..COOLANTS.len() {
-                if self.flowing >> place & 1 == 1 {
-                    one_by_one(&self.coolant_codes[place], &mut self.motion, out);
-                }
-            }
+        if let (true, Some(flowing)) = (self.table.stops.coolant, self.flowing) {
+            one_by_one(&self.coolant_codes[flowing], &mut self.motion, out);
         }
         Ok(())
     }

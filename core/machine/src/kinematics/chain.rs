@@ -6,8 +6,6 @@
 
 use nalgebra::Vector3;
 
-use super::orientation::square;
-
 /// The longest chain; working values are arrays of this length, so that no point allocates.
 pub const MAX_AXES: usize = 8;
 
@@ -47,6 +45,15 @@ impl Pose {
         }
         square(self.edge, self.axis)
     }
+}
+
+/// The direction across `axis` that is nearest to `edge`.
+pub(super) fn square(edge: Vector3<f64>, axis: Vector3<f64>) -> Vector3<f64> {
+    let across = |v: Vector3<f64>| (v - axis * axis.dot(&v)).try_normalize(1e-6);
+    across(edge)
+        .or_else(|| across(Vector3::x()))
+        .or_else(|| across(Vector3::y()))
+        .unwrap_or(edge)
 }
 
 /// Sine and cosine of every rotary joint, so that a set of angles is evaluated once.
@@ -201,6 +208,13 @@ impl Chain {
     /// Where the tool stands, seen from the part.
     pub fn forward(&self, joints: &Joints) -> Pose {
         self.reach(joints, &self.turns(joints), |_, _, _, _| {})
+    }
+
+    /// The way of the tip while a linear joint goes one mm, the others as in `joints`: mm, part frame.
+    pub fn way_of(&self, joint: usize, joints: &Joints) -> Vector3<f64> {
+        let mut further = *joints;
+        further[joint] += 1.0;
+        self.forward(&further).tip - self.forward(joints).tip
     }
 
     /// [`Chain::forward`] from the joints and turns of `trace`; fills in the rest of it.

@@ -9,7 +9,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::chain::{Chain, Joints, Pose, Turns, turn};
+use super::chain::{Chain, Joints, Pose, Turns, square, turn};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 
 /// The one or two ways to point the tool along one axis. Their angles are worked out when asked for: where
@@ -497,15 +497,6 @@ impl Two {
             ((latitude - most).max(0.0), most)
         }
     }
-}
-
-/// The direction across `axis` that is nearest to `edge`.
-pub(super) fn square(edge: Vector3<f64>, axis: Vector3<f64>) -> Vector3<f64> {
-    let across = |v: Vector3<f64>| (v - axis * axis.dot(&v)).try_normalize(1e-6);
-    across(edge)
-        .or_else(|| across(Vector3::x()))
-        .or_else(|| across(Vector3::y()))
-        .unwrap_or(edge)
 }
 
 /// Axis, edge and their product as columns.

@@ -7,7 +7,8 @@
 
 use post_plugin::ModelSession;
 
-use super::deviation::{Bound, Move, between};
+use super::bound::Bound;
+use super::deviation::{Move, between};
 use super::linearise::{Linearise, Stuck};
 use super::node::{Node, Refused};
 

@@ -12,6 +12,7 @@
 use nalgebra::Vector3;
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
+use super::bound::Bound;
 use super::certificate::{self, Bend, Course, chord_angle};
 use super::heading;
 use super::node::{Node, Placer};
@@ -25,15 +26,6 @@ pub struct Tolerances {
     /// Tip, mm; infinite where the control keeps the tip.
     pub tip: f64,
     /// Tool axis, radians; infinite in a rapid.
-    pub axis: f64,
-}
-
-/// Proven bounds on the deviation along a piece.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Bound {
-    /// Tip, mm.
-    pub tip: f64,
-    /// Tool axis, radians.
     pub axis: f64,
 }
 
@@ -366,30 +358,6 @@ impl Tolerances {
     #[inline]
     pub fn hold(&self, bound: Bound) -> bool {
         bound.tip <= self.tip && bound.axis <= self.axis
-    }
-}
-
-impl Bound {
-    /// Nothing is proven.
-    const NONE: Self = Self {
-        tip: f64::INFINITY,
-        axis: f64::INFINITY,
-    };
-
-    /// The smaller of two bounds on the same block.
-    pub fn least(self, other: Self) -> Self {
-        Self {
-            tip: self.tip.min(other.tip),
-            axis: self.axis.min(other.axis),
-        }
-    }
-
-    /// What holds for both of two blocks.
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            tip: self.tip.max(other.tip),
-            axis: self.axis.max(other.axis),
-        }
     }
 }
 

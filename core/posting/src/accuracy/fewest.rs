@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use post_plugin::ModelSession;
 
 use super::bisect::put_in;
-use super::deviation::Bound;
+use super::bound::Bound;
 use super::linearise::{Linearise, Stuck};
 use super::node::Node;
 use super::run::{Run, Spot, distance};

@@ -5,8 +5,9 @@
 
 use post_plugin::{Curve, ModelSession};
 
+use super::bound::Bound;
 use super::certificate::Bend;
-use super::deviation::{Bound, Move};
+use super::deviation::Move;
 use super::node::{Node, Refused};
 use super::run::Run;
 use post_machine::description::{Accuracy, Method, Placement};

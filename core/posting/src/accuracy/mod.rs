@@ -6,6 +6,7 @@
 //! allows, `compensate` moves points that lie on the axes' own straight line.
 
 mod bisect;
+mod bound;
 pub mod certificate;
 mod compensate;
 mod deviation;
@@ -17,7 +18,8 @@ mod node;
 mod placed_batch;
 mod run;
 
-pub use deviation::{Bound, Move, Tolerances};
+pub use bound::Bound;
+pub use deviation::{Move, Tolerances};
 pub use linearise::{Linearise, Piece, Stuck};
 pub use node::{Node, Placer, Refused};
 pub(crate) use placed_batch::PlacedBatch;

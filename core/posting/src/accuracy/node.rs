@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
+use super::bound::Bound;
 use super::certificate::{chord_angle, larger};
-use super::deviation::Bound;
 use post_plugin::Format;
 
 use post_machine::axis_words::{WordValues, Words};

@@ -6,7 +6,8 @@
 //! decrease; the one at which the tip is beside the CL point is taken. So the bound is one on the Fréchet distance: tip
 //! and path are gone along in order, each at its own pace.
 
-use super::deviation::{Bound, Move, Tolerances, between};
+use super::bound::Bound;
+use super::deviation::{Move, Tolerances, between};
 use super::node::{Node, Placer};
 use post_machine::kinematics::orientation::angle;
 use post_machine::kinematics::{Pose, Trace};

@@ -164,11 +164,9 @@ impl Blocks<'_> {
     /// has left the part.
     fn leads_away(&self, placer: &Placer, joints: &Joints, joint: usize, way: f64) -> bool {
         let chain = placer.solver().chain();
-        let mut further = *joints;
-        further[joint] += libm::copysign(1.0, way);
-        let (from, to) = (chain.forward(joints), chain.forward(&further));
+        let along = chain.way_of(joint, joints).dot(&chain.forward(joints).axis);
         let least = if self.on_part { AWAY } else { -SIDEWAYS };
-        (to.tip - from.tip).dot(&from.axis) > least
+        libm::copysign(1.0, way) * along > least
     }
 
     /// Draws the tool back along its axis, turns it to `joints`, and brings it back.

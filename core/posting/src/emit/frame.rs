@@ -37,6 +37,10 @@ impl Part {
     }
 }
 
+fn parks(axes: u32, words: &[f64]) -> Event<'_> {
+    Event::Park { axes, words }
+}
+
 impl Emit<'_> {
     /// The depth axes to where the tool is clear of the part, and everything cancelled that a first position put in
     /// force.
@@ -44,22 +48,35 @@ impl Emit<'_> {
         if std::mem::replace(&mut self.clear, true) {
             return;
         }
-        let positions = self.machine.frame.retract.clone();
-        let (axes, words) = self.machine_words(positions.iter().copied());
-        for (joint, value) in positions {
+        let machine = self.machine;
+        self.go(line, &machine.frame.retract, |axes, words| Event::Retract {
+            axes,
+            words,
+        });
+        if !machine.frame.aside.is_empty() {
+            self.go(line, &machine.frame.aside, parks);
+        }
+    }
+
+    /// Axes to positions in machine coordinates, by one event.
+    fn go(
+        &mut self,
+        line: u64,
+        positions: &[(usize, f64)],
+        event: for<'e> fn(u32, &'e [f64]) -> Event<'e>,
+    ) {
+        let mut axes = 0;
+        let mut words = WordValues::default();
+        for &(joint, value) in positions {
+            let travel = self.machine.axes[joint].travel;
+            if let Some((place, word)) = self.words.machine_word(joint, value, travel) {
+                axes |= 1 << place;
+                words[place] = word;
+            }
             self.last[joint] = value;
         }
-        let words = &words[..self.writer.words()];
-        self.writer.push(line, Event::Retract { axes, words });
-        let aside = self.machine.frame.aside.clone();
-        if !aside.is_empty() {
-            let (axes, words) = self.machine_words(aside.iter().copied());
-            let words = &words[..self.writer.words()];
-            self.writer.push(line, Event::Park { axes, words });
-            for (joint, value) in aside {
-                self.last[joint] = value;
-            }
-        }
+        self.writer
+            .push(line, event(axes, &words[..self.writer.words()]));
     }
 
     /// Axes to positions of the machine, the tool retracted: the rotary ones, those across the tool, and the depth last.
@@ -79,11 +96,8 @@ impl Emit<'_> {
                 self.tell_unwinding(line, joint, value, findings);
                 self.set_clamp(line, joint, false, true);
             }
-            let (axes, words) = self.machine_words(group.iter().copied());
-            let words = &words[..self.writer.words()];
-            self.writer.push(line, Event::Park { axes, words });
-            for &(joint, value) in &group {
-                self.last[joint] = value;
+            self.go(line, &group, parks);
+            for &(joint, _) in &group {
                 self.set_clamp(line, joint, true, false);
             }
         }
@@ -145,20 +159,6 @@ impl Emit<'_> {
         }
     }
 
-    /// Words of positions in machine coordinates, and which they are.
-    fn machine_words(&self, positions: impl Iterator<Item = (usize, f64)>) -> (u32, WordValues) {
-        let mut axes = 0;
-        let mut words = WordValues::default();
-        for (joint, value) in positions {
-            let travel = self.machine.axes[joint].travel;
-            if let Some((place, word)) = self.words.machine_word(joint, value, travel) {
-                axes |= 1 << place;
-                words[place] = word;
-            }
-        }
-        (axes, words)
-    }
-
     /// The spindle and the coolant stand still while nobody cuts; what the CL file wants is on again at the next first
     /// position.
     fn rest(&mut self, line: u64) {
@@ -173,8 +173,8 @@ impl Emit<'_> {
     pub(super) fn change(&mut self, line: u64, tool: &Tool, findings: &Findings) {
         self.retract(line);
         self.rest(line);
-        let positions = self.machine.frame.change.clone();
-        self.park(line, &positions, findings);
+        let machine = self.machine;
+        self.park(line, &machine.frame.change, findings);
         self.writer.tool_known();
         if tool.register != tool.number && self.writer.knows(Capabilities::TOOL_TABLE) {
             findings.at(
@@ -229,8 +229,8 @@ impl Emit<'_> {
     /// Home: retracted, and parked.
     pub(super) fn go_home(&mut self, line: u64, findings: &Findings) {
         self.retract(line);
-        let positions = self.machine.frame.park.clone();
-        self.park(line, &positions, findings);
+        let machine = self.machine;
+        self.park(line, &machine.frame.park, findings);
     }
 
     pub(super) fn end(&mut self, line: u64, findings: &Findings) {
@@ -266,9 +266,8 @@ impl Emit<'_> {
         let plane_first = self.plane_first(&block.joints);
         if !plane_first {
             // Across in machine coordinates, before the words mean the tip; then down.
-            let (axes, across) = self.machine_words(self.plane(&block.joints));
-            let words = &across[..self.writer.words()];
-            self.writer.push(line, Event::Park { axes, words });
+            let across = self.plane(&block.joints);
+            self.go(line, &across, parks);
         }
         self.writer.push(
             line,
@@ -305,25 +304,17 @@ impl Emit<'_> {
         if turned && !self.writer.knows(Capabilities::TCP_STILL) {
             return false;
         }
-        let mut further = *joints;
-        further[depth] += 1.0;
-        let way = chain.forward(&further).tip - chain.forward(joints).tip;
-        let along = match machine.axes[depth].name.as_str() {
-            "X" => way.x,
-            "Y" => way.y,
-            _ => way.z,
-        };
-        1.0 - libm::fabs(along) < SAME
+        let word = axis_words::coordinate(&machine.axes[depth].name);
+        1.0 - libm::fabs(chain.way_of(depth, joints)[word]) < SAME
     }
 
     /// Where the linear axes across the spindle stand.
-    fn plane(&self, joints: &Joints) -> impl Iterator<Item = (usize, f64)> {
+    fn plane(&self, joints: &Joints) -> Vec<(usize, f64)> {
         // The dialect knows the axes as the machine has them that carries the heads.
-        let machine = self.base;
-        let joints = *joints;
-        (0..machine.axes.len())
-            .filter(|joint| Part::of(machine, *joint) == Part::Plane)
-            .map(move |joint| (joint, joints[joint]))
+        (0..self.base.axes.len())
+            .filter(|joint| Part::of(self.base, *joint) == Part::Plane)
+            .map(|joint| (joint, joints[joint]))
+            .collect()
     }
 
     /// Spindle and coolant on as the CL file takes them to be.

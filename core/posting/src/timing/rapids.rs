@@ -103,9 +103,7 @@ impl Rapids {
             return None;
         };
         let (slow, depth) = (self.slowness[*depth], *depth);
-        let mut further = block.joints;
-        further[depth] += 1.0;
-        let way = chain.forward(&further).tip - chain.forward(&block.joints).tip;
+        let way = chain.way_of(depth, &block.joints);
         let programmed = way.iter().zip(self.coordinates);
         let full_speed = programmed.fold(0.0, |most: f64, (way, slow)| most.max(way.abs() * slow));
         if slow <= full_speed * OVER {

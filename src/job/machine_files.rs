@@ -1,10 +1,11 @@
 //! Where machines come from: a file, a machine folder, or built in.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use post_machine::description::{self, Machine, Setting, Source};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, nearest};
 
 use crate::failure::Failure;
 
@@ -14,8 +15,8 @@ const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.r
 /// Loads the machine `name` from the folders that the user `named`, the usual ones, or those built in, with
 /// `settings` over it.
 pub fn load(name: &str, named: &[PathBuf], settings: &[Setting]) -> Result<Machine, Failure> {
-    let folders = folders(named);
-    let source = find(name, &folders).map_err(|message| Diagnostic::error("machine", message))?;
+    let folders = folders(named)?;
+    let source = find(name, &folders).map_err(Diagnostic::from)?;
     // A machine extends its neighbours first.
     let mut near: Vec<PathBuf> = Path::new(&source.name)
         .parent()
@@ -24,18 +25,52 @@ pub fn load(name: &str, named: &[PathBuf], settings: &[Setting]) -> Result<Machi
         .into_iter()
         .collect();
     near.extend(folders);
-    let machine = description::load(source, settings, &mut |parent| find(parent, &near))?;
+    let machine = description::load(source, settings, &mut |parent| {
+        find(parent, &near).map_err(|missing| match missing.help {
+            Some(help) => format!("{}; {help}", missing.message),
+            None => missing.message,
+        })
+    })?;
     Ok(machine)
 }
 
 /// The folders of machines: those of the command line, of the environment, and `machines` here.
-fn folders(named: &[PathBuf]) -> Vec<PathBuf> {
+///
+/// # Errors
+/// Each folder that the user names and that is not there: a slip would take another machine in silence.
+fn folders(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut folders = super::folders(named, "POST_MACHINES");
+    let missing: Vec<Diagnostic> = folders
+        .iter()
+        .filter(|folder| !folder.is_dir())
+        .map(|folder| {
+            let message = format!("{}: no such folder", folder.display());
+            Diagnostic::error("machine", message)
+                .help("--machines and POST_MACHINES name folders of machine files")
+        })
+        .collect();
+    if !missing.is_empty() {
+        return Err(missing.into());
+    }
     folders.push(PathBuf::from("machines"));
-    folders
+    Ok(folders)
 }
 
-fn find(name: &str, folders: &[PathBuf]) -> Result<Source, String> {
+/// A machine that is not found or not readable.
+struct Missing {
+    message: String,
+    help: Option<String>,
+}
+
+impl From<Missing> for Diagnostic {
+    fn from(missing: Missing) -> Self {
+        let mut fault = Self::error("machine", missing.message);
+        fault.help = missing.help;
+        fault
+    }
+}
+
+fn find(name: &str, folders: &[PathBuf]) -> Result<Source, Missing> {
     let path = Path::new(name);
     let file =
         path.extension().is_some_and(|ending| ending == "toml") || path.components().count() > 1;
@@ -60,51 +95,81 @@ fn find(name: &str, folders: &[PathBuf]) -> Result<Source, String> {
             text: (*text).to_owned(),
         });
     }
-    let known: Vec<&str> = BUILT_IN.iter().map(|(name, _)| *name).collect();
-    Err(format!(
-        "there is no machine {name}: no {name}.toml in {}, and built in are {}",
-        folders
-            .iter()
-            .map(|folder| folder.display().to_string())
-            .collect::<Vec<_>>()
-            .join(", "),
-        known.join(", ")
-    ))
+    let known = names(folders);
+    let meant = nearest(name, known.iter().map(|(name, _)| name.as_str()));
+    Err(Missing {
+        message: format!("there is no machine {name}"),
+        help: Some(match meant {
+            Some(meant) => format!("did you mean {meant}? `post machines` lists them"),
+            None => "`post machines` lists those that a bare name finds; a file is named with its ending .toml".to_owned(),
+        }),
+    })
 }
 
-fn read(path: &Path) -> Result<Source, String> {
-    let bytes = fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let text = String::from_utf8(bytes).map_err(|_| {
-        format!(
-            "{}: a machine file is UTF-8 text, this is not",
-            path.display()
-        )
-    })?;
+fn read(path: &Path) -> Result<Source, Missing> {
+    let fault = |why: String| Missing {
+        message: format!("{}: {why}", path.display()),
+        help: None,
+    };
+    let bytes = fs::read(path).map_err(|error| fault(error.to_string()))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| fault("a machine file is UTF-8 text, this is not".to_owned()))?;
     Ok(Source {
         name: path.display().to_string(),
         text,
     })
 }
 
-/// The machines that a bare name finds: their names, and where each is found.
-pub fn list(named: &[PathBuf]) -> Vec<(String, String)> {
-    let mut rows = Vec::new();
-    for folder in folders(named) {
-        let Ok(entries) = fs::read_dir(&folder) else {
-            continue;
-        };
-        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+/// A machine that a bare name finds.
+pub struct Listed {
+    /// The name.
+    pub name: String,
+    /// Its file; none if it is built in.
+    pub path: Option<PathBuf>,
+    /// What it is, or why it cannot be loaded.
+    pub machine: Result<Machine, Failure>,
+}
+
+/// The machines that a bare name finds, those of the folders first.
+///
+/// # Errors
+/// A folder that is not there.
+pub fn list(named: &[PathBuf]) -> Result<Vec<Listed>, Failure> {
+    let listed = names(&folders(named)?).into_iter().map(|(name, path)| {
+        let machine = load(&name, named, &[]);
+        Listed {
+            name,
+            path,
+            machine,
+        }
+    });
+    Ok(listed.collect())
+}
+
+/// The text of the machine `name`, as its file has it.
+///
+/// # Errors
+/// There is no such machine.
+pub fn text(name: &str, named: &[PathBuf]) -> Result<String, Failure> {
+    Ok(find(name, &folders(named)?).map_err(Diagnostic::from)?.text)
+}
+
+/// The names that find a machine, each with the file that it finds; none for one that is built in.
+fn names(folders: &[PathBuf]) -> Vec<(String, Option<PathBuf>)> {
+    let mut rows: Vec<(String, Option<PathBuf>)> = Vec::new();
+    for folder in folders {
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
         paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
         paths.sort();
         for path in paths {
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            rows.push((name.into_owned(), path.display().to_string()));
+            rows.push((name.into_owned(), Some(path)));
         }
     }
-    for (name, _) in BUILT_IN {
-        if !rows.iter().any(|(known, _)| known == name) {
-            rows.push(((*name).to_owned(), "built in".to_owned()));
-        }
-    }
+    rows.extend(BUILT_IN.iter().map(|(name, _)| ((*name).to_owned(), None)));
+    // The first of a name is found.
+    let mut met = BTreeSet::new();
+    rows.retain(|(name, _)| met.insert(name.clone()));
     rows
 }

@@ -1,29 +1,90 @@
-//! `post machines`: the machines that a bare name finds.
+//! `post machines`: the machines that a bare name finds, and the file of one.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
+use post_machine::check::Class;
+use post_machine::description::Machine;
 
 use crate::failure::Failure;
-use crate::job::machine_files;
+use crate::job::machine_files::{self, Listed};
 use crate::terminal;
 
-/// Lists the machines that a bare name finds.
+/// Lists the machines that a bare name finds: class, axes, dialect and file.
+///
+/// Axes stand in the order of the chain, from the workpiece to the tool; a prime marks one that carries the workpiece
+/// (ISO 841).
 #[derive(Debug, Args)]
 pub struct MachinesArguments {
-    /// A further folder of machine files.
+    /// Prints the file of one machine, as a start for one of your own: `post machines --print vmc > mine.toml`.
+    #[arg(long, value_name = "NAME")]
+    print: Option<String>,
+
+    /// A further folder of machine files; the environment variable POST_MACHINES adds more.
     #[arg(long, value_name = "FOLDER")]
     machines: Vec<PathBuf>,
 }
 
-/// Lists them.
+/// Lists them, or prints one.
 pub fn run(arguments: &MachinesArguments) -> Result<(), Failure> {
+    if let Some(name) = &arguments.print {
+        terminal::print(&machine_files::text(name, &arguments.machines)?);
+        return Ok(());
+    }
+    let rows: Vec<[String; 5]> = machine_files::list(&arguments.machines)?
+        .into_iter()
+        .map(row)
+        .collect();
+    let head = ["name", "axes", "dialect", "from", "class"].map(str::to_owned);
+    let widths: [usize; 5] = std::array::from_fn(|column| {
+        let cells = rows.iter().chain([&head]);
+        cells
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or_default()
+    });
     let mut text = String::new();
-    for (name, origin) in machine_files::list(&arguments.machines) {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<20} {origin}");
+    for row in [&head].into_iter().chain(&rows) {
+        let mut line = String::new();
+        for (cell, width) in row.iter().zip(widths) {
+            // Writing to a String cannot fail.
+            let _ = write!(line, "{cell:<width$}  ");
+        }
+        let _ = writeln!(text, "{}", line.trim_end());
     }
     terminal::print(&text);
     Ok(())
+}
+
+/// Name, axes, dialect, file and class.
+fn row(listed: Listed) -> [String; 5] {
+    let from = match &listed.path {
+        Some(path) => path.display().to_string(),
+        None => "built in".to_owned(),
+    };
+    match listed.machine {
+        Ok(machine) => [
+            listed.name,
+            axes(&machine),
+            machine.control.dialect.clone(),
+            from,
+            Class::of(&machine).name,
+        ],
+        Err(failure) => {
+            let findings = failure.findings();
+            let why = findings.first().map(|finding| finding.message.as_str());
+            let why = format!("cannot be loaded: {}", why.unwrap_or_default());
+            [listed.name, "-".to_owned(), "-".to_owned(), from, why]
+        }
+    }
+}
+
+/// `C' A' Y X Z`.
+fn axes(machine: &Machine) -> String {
+    let names = machine.axes.iter().map(|axis| {
+        let prime = if axis.carries_part { "'" } else { "" };
+        format!("{}{prime}", axis.name)
+    });
+    names.collect::<Vec<_>>().join(" ")
 }

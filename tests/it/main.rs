@@ -15,6 +15,7 @@ mod library;
 mod linuxcnc;
 #[cfg(target_os = "linux")]
 mod memory;
+mod names;
 mod new;
 mod plugins;
 mod readiness;

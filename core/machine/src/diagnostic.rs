@@ -1,12 +1,14 @@
 //! What is said to the user: where, what, how much, and what would help.
 
 mod nearest;
+mod short;
 
 use std::ops::Range;
 
 use post_grammar::SyntaxFault;
 
 pub use nearest::nearest;
+pub use short::Short;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -5,7 +5,7 @@ use crate::program::Motion;
 use post_machine::axis_words;
 use post_machine::axis_words::Words;
 use post_machine::description::{Axis, Machine, Positions, Tcp};
-use post_machine::diagnostic::{Diagnostic, Extreme};
+use post_machine::diagnostic::{Diagnostic, Extreme, Short};
 use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, Unreachable};
@@ -211,11 +211,6 @@ pub(crate) fn no_way(
     .help(help)
 }
 
-/// A number without what radians leave in its last bits.
-fn tidy(value: f64) -> f64 {
-    libm::rint(value * 1e14) / 1e14
-}
-
 /// Tolerances below what the words round off, told before anything is made: pieces without end would go in, and none
 /// of them help.
 pub(crate) fn too_fine(machine: &Machine, format: &Format) -> Option<Diagnostic> {
@@ -230,15 +225,16 @@ pub(crate) fn too_fine(machine: &Machine, format: &Format) -> Option<Diagnostic>
             ("axis_tolerance", accuracy.axis_tolerance.to_degrees(), turns, "°"),
         ]
         .into_iter()
-        // Degrees come from radians, whose last bits are not told.
-        .map(|(key, tolerance, half, unit)| (key, tidy(tolerance), tidy(half), unit))
-        .find(|(_, tolerance, half, _)| tolerance < half)
+        // Degrees come from radians, whose last bits do not count.
+        .find(|(_, tolerance, half, _)| *tolerance < half * (1.0 - 1e-12))
         .map(|(key, tolerance, half, unit)| {
             Diagnostic::error(
                 "tolerance",
                 format!(
-                    "[accuracy] {key} is {tolerance}{unit}, and the words of {} are rounded by up to {half}{unit}: no program could keep it",
-                    machine.name
+                    "[accuracy] {key} is {}{unit}, and the words of {} are rounded by up to {}{unit}: no program could keep it",
+                    Short(tolerance),
+                    machine.name,
+                    Short(half)
                 ),
             )
             .help(format!("widen {key}, or have the words written with more decimals, if the control takes them"))

@@ -1,5 +1,7 @@
 //! What the events speak of: feeds, spindle, coolant, compensation, cycles.
 
+use std::fmt;
+
 use crate::batch::Flat;
 use crate::field::{Codes, Field, NotKnown, Promise, Reader, Shape, codes};
 use crate::setup::Units;
@@ -13,6 +15,16 @@ pub enum Feed {
     InverseTime(f64),
     /// Length units a spindle revolution (G95).
     PerRevolution(f64),
+}
+
+impl fmt::Display for Feed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::PerMinute(feed) => write!(f, "{feed} a minute (G94)"),
+            Self::InverseTime(feed) => write!(f, "{feed} in inverse time (G93)"),
+            Self::PerRevolution(feed) => write!(f, "{feed} a revolution (G95)"),
+        }
+    }
 }
 
 impl Feed {

@@ -328,7 +328,8 @@ impl Field<'_> for Option<ToolPose> {
         if (square - 1.0).abs() < 1e-6 {
             Ok(())
         } else {
-            Err(format!("the tool axis is {axis:?}, not a unit vector"))
+            let length = square.sqrt();
+            Err(format!("the tool axis is {length} long, not a unit vector"))
         }
     }
 }

@@ -1,5 +1,7 @@
 //! What a plugin is told before its first call, and the options that it declares.
 
+use std::fmt;
+
 use crate::field::{Codes, codes};
 use crate::model::Tolerance;
 
@@ -170,6 +172,17 @@ pub enum Value<'a> {
     Number(f64),
     /// Text.
     Text(&'a str),
+}
+
+impl fmt::Display for Value<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flag(flag) => flag.fmt(f),
+            Self::Integer(integer) => integer.fmt(f),
+            Self::Number(number) => number.fmt(f),
+            Self::Text(text) => write!(f, "\"{text}\""),
+        }
+    }
 }
 
 /// An option that a plugin accepts in `[control.<dialect>]` or `[accuracy.<model>]`.

@@ -53,7 +53,7 @@ impl ErrorModel for Harmonic {
             match *option {
                 ("order", Value::Integer(given)) => order = given as usize,
                 ("samples", Value::Integer(given)) => samples = given as usize,
-                (key, value) => return Err(format!("option `{key}` cannot be {value:?}")),
+                (key, value) => return Err(format!("option `{key}` cannot be {value}")),
             }
         }
         if samples == 0 {

@@ -407,10 +407,10 @@ impl Heidenhain {
             self.end_coolant(out);
         }
         if !self.coolant_codes(wanted, out) {
+            let name = format!("{wanted:?}").to_lowercase();
             return Err(format!(
-                "the M code of {wanted:?} coolant is the machine builder's: set the option \
-                 `coolant_{}`",
-                format!("{wanted:?}").to_lowercase()
+                "the M code of the coolant `{name}` is the machine builder's: set the option \
+                 `coolant_{name}`"
             ));
         }
         self.coolant_on.set(true);
@@ -478,7 +478,7 @@ impl Heidenhain {
                 }
             }
             Some(other) => {
-                return Err(format!("this control has no feed like {other:?}"));
+                return Err(format!("this control has no feed like {other}"));
             }
         }
         self.block.end(out);

@@ -152,7 +152,7 @@ impl Tiny {
             Some(Feed::PerMinute(feed)) => {
                 self.block.number("F", feed, 1, NumberStyle::default());
             }
-            Some(other) => return Err(format!("this control has no feed like {other:?}")),
+            Some(other) => return Err(format!("this control has no feed like {other}")),
         }
         self.block.end(out);
         Ok(())

@@ -227,7 +227,7 @@ impl Engine {
             | Event::Position {
                 feed: Some(feed), ..
             } if !self.motion.has(feed) => {
-                return Err(format!("this control has no feed like {feed:?}"));
+                return Err(format!("this control has no feed like {feed}"));
             }
             Event::Compensate(Compensation::Left { .. } | Compensation::Right { .. })
                 if codes.compensation[1].is_empty() =>

@@ -85,7 +85,7 @@ impl ErrorModel for Sampled {
             match *option {
                 ("accuracy", Value::Number(accuracy)) => model.accuracy = accuracy,
                 ("samples", Value::Integer(samples)) => model.samples = samples as u32,
-                (key, value) => return Err(format!("option `{key}` cannot be {value:?}")),
+                (key, value) => return Err(format!("option `{key}` cannot be {value}")),
             }
         }
         Ok(model)

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::number;
-use super::probe::{Probe, named};
-use crate::description::Axis;
+use super::probe::named;
+use crate::description::{Axis, Machine};
 use crate::kinematics::Joint;
 use crate::kinematics::orientation::angle;
 
@@ -66,15 +66,15 @@ pub struct AxisLine {
 }
 
 impl Class {
-    pub(super) fn of(probe: &Probe<'_>) -> Self {
-        let machine = probe.machine();
+    /// What kind of machine it is.
+    pub fn of(machine: &Machine) -> Self {
         let rotary: Vec<usize> = (0..machine.axes.len())
             .filter(|place| machine.axes[*place].joint.rotary)
             .collect();
-        let (angles, distances) = between(probe, &rotary);
+        let (angles, distances) = between(machine, &rotary);
         Self {
             chain: sentence(&machine.axes),
-            name: name(probe, &rotary, &angles),
+            name: name(machine, &rotary, &angles),
             turn_the_tool: names(&machine.axes, |axis| axis.joint.rotary),
             carry_the_part: names(&machine.axes, |axis| axis.carries_part),
             carry_the_tool: names(&machine.axes, |axis| !axis.carries_part),
@@ -124,8 +124,7 @@ fn sentence(axes: &[Axis]) -> String {
     text
 }
 
-fn name(probe: &Probe<'_>, rotary: &[usize], angles: &[Between]) -> String {
-    let machine = probe.machine();
+fn name(machine: &Machine, rotary: &[usize], angles: &[Between]) -> String {
     let count = machine.axes.len();
     let number_word = [
         "no", "one", "two", "three", "four", "five", "six", "seven", "eight",
@@ -226,8 +225,7 @@ fn name(probe: &Probe<'_>, rotary: &[usize], angles: &[Between]) -> String {
 }
 
 /// Angles and distances from each rotary axis to the next, and from the last to the tool.
-fn between(probe: &Probe<'_>, rotary: &[usize]) -> (Vec<Between>, Vec<Between>) {
-    let machine = probe.machine();
+fn between(machine: &Machine, rotary: &[usize]) -> (Vec<Between>, Vec<Between>) {
     let (mut angles, mut distances) = (Vec::new(), Vec::new());
     let acute = |a: Vector3<f64>, b: Vector3<f64>| {
         let degrees = angle(a, b).to_degrees();

@@ -66,7 +66,7 @@ impl Check {
     /// What the chain lacks.
     pub fn of(machine: &Machine, length: f64) -> Result<Self, NoClosedForm> {
         let probe = Probe::new(machine, length)?;
-        let class = Class::of(&probe);
+        let class = Class::of(machine);
         let reach = Reach::of(&probe);
         let volume = Volume::of(&probe);
         let round_trip = RoundTrip::of(&probe);

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::GivenOption;
 use super::build::Builder;
 use super::file::{AccuracyFile, ControlPointFile, Method, Placement, Quantity};
-use crate::diagnostic::Place;
+use crate::diagnostic::{Place, Short};
 
 /// Tolerances and how they are kept.
 #[derive(Clone, Debug)]
@@ -70,7 +70,7 @@ impl Builder<'_> {
                 self.fault(
                     "machine-corner",
                     corner.span(),
-                    format!("corner is {value}; it must be 0 to 180 degrees"),
+                    format!("corner is {}; it must be 0 to 180 degrees", Short(value)),
                     "",
                 );
             }
@@ -114,7 +114,10 @@ impl Builder<'_> {
                 self.fault(
                     "machine-control-point",
                     radius.span(),
-                    format!("the radius of the cutting edge is {value}; it cannot be below zero"),
+                    format!(
+                        "the radius of the cutting edge is {}; it cannot be below zero",
+                        Short(value)
+                    ),
                     "",
                 );
             }
@@ -132,7 +135,7 @@ impl Builder<'_> {
             self.fault(
                 "machine-tolerance",
                 quantity.span(),
-                format!("{name} is {value}; it must be above zero"),
+                format!("{name} is {}; it must be above zero", Short(value)),
                 "",
             );
         }

@@ -9,6 +9,7 @@ use toml::Spanned;
 use super::build::Builder;
 use super::file::{AxisFile, MachineFile, Quantity};
 use super::{Axis, Clamp, Indexed, Positions};
+use crate::diagnostic::Short;
 use crate::kinematics::travel::{AT_END, passed};
 use crate::kinematics::{Joint, MAX_AXES, Second};
 
@@ -245,7 +246,7 @@ impl Builder<'_> {
                 this.fault(
                     "machine-axis",
                     quantity.span(),
-                    format!("{key} of {name} is {value}; it must be above zero"),
+                    format!("{key} of {name} is {}; it must be above zero", Short(value)),
                     "",
                 );
             }

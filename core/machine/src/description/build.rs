@@ -4,16 +4,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use nalgebra::Vector3;
-use serde::Deserialize;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue, Deserializer};
+use toml::de::{DeTable, DeValue};
 
 use super::file::{MachineFile, Quantity, Rapid, Tcp};
+use super::keys::typed;
 use super::layers::{Source, Sources, overlay};
 use super::options::take_options;
 use super::setting::Setting;
 use super::{Axis, Control, Frame, GivenOption, Head, Machine};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Place, Short};
 use crate::kinematics::NoClosedForm;
 
 /// Loads a machine: `source`, what it extends (found by `find`), and `settings`, the last of
@@ -124,11 +124,10 @@ fn read(mut table: Spanned<DeTable<'_>>, sources: &Sources) -> Result<Machine, V
     let mut faults = Vec::new();
     let control_options = take_options(&mut table, "control", sources, &mut faults);
     let model_options = take_options(&mut table, "accuracy", sources, &mut faults);
-    let file = match MachineFile::deserialize(Deserializer::from(table)) {
+    let file = match typed(table, sources) {
         Ok(file) => file,
-        Err(error) => {
-            let place = error.span().and_then(|span| sources.place(span));
-            faults.push(Diagnostic::error("machine-key", error.message()).at(place));
+        Err(mut keys) => {
+            faults.append(&mut keys);
             return Err(faults);
         }
     };
@@ -356,7 +355,7 @@ impl Builder<'_> {
                         self.fault(
                             "machine-tools",
                             length.span(),
-                            format!("tool {number} has the length {value}, below zero"),
+                            format!("tool {number} has the length {}, below zero", Short(value)),
                             "lengths go from the gauge point to the tip",
                         );
                     }

@@ -5,6 +5,8 @@ use toml::Spanned;
 use super::Axis;
 use super::build::Builder;
 use super::file::{EdgeSource, MachineFile, Pole, Quantity, RewindFile, Side};
+use super::keys::axes_are;
+use crate::diagnostic::Short;
 use crate::kinematics::Joints;
 use crate::kinematics::travel::passed;
 
@@ -224,7 +226,7 @@ impl Builder<'_> {
                 "machine-solution",
                 name.span(),
                 format!("the machine has no axis {}", name.get_ref()),
-                "",
+                &axes_are(axes),
             );
         }
         place
@@ -265,7 +267,7 @@ impl Builder<'_> {
             self.fault(
                 "machine-solution",
                 quantity.span(),
-                format!("{name} is {value}; it must be above zero"),
+                format!("{name} is {}; it must be above zero", Short(value)),
                 "",
             );
         }

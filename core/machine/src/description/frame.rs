@@ -5,8 +5,10 @@ use toml::Spanned;
 use super::build::Builder;
 use super::choice::FARTHEST;
 use super::file::{ControlFile, Positions as Said};
+use super::keys::axes_are;
 use super::{Axis, Machine};
 use crate::axis_words::is_depth;
+use crate::diagnostic::Short;
 use crate::kinematics::travel::passed;
 
 /// The positions of a machine around a program's moves.
@@ -109,7 +111,7 @@ impl Builder<'_> {
                     "machine-frame",
                     name.span(),
                     format!("the machine has no axis {}", name.get_ref()),
-                    "",
+                    &axes_are(&machine.axes),
                 );
                 continue;
             };
@@ -123,10 +125,11 @@ impl Builder<'_> {
                     "machine-travel",
                     value.span(),
                     format!(
-                        "{} cannot stand at {shown}: its travel is {} to {}",
+                        "{} cannot stand at {}: its travel is {} to {}",
                         axis.name,
-                        axis.reading(least),
-                        axis.reading(most)
+                        Short(shown),
+                        Short(axis.reading(least)),
+                        Short(axis.reading(most))
                     ),
                     "positions of [control] are in machine coordinates, as the control shows them",
                 );
@@ -135,7 +138,7 @@ impl Builder<'_> {
                 self.fault(
                     "machine-travel",
                     value.span(),
-                    format!("{} cannot stand at {shown}", axis.name),
+                    format!("{} cannot stand at {}", axis.name, Short(shown)),
                     "an endless axis stands within ten thousand turns of zero",
                 );
             }
@@ -144,8 +147,9 @@ impl Builder<'_> {
                     "machine-travel",
                     value.span(),
                     format!(
-                        "{} cannot stand at {shown}: it is none of its positions",
-                        axis.name
+                        "{} cannot stand at {}: it is none of its positions",
+                        axis.name,
+                        Short(shown)
                     ),
                     "",
                 );

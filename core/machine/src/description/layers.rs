@@ -8,6 +8,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
+use super::keys::meant;
 use super::setting::Setting;
 use crate::diagnostic::{Diagnostic, Place};
 
@@ -166,9 +167,10 @@ fn check_parameters(layer: &DeTable<'_>, merged: &DeTable<'_>) -> Result<(), Box
             "it has no [parameters]; any other key is set by its full name, such as accuracy.tolerance=0.001"
                 .to_owned()
         } else {
+            let names: Vec<&str> = known.iter().map(String::as_str).collect();
             format!(
-                "its parameters are {}; any other key is set by its full name, such as accuracy.tolerance=0.001",
-                known.join(", ")
+                "{}; any other key is set by its full name, such as accuracy.tolerance=0.001",
+                meant(&name, "its parameters are", &names)
             )
         };
         return Err(Diagnostic::error(

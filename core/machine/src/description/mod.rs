@@ -7,6 +7,7 @@ mod choice;
 mod cl_words;
 mod file;
 mod frame;
+mod keys;
 mod layers;
 mod numbers;
 mod options;

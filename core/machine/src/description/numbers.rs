@@ -7,6 +7,7 @@ use post_grammar::parse_expression;
 
 use super::build::Builder;
 use super::file::{Number, Quantity};
+use super::keys::meant;
 
 impl Builder<'_> {
     pub(super) fn vector(&mut self, quantities: &[Quantity; 3]) -> Vector3<f64> {
@@ -19,6 +20,9 @@ impl Builder<'_> {
         quantities: &[Quantity; 3],
     ) -> Option<Vector3<f64>> {
         let vector = self.vector(quantities);
+        if vector.iter().any(|part| part.is_nan()) {
+            return None;
+        }
         // Of any length: made one in two steps, so that squares stay finite.
         let largest = vector.amax();
         if largest > 1e-9 {
@@ -34,7 +38,7 @@ impl Builder<'_> {
         None
     }
 
-    /// The value; 0 and a fault if it has none.
+    /// The value; no number and a fault if it has none, so that what is said of numbers is not said of it too.
     pub(super) fn number(&mut self, quantity: &Quantity) -> f64 {
         match self.evaluate(quantity.get_ref(), 0) {
             Ok(value) if value.is_finite() => value,
@@ -45,13 +49,13 @@ impl Builder<'_> {
                     format!("{value} is no finite number"),
                     "",
                 );
-                0.0
+                f64::NAN
             }
             Err(message) => {
                 let known: Vec<&str> = self.parameters.keys().map(String::as_str).collect();
-                let help = format!("the parameters are: {}", known.join(", "));
+                let help = meant(&unknown(quantity, &known), "the parameters are", &known);
                 self.fault("machine-expression", quantity.span(), message, &help);
-                0.0
+                f64::NAN
             }
         }
     }
@@ -79,4 +83,18 @@ impl Builder<'_> {
             .evaluate(&|name| values.get(name).copied())
             .map_err(|fault| format!("{text}: {}", fault.message))
     }
+}
+
+/// The first name of an expression that is none of the `known` parameters; empty if there is none.
+fn unknown(quantity: &Quantity, known: &[&str]) -> String {
+    let Number::Expression(text) = quantity.get_ref() else {
+        return String::new();
+    };
+    parse_expression(text)
+        .ok()
+        .and_then(|expression| {
+            let mut names = expression.names().into_iter();
+            names.find(|name| !known.contains(name)).map(str::to_owned)
+        })
+        .unwrap_or_default()
 }

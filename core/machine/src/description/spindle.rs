@@ -2,7 +2,7 @@
 
 use super::build::Builder;
 use super::file::SpindleFile;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Short};
 
 /// The speeds that a spindle can turn at, rpm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ impl SpindleSpeeds {
     pub fn refuse(&self, rpm: f64) -> Option<Diagnostic> {
         // S has no decimals.
         if !(0.5..MOST).contains(&rpm) {
-            let message = format!("a spindle at {rpm} rpm is none");
+            let message = format!("a spindle at {} rpm is none", Short(rpm));
             return Some(
                 Diagnostic::error("spindle-speed", message)
                     .help("another speed in the CAM system, in revolutions a minute"),
@@ -43,8 +43,11 @@ impl SpindleSpeeds {
         } else {
             return None;
         };
-        let message =
-            format!("the spindle would turn at {rpm} rpm, its {end} speed is {limit} rpm");
+        let message = format!(
+            "the spindle would turn at {} rpm, its {end} speed is {} rpm",
+            Short(rpm),
+            Short(limit)
+        );
         let help = format!(
             "another speed in the CAM system; {key} of [spindle] in the machine file is the limit"
         );
@@ -62,7 +65,7 @@ impl Builder<'_> {
             let Some(quantity) = quantity else { continue };
             *speed = self.number(quantity);
             if *speed < 0.0 || (key == "max_speed" && *speed == 0.0) {
-                let message = format!("{key} is {speed} rpm");
+                let message = format!("{key} is {} rpm", Short(*speed));
                 self.fault(
                     "machine-spindle",
                     quantity.span(),
@@ -74,7 +77,8 @@ impl Builder<'_> {
         if let (Some(max), true) = (&file.max_speed, speeds.min > speeds.max) {
             let message = format!(
                 "the least speed, {} rpm, lies above the largest, {} rpm",
-                speeds.min, speeds.max
+                Short(speeds.min),
+                Short(speeds.max)
             );
             self.fault("machine-spindle", max.span(), message, "");
         }

@@ -138,20 +138,26 @@ const CHAIN: &str = "2 \"[w C' A' b Y X Z (S) t]\"";
 
 const SLIPS: &[Slip] = &[
     // Keys and syntax.
-    ("mount =", "mout =", "9 mout", "unknown field `mout`", false),
+    (
+        "mount =",
+        "mout =",
+        "9 mout",
+        "there is no key `mout`",
+        true,
+    ),
     (
         "tolerance =",
         "tolerence =",
         "49 tolerence",
-        "unknown field `tolerence`",
-        false,
+        "there is no key `tolerence`",
+        true,
     ),
     (
         "max_feed = 9000",
         "max_fed = 9000",
         "22 max_fed",
-        "unknown field `max_fed`",
-        false,
+        "there is no key `max_fed`",
+        true,
     ),
     (
         "half = \"Zc / 2\"",
@@ -180,8 +186,8 @@ const SLIPS: &[Slip] = &[
         "tcp = \"post\"",
         "tcp = \"posts\"",
         "43 \"posts\"",
-        "expected `control` or `post`",
-        false,
+        "there is no value `posts`",
+        true,
     ),
     (
         "program = 7",

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use post_grammar::{MajorWord, Usage};
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, Place, nearest};
 
 /// What to do with a word that is not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -107,9 +107,42 @@ impl WordCensus {
                         format!("{message}; written as a comment"),
                     ),
                 };
-                finding.at(Some(count.first.clone()))
+                let finding = finding.at(Some(count.first.clone()));
+                match (&finding.help, known(word)) {
+                    (None, Some(meant)) => finding.help(format!("did you mean {meant}?")),
+                    _ => finding,
+                }
             })
     }
+
+    /// A warning for each word of `--allow` that nobody knows and the file does not have: a slip.
+    pub(crate) fn slips(&self, allowed: &[String]) -> impl Iterator<Item = Diagnostic> {
+        let slip = |word: &&String| {
+            MajorWord::find(word).is_none()
+                && !self.counts.contains_key(*word)
+                && !self.allowed.keys().any(|(met, _)| met == *word)
+        };
+        allowed.iter().filter(slip).map(|word| {
+            let warning = Diagnostic::warning(
+                "allowed-word",
+                format!("--allow {word}: the file has no such word, and post knows none"),
+            );
+            match known(word) {
+                Some(meant) => warning.help(format!("did you mean {meant}?")),
+                None => warning,
+            }
+        })
+    }
+}
+
+/// The word of CL files that `word` was most likely meant to be.
+fn known(word: &str) -> Option<&'static str> {
+    nearest(
+        word,
+        MajorWord::all()
+            .iter()
+            .flat_map(|row| row.spellings.iter().copied()),
+    )
 }
 
 fn times(count: u64) -> String {

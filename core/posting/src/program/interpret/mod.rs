@@ -249,6 +249,8 @@ impl Interpreter {
         self.findings
             .extend(self.census.unknown(self.reading.unknown));
         self.findings.extend(self.census.allowed());
+        self.findings
+            .extend(self.census.slips(&self.reading.allowed));
     }
 
     fn other(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {

@@ -169,6 +169,17 @@ impl Interpreter {
             );
             return;
         }
+        if let Some(told) = self.reading.tool.take().filter(|told| *told != tool.number) {
+            self.fault(
+                record,
+                "tool",
+                format!(
+                    "the file loads tool {} itself, --tool says {told}",
+                    tool.number
+                ),
+                "leave --tool out: it is for a file that loads none",
+            );
+        }
         if !tool.rest.is_empty() {
             let rest: Vec<String> = tool
                 .rest

@@ -43,12 +43,14 @@ fn the_told_tool_is_loaded_before_anything_that_needs_it() {
         ),
         ("GOTO/1,2,3", "T5/5; F100 1,2,3"),
         (
-            "LOADTL/3;SPINDL/RPM,1000;GOTO/1,2,3",
-            "T3/3; S1000; F100 1,2,3",
+            "LOADTL/5;SPINDL/RPM,1000;GOTO/1,2,3",
+            "T5/5; S1000; F100 1,2,3",
         ),
     ] {
         assert_eq!(with_tool(text), (steps.to_owned(), String::new()), "{text}");
     }
+    let (_, findings) = with_tool("LOADTL/3;GOTO/1,2,3;LOADTL/4;GOTO/2,2,3");
+    assert_eq!(findings, "error tool");
 }
 
 /// Compensation that the tool change switches off again leaves the contour oversize by the radius.

@@ -4,17 +4,30 @@ use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+#[cfg(unix)]
+use std::sync::Arc;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use tempfile::NamedTempFile;
+use tempfile::{Builder, NamedTempFile};
 
 /// Paths of the temporary files that exist. A file is made, renamed and deleted with this locked, so that a signal finds
 /// every one, and never one that has its name already.
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+/// The paths, locked: a signal waits until it is let go.
+pub type Live = MutexGuard<'static, BTreeSet<PathBuf>>;
+
+/// Keeps signals waiting.
+pub fn live() -> Live {
     // A set of paths is whole whatever a thread died of.
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Names of temporary files: whoever finds one that a killed run left may delete it.
+pub fn builder() -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(".post-").suffix(".tmp");
+    builder
 }
 
 /// A temporary file. Dropped, it is deleted.
@@ -24,10 +37,26 @@ pub struct Temporary {
 }
 
 impl Temporary {
-    /// A new one in a folder.
-    pub fn new_in(folder: &Path) -> io::Result<Self> {
+    /// A new one in a folder, for its owner alone to read.
+    pub fn private(folder: &Path) -> io::Result<Self> {
+        Self::new(&builder(), folder)
+    }
+
+    /// A new one in a folder, with the rights that the system gives to new files there.
+    pub fn shared(folder: &Path) -> io::Result<Self> {
+        let mut builder = builder();
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // The system takes away what the umask says.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        Self::new(&builder, folder)
+    }
+
+    fn new(builder: &Builder<'_, '_>, folder: &Path) -> io::Result<Self> {
         let mut live = live();
-        let file = NamedTempFile::new_in(folder)?;
+        let file = builder.tempfile_in(folder)?;
         live.insert(file.path().to_owned());
         Ok(Self { file: Some(file) })
     }
@@ -38,18 +67,16 @@ impl Temporary {
         Ok(file.as_file())
     }
 
-    /// Gives it its name, in the place of whatever has it.
-    pub fn persist(mut self, target: &Path) -> io::Result<()> {
-        let Some(file) = self.file.take() else {
-            return Err(io::ErrorKind::NotFound.into());
-        };
-        let mut live = live();
-        let path = file.path().to_owned();
-        // The error holds the file, which is deleted with it.
-        let named = file.persist(target).map(drop).map_err(|fault| fault.error);
-        live.remove(&path);
-        // The name of the temporary file would only puzzle.
-        named.map_err(|error| error.kind().into())
+    /// Gives it its name, in the place of whatever has it. The guard keeps signals waiting.
+    pub fn persist(&mut self, live: &mut Live, target: &Path) -> io::Result<()> {
+        let file = self.file.take().ok_or(io::ErrorKind::NotFound)?;
+        live.remove(file.path());
+        // The error holds the file, which is deleted with it; its name would only puzzle.
+        let named = file.persist(target).map(drop);
+        named.map_err(|fault| match fault.error.raw_os_error() {
+            Some(code) => io::Error::from_raw_os_error(code),
+            None => fault.error.kind().into(),
+        })
     }
 }
 
@@ -85,15 +112,19 @@ impl Seek for Temporary {
     }
 }
 
-/// From here on SIGINT, SIGTERM and SIGHUP delete the temporary files before they end the command, with the exit code of shells:
-/// 128 and the signal's number.
+/// From here on a signal that ends the command (SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU) has the temporary files deleted
+/// first; the exit code is that of shells: 128 and the signal's number. A file that outgrows the limit of the shell is a
+/// fault of writing and no signal.
 #[cfg(unix)]
 pub fn delete_on_signals() {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGXFSZ};
+    use signal_hook::flag;
     use signal_hook::iterator::Signals;
 
+    // With a handler, whatever it does, writing fails with an error instead.
+    let _ = flag::register(SIGXFSZ, Arc::default());
     // Without a thread for it a signal ends the command as ever.
-    let Ok(mut signals) = Signals::new([SIGHUP, SIGINT, SIGTERM]) else {
+    let Ok(mut signals) = Signals::new([SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU]) else {
         return;
     };
     let waiting = move || {

@@ -7,6 +7,7 @@ use post_machine::description::{self, Machine, Setting, Source};
 use post_machine::diagnostic::Diagnostic;
 
 use crate::failure::Failure;
+use crate::files::read_files;
 
 /// Names and texts of the machines built in.
 const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.rs"));
@@ -74,6 +75,7 @@ fn find(name: &str, folders: &[PathBuf]) -> Result<Source, String> {
 
 fn read(path: &Path) -> Result<Source, String> {
     let bytes = fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    read_files::note("the machine file", path);
     let text = String::from_utf8(bytes).map_err(|_| {
         format!(
             "{}: a machine file is UTF-8 text, this is not",

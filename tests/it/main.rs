@@ -15,15 +15,18 @@ mod library;
 mod linuxcnc;
 #[cfg(target_os = "linux")]
 mod memory;
+mod messages;
 mod new;
 mod plugins;
 mod readiness;
 mod real_files;
 mod schema;
+mod settings;
 #[cfg(unix)]
 mod signals;
 mod snapshots;
 mod study;
+mod summary;
 mod words;
 mod writable;
 

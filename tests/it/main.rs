@@ -8,6 +8,7 @@ mod axes;
 mod check;
 mod command;
 mod common;
+mod files;
 mod frame;
 mod guide;
 mod library;

@@ -48,7 +48,7 @@ fn interrupted(folder: &Path, arguments: &[&str], files: usize, signal: &str) ->
 
 #[test]
 fn an_interrupted_command_leaves_no_temporary_file() {
-    for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
+    for (signal, code) in [("-INT", 130), ("-QUIT", 131), ("-TERM", 143)] {
         let folder = tempfile::tempdir().unwrap();
         let to_file = &[
             "-m",

@@ -106,3 +106,60 @@ fn put_back(named: Vec<Named>) -> Vec<(usize, Option<PathBuf>)> {
     }
     stuck
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+
+    use super::*;
+
+    fn text(folder: &Path, name: &str) -> (Temporary, PathBuf) {
+        let mut text = Temporary::private(folder).unwrap();
+        text.write_all(b"new").unwrap();
+        (text, folder.join(name))
+    }
+
+    fn contents(folder: &Path) -> Vec<(String, String)> {
+        let entries = fs::read_dir(folder).unwrap().map(Result::unwrap);
+        let mut contents: Vec<(String, String)> = entries
+            .map(|entry| {
+                let text = fs::read_to_string(entry.path()).unwrap_or_default();
+                (entry.file_name().into_string().unwrap(), text)
+            })
+            .collect();
+        contents.sort();
+        contents
+    }
+
+    #[test]
+    fn what_was_replaced_is_put_back_if_a_later_name_cannot_be_had() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        fs::write(folder.join("b"), "old").unwrap();
+        // A folder has taken the name in the meantime.
+        fs::create_dir(folder.join("c")).unwrap();
+        let before = contents(folder);
+        let mut texts: Vec<_> = ["a", "b", "c", "d"].map(|name| text(folder, name)).into();
+        let unnamed = name_all(&mut texts).unwrap_err();
+        assert_eq!((unnamed.index, unnamed.stuck), (2, Vec::new()));
+        drop(texts);
+        assert_eq!(contents(folder), before);
+        fs::remove_dir(folder.join("c")).unwrap();
+        let mut texts: Vec<_> = ["a", "b", "c", "d"].map(|name| text(folder, name)).into();
+        name_all(&mut texts).unwrap();
+        drop(texts);
+        let new = ["a", "b", "c", "d"].map(|name| (name.to_owned(), "new".to_owned()));
+        assert_eq!(contents(folder), new);
+    }
+
+    #[test]
+    fn two_names_that_turn_out_to_be_one_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        let mut texts: Vec<_> = ["a", "./a"].map(|name| text(folder, name)).into();
+        let unnamed = name_all(&mut texts).unwrap_err();
+        assert_eq!((unnamed.index, unnamed.stuck), (1, Vec::new()));
+        drop(texts);
+        assert_eq!(contents(folder), []);
+    }
+}

@@ -1,5 +1,6 @@
 //! What a run did to the user's files, for the last line of its messages.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What became of a text.
@@ -30,9 +31,18 @@ pub fn note(name: &str, became: Became) {
     }
 }
 
-/// What was written and what was not, as a sentence without its stop.
-pub fn sentence() -> String {
-    say(&texts())
+/// Something was printed for people.
+static PRINTED: AtomicBool = AtomicBool::new(false);
+
+/// Notes that something was printed for people, which is no text of its own.
+pub fn printed() {
+    PRINTED.store(true, Ordering::Relaxed);
+}
+
+/// What was written and what was not, as a sentence without its stop; none of a run that has printed what it is for.
+pub fn sentence() -> Option<String> {
+    let texts = texts();
+    (!texts.is_empty() || !PRINTED.load(Ordering::Relaxed)).then(|| say(&texts))
 }
 
 fn say(texts: &[(String, Became)]) -> String {

@@ -35,8 +35,9 @@ pub fn findings(findings: &[Diagnostic]) {
         } else {
             ""
         };
-        let outcome = outcome::sentence();
-        let _ = writeln!(stderr, "{errors} error{plural}{more}; {outcome}");
+        let outcome =
+            outcome::sentence().map_or_else(String::new, |outcome| format!("; {outcome}"));
+        let _ = writeln!(stderr, "{errors} error{plural}{more}{outcome}");
     }
 }
 

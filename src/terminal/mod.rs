@@ -10,7 +10,7 @@ pub use findings::findings;
 pub use progress::Progress;
 
 use crate::failure::Failure;
-use crate::files::FileFault;
+use crate::files::{FileFault, outcome};
 
 /// Why a result could not be printed: the first fault of the run.
 static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
@@ -22,12 +22,14 @@ pub fn print(text: &str) {
     let printed = stdout
         .write_all(text.as_bytes())
         .and_then(|()| stdout.flush());
-    if let Err(error) = printed
-        && error.kind() != io::ErrorKind::BrokenPipe
-    {
-        // The error is whole whatever a thread died of.
-        let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
-        unprinted.get_or_insert(error);
+    match printed {
+        Ok(()) => outcome::printed(),
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {}
+        Err(error) => {
+            // The error is whole whatever a thread died of.
+            let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
+            unprinted.get_or_insert(error);
+        }
     }
 }
 

@@ -38,25 +38,34 @@ impl AtomicFile {
     }
 
     fn begin(target: Target) -> Result<Self, FileFault> {
-        let file = match &target.place {
-            // What replaces a file has its rights at the end and must not be open to more readers until then.
+        // The names of temporary files would only puzzle: of a fault its kind alone is told.
+        let made = match &target.place {
             Place::File(path) if target.replaces => Temporary::private(folder(path)),
             Place::File(path) => Temporary::shared(folder(path)),
             // Nothing may be seen before all is good, and memory must not grow: it waits in a file.
             Place::Standard | Place::Stream(_) => {
                 let waiting = std::env::temp_dir();
-                let file = Temporary::private(&waiting);
-                // The name of the temporary file would only puzzle, here and below.
-                let file = file.map_err(|error| FileFault::NoWaiting {
+                let made = Temporary::private(&waiting);
+                let made = made.map_err(|error| FileFault::NoWaiting {
                     name: target.name.clone(),
                     folder: waiting,
                     error: error.kind().into(),
-                })?;
-                return Ok(Self::new(file, target));
+                });
+                return Ok(Self::new(made?, target));
             }
         };
-        let file =
-            file.map_err(|error| FileFault::write_named(&target.name, error.kind().into()))?;
+        let fault = |error: io::Error| FileFault::write_named(&target.name, error.kind().into());
+        let file = made.map_err(fault)?;
+        if let Place::File(path) = &target.place
+            && target.replaces
+        {
+            let open = file.as_file().map_err(fault)?;
+            rights::take_over(open, path).map_err(|error| FileFault::NotKept {
+                role: target.role,
+                name: target.name.clone(),
+                error,
+            })?;
+        }
         Ok(Self::new(file, target))
     }
 
@@ -96,7 +105,6 @@ impl AtomicFile {
                 Place::Stream(path) => streams.push((file, Some(path), target.name)),
                 Place::File(path) => {
                     let open = file.as_file().map_err(fault)?;
-                    rights::take_over(open, &path).map_err(fault)?;
                     open.sync_all().map_err(fault)?;
                     files.push((file, path));
                     names.push(target.name);

@@ -48,6 +48,15 @@ pub enum FileFault {
         /// What the system says.
         error: io::Error,
     },
+    /// Owner, group or rights of the file that a text would replace cannot be kept.
+    NotKept {
+        /// What the text is.
+        role: Role,
+        /// The file as the user named it.
+        name: String,
+        /// What the system says.
+        error: io::Error,
+    },
     /// A text would take the place of a file that the run reads.
     OverRead {
         /// What the text is.
@@ -126,6 +135,7 @@ impl FileFault {
             Self::OverRead { role, .. } | Self::OverWritten { role, .. } => {
                 Some(role.remedy.to_owned())
             }
+            Self::NotKept { role, .. } => Some(format!("delete it first, or {}", role.remedy)),
             Self::NoWaiting { .. } => {
                 Some("the environment variable TMPDIR names another folder".to_owned())
             }
@@ -137,9 +147,9 @@ impl FileFault {
 impl fmt::Display for FileFault {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Read { name, error } | Self::Write { name, error } => {
-                write!(formatter, "{name}: {error}")
-            }
+            Self::Read { name, error }
+            | Self::Write { name, error }
+            | Self::NotKept { name, error, .. } => write!(formatter, "{name}: {error}"),
             Self::ReadFolder(path) => {
                 write!(formatter, "{} is a folder, not a CL file", path.display())
             }

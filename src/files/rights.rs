@@ -19,21 +19,22 @@ pub fn take_over(file: &File, target: &Path) -> io::Result<()> {
     };
     let new = file.metadata()?;
     if (old.uid(), old.gid()) != (new.uid(), new.gid()) {
-        fchown(file, Some(old.uid()), Some(old.gid())).map_err(|error| {
-            let message = format!(
-                "its owner ({}) and group ({}) cannot be kept: {error}",
-                old.uid(),
-                old.gid()
-            );
-            io::Error::new(error.kind(), message)
-        })?;
+        let belongs = format!("it belongs to user {} and group {}", old.uid(), old.gid());
+        fchown(file, Some(old.uid()), Some(old.gid()))
+            .map_err(|error| not_kept(&format!("{belongs}, which"), error))?;
     }
-    access_list::take_over(file, target)?;
+    access_list::take_over(file, target).map_err(|error| not_kept("its access list", error))?;
     let rights = old.mode() & 0o777;
     if file.metadata()?.mode() & 0o7777 != rights {
-        file.set_permissions(Permissions::from_mode(rights))?;
+        let set = file.set_permissions(Permissions::from_mode(rights));
+        set.map_err(|error| not_kept(&format!("its rights ({rights:o})"), error))?;
     }
     Ok(())
+}
+
+#[cfg(unix)]
+fn not_kept(what: &str, error: io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("{what} cannot be kept: {error}"))
 }
 
 /// Rights of other systems come from the folder.

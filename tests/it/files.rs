@@ -460,6 +460,43 @@ mod rights {
     }
 
     #[test]
+    fn a_file_whose_owner_cannot_be_kept_is_not_replaced() {
+        let folder = workshop();
+        let target = folder.path().join("p.nc");
+        fs::write(&target, "old").unwrap();
+        set_mode(&target, 0o666);
+        set_mode(folder.path(), 0o777);
+        let nobody = ["--reuid", "65534", "--regid", "65534", "--clear-groups"];
+        let mut other = std::process::Command::new("setpriv");
+        other
+            .args(nobody)
+            .arg(env!("CARGO_BIN_EXE_post"))
+            .args(JOB)
+            .args(["-o", "p.nc"])
+            .current_dir(folder.path());
+        if chown(&target, Some(12_345), None).is_err() || other.output().is_err() {
+            println!("skipped: only root runs as other users");
+            return;
+        }
+        let done = run(&mut other, b"");
+        assert_eq!(done.code, 1, "{}", done.err);
+        assert_contains(
+            &done.err,
+            &[
+                "p.nc: it belongs to user 12345 and group",
+                "delete it first, or name another file with -o",
+                "nothing was written; p.nc is as it was",
+            ],
+        );
+        assert_eq!(fs::read_to_string(&target).unwrap(), "old");
+        assert!(
+            names(folder.path())
+                .iter()
+                .all(|name| !name.ends_with("tmp"))
+        );
+    }
+
+    #[test]
     fn a_file_that_is_protected_against_writing_is_not_replaced() {
         let folder = workshop();
         let target = folder.path().join("p.nc");

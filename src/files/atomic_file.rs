@@ -1,8 +1,10 @@
 //! A text in the making: a temporary file beside the target that takes its name at the end, or a stream.
 
-use std::fs::{self, OpenOptions};
+use std::fs::{self, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
 
 use post_posting::Output;
 
@@ -144,9 +146,7 @@ fn name_all(mut files: Vec<(Temporary, PathBuf)>, names: &[String]) -> Result<()
     // Of two runs that write the same files, one has both. Not every system can open or lock a folder.
     let folders: Vec<fs::File> = folders.iter().flat_map(fs::File::open).collect();
     if files.len() > 1 {
-        for folder in &folders {
-            let _ = folder.lock();
-        }
+        folders.iter().for_each(lock);
     }
     let named = naming::name_all(&mut files);
     let stuck: Vec<usize> = match &named {
@@ -174,6 +174,16 @@ fn name_all(mut files: Vec<(Temporary, PathBuf)>, names: &[String]) -> Result<()
                 .collect(),
         },
     )
+}
+
+/// Waits until no other run gives names in a folder, but not for ever: whoever else holds it may have other reasons.
+fn lock(folder: &fs::File) {
+    for _ in 0..100 {
+        if !matches!(folder.try_lock(), Err(TryLockError::WouldBlock)) {
+            return;
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
 }
 
 /// Writes a text to a pipe or a device; without a path to standard output.

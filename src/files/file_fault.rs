@@ -66,6 +66,13 @@ pub enum FileFault {
         /// What that file is, with its name.
         read: String,
     },
+    /// A text would replace the file that the shell adds standard output to.
+    OverAppended {
+        /// What the text is.
+        role: Role,
+        /// Where it would go, as the user named it.
+        name: String,
+    },
     /// Two texts of the run would go to one place.
     OverWritten {
         /// What the text is.
@@ -132,9 +139,9 @@ impl FileFault {
     /// What can be done about it.
     fn help(&self) -> Option<String> {
         match self {
-            Self::OverRead { role, .. } | Self::OverWritten { role, .. } => {
-                Some(role.remedy.to_owned())
-            }
+            Self::OverRead { role, .. }
+            | Self::OverAppended { role, .. }
+            | Self::OverWritten { role, .. } => Some(role.remedy.to_owned()),
             Self::NotKept { role, .. } => Some(format!("delete it first, or {}", role.remedy)),
             Self::NoWaiting { .. } => {
                 Some("the environment variable TMPDIR names another folder".to_owned())
@@ -177,6 +184,11 @@ impl fmt::Display for FileFault {
                 }
                 write!(formatter, ", which {name} is")
             }
+            Self::OverAppended { role, name } => write!(
+                formatter,
+                "the {} would overwrite {name}, which standard output is added to",
+                role.what
+            ),
             Self::OverWritten {
                 role,
                 name,

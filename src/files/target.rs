@@ -16,6 +16,14 @@ pub struct Role {
     pub remedy: &'static str,
 }
 
+impl Role {
+    /// An NC program.
+    pub const PROGRAM: Self = Self {
+        what: "program",
+        remedy: "name another file with -o",
+    };
+}
+
 /// What a text becomes at the end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
@@ -46,7 +54,7 @@ impl Target {
     /// # Errors
     /// No text can be written there.
     pub fn find(role: Role, named: &PathArg) -> Result<Self, FileFault> {
-        let place = place(named)?;
+        let place = place(role, named)?;
         Ok(Self {
             role,
             name: named.path().map_or_else(
@@ -78,10 +86,14 @@ pub fn refuse_losses(targets: &[&Target]) -> Result<(), FileFault> {
                 read,
             });
         }
-        let earlier = targets[..index].iter();
+        if target.place == Place::Stream(PathBuf::from("/dev/null")) {
+            // Nothing is lost where nothing is kept.
+            continue;
+        }
+        let mut earlier = targets[..index].iter();
         let same =
             |other: &&&Target| target.place == other.place || (id.is_some() && id == other.id());
-        if let Some(other) = earlier.clone().find(same) {
+        if let Some(other) = earlier.find(same) {
             return Err(FileFault::OverWritten {
                 role: target.role,
                 name: target.name.clone(),
@@ -93,7 +105,7 @@ pub fn refuse_losses(targets: &[&Target]) -> Result<(), FileFault> {
     Ok(())
 }
 
-fn place(named: &PathArg) -> Result<Place, FileFault> {
+fn place(role: Role, named: &PathArg) -> Result<Place, FileFault> {
     let (Some(path), Some(shown)) = (named.absolute(), named.path()) else {
         return Ok(Place::Standard);
     };
@@ -101,7 +113,17 @@ fn place(named: &PathArg) -> Result<Place, FileFault> {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => Err(FileFault::WriteFolder(shown.to_owned())),
         Ok(found) if is_disk(&found) => Err(FileFault::WriteDisk(shown.to_owned())),
-        Ok(found) if is_standard_output(path, &found) => Ok(Place::Standard),
+        Ok(found) if is_standard_output(path, &found) => {
+            // `-o FILE >> FILE`: replaced or added to? A program behind another one would be run as its end.
+            let by_name = path.starts_with("/dev") || path.starts_with("/proc");
+            if found.is_file() && found.len() > 0 && !by_name {
+                return Err(FileFault::OverAppended {
+                    role,
+                    name: shown.display().to_string(),
+                });
+            }
+            Ok(Place::Standard)
+        }
         Ok(found) if found.is_file() => {
             // A file that is protected against writing is not replaced either.
             OpenOptions::new().write(true).open(path).map_err(fault)?;

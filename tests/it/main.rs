@@ -21,6 +21,8 @@ mod new;
 mod plugins;
 mod readiness;
 mod real_files;
+#[cfg(unix)]
+mod rights;
 mod schema;
 mod settings;
 #[cfg(unix)]

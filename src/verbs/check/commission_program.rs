@@ -24,11 +24,6 @@ use crate::terminal::print;
 /// A remark longer than this is no longer read whole on a control's screen.
 const REMARK: usize = 58;
 
-const PROGRAM: Role = Role {
-    what: "program",
-    remedy: "name another file with -o",
-};
-
 /// Writes the program.
 pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
     let mut plain = machine.clone();
@@ -59,7 +54,7 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failur
     dialect
         .write_batch(&writer.batch, &mut text, &mut ends)
         .map_err(|fault| Diagnostic::error("dialect", fault.message))?;
-    let taken = files::write(&[(PROGRAM, &target, &text)])?;
+    let taken = files::write(&[(Role::PROGRAM, &target, &text)])?;
     if let Some(path) = target.path().filter(|_| !taken) {
         print(&format!(
             "{}: {} moves, one axis each. Run it without a part, with a hand on the feed override.\n",

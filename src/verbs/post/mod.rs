@@ -13,11 +13,6 @@ use crate::files::{self, AtomicFile, ClInput, PathArg, Role};
 use crate::job::{self, plugin_finder};
 use crate::terminal;
 
-const PROGRAM: Role = Role {
-    what: "program",
-    remedy: "name another file with -o",
-};
-
 const SUMMARY: Role = Role {
     what: "summary",
     remedy: "name another file with --summary",
@@ -57,7 +52,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let (mut model, model_use) = plugin_finder::model(&finder, &machine)?;
     let target = program_target(arguments, &dialect.format().extension);
     let input = ClInput::open(source)?;
-    let mut targets = vec![(PROGRAM, &target)];
+    let mut targets = vec![(Role::PROGRAM, &target)];
     targets.extend(arguments.summary.iter().map(|summary| (SUMMARY, summary)));
     // Both are opened before the work begins: a program without its summary would be half a result.
     let mut files = AtomicFile::create(&targets)?;

@@ -368,11 +368,16 @@ fn write(folder: &PathArg, files: &[File]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A folder in which files have the names of a study's without being of one is no place for a study.
+/// A file is no place for a study, nor is a folder in which files have the names of a study's without being of one.
 fn refuse_strangers(folder: &PathArg) -> Result<(), Failure> {
     let (Some(place), Some(named)) = (folder.absolute(), folder.path()) else {
         return Ok(());
     };
+    if place.exists() && !place.is_dir() {
+        let message = format!("{} is no folder", named.display());
+        let finding = Diagnostic::error("output", message);
+        return Err(finding.help(STUDY.remedy).into());
+    }
     let begins = |name: &str, with: &str| {
         let mut begin = Vec::new();
         let file = fs::File::open(place.join(name));

@@ -26,11 +26,13 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// What the program ends with, as `--help` documents it: 1 refused, 2 the command line is wrong.
+    /// What the program ends with, as `--help` documents it: 1 refused, 2 the command line is wrong, 141 the reader of a pipe went away.
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Usage(error) if error.use_stderr() => 2.into(),
             Self::Usage(_) => ExitCode::SUCCESS,
+            // What shells say of a command whose reader went away.
+            Self::File(FileFault::ReaderGone(_)) => 141.into(),
             Self::File(_) | Self::Unsolvable { .. } | Self::Refused(_) => 1.into(),
         }
     }

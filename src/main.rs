@@ -18,7 +18,8 @@ fn main() -> ExitCode {
     files::delete_on_signals();
     let done = CommandLine::try_parse()
         .map_err(Failure::Usage)
-        .and_then(CommandLine::run);
+        .and_then(CommandLine::run)
+        .and_then(|()| terminal::all_printed());
     let Err(failure) = done else {
         return ExitCode::SUCCESS;
     };

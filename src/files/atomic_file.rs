@@ -1,98 +1,128 @@
 //! A text in the making: a temporary file beside the target that takes its name at the end, or a stream.
 
-use std::fs::{self, OpenOptions};
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::fs::{self, OpenOptions, TryLockError};
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
 
 use post_posting::Output;
 
+use super::file_id::folder;
+use super::naming::{self, Unnamed};
+use super::outcome::{self, Became};
+use super::target::{Place, Role, Target, refuse_losses};
 use super::temporary::Temporary;
-use super::{FileFault, PathArg};
+use super::{FileFault, PathArg, rights};
 
-/// What a text becomes at the end.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Target {
-    /// Standard output.
-    Standard,
-    /// A pipe or a device: written to at the end, never replaced.
-    Stream(PathBuf),
-    /// A file, made or replaced whole.
-    File(PathBuf),
-}
-
-impl Target {
-    /// What stands at a path, or would. A link is followed, and stays.
-    pub fn of(target: &PathArg) -> Self {
-        let Some(path) = target.path() else {
-            return Self::Standard;
-        };
-        match fs::metadata(path) {
-            Ok(metadata) if metadata.is_file() => {
-                Self::File(path.canonicalize().unwrap_or_else(|_| path.to_owned()))
-            }
-            Ok(metadata) if !metadata.is_dir() => Self::Stream(path.to_owned()),
-            _ => Self::File(path.to_owned()),
-        }
-    }
-
-    /// Both are the same file.
-    pub fn is(&self, other: &Path) -> bool {
-        let Self::File(path) = self else {
-            return false;
-        };
-        match (path.canonicalize(), other.canonicalize()) {
-            (Ok(path), Ok(other)) => path == other,
-            _ => path == other,
-        }
-    }
-}
-
-/// A text in the making. Dropped without [`AtomicFile::finish`], it leaves nothing behind, nor if the command is
+/// A text in the making. Dropped before [`AtomicFile::finish`], it leaves nothing behind, nor if the command is
 /// interrupted.
 pub struct AtomicFile {
     file: BufWriter<Temporary>,
     target: Target,
-    /// The target as the user named it.
-    named: PathArg,
 }
 
 impl AtomicFile {
-    /// A text that will stand at `target`.
-    pub fn create(target: &PathArg) -> Result<Self, FileFault> {
-        let named = target.clone();
-        let target = Target::of(&named);
-        let file = match &target {
-            Target::File(path) => Temporary::new_in(folder(path)),
+    /// Texts that will stand at these targets.
+    ///
+    /// # Errors
+    /// One of them cannot be written, or would take the place of a file that is read, or of another one.
+    pub fn create(targets: &[(Role, &PathArg)]) -> Result<Vec<Self>, FileFault> {
+        let targets: Vec<Target> = targets
+            .iter()
+            .map(|(role, named)| Target::find(*role, named))
+            .collect::<Result<_, _>>()?;
+        for target in targets.iter().filter(|target| target.replaces) {
+            outcome::note(&target.name, Became::Kept);
+        }
+        refuse_losses(&targets.iter().collect::<Vec<_>>())?;
+        targets.into_iter().map(Self::begin).collect()
+    }
+
+    fn begin(target: Target) -> Result<Self, FileFault> {
+        // The names of temporary files would only puzzle: of a fault its kind alone is told.
+        let made = match &target.place {
+            Place::File(path) if target.replaces => Temporary::private(folder(path)),
+            Place::File(path) => Temporary::shared(folder(path)),
             // Nothing may be seen before all is good, and memory must not grow: it waits in a file.
-            Target::Standard | Target::Stream(_) => Temporary::new_in(&std::env::temp_dir()),
+            Place::Standard | Place::Stream(_) => {
+                let waiting = std::env::temp_dir();
+                let made = Temporary::private(&waiting);
+                let made = made.map_err(|error| FileFault::NoWaiting {
+                    name: target.name.clone(),
+                    folder: waiting,
+                    error: error.kind().into(),
+                });
+                return Ok(Self::new(made?, target));
+            }
         };
-        // The name of the temporary file would only puzzle.
-        let file = file.map_err(|error| FileFault::write(&named, error.kind().into()))?;
-        Ok(Self {
+        let fault = |error: io::Error| FileFault::write_named(&target.name, error.kind().into());
+        let file = made.map_err(fault)?;
+        if let Place::File(path) = &target.place
+            && target.replaces
+        {
+            let open = file.as_file().map_err(fault)?;
+            rights::take_over(open, path).map_err(|error| FileFault::NotKept {
+                role: target.role,
+                name: target.name.clone(),
+                error,
+            })?;
+        }
+        Ok(Self::new(file, target))
+    }
+
+    fn new(file: Temporary, target: Target) -> Self {
+        Self {
             file: BufWriter::with_capacity(1 << 16, file),
             target,
-            named,
-        })
+        }
+    }
+
+    /// It goes to standard output, where nothing else may stand then.
+    pub fn is_standard(&self) -> bool {
+        self.target.place == Place::Standard
     }
 
     /// Adds to the text.
     pub fn write_bytes(&mut self, text: &[u8]) -> Result<(), FileFault> {
         let written = self.file.write_all(text);
-        written.map_err(|error| FileFault::write(&self.named, error))
+        written.map_err(|error| FileFault::write_named(&self.target.name, error))
     }
 
-    /// Puts the text in its place.
-    pub fn finish(self) -> Result<(), FileFault> {
-        let named = self.named;
-        place(self.file, self.target).map_err(|error| FileFault::write(&named, error))
+    /// Puts the texts in their places: all of them, or none. What can be taken back comes last: first all texts are on
+    /// the disk, then pipes and devices are written to, then files take their names.
+    pub fn finish(texts: Vec<Self>) -> Result<(), FileFault> {
+        // A file may have been made since, and more be read.
+        refuse_losses(&texts.iter().map(|text| &text.target).collect::<Vec<_>>())?;
+        let mut streams = Vec::new();
+        let mut files = Vec::new();
+        let mut names = Vec::new();
+        for Self { file, target } in texts {
+            let fault = |error| FileFault::write_named(&target.name, error);
+            let file = file
+                .into_inner()
+                .map_err(|error| fault(error.into_error()))?;
+            match target.place {
+                Place::Standard => streams.push((file, None, target.name)),
+                Place::Stream(path) => streams.push((file, Some(path), target.name)),
+                Place::File(path) => {
+                    let open = file.as_file().map_err(fault)?;
+                    open.sync_all().map_err(fault)?;
+                    files.push((file, path));
+                    names.push(target.name);
+                }
+            }
+        }
+        for (file, path, name) in streams {
+            deliver(file, path.as_deref(), &name)?;
+        }
+        name_all(files, &names)
     }
 }
 
 impl Output for AtomicFile {
     fn write(&mut self, text: &[u8]) -> Result<(), String> {
-        self.file
-            .write_all(text)
-            .map_err(|error| format!("the program cannot be written: {error}"))
+        self.write_bytes(text).map_err(|fault| fault.to_string())
     }
 }
 
@@ -105,50 +135,116 @@ impl Output for NullSink {
     }
 }
 
-fn place(file: BufWriter<Temporary>, target: Target) -> io::Result<()> {
-    let mut file = file.into_inner().map_err(|fault| fault.into_error())?;
-    match target {
-        Target::Standard => copy(&mut file, &mut io::stdout().lock()),
-        Target::Stream(path) => copy(&mut file, &mut OpenOptions::new().write(true).open(path)?),
-        Target::File(path) => {
-            readable(&file, &path)?;
-            file.as_file()?.sync_all()?;
-            file.persist(&path)?;
-            // The new name is safe once its folder is on the disk; not every system can open a folder.
-            if let Ok(folder) = fs::File::open(folder(&path)) {
-                let _ = folder.sync_all();
+/// Files take their names.
+fn name_all(mut files: Vec<(Temporary, PathBuf)>, names: &[String]) -> Result<(), FileFault> {
+    let mut folders: Vec<PathBuf> = files
+        .iter()
+        .map(|(_, path)| folder(path).to_owned())
+        .collect();
+    folders.sort();
+    folders.dedup();
+    // Of two runs that write the same files, one has both. Not every system can open or lock a folder.
+    let folders: Vec<fs::File> = folders.iter().flat_map(fs::File::open).collect();
+    if files.len() > 1 {
+        folders.iter().for_each(lock);
+    }
+    let named = naming::name_all(&mut files);
+    let stuck: Vec<usize> = match &named {
+        Ok(()) => (0..names.len()).collect(),
+        Err(unnamed) => unnamed.stuck.iter().map(|(index, _)| *index).collect(),
+    };
+    for index in stuck {
+        outcome::note(&names[index], Became::Written);
+    }
+    for folder in &folders {
+        // A new name is safe once its folder is on the disk.
+        let _ = folder.sync_all();
+    }
+    named.map_err(
+        |Unnamed {
+             index,
+             error,
+             stuck,
+         }| FileFault::Named {
+            name: names[index].clone(),
+            error,
+            stuck: stuck
+                .into_iter()
+                .map(|(index, old)| (names[index].clone(), old))
+                .collect(),
+        },
+    )
+}
+
+/// Waits until no other run gives names in a folder, but not for ever: whoever else holds it may have other reasons.
+fn lock(folder: &fs::File) {
+    for _ in 0..100 {
+        if !matches!(folder.try_lock(), Err(TryLockError::WouldBlock)) {
+            return;
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
+/// Writes a text to a pipe or a device; without a path to standard output.
+fn deliver(mut file: Temporary, path: Option<&Path>, name: &str) -> Result<(), FileFault> {
+    let mut begun = false;
+    let copied = open(path).and_then(|mut to| copy(&mut file, &mut to, &mut begun));
+    let became = match copied {
+        Ok(()) => Some(Became::Written),
+        Err(_) if begun => Some(Became::Begun),
+        Err(_) => None,
+    };
+    if let Some(became) = became {
+        outcome::note(name, became);
+    }
+    copied.map_err(|error| match error.kind() {
+        io::ErrorKind::BrokenPipe => FileFault::ReaderGone(name.to_owned()),
+        _ => FileFault::write_named(name, error),
+    })
+}
+
+/// Copies by hand: after a fault it must be known whether anything got through.
+fn copy(from: &mut Temporary, to: &mut dyn Write, begun: &mut bool) -> io::Result<()> {
+    from.seek(SeekFrom::Start(0))?;
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        let length = from.read(&mut buffer)?;
+        let mut text = &buffer[..length];
+        if text.is_empty() {
+            return to.flush();
+        }
+        while !text.is_empty() {
+            match to.write(text) {
+                Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
+                Ok(written) => {
+                    *begun = true;
+                    text = &text[written..];
+                }
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
             }
-            Ok(())
         }
     }
 }
 
-fn copy(file: &mut Temporary, to: &mut dyn Write) -> io::Result<()> {
-    file.seek(SeekFrom::Start(0))?;
-    match io::copy(file, to).and_then(|_| to.flush()) {
-        // A reader that has seen enough is no fault.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        done => done,
+/// Opens a pipe or a device; without a path standard output.
+fn open(path: Option<&Path>) -> io::Result<Box<dyn Write>> {
+    match path {
+        Some(path) => Ok(Box::new(OpenOptions::new().write(true).open(path)?)),
+        None => standard_output(),
     }
 }
 
-/// A temporary file is for its owner alone; the program gets the rights of the file it replaces, or the usual ones.
+/// Standard output without the buffer, in which a text would seem to have got through.
 #[cfg(unix)]
-fn readable(file: &Temporary, target: &Path) -> io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    let mode = fs::metadata(target).map_or(0o644, |metadata| metadata.permissions().mode());
-    file.as_file()?
-        .set_permissions(fs::Permissions::from_mode(mode))
+fn standard_output() -> io::Result<Box<dyn Write>> {
+    use std::os::fd::AsFd;
+    let own = io::stdout().as_fd().try_clone_to_owned()?;
+    Ok(Box::new(fs::File::from(own)))
 }
 
 #[cfg(not(unix))]
-fn readable(_: &Temporary, _: &Path) -> io::Result<()> {
-    Ok(())
-}
-
-fn folder(target: &Path) -> &Path {
-    match target.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    }
+fn standard_output() -> io::Result<Box<dyn Write>> {
+    Ok(Box::new(io::stdout()))
 }

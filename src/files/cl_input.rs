@@ -3,7 +3,8 @@
 use std::fs::File;
 use std::io::{self, Read};
 
-use super::{FileFault, PathArg};
+use super::file_id::FileId;
+use super::{FileFault, PathArg, read_files};
 
 /// A CL file that is read, and what is known of it.
 pub struct ClInput {
@@ -16,23 +17,33 @@ pub struct ClInput {
 }
 
 impl ClInput {
-    /// Opens a CL file.
+    /// Opens a CL file. Nothing is written to it from here on.
     pub fn open(source: &PathArg) -> Result<Self, FileFault> {
-        let Some(path) = source.path() else {
+        let (Some(path), Some(named)) = (source.absolute(), source.path()) else {
+            if let Some(id) = FileId::of_standard_input() {
+                read_files::note_id(id, "the CL file on standard input".to_owned());
+            }
             return Ok(Self {
                 name: "standard input".to_owned(),
                 bytes: Box::new(io::stdin().lock()),
                 length: None,
             });
         };
-        let fault = |error| FileFault::read(path, error);
+        let fault = |error| FileFault::read(named, error);
         let file = File::open(path).map_err(fault)?;
         let metadata = file.metadata().map_err(fault)?;
         if metadata.is_dir() {
-            return Err(FileFault::ReadFolder(path.to_owned()));
+            return Err(FileFault::ReadFolder(named.to_owned()));
+        }
+        let name = named.display().to_string();
+        // A terminal is read from and written to.
+        if metadata.is_file()
+            && let Ok(id) = FileId::of(path)
+        {
+            read_files::note_id(id, format!("the CL file {name}"));
         }
         Ok(Self {
-            name: path.display().to_string(),
+            name,
             bytes: Box::new(file),
             length: metadata.is_file().then_some(metadata.len()),
         })

@@ -1,25 +1,57 @@
-//! Files: CL files read, texts written whole or not at all.
+//! Files: CL files read, texts written whole or not at all, and never over a file that is read.
+//!
+//! Several texts of a run take their names together or not at all. Whatever reads a file of the user's notes it in
+//! [`read_files`]; whatever is written goes through [`AtomicFile`].
 
 mod atomic_file;
 mod cl_input;
 mod file_fault;
+mod file_id;
+mod naming;
+pub mod outcome;
 mod path_arg;
+pub mod read_files;
+mod rights;
 pub mod svg;
+mod target;
 mod temporary;
 
-use std::path::Path;
+use std::fs;
+
+use target::{Target, refuse_losses};
 
 pub use atomic_file::{AtomicFile, NullSink};
 pub use cl_input::ClInput;
 pub use file_fault::FileFault;
 pub use path_arg::PathArg;
+pub use target::Role;
 pub use temporary::delete_on_signals;
 
-/// Writes a text whole, or not at all.
-pub fn write(target: &PathArg, text: &[u8]) -> Result<(), FileFault> {
-    let mut file = AtomicFile::create(target)?;
-    file.write_bytes(text)?;
-    file.finish()
+/// Writes texts whole: all of them, or none. Standard output is taken if one of them went there.
+pub fn write(texts: &[(Role, &PathArg, &str)]) -> Result<bool, FileFault> {
+    let targets: Vec<(Role, &PathArg)> = texts
+        .iter()
+        .map(|(role, target, _)| (*role, *target))
+        .collect();
+    let mut files = AtomicFile::create(&targets)?;
+    for (file, (_, _, text)) in files.iter_mut().zip(texts) {
+        file.write_bytes(text.as_bytes())?;
+    }
+    let taken = files.iter().any(AtomicFile::is_standard);
+    AtomicFile::finish(files)?;
+    Ok(taken)
+}
+
+/// Deletes the file that a text would replace, if there is one; of a link the link alone.
+pub fn remove(role: Role, named: &PathArg) -> Result<(), FileFault> {
+    let target = Target::find(role, named)?;
+    refuse_losses(&[&target])?;
+    match named.absolute() {
+        Some(path) if target.replaces => {
+            fs::remove_file(path).map_err(|error| FileFault::write(named, error))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A value as JSON, for programs to read.
@@ -27,9 +59,4 @@ pub fn json(value: &impl serde::Serialize) -> String {
     let mut text = serde_json::to_string_pretty(value).unwrap_or_default();
     text.push('\n');
     text
-}
-
-/// Writing to `target` would replace the file `other`.
-pub fn would_replace(target: &PathArg, other: &Path) -> bool {
-    atomic_file::Target::of(target).is(other)
 }

@@ -1,6 +1,6 @@
 //! A path on the command line, where `-` is standard input or output.
 
-use std::path::{Path, PathBuf};
+use std::path::{self, Path, PathBuf};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
@@ -10,7 +10,12 @@ pub enum PathArg {
     /// `-`: standard input or standard output.
     Standard,
     /// A file, a pipe or a device.
-    Path(PathBuf),
+    Path {
+        /// As the user named it.
+        named: PathBuf,
+        /// Where that was when the command line was read: a plugin may change the folder that the command works in.
+        absolute: PathBuf,
+    },
 }
 
 impl PathArg {
@@ -19,16 +24,19 @@ impl PathArg {
         PathBufValueParser::new().map(Self::from)
     }
 
-    /// It is `-`.
-    pub fn is_standard(&self) -> bool {
-        *self == Self::Standard
-    }
-
-    /// The path, unless it is `-`.
+    /// The path as the user named it, for messages; none for `-`.
     pub fn path(&self) -> Option<&Path> {
         match self {
             Self::Standard => None,
-            Self::Path(path) => Some(path),
+            Self::Path { named, .. } => Some(named),
+        }
+    }
+
+    /// The path that is opened, whatever folder the command works in by now; none for `-`.
+    pub fn absolute(&self) -> Option<&Path> {
+        match self {
+            Self::Standard => None,
+            Self::Path { absolute, .. } => Some(absolute),
         }
     }
 
@@ -37,14 +45,26 @@ impl PathArg {
         let stem = self.path()?.file_stem()?;
         Some(stem.to_string_lossy().into_owned())
     }
+
+    /// The same path, changed by `change`; `-` stays what it is.
+    pub fn map(&self, change: impl Fn(&Path) -> PathBuf) -> Self {
+        match self {
+            Self::Standard => Self::Standard,
+            Self::Path { named, absolute } => Self::Path {
+                named: change(named),
+                absolute: change(absolute),
+            },
+        }
+    }
 }
 
 impl From<PathBuf> for PathArg {
-    fn from(path: PathBuf) -> Self {
-        if path == Path::new("-") {
-            Self::Standard
-        } else {
-            Self::Path(path)
+    fn from(named: PathBuf) -> Self {
+        if named == Path::new("-") {
+            return Self::Standard;
         }
+        // It fails where the folder was deleted under the command: opening the path then says so.
+        let absolute = path::absolute(&named).unwrap_or_else(|_| named.clone());
+        Self::Path { named, absolute }
     }
 }

@@ -4,17 +4,30 @@ use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+#[cfg(unix)]
+use std::sync::Arc;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use tempfile::NamedTempFile;
+use tempfile::{Builder, NamedTempFile};
 
 /// Paths of the temporary files that exist. A file is made, renamed and deleted with this locked, so that a signal finds
 /// every one, and never one that has its name already.
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+/// The paths, locked: a signal waits until it is let go.
+pub type Live = MutexGuard<'static, BTreeSet<PathBuf>>;
+
+/// Keeps signals waiting.
+pub fn live() -> Live {
     // A set of paths is whole whatever a thread died of.
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Names of temporary files: whoever finds one that a killed run left may delete it.
+pub fn builder() -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(".post-").suffix(".tmp");
+    builder
 }
 
 /// A temporary file. Dropped, it is deleted.
@@ -24,10 +37,26 @@ pub struct Temporary {
 }
 
 impl Temporary {
-    /// A new one in a folder.
-    pub fn new_in(folder: &Path) -> io::Result<Self> {
+    /// A new one in a folder, for its owner alone to read.
+    pub fn private(folder: &Path) -> io::Result<Self> {
+        Self::new(&builder(), folder)
+    }
+
+    /// A new one in a folder, with the rights that the system gives to new files there.
+    pub fn shared(folder: &Path) -> io::Result<Self> {
+        let mut builder = builder();
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // The system takes away what the umask says.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        Self::new(&builder, folder)
+    }
+
+    fn new(builder: &Builder<'_, '_>, folder: &Path) -> io::Result<Self> {
         let mut live = live();
-        let file = NamedTempFile::new_in(folder)?;
+        let file = builder.tempfile_in(folder)?;
         live.insert(file.path().to_owned());
         Ok(Self { file: Some(file) })
     }
@@ -38,18 +67,16 @@ impl Temporary {
         Ok(file.as_file())
     }
 
-    /// Gives it its name, in the place of whatever has it.
-    pub fn persist(mut self, target: &Path) -> io::Result<()> {
-        let Some(file) = self.file.take() else {
-            return Err(io::ErrorKind::NotFound.into());
-        };
-        let mut live = live();
-        let path = file.path().to_owned();
-        // The error holds the file, which is deleted with it.
-        let named = file.persist(target).map(drop).map_err(|fault| fault.error);
-        live.remove(&path);
-        // The name of the temporary file would only puzzle.
-        named.map_err(|error| error.kind().into())
+    /// Gives it its name, in the place of whatever has it. The guard keeps signals waiting.
+    pub fn persist(&mut self, live: &mut Live, target: &Path) -> io::Result<()> {
+        let file = self.file.take().ok_or(io::ErrorKind::NotFound)?;
+        live.remove(file.path());
+        // The error holds the file, which is deleted with it; its name would only puzzle.
+        let named = file.persist(target).map(drop);
+        named.map_err(|fault| match fault.error.raw_os_error() {
+            Some(code) => io::Error::from_raw_os_error(code),
+            None => fault.error.kind().into(),
+        })
     }
 }
 
@@ -85,15 +112,25 @@ impl Seek for Temporary {
     }
 }
 
-/// From here on SIGINT, SIGTERM and SIGHUP delete the temporary files before they end the command, with the exit code of shells:
-/// 128 and the signal's number.
+/// From here on a signal that ends the command (SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU) has the temporary files deleted
+/// first; the exit code is that of shells: 128 and the signal's number. A file that outgrows the limit of the shell is a
+/// fault of writing and no signal.
 #[cfg(unix)]
 pub fn delete_on_signals() {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGXFSZ};
+    use signal_hook::flag;
     use signal_hook::iterator::Signals;
 
+    // With a handler, whatever it does, writing fails with an error instead.
+    let _ = flag::register(SIGXFSZ, Arc::default());
+    // A command that shall outlast its terminal (`nohup`) stays deaf to what it was told to ignore.
+    let ignored = ignored();
+    let ending = [SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU];
+    let heard = ending
+        .iter()
+        .filter(|signal| ignored >> (**signal - 1) & 1 == 0);
     // Without a thread for it a signal ends the command as ever.
-    let Ok(mut signals) = Signals::new([SIGHUP, SIGINT, SIGTERM]) else {
+    let Ok(mut signals) = Signals::new(heard) else {
         return;
     };
     let waiting = move || {
@@ -110,6 +147,16 @@ pub fn delete_on_signals() {
     let _ = std::thread::Builder::new()
         .name("signals".to_owned())
         .spawn(waiting);
+}
+
+/// The signals that whoever started the command has told it to ignore, a bit each from that of signal 1 up; none where the
+/// system does not say.
+#[cfg(unix)]
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .unwrap_or(0)
 }
 
 /// Other systems end the command without asking; what it leaves lies in the folder of the target.

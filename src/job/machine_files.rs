@@ -8,6 +8,7 @@ use post_machine::description::{self, Machine, Setting, Source};
 use post_machine::diagnostic::{Diagnostic, nearest};
 
 use crate::failure::Failure;
+use crate::files::read_files;
 
 /// Names and texts of the machines built in.
 const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.rs"));
@@ -112,6 +113,7 @@ fn read(path: &Path) -> Result<Source, Missing> {
         help: None,
     };
     let bytes = fs::read(path).map_err(|error| fault(error.to_string()))?;
+    read_files::note("the machine file", path);
     let text = String::from_utf8(bytes)
         .map_err(|_| fault("a machine file is UTF-8 text, this is not".to_owned()))?;
     Ok(Source {

@@ -13,12 +13,15 @@ use post_plugin::{Accuracy, Tolerance, Units};
 use post_posting::report::PluginUse;
 
 use super::folders;
-use crate::files::PathArg;
+use crate::files::{PathArg, read_files};
 
 /// The finder for a run, with the folders that the user `named`.
 pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
     let folders = folders(named, "POST_PLUGINS");
     missing(named)?;
+    for folder in &folders {
+        read_files::note_libraries(folder);
+    }
     let linked = post_stock::plugins()
         .iter()
         .copied()

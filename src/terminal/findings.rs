@@ -5,6 +5,8 @@ use std::io::{IsTerminal, Write};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 
+use crate::files::outcome;
+
 /// Longest line shown whole; of a longer one the part around the fault is shown.
 const WIDEST: usize = 200;
 
@@ -33,7 +35,9 @@ pub fn findings(findings: &[Diagnostic]) {
         } else {
             ""
         };
-        let _ = writeln!(stderr, "{errors} error{plural}{more}; nothing was written");
+        let outcome =
+            outcome::sentence().map_or_else(String::new, |outcome| format!("; {outcome}"));
+        let _ = writeln!(stderr, "{errors} error{plural}{more}{outcome}");
     }
 }
 

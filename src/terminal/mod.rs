@@ -4,15 +4,42 @@ mod findings;
 mod progress;
 
 use std::io::{self, Write as _};
+use std::sync::{Mutex, PoisonError};
 
 pub use findings::findings;
 pub use progress::Progress;
 
 use crate::failure::Failure;
+use crate::files::{FileFault, outcome};
 
-/// Prints a result to standard output; a reader that has seen enough closes the pipe.
+/// Why a result could not be printed: the first fault of the run.
+static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
+
+/// Prints a result to standard output. A reader that has seen enough closes the pipe; any other fault is told by
+/// [`all_printed`] at the end.
 pub fn print(text: &str) {
-    let _ = io::stdout().lock().write_all(text.as_bytes());
+    let mut stdout = io::stdout().lock();
+    let printed = stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush());
+    match printed {
+        Ok(()) => outcome::printed(),
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {}
+        Err(error) => {
+            // The error is whole whatever a thread died of.
+            let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
+            unprinted.get_or_insert(error);
+        }
+    }
+}
+
+/// All results were printed.
+pub fn all_printed() -> Result<(), Failure> {
+    let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
+    match unprinted.take() {
+        Some(error) => Err(FileFault::write_named("standard output", error).into()),
+        None => Ok(()),
+    }
 }
 
 /// Prints what is no result to standard error, such as questions; a closed one leaves nobody to tell.

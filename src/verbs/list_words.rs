@@ -1,7 +1,6 @@
 //! `post words`: every word of a CL file, or every word that is known, and what becomes of it.
 
 use std::collections::BTreeMap;
-use std::io::{self, Write};
 
 use clap::Args;
 use post_grammar::{MajorWord, ReadError, Reader, Usage};
@@ -9,6 +8,7 @@ use post_machine::diagnostic::unreadable;
 
 use crate::failure::Failure;
 use crate::files::{ClInput, FileFault, PathArg};
+use crate::terminal::print;
 
 /// Prints every word of a CL file: how often, and what becomes of it; without a file every word that is known.
 ///
@@ -60,17 +60,25 @@ pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
     }
     let mut rows: Vec<_> = words.into_iter().collect();
     rows.sort_by(|a, b| b.1.0.cmp(&a.1.0).then_with(|| a.0.cmp(&b.0)));
-    line(format!(
-        "{:<26} {:>9}  {:<10} {}",
-        "word", "times", "becomes", "first on line"
-    ));
+    let mut text = String::new();
+    line(
+        &mut text,
+        &format!(
+            "{:<26} {:>9}  {:<10} {}",
+            "word", "times", "becomes", "first on line"
+        ),
+    );
     for (word, (count, first, usage)) in rows {
         if arguments.unknown_only && !matches!(usage, Usage::Unknown | Usage::Refused) {
             continue;
         }
         let becomes = usage.name();
-        line(format!("{word:<26} {count:>9}  {becomes:<10} {first}"));
+        line(
+            &mut text,
+            &format!("{word:<26} {count:>9}  {becomes:<10} {first}"),
+        );
     }
+    print(&text);
     if faults.is_empty() {
         Ok(())
     } else {
@@ -80,15 +88,23 @@ pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
 
 /// Prints every word that is known, with its spellings.
 fn print_all() {
-    line(format!("{:<32} {:<10} {}", "word", "becomes", "meaning"));
+    let mut text = String::new();
+    line(
+        &mut text,
+        &format!("{:<32} {:<10} {}", "word", "becomes", "meaning"),
+    );
     for word in MajorWord::all() {
         let spellings = word.spellings.join(" = ");
         let becomes = word.usage.name();
-        line(format!("{spellings:<32} {becomes:<10} {}", word.meaning));
+        line(
+            &mut text,
+            &format!("{spellings:<32} {becomes:<10} {}", word.meaning),
+        );
     }
+    print(&text);
 }
 
-fn line(text: String) {
-    // A reader that has seen enough closes the pipe.
-    let _ = writeln!(io::stdout(), "{}", text.trim_end());
+fn line(text: &mut String, line: &str) {
+    text.push_str(line.trim_end());
+    text.push('\n');
 }

@@ -43,8 +43,9 @@ use test_plugin::PluginArguments;
   post study part.cls --machine ac-trunnion
   post plugin test target/release/libpost_mine.so
 
-Exit codes: 0 the program is written; 1 refused, the messages say why; 2 the command line is wrong;
-130, 143 interrupted.",
+Exit codes: 0 the program is written; 1 refused, the messages say why, and what was written nevertheless;
+2 the command line is wrong; 128 and a signal's number: interrupted, or (141) whoever reads the program
+from standard output went away before its end.",
     max_term_width = 100
 )]
 pub struct CommandLine {

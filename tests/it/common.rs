@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use serde_json::Value;
+use tempfile::TempDir;
 
 /// A sample on a machine that can make it.
 pub struct Case {
@@ -154,6 +155,36 @@ pub fn run(command: &mut Command, input: &[u8]) -> Run {
         code: output.status.code().unwrap(),
         out: String::from_utf8(output.stdout).unwrap(),
         err: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// A small good file.
+pub const GOOD: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/100,MMPM\nGOTO/0,0,10\nGOTO/20,0,10,0,0.1736482,0.9848078\nEND\nFINI\n";
+
+/// A folder with a CL file in it.
+pub fn with_file(name: &str, text: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join(name), text).unwrap();
+    folder
+}
+
+/// Runs in a folder that has no machine files of its own.
+pub fn post_in(folder: &Path, arguments: &[&str]) -> Run {
+    run(command().current_dir(folder).args(arguments), b"")
+}
+
+/// Posts a text to standard output.
+pub fn post_text(arguments: &[&str], text: &str) -> Run {
+    let mut all = vec!["-o", "-"];
+    all.extend(arguments);
+    all.push("-");
+    run(command().args(all), text.as_bytes())
+}
+
+#[track_caller]
+pub fn assert_contains(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "`{part}` is not in:\n{text}");
     }
 }
 

@@ -8,6 +8,7 @@ mod axes;
 mod check;
 mod command;
 mod common;
+mod files;
 mod frame;
 mod guide;
 mod library;
@@ -15,16 +16,21 @@ mod library;
 mod linuxcnc;
 #[cfg(target_os = "linux")]
 mod memory;
+mod messages;
 mod names;
 mod new;
 mod plugins;
 mod readiness;
 mod real_files;
+#[cfg(unix)]
+mod rights;
 mod schema;
+mod settings;
 #[cfg(unix)]
 mod signals;
 mod snapshots;
 mod study;
+mod summary;
 mod words;
 mod writable;
 

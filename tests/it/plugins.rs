@@ -35,7 +35,7 @@ const MODELS: [&[&str]; 3] = [
 
 /// The library that cargo built for a plugin: beside this test, or one folder up; with a hash in its name
 /// if cargo gave it one.
-fn built(name: &str) -> PathBuf {
+pub fn built(name: &str) -> PathBuf {
     let this = std::env::current_exe().unwrap();
     let deps = this.parent().unwrap();
     let plain = format!("{DLL_PREFIX}post_{name}{DLL_SUFFIX}");

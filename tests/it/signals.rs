@@ -20,8 +20,14 @@ fn until(what: &str, mut done: impl FnMut() -> bool) {
     }
 }
 
-fn interrupted(folder: &Path, arguments: &[&str], files: usize, signal: &str) -> Option<i32> {
-    let mut child: Child = command()
+fn interrupted(
+    mut command: Command,
+    folder: &Path,
+    arguments: &[&str],
+    files: usize,
+    signals: &[&str],
+) -> Option<i32> {
+    let mut child: Child = command
         .args(arguments)
         .current_dir(folder)
         // What goes to standard output waits in a file, too.
@@ -37,10 +43,12 @@ fn interrupted(folder: &Path, arguments: &[&str], files: usize, signal: &str) ->
     until("the temporary files are there", || {
         names(folder).len() == files
     });
-    let kill = Command::new("kill")
-        .args([signal, &child.id().to_string()])
-        .status();
-    assert!(kill.unwrap().success());
+    for signal in signals {
+        let kill = Command::new("kill")
+            .args([*signal, &child.id().to_string()])
+            .status();
+        assert!(kill.unwrap().success());
+    }
     let code = child.wait().unwrap().code();
     drop(stdin);
     code
@@ -48,7 +56,7 @@ fn interrupted(folder: &Path, arguments: &[&str], files: usize, signal: &str) ->
 
 #[test]
 fn an_interrupted_command_leaves_no_temporary_file() {
-    for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
+    for (signal, code) in [("-INT", 130), ("-QUIT", 131), ("-TERM", 143)] {
         let folder = tempfile::tempdir().unwrap();
         let to_file = &[
             "-m",
@@ -59,10 +67,22 @@ fn an_interrupted_command_leaves_no_temporary_file() {
             "--summary",
             "s.json",
         ];
-        let found = interrupted(folder.path(), to_file, 2, signal);
+        let found = interrupted(command(), folder.path(), to_file, 2, &[signal]);
         assert_eq!((found, names(folder.path())), (Some(code), Vec::new()));
         let to_stream = &["-m", "ac-trunnion", "-", "-o", "-"];
-        let found = interrupted(folder.path(), to_stream, 1, signal);
+        let found = interrupted(command(), folder.path(), to_stream, 1, &[signal]);
         assert_eq!((found, names(folder.path())), (Some(code), Vec::new()));
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_command_that_shall_outlast_its_terminal_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut shell = Command::new("sh");
+    let script = "trap '' HUP; exec \"$0\" \"$@\"";
+    shell.args(["-c", script, env!("CARGO_BIN_EXE_post")]);
+    let arguments = &["-m", "ac-trunnion", "-", "-o", "part.nc"];
+    let found = interrupted(shell, folder.path(), arguments, 1, &["-HUP", "-TERM"]);
+    assert_eq!((found, names(folder.path())), (Some(143), Vec::new()));
 }

@@ -6,7 +6,7 @@
 //! the axes stand at the start, which the operator sets to zero there, so the program cannot go anywhere that he
 //! has not seen.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use post_machine::axis_words;
 use post_machine::check::{Commission, Probe, Sign, Trial, number};
@@ -15,9 +15,9 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{Batch, DialectSession, Event, Feed, Format};
 
-use super::{CheckArguments, refuse_to_overwrite_machine};
+use super::CheckArguments;
 use crate::failure::Failure;
-use crate::files::{self, PathArg};
+use crate::files::{self, PathArg, Role};
 use crate::job::plugin_finder;
 use crate::terminal::print;
 
@@ -34,11 +34,14 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failur
     })?;
     let order = axis_words::order(&plain);
     let plan = Commission::of(&probe, &order);
+    let beside = PathArg::from(PathBuf::from("commission"));
     let finder = plugin_finder::finder(&arguments.plugins)?;
     let name = arguments.output.as_ref().and_then(PathArg::stem);
     let name = name.unwrap_or_else(|| "COMMISSION".to_owned());
     let (mut dialect, _) = plugin_finder::dialect(&finder, &plain, &name, None)?;
-    let target = target(arguments, &dialect.format().extension)?;
+    let extension = dialect.format().extension.clone();
+    let beside = || beside.map(|path| path.with_extension(&extension));
+    let target = arguments.output.clone().unwrap_or_else(beside);
     let mut writer = Writer {
         machine: &plain,
         order: &order,
@@ -51,8 +54,8 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failur
     dialect
         .write_batch(&writer.batch, &mut text, &mut ends)
         .map_err(|fault| Diagnostic::error("dialect", fault.message))?;
-    files::write(&target, text.as_bytes())?;
-    if let Some(path) = target.path() {
+    let taken = files::write(&[(Role::PROGRAM, &target, &text)])?;
+    if let Some(path) = target.path().filter(|_| !taken) {
         print(&format!(
             "{}: {} moves, one axis each. Run it without a part, with a hand on the feed override.\n",
             path.display(),
@@ -60,16 +63,6 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failur
         ));
     }
     Ok(())
-}
-
-/// Where the program goes.
-fn target(arguments: &CheckArguments, extension: &str) -> Result<PathArg, Failure> {
-    let target = match &arguments.output {
-        Some(target) => target.clone(),
-        None => Path::new("commission").with_extension(extension).into(),
-    };
-    refuse_to_overwrite_machine(arguments, &target)?;
-    Ok(target)
 }
 
 /// A blank that a line is not broken at.

@@ -4,7 +4,7 @@ mod check_text;
 mod commission_program;
 mod reach_picture;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use post_machine::check::{Differing, compare};
@@ -13,9 +13,19 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::arguments::flag_values;
 use crate::failure::Failure;
-use crate::files::{self, PathArg};
+use crate::files::{self, PathArg, Role};
 use crate::job::{self, machine_files};
 use crate::terminal::{self, print};
+
+const PICTURE: Role = Role {
+    what: "picture",
+    remedy: "name another file with --svg",
+};
+
+const JSON: Role = Role {
+    what: "JSON",
+    remedy: "name another file with --json",
+};
 
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
 ///
@@ -84,10 +94,6 @@ pub struct CheckArguments {
 
 /// Checks as the arguments say.
 pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
-    if arguments.svg.is_some() && arguments.svg == arguments.json {
-        let message = "picture and JSON cannot go to one place";
-        return Err(Diagnostic::error("output", message).into());
-    }
     let machine = machine(arguments)?;
     if arguments.commission {
         return commission_program::write(arguments, &machine);
@@ -101,14 +107,11 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
 /// What one machine file means.
 fn alone(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
     let check = job::derive(machine, arguments.tool_length)?;
-    if let Some(target) = &arguments.svg {
-        write(arguments, target, &reach_picture::draw(&check))?;
-    }
+    let picture = arguments.svg.as_ref().map(|_| reach_picture::draw(&check));
+    let json = arguments.json.as_ref().map(|_| files::json(&check));
+    let taken = write(arguments, picture, json)?;
     terminal::findings(&check.findings());
-    if let Some(target) = &arguments.json {
-        write(arguments, target, &files::json(&check))?;
-    }
-    if standard_output_is_taken(arguments) {
+    if taken {
         return Ok(());
     }
     print(&check_text::check(&check));
@@ -133,10 +136,8 @@ fn with_nominal(
     let nominal = machine_files::load(nominal, &arguments.machines, &mount)?;
     let compared =
         compare(machine, &nominal, arguments.tool_length).map_err(|fault| differing(&fault))?;
-    if let Some(target) = &arguments.json {
-        write(arguments, target, &files::json(&compared))?;
-    }
-    if !standard_output_is_taken(arguments) {
+    let json = arguments.json.as_ref().map(|_| files::json(&compared));
+    if !write(arguments, None, json)? {
         print(&check_text::comparison(&compared));
     }
     Ok(())
@@ -186,31 +187,26 @@ fn differing(fault: &Differing) -> Diagnostic {
     }
 }
 
-/// Standard output is for a picture or for JSON, so nothing else is printed there.
-fn standard_output_is_taken(arguments: &CheckArguments) -> bool {
-    let to = |target: &Option<PathArg>| target == &Some(PathArg::Standard);
-    to(&arguments.svg) || to(&arguments.json)
-}
-
-/// Writes a text whole, or not at all; never over the machine file.
-fn write(arguments: &CheckArguments, target: &PathArg, text: &str) -> Result<(), Failure> {
-    refuse_to_overwrite_machine(arguments, target)?;
-    Ok(files::write(target, text.as_bytes())?)
-}
-
-/// Refuses to write over a machine file that is read.
-fn refuse_to_overwrite_machine(
+/// Writes picture and JSON, those that are asked for: both or none. True if standard output is taken by one of them, so that
+/// nothing else is printed there.
+fn write(
     arguments: &CheckArguments,
-    target: &PathArg,
-) -> Result<(), Failure> {
-    let Some(path) = target.path() else {
-        return Ok(());
+    picture: Option<String>,
+    json: Option<String>,
+) -> Result<bool, Failure> {
+    let of = |role, target: &'_ Option<PathArg>, text: Option<String>| {
+        target
+            .clone()
+            .zip(text)
+            .map(|(target, text)| (role, target, text))
     };
-    let read = [Some(&arguments.machine), arguments.nominal.as_ref()];
-    let mut read = read.into_iter().flatten();
-    if read.any(|name| files::would_replace(target, Path::new(name))) {
-        let message = format!("{} is the machine file that is checked", path.display());
-        return Err(Diagnostic::error("output", message).into());
-    }
-    Ok(())
+    let texts = [
+        of(PICTURE, &arguments.svg, picture),
+        of(JSON, &arguments.json, json),
+    ];
+    let texts = texts.iter().flatten();
+    let texts: Vec<_> = texts
+        .map(|(role, target, text)| (*role, target, text.as_str()))
+        .collect();
+    Ok(files::write(&texts)?)
 }

@@ -12,8 +12,14 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::arguments::flag_values::{self, TcpWord, UnitsWord, finite, word};
 use crate::failure::Failure;
-use crate::{files, job, terminal};
+use crate::files::{self, Role};
+use crate::{job, terminal};
 use template::Class;
+
+const MACHINE: Role = Role {
+    what: "machine file",
+    remedy: "give it another name",
+};
 
 /// Writes a machine file that `post check` accepts, with a remark on each value that says what to measure.
 ///
@@ -143,7 +149,7 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
         Err(format!("there is no machine {parent}"))
     })?;
     let checked = job::derive(&machine, 0.0)?;
-    files::write(&path.clone().into(), text.as_bytes())?;
+    files::write(&[(MACHINE, &path.clone().into(), &text)])?;
     terminal::findings(&checked.findings());
     terminal::print(&format!(
         "{}: {}\nMeasure what its remarks ask for, then: post check {}\n",

@@ -2,18 +2,21 @@
 
 mod summary;
 
-use std::path::Path;
-
 use clap::Args;
-use post_machine::diagnostic::{Diagnostic, Severity};
+use post_machine::diagnostic::Severity;
 use post_plugin::DialectSession;
 use post_posting::{Job, Post};
 
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
-use crate::files::{self, AtomicFile, ClInput, FileFault, PathArg};
+use crate::files::{self, AtomicFile, ClInput, PathArg, Role};
 use crate::job::{self, plugin_finder};
 use crate::terminal;
+
+const SUMMARY: Role = Role {
+    what: "summary",
+    remedy: "name another file with --summary",
+};
 
 #[derive(Debug, Args)]
 pub struct PostArguments {
@@ -47,16 +50,18 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let (mut dialect, dialect_use) =
         plugin_finder::dialect(&finder, &machine, &program, Some(source))?;
     let (mut model, model_use) = plugin_finder::model(&finder, &machine)?;
-    let target = program_target(arguments, &dialect.format().extension)?;
-    let summary = summary_file(arguments, &target)?;
+    let target = program_target(arguments, &dialect.format().extension);
     let input = ClInput::open(source)?;
-    let mut file = AtomicFile::create(&target)?;
+    let mut targets = vec![(Role::PROGRAM, &target)];
+    targets.extend(arguments.summary.iter().map(|summary| (SUMMARY, summary)));
+    // Both are opened before the work begins: a program without its summary would be half a result.
+    let mut files = AtomicFile::create(&targets)?;
     let name = input.name.clone();
     let job = Job {
         trust_model: arguments.trust_model,
         ..job::posting(&arguments.job, &name)
     };
-    let mut post = Post::new(&machine, job, &mut dialect, &mut model, &mut file)
+    let mut post = Post::new(&machine, job, &mut dialect, &mut model, &mut files[0])
         .map_err(|finding| *finding)?;
     job::read(input, &mut post)?;
     let (report, findings) = post.finish();
@@ -64,21 +69,21 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         return Err(findings.into());
     };
     report.plugins = vec![dialect_use, model_use];
-    file.finish()?;
+    if let Some(summary) = files.get_mut(1) {
+        summary.write_bytes(files::json(&report).as_bytes())?;
+    }
+    // Standard output is for a program or for JSON, alone there.
+    let taken = files.iter().any(AtomicFile::is_standard);
+    AtomicFile::finish(files)?;
     debug_assert!(
         findings
             .iter()
             .all(|finding| finding.severity == Severity::Warning)
     );
     terminal::findings(&findings);
-    if let Some(mut summary) = summary {
-        summary.write_bytes(files::json(&report).as_bytes())?;
-        summary.finish()?;
-    }
     if !arguments.quiet {
         let text = summary::text(&report, &name, &target);
-        // Standard output is for a program or for JSON, alone there.
-        if [Some(&target), arguments.summary.as_ref()].contains(&Some(&PathArg::Standard)) {
+        if taken {
             terminal::tell(&text);
         } else {
             terminal::print(&text);
@@ -88,49 +93,10 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
 }
 
 /// Where the program goes.
-fn program_target(arguments: &PostArguments, extension: &str) -> Result<PathArg, Failure> {
-    let source = arguments.job.input().path();
-    let target = match (&arguments.output, source) {
-        (Some(target), _) => target.clone(),
-        (None, Some(source)) => source.with_extension(extension).into(),
-        (None, None) => PathArg::Standard,
+fn program_target(arguments: &PostArguments, extension: &str) -> PathArg {
+    let beside = || {
+        let source = arguments.job.input();
+        source.map(|path| path.with_extension(extension))
     };
-    if let Some(source) = source
-        && files::would_replace(&target, source)
-    {
-        return Err(Diagnostic::error(
-            "output",
-            format!(
-                "the program would overwrite the CL file {}",
-                source.display()
-            ),
-        )
-        .help("name another file with -o")
-        .into());
-    }
-    match target.path() {
-        Some(path) if path.is_dir() => Err(FileFault::WriteFolder(path.to_owned()).into()),
-        _ => Ok(target),
-    }
-}
-
-/// The summary's file, opened before the work begins: a program without its summary would be half a result.
-fn summary_file(
-    arguments: &PostArguments,
-    program: &PathArg,
-) -> Result<Option<AtomicFile>, Failure> {
-    let Some(target) = &arguments.summary else {
-        return Ok(None);
-    };
-    let replaces =
-        |other: Option<&Path>| other.is_some_and(|other| files::would_replace(target, other));
-    if target != program && !replaces(arguments.job.input().path()) && !replaces(program.path()) {
-        return Ok(Some(AtomicFile::create(target)?));
-    }
-    let message = match target.path() {
-        None => "program and summary cannot both go to standard output".to_owned(),
-        Some(path) => format!("the summary would overwrite {}", path.display()),
-    };
-    let finding = Diagnostic::error("output", message);
-    Err(finding.help("name another file with --summary").into())
+    arguments.output.clone().unwrap_or_else(beside)
 }

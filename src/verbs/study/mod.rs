@@ -12,6 +12,7 @@ mod study_text;
 mod sweep;
 
 use std::fs;
+use std::io::Read as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -25,11 +26,16 @@ use post_study::{Distribution, Keeper, Kept, Row, Survey};
 
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
-use crate::files::{self, FileFault};
+use crate::files::{self, FileFault, PathArg, Role};
 use crate::job::plugin_finder;
 use crate::terminal;
 use dry_run::DryRun;
 use sweep::{Sweep, Swept};
+
+const STUDY: Role = Role {
+    what: "study",
+    remedy: "name another folder with -o",
+};
 
 /// Moves before and behind the one that is looked at, in the pictures that show several.
 const AROUND: usize = 4;
@@ -128,6 +134,7 @@ pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
     let dry_run = DryRun::new(&arguments.job, arguments.exact)?;
     let machine = dry_run.machine(&[])?;
     let folder = folder(arguments);
+    refuse_strangers(&folder)?;
     let (names, mut models) = models(&dry_run, &machine)?;
     let (surveyed, findings) = survey(&dry_run, &machine, &names, &mut models)?;
     let Surveyed {
@@ -157,17 +164,20 @@ pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
     let mut files = study_csv::files(&study);
     files.extend(pictures::files(&study, &mut models));
     write(&folder, &files)?;
-    terminal::print(&study_text::text(&study, &folder, &files));
+    let shown = folder.path().unwrap_or(Path::new("."));
+    terminal::print(&study_text::text(&study, shown, &files));
     Ok(())
 }
 
-fn folder(arguments: &StudyArguments) -> PathBuf {
-    arguments.output.clone().unwrap_or_else(|| {
-        let source = arguments.job.input();
-        let stem = source.stem().unwrap_or_default();
-        let beside = source.path().unwrap_or(Path::new(""));
-        beside.with_file_name(format!("{stem}-study"))
-    })
+fn folder(arguments: &StudyArguments) -> PathArg {
+    arguments.output.clone().map_or_else(
+        || {
+            let source = arguments.job.input();
+            let stem = source.stem().unwrap_or_default();
+            source.map(|path| path.with_file_name(format!("{stem}-study")))
+        },
+        PathArg::from,
+    )
 }
 
 /// Opens the models that are compared.
@@ -336,18 +346,56 @@ fn programs(dry_run: &DryRun<'_>, models: &[String]) -> Result<Vec<Program>, Fai
 /// A file of the study: its name and its text.
 pub type File = (&'static str, String);
 
-fn write(folder: &Path, files: &[File]) -> Result<(), Failure> {
-    fs::create_dir_all(folder).map_err(|error| FileFault::write_at(folder, error))?;
+/// Writes all files, or none.
+fn write(folder: &PathArg, files: &[File]) -> Result<(), Failure> {
+    let place = folder.absolute().unwrap_or(Path::new("."));
+    let texts: Vec<(PathArg, &str)> = files
+        .iter()
+        .map(|(name, text)| (folder.map(|folder| folder.join(name)), text.as_str()))
+        .collect();
+    let texts: Vec<(Role, &PathArg, &str)> = texts
+        .iter()
+        .map(|(target, text)| (STUDY, target, *text))
+        .collect();
+    fs::create_dir_all(place).map_err(|error| FileFault::write(folder, error))?;
+    files::write(&texts)?;
     // What an earlier study left here, and this one does not write, would be taken for its result.
     let names = study_csv::NAMES.iter().chain(&pictures::NAMES);
     for name in names.filter(|name| files.iter().all(|(written, _)| written != *name)) {
-        let path = folder.join(name);
-        if path.exists() {
-            fs::remove_file(&path).map_err(|error| FileFault::write(&path.into(), error))?;
-        }
-    }
-    for (name, text) in files {
-        files::write(&folder.join(name).into(), text.as_bytes())?;
+        let path = folder.map(|folder| folder.join(name));
+        files::remove(STUDY, &path)?;
     }
     Ok(())
+}
+
+/// A file is no place for a study, nor is a folder in which files have the names of a study's without being of one.
+fn refuse_strangers(folder: &PathArg) -> Result<(), Failure> {
+    let (Some(place), Some(named)) = (folder.absolute(), folder.path()) else {
+        return Ok(());
+    };
+    if place.exists() && !place.is_dir() {
+        let message = format!("{} is no folder", named.display());
+        let finding = Diagnostic::error("output", message);
+        return Err(finding.help(STUDY.remedy).into());
+    }
+    let begins = |name: &str, with: &str| {
+        let mut begin = Vec::new();
+        let file = fs::File::open(place.join(name));
+        let read = file.and_then(|file| file.take(with.len() as u64).read_to_end(&mut begin));
+        read.is_ok() && begin == with.as_bytes()
+    };
+    if begins("moves.csv", study_csv::BEGIN) {
+        return Ok(());
+    }
+    let mut names = study_csv::NAMES.iter().chain(&pictures::NAMES);
+    let Some(name) = names.find(|name| place.join(name).exists()) else {
+        return Ok(());
+    };
+    let path = named.join(name);
+    let message = format!(
+        "the study would overwrite {}, which is of no study",
+        path.display()
+    );
+    let finding = Diagnostic::error("output", message);
+    Err(finding.help(STUDY.remedy).into())
 }

@@ -11,6 +11,9 @@ use super::{File, Study};
 /// The files that there can be.
 pub const NAMES: [&str; 4] = ["moves.csv", "summary.csv", "blocks.csv", "sweep.csv"];
 
+/// What the table of moves begins with.
+pub const BEGIN: &str = "move,cl_line,length_mm,turn_deg,peak_um,peak_at,edge_um,axis_deg";
+
 /// All tables.
 pub fn files(study: &Study) -> Vec<File> {
     let mut files = vec![
@@ -26,7 +29,7 @@ pub fn files(study: &Study) -> Vec<File> {
 
 /// Every move.
 fn moves(study: &Study) -> String {
-    let mut text = "move,cl_line,length_mm,turn_deg,peak_um,peak_at,edge_um,axis_deg".to_owned();
+    let mut text = BEGIN.to_owned();
     for name in &study.models {
         for column in [
             "peak_um",

@@ -1,0 +1,101 @@
+//! What a run did to the user's files, for the last line of its messages.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What became of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Became {
+    /// Nothing, and the file that was there before is as it was.
+    Kept,
+    /// A part of it has gone to a pipe or a device and cannot be taken back.
+    Begun,
+    /// It stands in its place.
+    Written,
+}
+
+/// Texts by their names, of the whole run.
+static TEXTS: Mutex<Vec<(String, Became)>> = Mutex::new(Vec::new());
+
+fn texts() -> MutexGuard<'static, Vec<(String, Became)>> {
+    // A list is whole whatever a thread died of.
+    TEXTS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Notes what became of the text that is called `name`.
+pub fn note(name: &str, became: Became) {
+    let mut texts = texts();
+    match texts.iter_mut().find(|(known, _)| known == name) {
+        Some((_, old)) => *old = became,
+        None => texts.push((name.to_owned(), became)),
+    }
+}
+
+/// Something was printed for people.
+static PRINTED: AtomicBool = AtomicBool::new(false);
+
+/// Notes that something was printed for people, which is no text of its own.
+pub fn printed() {
+    PRINTED.store(true, Ordering::Relaxed);
+}
+
+/// What was written and what was not, as a sentence without its stop; none of a run that has printed what it is for.
+pub fn sentence() -> Option<String> {
+    let texts = texts();
+    (!texts.is_empty() || !PRINTED.load(Ordering::Relaxed)).then(|| say(&texts))
+}
+
+fn say(texts: &[(String, Became)]) -> String {
+    let named = |wanted: Became| -> Option<(String, usize)> {
+        let names = texts.iter().filter(|(_, became)| *became == wanted);
+        let names: Vec<&str> = names.map(|(name, _)| name.as_str()).collect();
+        let (last, others) = names.split_last()?;
+        let list = match others {
+            [] => (*last).to_owned(),
+            others => format!("{} and {last}", others.join(", ")),
+        };
+        Some((list, names.len()))
+    };
+    let mut parts = Vec::new();
+    if let Some((names, count)) = named(Became::Written) {
+        parts.push(format!("{names} {} written", plural(count, "is", "are")));
+    }
+    if let Some((names, _)) = named(Became::Begun) {
+        parts.push(format!("a part went to {names}"));
+    }
+    if parts.is_empty() {
+        parts.push("nothing was written".to_owned());
+    }
+    if let Some((names, count)) = named(Became::Kept) {
+        let was = plural(count, "is as it was", "are as they were");
+        parts.push(format!("{names} {was}"));
+    }
+    parts.join("; ")
+}
+
+fn plural<'a>(count: usize, one: &'a str, several: &'a str) -> &'a str {
+    if count == 1 { one } else { several }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sentence_is_true() {
+        let text = |name: &str, became| (name.to_owned(), became);
+        assert_eq!(say(&[]), "nothing was written");
+        let kept = [text("a.nc", Became::Kept)];
+        assert_eq!(say(&kept), "nothing was written; a.nc is as it was");
+        let all = [
+            text("a.nc", Became::Kept),
+            text("b.json", Became::Kept),
+            text("pipe", Became::Begun),
+            text("c.nc", Became::Written),
+        ];
+        assert_eq!(
+            say(&all),
+            "c.nc is written; a part went to pipe; a.nc and b.json are as they were"
+        );
+    }
+}

@@ -2,11 +2,13 @@
 
 mod findings;
 mod progress;
+mod quantity;
 
 use std::io::{self, Write as _};
 
 pub use findings::findings;
 pub use progress::Progress;
+pub use quantity::{clock, number};
 
 use crate::failure::Failure;
 

@@ -10,3 +10,4 @@ pub mod check;
 pub mod description;
 pub mod diagnostic;
 pub mod kinematics;
+pub mod place;

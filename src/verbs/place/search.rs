@@ -335,7 +335,7 @@ impl<'s, 'a> Search<'s, 'a> {
                     -tight.room
                 ),
             )
-            .help("--search-turn looks for a turn of the part that fits; else a shorter tool, or a machine with more travel")
+            .help(self.else_turned("a shorter tool, or a machine with more travel"))
         } else {
             Diagnostic::error(
                 "place",
@@ -352,15 +352,24 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
+    /// What helps where no mount does: a turn, unless that was searched, and `other`.
+    fn else_turned(&self, other: &str) -> String {
+        if self.arguments.search_turn.is_some() {
+            return format!("no turn of the part that was tried fits either: {other}");
+        }
+        format!("--search-turn looks for a turn of the part about its Z that fits; else {other}")
+    }
+
     /// Nothing fits.
     fn refuse(&self, nothing: Option<Nothing>, present: Option<Vec<Diagnostic>>) -> Failure {
         match nothing {
             Some(Nothing::Short(finding)) => finding.into(),
             Some(Nothing::Anywhere(mut findings)) => {
                 let message = "no mount helps: a rotary axis cannot point the tool as the file asks, wherever the part sits";
-                findings.push(Diagnostic::error("place", message).help(
-                    "--search-turn looks for a turn of the part about its Z that fits; else another set-up or machine",
-                ));
+                findings.push(
+                    Diagnostic::error("place", message)
+                        .help(self.else_turned("another set-up or machine")),
+                );
                 findings.into()
             }
             Some(Nothing::Refused(findings)) if findings.is_empty() => {

@@ -372,11 +372,19 @@ impl<'s, 'a> Search<'s, 'a> {
                 );
                 findings.into()
             }
-            Some(Nothing::Refused(findings)) if findings.is_empty() => {
-                present.unwrap_or_default().into()
+            Some(Nothing::Refused(findings)) if !findings.is_empty() => findings.into(),
+            _ => {
+                let mut findings = present.unwrap_or_default();
+                let message = format!(
+                    "no mount was found in {} dry runs that leaves {} mm to every end of travel",
+                    self.trials.runs,
+                    self.margin()
+                );
+                findings.push(
+                    Diagnostic::error("place", message).help("a smaller --margin, or more --runs"),
+                );
+                findings.into()
             }
-            Some(Nothing::Refused(findings)) => findings.into(),
-            None => present.unwrap_or_default().into(),
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Mounts put to the proof: the whole file posted there, its text thrown away.
 
 use nalgebra::Vector3;
-use post_machine::description::{Machine, Setting, Side};
+use post_machine::description::{Axis, Machine, Setting, Side};
 use post_machine::diagnostic::{Diagnostic, Severity};
+use post_machine::kinematics::Second;
 use post_machine::place::{End, HalfSpace, opened};
 use post_posting::MountBounds;
 use post_posting::report::Report;
@@ -100,20 +101,24 @@ impl<'a> Trials<'a> {
             Err(Failure::Refused(findings)) => return Ok(Err(findings)),
             Err(failure) => return Err(failure),
         };
-        let rotary = |name: &str| {
+        let known = |name: &str| {
             let heads = machine.heads.iter().map(|head| &head.machine);
-            let mut axes = heads.chain([&machine]).flat_map(|machine| &machine.axes);
-            axes.any(|axis| axis.joint.rotary && axis.name == name)
+            let machines = [&machine].into_iter().chain(heads);
+            let axes =
+                machines.flat_map(|machine| machine.axes.iter().map(move |axis| (machine, axis)));
+            axes.into_iter().find(|(_, axis)| axis.name == name)
         };
-        let (turning, sliding): (Vec<_>, Vec<_>) =
-            report.axes.iter().partition(|axis| rotary(&axis.name));
+        let rotary = |name: &str| known(name).is_some_and(|(_, axis)| axis.joint.rotary);
+        let turning = report.axes.iter().filter(|axis| rotary(&axis.name));
         let cost = match self.least {
             Least::Time => report.time_s,
-            Least::Rotary => turning.iter().map(|axis| axis.way).sum(),
+            Least::Rotary => turning.map(|axis| axis.way).sum(),
         };
-        let left = sliding.iter().filter_map(|axis| {
-            let [least, most] = axis.travel?;
-            Some((axis.min - least).min(most - axis.max))
+        let left = report.axes.iter().filter_map(|range| {
+            let (machine, axis) = known(&range.name)?;
+            let [least, most] = range.travel?;
+            let left = (range.min - least).min(most - range.max);
+            follows_the_part(machine, axis).then_some(left)
         });
         Ok(Ok(Trial {
             room: left.fold(f64::INFINITY, f64::min),
@@ -160,6 +165,18 @@ impl<'a> Trials<'a> {
             evenly: watch.goes_evenly(),
         })
     }
+}
+
+/// A linear axis whose room the mount decides: one that stands between cuts, and one that waits at its end until another
+/// takes its place, may be there.
+fn follows_the_part(machine: &Machine, axis: &Axis) -> bool {
+    let shares = |other: &Axis| match other.second {
+        Some(Second::Reserve { of }) => {
+            other.name == axis.name || machine.axes[of].name == axis.name
+        }
+        _ => false,
+    };
+    !axis.joint.rotary && axis.indexed.is_none() && !machine.axes.iter().any(shares)
 }
 
 /// The half-spaces of bounds.

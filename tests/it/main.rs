@@ -16,6 +16,7 @@ mod linuxcnc;
 #[cfg(target_os = "linux")]
 mod memory;
 mod new;
+mod place;
 mod plugins;
 mod readiness;
 mod real_files;

@@ -70,8 +70,12 @@ fn bar(svg: &mut String, top: f64, axis: &AxisRange, unit: &str) {
     let bar = top + 20.0;
     let below = bar + THICK + 15.0;
     let shown = |value: f64| format!("{}{unit}", number(value, 2));
-    // An endless axis has no ends to be drawn to: its bar is as long as its way.
-    let [least, most] = axis.travel.unwrap_or([axis.min, axis.max]);
+    // An endless axis has no ends to be drawn to: a full turn is, or what is used if that is more.
+    let [least, most] = match axis.travel {
+        Some(travel) => travel,
+        None if unit == "°" => [axis.min.min(-180.0), axis.max.max(180.0)],
+        None => [axis.min, axis.max],
+    };
     let range = (most - least).max(1e-9);
     let at = |value: f64| left + (right - left) * ((value - least) / range).clamp(0.0, 1.0);
     let dashes = match axis.travel {
@@ -85,10 +89,7 @@ fn bar(svg: &mut String, top: f64, axis: &AxisRange, unit: &str) {
         bar,
         &format!("fill=\"#e4e4e4\" stroke=\"#000000\"{dashes}"),
     );
-    let (from, to) = match axis.travel {
-        Some(_) => (at(axis.min), at(axis.max)),
-        None => (left, right),
-    };
+    let (from, to) = (at(axis.min), at(axis.max));
     let thin = (SEEN - (to - from)).max(0.0) / 2.0;
     rectangle(svg, [from - thin, to + thin], bar, "fill=\"#5a5a5a\"");
     let middle = f64::midpoint(left, right);

@@ -13,7 +13,7 @@ use post_posting::program::{ToldSpindle, Unknown};
 
 use crate::files::PathArg;
 use flag_values::{
-    Msys, TcpWord, UnitsWord, UnknownWord, cl_word, not_negative, point, positive, setting,
+    Msys, TcpWord, UnitsWord, UnknownWord, cl_word, finite, not_negative, point, positive, setting,
     spindle, word,
 };
 
@@ -91,6 +91,18 @@ pub struct JobArguments {
     )]
     pub mount: Option<[f64; 3]>,
 
+    /// How the part is turned about its Z for this job, degrees, right-handed: counter-clockwise for who looks down on
+    /// it, from the machine's X to the part's, all axes at zero. The work offset is not turned: words of the tip are
+    /// written along the machine's axes.
+    #[arg(
+        long,
+        value_name = "DEG",
+        allow_hyphen_values = true,
+        value_parser = finite,
+        help_heading = "Machine"
+    )]
+    pub turn: Option<f64>,
+
     /// Length of every tool from the gauge point to the tip, mm, over what machine and CL file say.
     #[arg(
         long,
@@ -139,6 +151,7 @@ impl JobArguments {
     pub fn settings(&self) -> Vec<Setting> {
         let mut settings = self.set.clone();
         settings.extend(self.mount.map(Setting::Mount));
+        settings.extend(self.turn.map(Setting::Turn));
         settings.extend(self.tolerance.map(Setting::Tolerance));
         settings.extend(self.tcp.map(Setting::Tcp));
         settings

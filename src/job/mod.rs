@@ -1,5 +1,6 @@
 //! A job as the flags mean it: a CL file, a machine with its settings, and the plugins that the machine asks for.
 
+mod dry_run;
 pub mod machine_files;
 pub mod plugin_finder;
 
@@ -17,6 +18,7 @@ use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
 use crate::files::{ClInput, FileFault, PathArg};
 use crate::terminal::Progress;
+pub use dry_run::DryRun;
 
 /// The machine with all settings of the command line, and `more` after them.
 pub fn machine(arguments: &JobArguments, more: &[Setting]) -> Result<Machine, Failure> {

@@ -2,12 +2,14 @@
 
 mod findings;
 mod progress;
+mod quantity;
 
 use std::io::{self, Write as _};
 use std::sync::{Mutex, PoisonError};
 
 pub use findings::findings;
 pub use progress::Progress;
+pub use quantity::{clock, number};
 
 use crate::failure::Failure;
 use crate::files::{FileFault, outcome};

@@ -5,6 +5,7 @@ mod check;
 mod list_machines;
 mod list_words;
 mod new;
+mod place;
 mod post;
 mod print_schema;
 mod study;
@@ -17,6 +18,7 @@ use check::CheckArguments;
 use list_machines::MachinesArguments;
 use list_words::WordsArguments;
 use new::NewArguments;
+use place::PlaceArguments;
 use post::PostArguments;
 use print_schema::SchemaArguments;
 use study::StudyArguments;
@@ -41,6 +43,7 @@ use test_plugin::PluginArguments;
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg
   post study part.cls --machine ac-trunnion
+  post place part.cls --machine dmu50 --svg travel.svg
   post plugin test target/release/libpost_mine.so
 
 Exit codes: 0 the program is written; 1 refused, the messages say why, and what was written nevertheless;
@@ -63,6 +66,7 @@ enum Verb {
     Check(CheckArguments),
     New(NewArguments),
     Study(Box<StudyArguments>),
+    Place(Box<PlaceArguments>),
     Plugin(PluginArguments),
 }
 
@@ -77,6 +81,7 @@ impl CommandLine {
             Some(Verb::Check(arguments)) => check::run(&arguments),
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),
+            Some(Verb::Place(arguments)) => place::run(&arguments),
             Some(Verb::Plugin(arguments)) => test_plugin::run(&arguments),
         }
     }

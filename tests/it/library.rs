@@ -12,11 +12,11 @@ use post_testkit::shared;
 
 /// A machine with its program, `tests/machines/<machine>.<ending>`, and the one that it must refuse,
 /// `tests/machines/<machine>.refused.<ending>`.
-struct Row {
-    machine: &'static str,
-    ending: &'static str,
+pub struct Row {
+    pub machine: &'static str,
+    pub ending: &'static str,
     /// Length of the tool, mm.
-    length: f64,
+    pub length: f64,
     /// Code of the refusal.
     code: &'static str,
 }
@@ -30,7 +30,7 @@ const fn row(machine: &'static str, ending: &'static str, length: f64, code: &'s
     }
 }
 
-const LIBRARY: &[Row] = &[
+pub const LIBRARY: &[Row] = &[
     row("ab-trunnion", "apt", 100.0, "over-travel"),
     row("ac-cantilever", "cls", 100.0, "over-travel"),
     row("ac-trunnion", "cls", 100.0, "over-travel"),

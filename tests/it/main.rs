@@ -19,6 +19,7 @@ mod memory;
 mod messages;
 mod names;
 mod new;
+mod place;
 mod plugins;
 mod readiness;
 mod real_files;

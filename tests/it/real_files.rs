@@ -242,6 +242,8 @@ struct Check {
     forward: Forward,
     mount: [f64; 3],
     tool: f64,
+    /// How the part is turned about its Z, degrees.
+    turned: f64,
 }
 
 const fn check(
@@ -260,5 +262,6 @@ const fn check(
         forward,
         mount: [0.0; 3],
         tool: 0.0,
+        turned: 0.0,
     }
 }

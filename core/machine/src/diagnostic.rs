@@ -45,6 +45,8 @@ pub struct Extreme {
     pub by: f64,
     /// The value, as told.
     pub value: String,
+    /// What would bring this value inside, said before the other help; empty if nothing that simple does.
+    pub remedy: String,
 }
 
 /// A place in a text file.

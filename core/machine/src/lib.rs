@@ -1,8 +1,8 @@
 //! A machine as its TOML file describes it.
 //!
 //! [`description`] reads the file, [`kinematics`] derives forward and inverse solutions from its chain,
-//! [`axis_words`] turns axis values into the words of a block and back, and [`check`] derives what the machine's
-//! builder can compare. [`diagnostic`] is how every storey of the core says what is wrong.
+//! [`axis_words`] turns axis values into the words of a block and back, [`check`] derives what the machine's
+//! builder can compare, and [`place`] where a part can sit. [`diagnostic`] is how every storey of the core says what is wrong.
 //! There is no input or output here, no unsafe code, no CL record and no dialect's name.
 
 pub mod axis_words;
@@ -10,3 +10,4 @@ pub mod check;
 pub mod description;
 pub mod diagnostic;
 pub mod kinematics;
+pub mod place;

@@ -222,6 +222,12 @@ impl Inner {
     fn told(&self) -> Vec<Diagnostic> {
         let told = |(finding, repeat): (&Diagnostic, &Repeat)| {
             let mut finding = finding.clone();
+            if let Some((extreme, _)) = &repeat.extreme
+                && !extreme.remedy.is_empty()
+            {
+                let help = finding.help.take().unwrap_or_default();
+                finding.help = Some(format!("{}; {help}", extreme.remedy));
+            }
             let more = match (&repeat.extreme, repeat.count - 1) {
                 (_, 0) => return finding,
                 (Some((extreme, line)), _) => format!(

@@ -22,6 +22,7 @@ mod configuration;
 mod emit;
 pub mod expand;
 mod findings;
+mod mount_bounds;
 mod observer;
 mod post;
 pub mod program;
@@ -33,6 +34,7 @@ mod timing;
 
 pub use blocks::{Block, MotionKind, Nominal, Reason, Time};
 pub use findings::MOST_FAULTS;
+pub use mount_bounds::MountBounds;
 pub use observer::{Observer, Output};
 pub use post::{Job, Post};
 pub use stream::Flow;

@@ -142,6 +142,7 @@ impl<'a> Post<'a> {
     ) -> Result<Self, Box<Diagnostic>> {
         // Half of the tolerance goes to chords of arcs and splines, half is left for the axes.
         job.reading.chord_tolerance = machine.accuracy.tolerance / 2.0;
+        job.reading.turn = machine.turn;
         job.reading.insert = machine.control.insert;
         job.reading.compensation_on_centre = machine.control.compensation_on_centre;
         job.reading.tool_length = machine.control.tool_length;

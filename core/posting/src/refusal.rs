@@ -45,6 +45,7 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
             key: u64::MAX,
             by: miss,
             value: format!("{:.4}° off", miss.to_degrees()),
+            remedy: String::new(),
         })
         .help("another machine, another set-up, or --msys apply if the axes are written in another frame"),
         Refused::Unreachable(Unreachable::Linear) => Diagnostic::error(
@@ -73,31 +74,26 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
             .help("an index axis stands at its positions alone: another set-up of the part")
         }
         Refused::OverTravel { over, tried } => {
-            let side = u64::from(over.value > over.limit);
             let axis = &machine.axes[over.joint];
-            let sign = if axis.joint.rotary { "°" } else { " mm" };
             let diagnostic = Diagnostic::error(
                 "over-travel",
                 format!(
-                    "{} would be {:.3}{sign}, its limit is {:.3}{sign}; {}",
+                    "{} would be {}; {}",
                     axis.name,
-                    axis.reading(over.value),
-                    axis.reading(over.limit),
+                    beyond(machine, &over),
                     match tried {
                         1 => "there is no other solution".to_owned(),
                         tried => format!("none of the {tried} solutions stays inside travel"),
                     }
                 ),
             );
-            let diagnostic = diagnostic.extreme(Extreme {
-                key: over.joint as u64 * 2 + side,
-                by: libm::fabs(over.value - over.limit) / axis.unit(),
-                value: format!("{} {:.3}{sign}", axis.name, axis.reading(over.value)),
-            });
+            let diagnostic = diagnostic.extreme(extreme(machine, &over));
             if axis.joint.rotary {
                 diagnostic.help("another set-up of the part, or a machine that tilts so far")
             } else {
-                diagnostic.help("set the part elsewhere with --mount X,Y,Z, give the tool's length, or say --units if the file's units are wrong")
+                diagnostic.help(format!(
+                    "{FINDS_A_MOUNT}; or give the tool's length, or say --units if the file's units are wrong"
+                ))
             }
         }
         Refused::Unverified { tip, axis } => Diagnostic::error(
@@ -109,6 +105,67 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
         )
         .help("this is a fault of post: please report it with the machine file and this line"),
     }
+}
+
+/// What to do about a linear axis that leaves its travel.
+pub(crate) const FINDS_A_MOUNT: &str =
+    "`post place CL-FILE --machine MACHINE` finds the mount that fits, or says that none does";
+
+/// `312.400 mm, its limit is 300.000 mm, passed by 12.400 mm`.
+pub(crate) fn beyond(machine: &Machine, over: &OverTravel) -> String {
+    let axis = &machine.axes[over.joint];
+    let sign = sign(axis);
+    format!(
+        "{:.3}{sign}, its limit is {:.3}{sign}, passed by {:.3}{sign}",
+        axis.reading(over.value),
+        axis.reading(over.limit),
+        by(axis, over)
+    )
+}
+
+/// How far an axis leaves its travel, of all points at which it does on that side.
+pub(crate) fn extreme(machine: &Machine, over: &OverTravel) -> Extreme {
+    let axis = &machine.axes[over.joint];
+    let sign = sign(axis);
+    Extreme {
+        key: over.joint as u64 * 2 + u64::from(over.value > over.limit),
+        by: by(axis, over),
+        value: format!(
+            "{} {:.3}{sign}, passed by {:.3}{sign},",
+            axis.name,
+            axis.reading(over.value),
+            by(axis, over)
+        ),
+        remedy: mount_inside(machine, over).unwrap_or_default(),
+    }
+}
+
+/// What the readings of an axis are in.
+fn sign(axis: &Axis) -> &'static str {
+    if axis.joint.rotary { "°" } else { " mm" }
+}
+
+/// How far beyond the limit, mm or degrees.
+fn by(axis: &Axis, over: &OverTravel) -> f64 {
+    libm::fabs(over.value - over.limit) / axis.unit()
+}
+
+/// The mount that brings a linear axis to its limit and moves no other; none where a rotary axis turns the part under it,
+/// so that a mount moves it otherwise at every angle.
+fn mount_inside(machine: &Machine, over: &OverTravel) -> Option<String> {
+    let axis = &machine.axes[over.joint];
+    let mut between = machine.axes[..over.joint].iter();
+    if axis.joint.rotary || axis.second.is_some() || between.any(|axis| axis.joint.rotary) {
+        return None;
+    }
+    // A little farther than the limit, so that no rounding passes it.
+    let by = (over.value - over.limit).signum() * (libm::ceil(by(axis, over) * 1e3) / 1e3);
+    let mount = machine.mount - axis.joint.direction * by;
+    let [x, y, z] = [mount.x, mount.y, mount.z].map(|value| libm::rint(value * 1e3) / 1e3 + 0.0);
+    Some(format!(
+        "--mount {x},{y},{z} brings {} to this limit",
+        axis.name
+    ))
 }
 
 /// An index axis that has no position there, inside its travel.

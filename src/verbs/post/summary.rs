@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use post_plugin::fixed;
 use post_posting::report::{Deviation, LengthSource, Report};
 
 use crate::files::PathArg;
+use crate::terminal::{clock, number};
 
 /// The summary of a program at `target` that was made from the CL file named `input`.
 pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
@@ -164,12 +164,6 @@ pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
 }
 
 /// A number with its decimals, no zero of it negative.
-fn number(value: f64, decimals: u8) -> String {
-    let mut text = String::new();
-    fixed(&mut text, value, decimals);
-    text
-}
-
 /// Rounded up, but for a thousandth of the last decimal.
 fn certified(deviation: Deviation, unit: &str, decimals: u8) -> String {
     let scale = libm::pow(10.0, f64::from(decimals));
@@ -181,16 +175,4 @@ fn certified(deviation: Deviation, unit: &str, decimals: u8) -> String {
         "certified at most {value} {unit}, in line {} of the program, CL line {}",
         deviation.block, deviation.line
     )
-}
-
-fn clock(seconds: f64) -> String {
-    let whole = seconds as u64;
-    let (hours, minutes) = (whole / 3600, whole / 60 % 60);
-    if hours > 0 {
-        format!("{hours} h {minutes:02} min")
-    } else if minutes > 0 {
-        format!("{minutes} min {:02} s", whole % 60)
-    } else {
-        format!("{seconds:.1} s")
-    }
 }

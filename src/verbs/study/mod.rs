@@ -1,7 +1,6 @@
 //! `post study`: how far the tool strays on a CL file, and what each model and each placement makes of it.
 
 mod chart;
-mod dry_run;
 mod move_pictures;
 mod notation;
 mod path_picture;
@@ -27,9 +26,8 @@ use post_study::{Distribution, Keeper, Kept, Row, Survey};
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{self, FileFault, PathArg, Role};
-use crate::job::plugin_finder;
+use crate::job::{DryRun, plugin_finder};
 use crate::terminal;
-use dry_run::DryRun;
 use sweep::{Sweep, Swept};
 
 const STUDY: Role = Role {
@@ -131,8 +129,8 @@ pub struct Models {
 
 /// Studies as the arguments say.
 pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
-    let dry_run = DryRun::new(&arguments.job, arguments.exact)?;
-    let machine = dry_run.machine(&[])?;
+    let dry_run = DryRun::new("study", &arguments.job, arguments.exact)?;
+    let machine = self::machine(&dry_run, &[])?;
     let folder = folder(arguments);
     refuse_strangers(&folder)?;
     let (names, mut models) = models(&dry_run, &machine)?;
@@ -178,6 +176,16 @@ fn folder(arguments: &StudyArguments) -> PathArg {
         },
         PathArg::from,
     )
+}
+
+/// The machine with `more` set, every CL point of its cuts kept.
+fn machine(dry_run: &DryRun<'_>, more: &[Setting]) -> Result<Machine, Failure> {
+    let mut settings = vec![Setting::Reduce(false)];
+    settings.extend_from_slice(more);
+    let mut machine = dry_run.machine(&settings)?;
+    // The path is studied, not the way off the part behind it.
+    machine.frame.retract.clear();
+    Ok(machine)
 }
 
 /// Opens the models that are compared.
@@ -307,7 +315,7 @@ fn keep(
 fn programs(dry_run: &DryRun<'_>, models: &[String]) -> Result<Vec<Program>, Failure> {
     let mut programs = Vec::new();
     let mut post = |name: String, reduce: bool, settings: &[Setting]| {
-        let machine = dry_run.machine(settings)?;
+        let machine = self::machine(dry_run, settings)?;
         let report = match dry_run.pass(&machine, None) {
             Ok((report, _)) => Ok(report),
             Err(failure) => Err(failure

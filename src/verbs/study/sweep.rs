@@ -4,9 +4,9 @@ use post_machine::description::Setting;
 use post_machine::diagnostic::Diagnostic;
 use post_study::{Distribution, Keeper, Kept};
 
-use super::DryRun;
 use crate::arguments::flag_values::finite;
 use crate::failure::Failure;
+use crate::job::DryRun;
 
 /// More values than this are a slip.
 const MOST: f64 = 200.0;
@@ -71,7 +71,7 @@ pub fn run(dry_run: &DryRun<'_>, sweep: &Sweep, number: usize) -> Result<Vec<Swe
             name: sweep.name.clone(),
             value: *value,
         };
-        let machine = dry_run.machine(&[setting])?;
+        let machine = super::machine(dry_run, &[setting])?;
         let mut keeper = Keeper::new(number..number + 1);
         dry_run
             .pass(&machine, Some(&mut keeper))

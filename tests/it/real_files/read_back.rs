@@ -90,7 +90,12 @@ fn read_back(file: &Path, check: &Check) {
     );
     let summary = summary.unwrap();
     let text = fs::read_to_string(file).unwrap();
-    let points = cl_points(&text, check.scale, check.with.contains("--msys apply"));
+    let mut points = cl_points(&text, check.scale, check.with.contains("--msys apply"));
+    // Where the part sits turned, its points are those of a frame that does not.
+    for point in &mut points {
+        point.tip = turn(Z, check.turned) * point.tip;
+        point.axis = turn(Z, check.turned) * point.axis;
+    }
     assert_eq!(points.len() as u64, summary["moves"].as_u64().unwrap());
     let blocks = nc_blocks(&done.out, check.letters);
     let (forward, mount, tool) = (check.forward, V::from(check.mount), check.tool);
@@ -157,6 +162,26 @@ fn samples_are_read_back_on_every_arrangement() {
             "XYZABC",
             disc_cutter,
         ),
+        Check {
+            turned: 33.0,
+            ..check(
+                "blade.cls",
+                "dmu50",
+                "--mount 3,-4,5 --tcp post --turn 33",
+                "XYZBC",
+                dmu50,
+            )
+        },
+        Check {
+            turned: -120.5,
+            ..check(
+                "blade.cls",
+                "head-head",
+                "--mount 3,-4,5 --tool-length 90 --turn=-120.5",
+                "XYZAC",
+                head_head,
+            )
+        },
         check(
             "knife.ncl",
             "head-head",

@@ -185,6 +185,8 @@ impl Builder<'_> {
             Some(mount) => self.vector(mount),
             None => Vector3::zeros(),
         };
+        let turn = file.workpiece.turn.as_ref();
+        let turn = turn.map_or(0.0, |turn| self.number(turn)).to_radians();
         let gauge = self.vector(&file.tool.gauge);
         let tool_axis = match &file.tool.axis {
             Some(axis) => self.direction("the tool axis", axis)?,
@@ -238,6 +240,7 @@ impl Builder<'_> {
             name: file.name.get_ref().clone(),
             axes,
             mount,
+            turn,
             gauge,
             tool_axis,
             edge,

@@ -79,6 +79,10 @@ pub(crate) struct WorkpieceFile {
     /// `--mount X,Y,Z` for one job.
     #[schemars(with = "Option<[Number; 3]>")]
     pub mount: Option<[Quantity; 3]>,
+    /// How the part is turned about its Z, degrees, right-handed: counter-clockwise for who looks down on it, from the
+    /// machine's X to the part's with all axes at zero; 0 if not said, and `--turn DEG` for one job.
+    #[schemars(with = "Option<Number>")]
+    pub turn: Option<Quantity>,
 }
 
 /// The gauge point and the tool's directions.

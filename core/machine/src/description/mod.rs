@@ -45,6 +45,10 @@ pub struct Machine {
     pub axes: Vec<Axis>,
     /// Where the part origin sits with all axes at zero, mm, machine frame.
     pub mount: Vector3<f64>,
+    /// How the part is turned about its own Z where it sits, radians: right-handed, so counter-clockwise for who looks
+    /// down on it, from the machine's X at zero to the part's. Points of the CL file are turned by it as they are read;
+    /// what is called the part frame from there on stands as the machine's does.
+    pub turn: f64,
     /// Gauge point of the tool holder with all axes at zero, mm, machine frame.
     pub gauge: Vector3<f64>,
     /// Tool axis with all axes at zero, unit vector from the tip to the holder, machine frame.

@@ -22,6 +22,8 @@ pub enum Setting {
     },
     /// Where the part origin sits, all axes at zero, machine frame, mm.
     Mount([f64; 3]),
+    /// How the part is turned about its Z, degrees, right-handed.
+    Turn(f64),
     /// Who keeps the tip on its path.
     Tcp(Tcp),
     /// Largest deviation of the tip in cuts, mm.
@@ -58,6 +60,7 @@ impl Setting {
             },
             Self::Number { name, value } => written(name, &format!("{value:?}")),
             Self::Mount([x, y, z]) => format!("workpiece.mount = [{x:?}, {y:?}, {z:?}]"),
+            Self::Turn(turn) => format!("workpiece.turn = {turn:?}"),
             Self::Tcp(tcp) => format!("control.tcp = {:?}", tcp.name()),
             Self::Tolerance(tolerance) => format!("accuracy.tolerance = {tolerance:?}"),
             Self::Reduce(reduce) => format!("accuracy.reduce = {reduce}"),

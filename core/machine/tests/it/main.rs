@@ -11,3 +11,4 @@ mod kept_tip;
 mod kinematics;
 mod linuxcnc;
 mod machine_file;
+mod place;

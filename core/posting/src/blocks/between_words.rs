@@ -4,13 +4,14 @@
 //! A cheap bound clears nearly all blocks; the others are looked into ([`KeptTip`]).
 
 use post_machine::description::{Machine, Tcp};
-use post_machine::diagnostic::{Diagnostic, Extreme};
+use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::travel::{OverTravel, over};
 use post_machine::kinematics::{Joints, KeptTip, MAX_AXES};
 
 use super::Leg;
 use crate::accuracy::{Node, Placer};
 use crate::findings::Findings;
+use crate::refusal::{self, FINDS_A_MOUNT};
 
 /// No control resolves less, mm: an axis may pass the end of its travel by this between the words.
 const RESOLVED: f64 = 1e-4;
@@ -202,21 +203,17 @@ fn turning(machine: &Machine, [from, to]: [&Node; 2]) -> String {
 }
 
 fn over_travel(machine: &Machine, over: &OverTravel, ends: [&Node; 2]) -> Diagnostic {
-    let axis = &machine.axes[over.joint];
-    let (value, limit) = (axis.reading(over.value), axis.reading(over.limit));
-    let side = u64::from(over.value > over.limit);
     Diagnostic::error(
         "over-travel",
         format!(
-            "between the words of this block {} would be {value:.3} mm, its limit is {limit:.3} mm: the control keeps the tip on its line while {}",
-            axis.name,
+            "between the words of this block {} would be {}: the control keeps the tip on its line while {}",
+            machine.axes[over.joint].name,
+            refusal::beyond(machine, over),
             turning(machine, ends)
         ),
     )
-    .extreme(Extreme {
-        key: over.joint as u64 * 2 + side,
-        by: (over.value - over.limit).abs(),
-        value: format!("{} {value:.3} mm", axis.name),
-    })
-    .help("set the part elsewhere with --mount X,Y,Z, give the tool's length, or retract before the axes turn")
+    .extreme(refusal::extreme(machine, over))
+    .help(format!(
+        "{FINDS_A_MOUNT}; or give the tool's length, or retract before the axes turn"
+    ))
 }

@@ -1,4 +1,4 @@
-//! From the frame that a CL file is written in to that of the part: index moves and `MSYS`.
+//! From the frame that a CL file is written in to that of the part: index moves, `MSYS`, and how the part sits.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use post_grammar::{Rotate, Sense};
@@ -14,18 +14,27 @@ pub(crate) struct Frame {
     index: [f64; 3],
     /// The turned part's frame seen from the part; none if no index axis is turned.
     turned: Option<Matrix3<f64>>,
+    /// How the part is turned about its Z where it sits; none if it is not.
+    clamped: Option<Matrix3<f64>>,
 }
 
 /// Angles with six decimals of a radian do not quite reach a right angle: so far they are taken as one.
 const NEAR: f64 = 2e-6;
 
 impl Frame {
-    /// The part's own frame.
-    pub(crate) fn new(apply_msys: bool) -> Self {
+    /// The frame of a part that sits turned about its Z by `turn`, radians, right-handed.
+    pub(crate) fn new(apply_msys: bool, turn: f64) -> Self {
+        let rotation = || Rotation3::from_axis_angle(&Vector3::z_axis(), turn).into_inner();
         Self {
             apply_msys,
+            clamped: (turn != 0.0).then(rotation),
             ..Self::default()
         }
+    }
+
+    /// The part sits turned about its Z.
+    pub(crate) fn sits_turned(&self) -> bool {
+        self.clamped.is_some()
     }
 
     /// Takes an `MSYS`; `origin` in mm.
@@ -116,6 +125,10 @@ impl Frame {
         {
             tip = rows * (tip - origin);
             axis = rows * axis;
+        }
+        if let Some(clamped) = &self.clamped {
+            tip = clamped * tip;
+            axis = clamped * axis;
         }
         (tip, axis)
     }

@@ -282,6 +282,7 @@ fn too_fast(asked: f64, written: &Written) -> Diagnostic {
         key: u64::MAX,
         by: factor,
         value: format!("{factor:.1} times"),
+        remedy: String::new(),
     })
     .help("its linear axes hardly move while others turn: a feed by time ([control] feed = \"inverse-time\") where the dialect has one, feed_length as the control has it, or more decimals for feeds")
 }

@@ -134,7 +134,7 @@ impl Interpreter {
     /// Nothing read yet.
     pub fn new(reading: Reading) -> Self {
         let scale = reading.units.map_or(1.0, millimetres);
-        let frame = Frame::new(reading.apply_msys);
+        let frame = Frame::new(reading.apply_msys, reading.turn);
         let may_cut = reading.knife || reading.spindle == ToldSpindle::Still;
         Self {
             reading,
@@ -427,6 +427,13 @@ impl Interpreter {
                 self.cutcom(record, *cutcom, emit);
             }
             Statement::CutcomOnCentre(on_centre) => self.on_centre = *on_centre,
+            Statement::Rotate(_) if self.frame.sits_turned() => self.fault(
+                record,
+                "rotabl",
+                "the angles of this index move are those of a part that is not turned, and here it sits turned about its Z"
+                    .to_owned(),
+                "leave out --turn and [workpiece] turn for this file",
+            ),
             Statement::Rotate(rotate) => match self.frame.rotate(rotate) {
                 Ok((axis, angle)) => {
                     emit(Step::Command(Command::Index { axis, angle }));

@@ -16,6 +16,9 @@ pub struct Reading {
     pub tool: Option<u32>,
     /// Take points and axes into the frame of `MSYS`.
     pub apply_msys: bool,
+    /// How the part sits turned about its Z, radians, right-handed: points and axes are taken into a frame at its origin
+    /// that stands as the machine's does.
+    pub turn: f64,
     /// What to do with unknown words.
     pub unknown: Unknown,
     /// What becomes of `INSERT`.

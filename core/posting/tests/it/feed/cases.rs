@@ -82,9 +82,14 @@ fn a_fork_swings_its_depth_axis() {
     let run = bench.run(&swing(100.0, 55.0, "FEDRAT/8000,MMPM"));
     assert!(run.report.is_none());
     let told = run.told();
-    let wanted = "over-travel: between the words of this block Z would be 55.000 mm, its limit is 50.000 mm: the control \
-                  keeps the tip on its line while B turns from -10.000° to 10.000°";
+    let wanted = "over-travel: between the words of this block Z would be 55.000 mm, its limit is 50.000 mm, passed by 5.000 mm: \
+                  the control keeps the tip on its line while B turns from -10.000° to 10.000°";
     assert!(told.contains(wanted), "{told}");
+    // No rotary axis turns the part: the mount that brings Z to its end is known.
+    assert!(
+        told.contains("--mount 0,0,-5 brings Z to this limit"),
+        "{told}"
+    );
     assert!(
         bench
             .run(&swing(100.0, 49.9, "FEDRAT/8000,MMPM"))

@@ -8,10 +8,10 @@ use post_posting::program::ToldSpindle;
 use post_posting::report::Report;
 use post_posting::{Observer, Post};
 
+use super::plugin_finder;
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClInput, NullSink};
-use crate::job::{self, plugin_finder};
 
 /// Decimals that leave axis values as they are solved: a millionth of a micrometre.
 const EXACT: u8 = 9;
@@ -27,11 +27,15 @@ pub struct DryRun<'a> {
 }
 
 impl<'a> DryRun<'a> {
-    /// Of the CL file and the machine of the command line.
-    pub fn new(arguments: &'a JobArguments, exact: bool) -> Result<Self, Failure> {
+    /// Of the CL file and the machine of the command line, for the verb of that name.
+    pub fn new(
+        verb: &'static str,
+        arguments: &'a JobArguments,
+        exact: bool,
+    ) -> Result<Self, Failure> {
         let Some(path) = arguments.input().path() else {
-            let message = "a study goes over the CL file several times";
-            return Err(Diagnostic::error("study", message)
+            let message = format!("post {verb} goes over the CL file several times");
+            return Err(Diagnostic::error(verb, message)
                 .help("give a file, not standard input")
                 .into());
         };
@@ -43,14 +47,9 @@ impl<'a> DryRun<'a> {
         })
     }
 
-    /// The machine with `more` set, every CL point of its cuts kept.
+    /// The machine of the command line with `more` set.
     pub fn machine(&self, more: &[Setting]) -> Result<Machine, Failure> {
-        let mut settings = vec![Setting::Reduce(false)];
-        settings.extend_from_slice(more);
-        let mut machine = job::machine(self.arguments, &settings)?;
-        // The path is studied, not the way off the part behind it.
-        machine.frame.retract.clear();
-        Ok(machine)
+        super::machine(self.arguments, more)
     }
 
     /// Posts the file, and throws the text away.
@@ -60,11 +59,11 @@ impl<'a> DryRun<'a> {
         watch: Option<&mut dyn Observer>,
     ) -> Result<(Report, Vec<Diagnostic>), Failure> {
         let source = self.arguments.input();
-        let program = job::program_name(source, None);
+        let program = super::program_name(source, None);
         let (dialect, _) = plugin_finder::dialect(&self.finder, machine, &program, Some(source))?;
         let (mut model, _) = plugin_finder::model(&self.finder, machine)?;
         let input = ClInput::open(source)?;
-        let mut posting = job::posting(self.arguments, &input.name);
+        let mut posting = super::posting(self.arguments, &input.name);
         if posting.reading.spindle == ToldSpindle::Unknown {
             // Nothing is written: how fast the spindle turns is nobody's business.
             posting.reading.spindle = ToldSpindle::Still;
@@ -76,7 +75,7 @@ impl<'a> DryRun<'a> {
         if let Some(watch) = watch {
             post.watch(watch);
         }
-        job::read(input, &mut post)?;
+        super::read(input, &mut post)?;
         match post.finish() {
             (Some(report), findings) => Ok((report, findings)),
             (None, findings) => Err(findings.into()),

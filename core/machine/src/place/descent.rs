@@ -1,0 +1,59 @@
+//! Mounts tried one after the other: numbers that can be set by hand, and a search by steps along the axes.
+
+use nalgebra::Vector3;
+
+use super::half_space::HalfSpace;
+
+/// A decrease that is worth another mount, as a share of the cost.
+const WORTH: f64 = 1e-4;
+
+/// `point` with as few decimals as leave `room` to every end, three at most; none if even these do not.
+pub fn rounded(bodies: &[HalfSpace], point: &Vector3<f64>, room: f64) -> Option<Vector3<f64>> {
+    (0..=3).find_map(|decimals| {
+        let unit = libm::exp10(f64::from(decimals));
+        let mut corners: Vec<Vector3<f64>> = (0..8)
+            .map(|corner| {
+                Vector3::from_fn(|axis, _| {
+                    let up = f64::from(corner >> axis & 1);
+                    (libm::floor(point[axis] * unit) + up) / unit
+                })
+            })
+            // What has no more decimals is one of its own corners.
+            .chain([point.map(|value| libm::rint(value * unit) / unit)])
+            .collect();
+        corners.sort_by(|a, b| (a - point).norm().total_cmp(&(b - point).norm()));
+        let holds = |corner: &Vector3<f64>| bodies.iter().all(|body| body.room(corner) >= room);
+        corners.into_iter().find(holds)
+    })
+}
+
+/// Goes from `start`, which costs `cost`, by steps along the axes to where none of them costs less; `cost_at` gives none
+/// where the part cannot sit. Gives the point and its cost. The result is a local optimum within the steps, no more.
+pub fn descend(
+    (start, cost): (Vector3<f64>, f64),
+    steps: &[f64],
+    mut cost_at: impl FnMut(Vector3<f64>) -> Option<f64>,
+) -> (Vector3<f64>, f64) {
+    let (mut best, mut least) = (start, cost);
+    for step in steps {
+        // The way that helped last is tried again first.
+        let mut ways: Vec<(usize, f64)> = (0..3)
+            .flat_map(|axis| [(axis, 1.0), (axis, -1.0)])
+            .collect();
+        let mut tried = 0;
+        while tried < ways.len() {
+            let (axis, sign) = ways[tried];
+            let mut next = best;
+            next[axis] += sign * step;
+            match cost_at(next) {
+                Some(cost) if cost < least * (1.0 - WORTH) => {
+                    (best, least) = (next, cost);
+                    ways.swap(0, tried);
+                    tried = 0;
+                }
+                _ => tried += 1,
+            }
+        }
+    }
+    (best, least)
+}

@@ -1,0 +1,104 @@
+//! What a program leaves to the mount of the part: an observer of posting on a machine whose linear travel is opened.
+
+use nalgebra::Vector3;
+use post_machine::description::{Machine, Tcp};
+use post_machine::kinematics::{Joints, NoClosedForm};
+use post_machine::place::{End, Room};
+
+use crate::blocks::{Block, MotionKind};
+use crate::observer::Observer;
+use crate::program::Command;
+use crate::stream::Flow;
+
+/// Gathers the ends of travel that the blocks of a program come near to, by the heads that they are made with.
+pub struct MountBounds<'m> {
+    machine: &'m Machine,
+    /// The machine with the head in use.
+    head: &'m Machine,
+    /// By machine: that without a swapped head first.
+    rooms: Vec<(&'m Machine, Room)>,
+    /// Which of them is in use.
+    at: usize,
+    /// Where the tool stood before: axis values and tip.
+    last: Option<(Joints, Vector3<f64>)>,
+}
+
+impl<'m> MountBounds<'m> {
+    /// For a machine as its file describes it, its travel not opened.
+    ///
+    /// # Errors
+    /// What its chain lacks.
+    pub fn new(machine: &'m Machine) -> Result<Self, NoClosedForm> {
+        Ok(Self {
+            machine,
+            head: machine,
+            rooms: vec![(machine, Room::new(machine)?)],
+            at: 0,
+            last: None,
+        })
+    }
+
+    /// What was gathered: the name of the axis and the end of its travel.
+    pub fn ends(&self) -> impl Iterator<Item = (&'m str, End)> {
+        self.rooms.iter().flat_map(|(machine, room)| {
+            let named = |end: End| (machine.axes[end.side.joint].name.as_str(), end);
+            room.ends().map(named)
+        })
+    }
+
+    /// See [`Room::bounds`].
+    pub fn bounds(&self) -> bool {
+        self.rooms.iter().any(|(_, room)| room.bounds())
+    }
+
+    /// See [`Room::goes_evenly`].
+    pub fn goes_evenly(&self) -> bool {
+        self.rooms.iter().all(|(_, room)| room.goes_evenly())
+    }
+
+    fn swap(&mut self, name: &str) {
+        let Some(head) = self.machine.head(name) else {
+            return;
+        };
+        self.head = &head.machine;
+        self.last = None;
+        let known = self
+            .rooms
+            .iter()
+            .position(|(machine, _)| std::ptr::eq(*machine, self.head));
+        self.at = known.unwrap_or(self.rooms.len());
+        if let (None, Ok(room)) = (known, Room::new(self.head)) {
+            self.rooms.push((self.head, room));
+        }
+    }
+
+    fn block(&mut self, block: &Block) {
+        let Some((_, room)) = self.rooms.get_mut(self.at) else {
+            return;
+        };
+        room.take(&block.joints, block.line);
+        let moves = matches!(block.kind, MotionKind::Linear | MotionKind::Rapid);
+        if let Some((joints, tip)) = &self.last
+            && moves
+            && self.head.control.tcp == Tcp::Control
+        {
+            room.take_between([(joints, tip), (&block.joints, &block.tip)], block.line);
+        }
+        self.last = Some((block.joints, block.tip));
+    }
+}
+
+impl Observer for MountBounds<'_> {
+    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+        for next in blocks {
+            match next {
+                Flow::Point(block) => self.block(block),
+                Flow::Command {
+                    command: Command::Head(name),
+                    ..
+                } => self.swap(name),
+                Flow::Command { .. } => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! Numbers and times as they are shown.
+
+use post_plugin::fixed;
+
+/// A number with so many decimals.
+pub fn number(value: f64, decimals: u8) -> String {
+    let mut text = String::new();
+    fixed(&mut text, value, decimals);
+    text
+}
+
+/// A time as one says it.
+pub fn clock(seconds: f64) -> String {
+    let whole = seconds as u64;
+    let (hours, minutes) = (whole / 3600, whole / 60 % 60);
+    if hours > 0 {
+        format!("{hours} h {minutes:02} min")
+    } else if minutes > 0 {
+        format!("{minutes} min {:02} s", whole % 60)
+    } else {
+        format!("{seconds:.1} s")
+    }
+}

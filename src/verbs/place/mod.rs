@@ -1,0 +1,91 @@
+//! `post place`: where a part can sit on a machine.
+
+mod place_text;
+mod search;
+mod travel_picture;
+mod trial;
+
+use clap::{Args, ValueEnum};
+
+use crate::arguments::JobArguments;
+use crate::arguments::flag_values::{not_negative, positive};
+use crate::failure::Failure;
+use crate::files::{self, PathArg, Role};
+use crate::terminal;
+use search::Search;
+use trial::Trials;
+
+/// Finds where the part can sit: the mount that keeps every axis inside travel and then takes least time.
+///
+/// Every mount that is named was posted in a dry run with all that posting checks: travel (between the words too),
+/// rapids, retracts. The answer is printed as --mount X,Y,Z, and with --search-turn as --turn DEG, with what is left of
+/// each axis. The time is a minimum among the mounts that were tried, not over all there are.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  post place part.cls --machine ac-trunnion
+  post place part.cls --machine dmu50 --tool-length 120 --margin 10 --svg travel.svg
+  post place part.cls --machine my-mill.toml --search-turn=30 --least rotary
+
+Exit codes: 0 a mount is printed; 1 none fits, the messages say which axis is short by how much; 2 the command line is wrong.")]
+pub struct PlaceArguments {
+    #[command(flatten)]
+    job: JobArguments,
+
+    /// What is to be small, once every axis stays inside travel: the time of the program, or what its rotary axes
+    /// turn in all.
+    #[arg(long, value_enum, default_value_t, value_name = "WHAT")]
+    least: Least,
+
+    /// Every linear axis stays this far from the ends of its travel, mm.
+    #[arg(long, value_name = "MM", default_value_t = 1.0, allow_hyphen_values = true, value_parser = not_negative)]
+    margin: f64,
+
+    /// Searches the turn of the part about its Z too, all the way round by steps of so many degrees, and more closely
+    /// about the best of them.
+    #[arg(long, value_name = "DEG", num_args = 0..=1, require_equals = true, default_missing_value = "15", value_parser = step)]
+    search_turn: Option<f64>,
+
+    /// No more dry runs than this.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    runs: u32,
+
+    /// Draws the travel of each axis, what the program uses and what is left.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    svg: Option<PathArg>,
+}
+
+const PICTURE: Role = Role {
+    what: "picture",
+    remedy: "name another file with --svg",
+};
+
+/// What is to be small.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Least {
+    #[default]
+    Time,
+    Rotary,
+}
+
+/// Degrees from turn to turn.
+fn step(text: &str) -> Result<f64, String> {
+    match positive(text)? {
+        step if (1.0..=180.0).contains(&step) => Ok(step),
+        _ => Err("steps from 1 to 180 degrees are meant".to_owned()),
+    }
+}
+
+/// Places as the arguments say.
+pub fn run(arguments: &PlaceArguments) -> Result<(), Failure> {
+    let mut trials = Trials::new(arguments)?;
+    let found = Search::new(arguments, &mut trials)?.run()?;
+    let mut taken = false;
+    if let Some(target) = &arguments.svg {
+        taken = files::write(&[(PICTURE, target, &travel_picture::draw(&found))])?;
+    }
+    terminal::findings(&found.best.findings);
+    if !taken {
+        terminal::print(&place_text::text(arguments, &found));
+    }
+    Ok(())
+}

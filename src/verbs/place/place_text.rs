@@ -1,0 +1,167 @@
+//! What was found, for people: the mount, the way to it, and what is left of each axis.
+
+use std::ffi::OsString;
+use std::fmt::Write as _;
+
+use post_posting::report::AxisRange;
+
+use super::search::{Found, mount_text};
+use super::trial::Trial;
+use super::{Least, PlaceArguments};
+use crate::terminal::{clock, number};
+
+/// Flags of this verb, which posting does not take, and those that the answer takes the place of: each with whether its
+/// value may stand in a word of its own.
+const OWN: [(&str, bool); 7] = [
+    ("--least", true),
+    ("--margin", true),
+    ("--search-turn", false),
+    ("--runs", true),
+    ("--svg", true),
+    ("--mount", true),
+    ("--turn", true),
+];
+
+/// The text.
+pub fn text(arguments: &PlaceArguments, found: &Found) -> String {
+    let mut text = String::new();
+    let mut row = |name: &str, value: String| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{name:<10} {value}");
+    };
+    let best = &found.best;
+    row(
+        "file",
+        format!("{}, {} moves", found.file, best.report.moves),
+    );
+    row(
+        "machine",
+        format!(
+            "{}, the {} keeps the tip",
+            best.report.machine, best.report.tcp
+        ),
+    );
+    row("seat", seat_text(best));
+    row("why", why(arguments, found));
+    let before = found
+        .present
+        .as_ref()
+        .filter(|present| present.seat != best.seat)
+        .map(|present| format!("; {} with {}", cost(arguments, present), seat_text(present)));
+    row(
+        match arguments.least {
+            Least::Time => "time",
+            Least::Rotary => "turns",
+        },
+        format!("{}{}", cost(arguments, best), before.unwrap_or_default()),
+    );
+    text.push('\n');
+    text.push_str(&table(&best.report.axes));
+    let _ = writeln!(text, "\n{}", command(best, std::env::args_os()));
+    text
+}
+
+/// `--mount X,Y,Z --turn DEG`; without a turn that is none.
+fn seat_text(trial: &Trial) -> String {
+    let mount = format!("--mount {}", mount_text(&trial.seat.mount));
+    match trial.seat.turn {
+        0.0 => mount,
+        turn => format!("{mount} --turn {turn}"),
+    }
+}
+
+fn cost(arguments: &PlaceArguments, trial: &Trial) -> String {
+    match arguments.least {
+        Least::Time => clock(trial.cost),
+        Least::Rotary => format!("{}° of all rotary axes", number(trial.cost, 1)),
+    }
+}
+
+fn why(arguments: &PlaceArguments, found: &Found) -> String {
+    let stays = found.present.as_ref().map(|present| present.seat) == Some(found.best.seat);
+    let fits = match (stays, &found.present) {
+        (true, _) => "where the part sits now nothing leaves its travel, and",
+        (false, Some(_)) => "there every axis stays inside travel, and",
+        (false, None) => "where the part sits now an axis leaves its travel; there none does, and",
+    };
+    let least = match arguments.least {
+        Least::Time if found.evenly && arguments.search_turn.is_none() => {
+            "time is the same wherever the part sits".to_owned()
+        }
+        Least::Time => "no mount that was tried takes less time".to_owned(),
+        Least::Rotary => "nothing that was tried turns the axes less".to_owned(),
+    };
+    let spent = if found.spent {
+        "; --runs ended the search"
+    } else {
+        ""
+    };
+    format!(
+        "{fits} {least} ({} dry runs, linear axes {} mm from their ends{spent})",
+        found.runs, arguments.margin
+    )
+}
+
+/// What of each axis is used and left.
+fn table(axes: &[AxisRange]) -> String {
+    let mut rows = vec![["axis", "travel", "used", "left below", "left above"].map(str::to_owned)];
+    for axis in axes.iter().filter(|axis| axis.min <= axis.max) {
+        let short = |value: f64| number(value, 3);
+        let span = |[from, to]: [f64; 2]| format!("{} to {}", short(from), short(to));
+        let [below, above] = match axis.travel {
+            Some([least, most]) => [short(axis.min - least), short(most - axis.max)],
+            None => [String::new(), String::new()],
+        };
+        rows.push([
+            axis.name.clone(),
+            axis.travel.map_or("endless".to_owned(), span),
+            span([axis.min, axis.max]),
+            below,
+            above,
+        ]);
+    }
+    let mut text = String::new();
+    let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
+    let widths: [usize; 5] = std::array::from_fn(width);
+    for row in &rows {
+        let mut line = format!("{:<1$}", row[0], widths[0]);
+        for (cell, width) in row.iter().zip(widths).skip(1) {
+            let _ = write!(line, "  {cell:>width$}");
+        }
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    text
+}
+
+/// The command that posts the file there: that of this run without what is this verb's own.
+fn command(best: &Trial, arguments: impl Iterator<Item = OsString>) -> String {
+    let mut words: Vec<String> = Vec::new();
+    let mut skip = false;
+    let mut verb = false;
+    for word in arguments.skip(1) {
+        let word = word.to_string_lossy().into_owned();
+        if std::mem::take(&mut skip) {
+            continue;
+        }
+        if !verb && word == "place" {
+            verb = true;
+            continue;
+        }
+        let flag = word.split('=').next().unwrap_or_default();
+        match OWN.iter().find(|(own, _)| *own == flag) {
+            Some((_, value)) => skip = *value && !word.contains('='),
+            None => words.push(quoted(&word)),
+        }
+    }
+    format!("post {} {}", words.join(" "), seat_text(best))
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |sign: char| sign.is_ascii_alphanumeric() || "-_./=,:+@%".contains(sign);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}

@@ -1,0 +1,411 @@
+//! The search: where travel leaves room, what posting makes of it, and where it costs least.
+
+use nalgebra::Vector3;
+use post_machine::description::{Machine, Side};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::place::{descend, most_room, nearest, rounded, shuffled};
+
+use super::trial::{Bound, Seat, Trial, Trials, bodies};
+use super::{Least, PlaceArguments};
+use crate::failure::Failure;
+
+/// Mounts that are found one from the other before a route is given up: each is bound by what was found at those before.
+const ROUNDS: usize = 4;
+
+/// Steps of the search for a mount that costs less, mm.
+const STEPS: [f64; 5] = [100.0, 40.0, 15.0, 5.0, 1.0];
+
+/// A seat must cost less by this share to be taken for the present one.
+const WORTH: f64 = 1e-3;
+
+/// What a room that was asked for may lack, mm: tips are rounded as they are printed.
+const ROUNDING: f64 = 2e-3;
+
+/// What was found.
+pub struct Found {
+    /// The CL file, as the user named it.
+    pub file: String,
+    pub machine: Machine,
+    /// Where the part sits.
+    pub best: Trial,
+    /// Where the command line and the machine file have it, if it can be posted there.
+    pub present: Option<Trial>,
+    pub runs: u32,
+    /// The number of dry runs ended the search.
+    pub spent: bool,
+    /// Time is the same wherever the part sits.
+    pub evenly: bool,
+}
+
+/// Why a turn has no seat.
+enum Nothing {
+    /// No mount leaves the margin.
+    Short(Diagnostic),
+    /// With its linear travel opened the machine cannot make it either: no mount helps.
+    Anywhere(Vec<Diagnostic>),
+    /// Posting refuses what travel would allow.
+    Refused(Vec<Diagnostic>),
+}
+
+impl Nothing {
+    /// With the axes turned otherwise it might fit.
+    fn may_be_the_route(&self) -> bool {
+        match self {
+            Self::Short(_) => true,
+            Self::Anywhere(_) => false,
+            Self::Refused(findings) => out_of_travel(findings),
+        }
+    }
+}
+
+/// Searches a seat.
+pub struct Search<'s, 'a> {
+    trials: &'s mut Trials<'a>,
+    arguments: &'a PlaceArguments,
+    machine: Machine,
+    present: Seat,
+}
+
+impl<'s, 'a> Search<'s, 'a> {
+    pub fn new(arguments: &'a PlaceArguments, trials: &'s mut Trials<'a>) -> Result<Self, Failure> {
+        let machine = trials.machine()?;
+        Ok(Self {
+            present: Seat {
+                mount: machine.mount,
+                turn: libm::rint(machine.turn.to_degrees() * 1e9) / 1e9,
+            },
+            trials,
+            arguments,
+            machine,
+        })
+    }
+
+    /// The room that is asked for, mm.
+    fn margin(&self) -> f64 {
+        self.arguments.margin
+    }
+
+    fn holds(&self, trial: &Trial) -> bool {
+        trial.room >= self.margin() - ROUNDING
+    }
+
+    pub fn run(mut self) -> Result<Found, Failure> {
+        let present = self.trials.post(self.present)?;
+        let here = self.seat_at(self.present.turn, present.as_ref().ok())?;
+        let (mut best, nothing) = match here {
+            Ok(seated) => (Some(seated), None),
+            Err(nothing) => (None, Some(nothing)),
+        };
+        if let Some(step) = self.arguments.search_turn {
+            best = self.turned(best, step)?;
+        }
+        let Some(Seated {
+            mut trial,
+            bounds,
+            evenly,
+        }) = best
+        else {
+            return Err(self.refuse(nothing, present.err()));
+        };
+        // A straight shift of all axes takes no longer, and turns nothing.
+        if self.arguments.least == Least::Time && !evenly {
+            self.settle(&mut trial, &bounds)?;
+        }
+        let present = present.ok();
+        if let Some(present) = &present
+            && self.holds(present)
+            && trial.cost >= present.cost * (1.0 - WORTH)
+        {
+            trial = present.clone();
+        }
+        Ok(Found {
+            file: self.trials.file().to_owned(),
+            machine: self.machine,
+            best: trial,
+            present,
+            runs: self.trials.runs,
+            spent: self.trials.spent(),
+            evenly,
+        })
+    }
+
+    /// The seat with the part turned so. `known` is a trial at that turn that was made already.
+    fn seat_at(
+        &mut self,
+        turn: f64,
+        known: Option<&Trial>,
+    ) -> Result<Result<Seated, Nothing>, Failure> {
+        let mut nothing = None;
+        for prefer in self.routes() {
+            let found = self.on_route(turn, prefer, known)?;
+            match found {
+                Ok(seated) => return Ok(Ok(seated)),
+                // Another route turns the axes otherwise, but reaches no farther, and mends nothing but travel.
+                Err(found) if nothing.is_none() && !found.may_be_the_route() => {
+                    return Ok(Err(found));
+                }
+                Err(found) => nothing = nothing.or(Some(found)),
+            }
+            if self.trials.spent() {
+                break;
+            }
+        }
+        Ok(Err(nothing.unwrap_or(Nothing::Refused(Vec::new()))))
+    }
+
+    /// The routes that are tried: as the machine file says, then with each axis rather on one side of zero.
+    fn routes(&self) -> Vec<Option<(usize, Side)>> {
+        let pointing = self.machine.pointing();
+        let sides = pointing.into_iter().flat_map(|joint| {
+            let travel = self.machine.axes[joint].travel;
+            let both = travel.is_none_or(|[least, most]| least < 0.0 && most > 0.0);
+            let sides = [Side::Positive, Side::Negative].into_iter();
+            sides
+                .filter(move |_| both)
+                .map(move |side| Some((joint, side)))
+        });
+        [None].into_iter().chain(sides).collect()
+    }
+
+    /// The seat next to the present one that a route leaves.
+    fn on_route(
+        &mut self,
+        turn: f64,
+        prefer: Option<(usize, Side)>,
+        known: Option<&Trial>,
+    ) -> Result<Result<Seated, Nothing>, Failure> {
+        let wished = self.present.mount;
+        let mut seat = Seat {
+            mount: wished,
+            turn,
+        };
+        let mut bounds = Vec::new();
+        let mut refused = Vec::new();
+        for _ in 0..ROUNDS {
+            let opened = self.trials.opened(&seat, prefer)?;
+            if out_of_travel(&opened.faults) {
+                return Ok(Err(Nothing::Anywhere(opened.faults)));
+            }
+            bounds.extend(opened.bounds);
+            bounds = shuffled(bounds);
+            let seated = |trial: Trial, bounds: Vec<Bound>| Seated {
+                trial,
+                bounds,
+                evenly: opened.evenly,
+            };
+            if let Some(known) = known
+                && self.holds(known)
+            {
+                return Ok(Ok(seated(known.clone(), bounds)));
+            }
+            if !opened.bound {
+                refused = opened.faults;
+                break;
+            }
+            let bodies = bodies(&bounds);
+            let Some(point) = nearest(&bodies, &wished, self.margin() + ROUNDING) else {
+                return Ok(Err(Nothing::Short(self.short(&bounds, turn))));
+            };
+            seat.mount = rounded(&bodies, &point, self.margin()).unwrap_or(point);
+            match self.trials.post(seat)? {
+                Ok(trial) if self.holds(&trial) => return Ok(Ok(seated(trial, bounds))),
+                Ok(_) => {}
+                Err(findings) => refused = findings,
+            }
+            if self.trials.spent() || !(refused.is_empty() || out_of_travel(&refused)) {
+                break;
+            }
+        }
+        Ok(Err(Nothing::Refused(refused)))
+    }
+
+    /// The cheapest of all turns, `step` degrees apart, and then more closely about it.
+    fn turned(&mut self, here: Option<Seated>, step: f64) -> Result<Option<Seated>, Failure> {
+        let mut best = here;
+        let count = libm::ceil(360.0 / step - 1e-9) as i32;
+        // Those next to the present turn come first: of equals the least turned is taken.
+        let coarse = (1..count).map(|index| {
+            let half = (index + 1) / 2;
+            let signed = if index % 2 == 1 { half } else { -half };
+            self.present.turn + f64::from(signed) * step
+        });
+        for turn in coarse.collect::<Vec<f64>>() {
+            self.better(&mut best, turn)?;
+        }
+        let mut finer = step / 2.0;
+        while finer >= 0.5 {
+            let Some(middle) = best.as_ref().map(|best| best.trial.seat.turn) else {
+                break;
+            };
+            for turn in [middle + finer, middle - finer] {
+                self.better(&mut best, turn)?;
+            }
+            finer /= 2.0;
+        }
+        Ok(best)
+    }
+
+    fn better(&mut self, best: &mut Option<Seated>, turn: f64) -> Result<(), Failure> {
+        if self.trials.spent() {
+            return Ok(());
+        }
+        // From -180 exclusive to 180 inclusive, and no more digits than one would set.
+        let turn = libm::remainder(libm::rint(turn * 1e3) / 1e3, 360.0);
+        if let Ok(seated) = self.seat_at(turn, None)?
+            && best
+                .as_ref()
+                .is_none_or(|best| seated.trial.cost < best.trial.cost * (1.0 - WORTH))
+        {
+            *best = Some(seated);
+        }
+        Ok(())
+    }
+
+    /// Moves a seat to where the program costs less.
+    fn settle(&mut self, trial: &mut Trial, bounds: &[Bound]) -> Result<(), Failure> {
+        let bodies = bodies(bounds);
+        let margin = self.margin();
+        let (turn, start) = (trial.seat.turn, (trial.seat.mount, trial.cost));
+        let mut fault = None;
+        let mut least = trial.clone();
+        descend(start, &STEPS, |mount: Vector3<f64>| {
+            let inside = bodies.iter().all(|body| body.room(&mount) >= margin);
+            if !inside || fault.is_some() || self.trials.spent() {
+                return None;
+            }
+            match self.trials.post(Seat { mount, turn }) {
+                Ok(Ok(trial)) if self.holds(&trial) => {
+                    let cost = trial.cost;
+                    if cost < least.cost {
+                        least = trial;
+                    }
+                    Some(cost)
+                }
+                Ok(_) => None,
+                Err(failure) => {
+                    fault = Some(failure);
+                    None
+                }
+            }
+        });
+        *trial = least;
+        fault.map_or(Ok(()), Err)
+    }
+
+    /// Travel is short: by how much, of which axes, at which lines.
+    fn short(&self, bounds: &[Bound], turn: f64) -> Diagnostic {
+        let name = &self.machine.name;
+        let bodies = bodies(bounds);
+        let Some(tight) = most_room(&bodies, &self.present.mount) else {
+            return Diagnostic::error("place", format!("{name} has no mount for this part"));
+        };
+        let mut ends: Vec<&Bound> = Vec::new();
+        for index in tight.between {
+            let bound = &bounds[index];
+            let same = |other: &&Bound| {
+                other.axis == bound.axis && other.end.side.largest == bound.end.side.largest
+            };
+            if ends.len() < 4 && !ends.iter().any(same) {
+                ends.push(bound);
+            }
+        }
+        ends.sort_by_key(|bound| (&bound.axis, bound.end.side));
+        let told: Vec<String> = ends
+            .iter()
+            .map(|bound| {
+                let end = if bound.end.side.largest {
+                    "largest"
+                } else {
+                    "least"
+                };
+                format!("{} at its {end} end on line {}", bound.axis, bound.end.line)
+            })
+            .collect();
+        let told = told.join(" and ");
+        let turned = match turn {
+            0.0 => String::new(),
+            turn => format!(" turned by {turn}°"),
+        };
+        let at = mount_text(&tight.point.map(|value| libm::rint(value * 10.0) / 10.0));
+        if tight.room < 0.0 {
+            Diagnostic::error(
+                "place",
+                format!(
+                    "this part{turned} does not fit {name}, wherever it sits: travel is short by {:.3} mm at each of {told} (with --mount {at}, which leaves most)",
+                    -tight.room
+                ),
+            )
+            .help(self.else_turned("a shorter tool, or a machine with more travel"))
+        } else {
+            Diagnostic::error(
+                "place",
+                format!(
+                    "no mount of this part{turned} on {name} leaves {} mm to every end of travel: --mount {at} leaves most, {:.3} mm, between {told}",
+                    self.margin(),
+                    tight.room
+                ),
+            )
+            .help(format!(
+                "--margin {} is the most that fits",
+                libm::floor(tight.room * 100.0) / 100.0
+            ))
+        }
+    }
+
+    /// What helps where no mount does: a turn, unless that was searched, and `other`.
+    fn else_turned(&self, other: &str) -> String {
+        if self.arguments.search_turn.is_some() {
+            return format!("no turn of the part that was tried fits either: {other}");
+        }
+        format!("--search-turn looks for a turn of the part about its Z that fits; else {other}")
+    }
+
+    /// Nothing fits.
+    fn refuse(&self, nothing: Option<Nothing>, present: Option<Vec<Diagnostic>>) -> Failure {
+        match nothing {
+            Some(Nothing::Short(finding)) => finding.into(),
+            Some(Nothing::Anywhere(mut findings)) => {
+                let message = "no mount helps: a rotary axis cannot point the tool as the file asks, wherever the part sits";
+                findings.push(
+                    Diagnostic::error("place", message)
+                        .help(self.else_turned("another set-up or machine")),
+                );
+                findings.into()
+            }
+            Some(Nothing::Refused(findings)) if !findings.is_empty() => findings.into(),
+            _ => {
+                let mut findings = present.unwrap_or_default();
+                let message = format!(
+                    "no mount was found in {} dry runs that leaves {} mm to every end of travel",
+                    self.trials.runs,
+                    self.margin()
+                );
+                findings.push(
+                    Diagnostic::error("place", message).help("a smaller --margin, or more --runs"),
+                );
+                findings.into()
+            }
+        }
+    }
+}
+
+/// A seat, and what bounds it.
+struct Seated {
+    trial: Trial,
+    bounds: Vec<Bound>,
+    evenly: bool,
+}
+
+/// Some axis is asked for what it does not reach; of a machine with its linear travel opened that is a rotary one.
+fn out_of_travel(findings: &[Diagnostic]) -> bool {
+    let codes = ["over-travel", "out-of-reach"];
+    findings.iter().any(|finding| codes.contains(&finding.code))
+}
+
+/// `X,Y,Z`, as `--mount` takes it.
+pub fn mount_text(mount: &Vector3<f64>) -> String {
+    // Adding zero turns -0 into 0; what sums leave in the last digits is not told.
+    let number = |value: f64| libm::rint(value * 1e6) / 1e6 + 0.0;
+    let [x, y, z] = [mount.x, mount.y, mount.z].map(number);
+    format!("{x},{y},{z}")
+}

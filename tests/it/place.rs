@@ -1,0 +1,345 @@
+//! `post place`: the mount that it prints is one that posting takes, on every machine of the library.
+
+use crate::common;
+use crate::library::LIBRARY;
+
+use std::fs;
+use std::path::Path;
+
+use common::{Run, command, post, read_json, run};
+use nalgebra::{Rotation3, Vector3};
+use post_testkit::read_back::{Model, blocks, table};
+use serde_json::Value;
+
+/// `post place` with these words on a CL file of that text.
+fn place_text(arguments: &[&str], text: &str) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("part.cls");
+    fs::write(&file, text).unwrap();
+    run(command().arg("place").args(arguments).arg(&file), b"")
+}
+
+/// The command that a run of `post place` ends with, as words.
+fn printed(out: &str) -> Vec<String> {
+    let line = out.trim_end().lines().last().unwrap();
+    let words = line.split(' ').map(str::to_owned);
+    let words: Vec<String> = words.collect();
+    assert_eq!(words[0], "post", "{out}");
+    words[1..].to_vec()
+}
+
+/// The value behind a flag.
+fn told(words: &[String], flag: &str) -> Option<Vec<f64>> {
+    let at = words.iter().position(|word| word == flag)?;
+    let numbers = words[at + 1].split(',');
+    Some(numbers.map(|number| number.parse().unwrap()).collect())
+}
+
+/// Posts as a printed command says: the program and the summary.
+fn obeyed(words: &[String]) -> (String, Value) {
+    let folder = tempfile::tempdir().unwrap();
+    let json = folder.path().join("s.json");
+    let mut words = words.to_vec();
+    words.extend(["-q", "-o", "-", "--summary"].map(str::to_owned));
+    words.push(json.display().to_string());
+    let done = post(&words);
+    assert_eq!(done.code, 0, "{words:?}:\n{}", done.err);
+    (done.out, read_json(&json))
+}
+
+/// What is least left of the travel of the axes of `names`, mm.
+fn left(summary: &Value, names: &[&str]) -> f64 {
+    let axes = summary["axes"].as_array().unwrap().iter();
+    let axes = axes.filter(|axis| names.contains(&axis["name"].as_str().unwrap()));
+    let number = |value: &Value| value.as_f64().unwrap();
+    let left = axes.filter(|axis| !axis["travel"].is_null()).map(|axis| {
+        let travel = &axis["travel"];
+        let below = number(&axis["min"]) - number(&travel[0]);
+        below.min(number(&travel[1]) - number(&axis["max"]))
+    });
+    left.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn every_machine_of_the_library_is_placed_from_where_it_does_not_fit() {
+    let mut moved = 0;
+    for row in LIBRARY {
+        let file = format!("tests/machines/{}.{}", row.machine, row.ending);
+        let length = row.length.to_string();
+        let arguments = [
+            "place",
+            "-m",
+            row.machine,
+            &file,
+            "--tool-length",
+            &length,
+            "--mount",
+            "350,-290,330",
+            "--runs",
+            "12",
+        ];
+        let found = post(&arguments);
+        assert_eq!(found.code, 0, "{}:\n{}", row.machine, found.err);
+        let words = printed(&found.out);
+        let (program, summary) = obeyed(&words);
+        let mount = told(&words, "--mount").unwrap();
+        moved += u32::from(mount != [350.0, -290.0, 330.0]);
+        // X, Y and Z of these machines go with the part; W and the like stand, or help out.
+        let sliding: &[&str] = match row.machine {
+            "boring-mill" | "quill-mill" => &["X", "Y"],
+            _ => &["X", "Y", "Z"],
+        };
+        let least = left(&summary, sliding);
+        assert!(least >= 0.997, "{}: {least} mm left", row.machine);
+        // By a kinematics of the tests' own, with the part there.
+        let mut machine = table(row.machine);
+        let workpiece = toml::toml! { mount = [0.0, 0.0, 0.0] };
+        let workpiece = machine.entry("workpiece").or_insert(workpiece.into());
+        workpiece["mount"] = mount.into();
+        let heads = machine.contains_key("head");
+        let model = Model::from_table(machine, None);
+        let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
+        for block in blocks(&program, &names, &[]) {
+            let over = model.over_travel(&block.words, row.length);
+            assert!(over.is_none() || heads, "{}: {over:?}", row.machine);
+        }
+    }
+    assert!(moved > 20, "{moved}");
+}
+
+const SQUARE: &str =
+    "PARTNO/SQUARE\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nFEDRAT/500,MMPM\nRAPID\n";
+
+/// A plate that is cut from `-half` to `half`, mm along X and Y, each height on a line of its own.
+fn plate([x, y]: [f64; 2]) -> String {
+    let mut text = SQUARE.to_owned();
+    for [sx, sy] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+        text.push_str(&format!("GOTO/{},{},0\n", sx * x, sy * y));
+    }
+    text.push_str("FINI\n");
+    text
+}
+
+#[test]
+fn a_part_that_is_too_large_is_told_by_how_much_and_a_turn_is_found() {
+    // The mill goes 1020 mm along X and 510 mm along Y.
+    let vmc = ["-m", "vmc", "--tool-length", "100"];
+    let there = place_text(&vmc, &plate([400.0, 200.0]));
+    assert_eq!(there.code, 0, "{}", there.err);
+    let wide = place_text(&vmc, &plate([200.0, 300.0]));
+    assert_eq!(wide.code, 1);
+    // 600 of 510 mm: 45 at each end.
+    for said in [
+        "does not fit VMC",
+        "short by 45.000 mm at each of Y at its least end on line 7 and Y at its largest end on line 9",
+        "--search-turn",
+    ] {
+        assert!(wide.err.contains(said), "{said}: {}", wide.err);
+    }
+    // No mount of a grid posts.
+    for step in 0..9 {
+        let mount = format!("--mount=0,{},100", -200 + 50 * step);
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("part.cls");
+        fs::write(&file, plate([200.0, 300.0])).unwrap();
+        let done = run(
+            command().args(vmc).args([&mount, "-o", "-"]).arg(&file),
+            b"",
+        );
+        assert_eq!(done.code, 1, "{mount}");
+        assert!(done.err.contains("passed by"), "{}", done.err);
+    }
+    let turned = place_text(
+        &[&vmc[..], &["--search-turn"]].concat(),
+        &plate([200.0, 300.0]),
+    );
+    assert_eq!(turned.code, 0, "{}", turned.err);
+    let words = printed(&turned.out);
+    let turn = told(&words, "--turn").unwrap()[0];
+    assert!(turn.abs() > 20.0, "{turn}");
+}
+
+#[test]
+fn a_turn_that_is_found_is_one_that_posting_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("part.cls");
+    fs::write(&file, plate([200.0, 300.0])).unwrap();
+    let file = file.to_str().unwrap();
+    let arguments = ["-m", "vmc", "--tool-length", "100", file];
+    let found = post(&[&["place", "--search-turn=30"][..], &arguments].concat());
+    assert_eq!(found.code, 0, "{}", found.err);
+    let words = printed(&found.out);
+    let turn = told(&words, "--turn").unwrap()[0];
+    let (program, summary) = obeyed(&words);
+    assert!(left(&summary, &["X", "Y", "Z"]) >= 0.997);
+    // Three axes: the words are the points, turned right-handed about Z.
+    let about = Rotation3::from_axis_angle(&Vector3::z_axis(), turn.to_radians());
+    let ends = blocks(&program, &["X", "Y", "Z"], &[]);
+    for (sx, sy) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+        let wanted = about * Vector3::new(sx * 200.0, sy * 300.0, 0.0);
+        let met = ends.iter().any(|end| {
+            let words = Vector3::from_column_slice(&end.words);
+            (words - wanted).norm() < 0.002
+        });
+        assert!(met, "{turn}: {wanted}\n{program}");
+    }
+}
+
+#[test]
+fn least_time_is_no_more_than_where_the_part_sits() {
+    for machine in ["ac-trunnion", "dmu50", "xyzbc-trt"] {
+        let base = [
+            "-m",
+            machine,
+            "tests/samples/blade.cls",
+            "--tool-length",
+            "0",
+            "--mount",
+            "40,30,-20",
+        ];
+        let found = post(&[&["place", "--runs", "30"][..], &base].concat());
+        assert_eq!(found.code, 0, "{}", found.err);
+        let here = base.map(str::to_owned);
+        let time = |words: &[String]| obeyed(words).1["time_s"].as_f64().unwrap();
+        let (before, after) = (time(&here), time(&printed(&found.out)));
+        assert!(after <= before, "{machine}: {after} {before}");
+    }
+    // Where the part sits well it stays.
+    let base = [
+        "place",
+        "-m",
+        "vmc",
+        "tests/samples/plate.ncl",
+        "--tool-length",
+        "80",
+    ];
+    let stays = post(&base);
+    assert!(stays.out.contains("--mount 0,0,0"), "{}", stays.out);
+    assert!(
+        stays
+            .out
+            .contains("time is the same wherever the part sits")
+    );
+}
+
+#[test]
+fn what_no_mount_helps_is_refused_and_why() {
+    let refused = post(&[
+        "place",
+        "-m",
+        "dmu50",
+        "tests/machines/dmu50.refused.ncl",
+        "--tool-length",
+        "100",
+    ]);
+    assert_eq!(refused.code, 1);
+    for said in ["B would be", "no mount helps", "--search-turn"] {
+        assert!(refused.err.contains(said), "{said}: {}", refused.err);
+    }
+    assert_eq!(refused.out, "");
+    // A length that the axis positions depend on is asked for, as posting does.
+    let lacks = post(&["place", "-m", "head-head", "tests/samples/blade.cls"]);
+    assert_eq!(lacks.code, 1);
+    assert!(lacks.err.contains("error[tool-length]"), "{}", lacks.err);
+    // The file is read several times.
+    let piped = run(
+        command().args(["place", "-m", "vmc", "-"]),
+        plate([1.0, 1.0]).as_bytes(),
+    );
+    assert_eq!(piped.code, 1);
+    assert!(
+        piped.err.contains("goes over the CL file several times"),
+        "{}",
+        piped.err
+    );
+    // A margin that nothing leaves is told with the one that something does.
+    let margin = place_text(
+        &["-m", "vmc", "--tool-length", "100", "--margin", "60"],
+        &plate([400.0, 200.0]),
+    );
+    assert_eq!(margin.code, 1);
+    assert!(
+        margin.err.contains("--margin 54.99 is the most that fits")
+            || margin.err.contains("--margin 55 is the most that fits"),
+        "{}",
+        margin.err
+    );
+}
+
+#[test]
+fn an_index_move_of_the_file_and_a_turned_part_do_not_go_together() {
+    let text = "PARTNO/X\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nFEDRAT/500,MMPM\nROTABL/BAXIS,ATANGL,90\nRAPID\nGOTO/0,0,10\nGOTO/0,0,5\nFINI\n";
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("part.cls");
+    fs::write(&file, text).unwrap();
+    let with = |turn: &str| {
+        let arguments = [
+            "-m",
+            "hmc-b-pallet",
+            "--tool-length",
+            "100",
+            "-o",
+            "-",
+            "--turn",
+            turn,
+        ];
+        run(command().args(arguments).arg(&file), b"")
+    };
+    assert!(
+        with("90").err.contains("angles of this index move"),
+        "{}",
+        with("90").err
+    );
+    assert!(!with("0").err.contains("angles of this index move"));
+}
+
+#[test]
+fn the_picture_has_a_bar_for_each_axis() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("travel.svg");
+    let arguments = [
+        "place",
+        "-m",
+        "dmu50",
+        "tests/samples/blade.cls",
+        "--tool-length",
+        "80",
+        "--svg",
+    ];
+    let found = post(&[&arguments[..], &[picture.to_str().unwrap()]].concat());
+    assert_eq!(found.code, 0, "{}", found.err);
+    let svg = fs::read_to_string(&picture).unwrap();
+    assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
+    for axis in ["X", "Y", "Z", "B", "C"] {
+        assert!(svg.contains(&format!(">{axis}</text>")), "{axis}");
+    }
+    assert_eq!(svg.matches("left</text>").count(), 2 * 4);
+    assert_eq!(svg.matches("endless</text>").count(), 1);
+    assert!(!Path::new("travel.svg").exists());
+}
+
+#[test]
+fn a_real_file_is_placed() {
+    let Some(data) = post_testkit::shared("data/cl") else {
+        return;
+    };
+    let file = data.join("creo5x_4r19415_finition.ncl");
+    let file = file.to_str().unwrap();
+    for machine in ["ac-trunnion", "dmu50"] {
+        let base = [
+            "place",
+            "-m",
+            machine,
+            "--units",
+            "mm",
+            "--tool-length",
+            "0",
+            file,
+        ];
+        let far = ["--mount", "250,160,-90", "--runs", "12", "--margin", "5"];
+        let found = post(&[&base[..], &far].concat());
+        assert_eq!(found.code, 0, "{machine}:\n{}", found.err);
+        let (_, summary) = obeyed(&printed(&found.out));
+        assert!(left(&summary, &["X", "Y", "Z"]) >= 4.997, "{machine}");
+    }
+}

@@ -47,7 +47,7 @@ pub(super) fn typical(probe: &Probe<'_>) -> Option<Solutions> {
         return None;
     }
     let tilted = direction(20f64.to_radians(), 30f64.to_radians());
-    let axis = if probe.ways(tilted) > 0 {
+    let axis = if probe.makes(tilted) {
         tilted
     } else {
         let mut joints = *probe.home();

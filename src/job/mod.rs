@@ -42,7 +42,12 @@ pub fn try_opening(machine: &Machine, plugins: &[PathBuf], length: f64) -> Resul
         (Ok((dialect, _)), Ok((model, _))) => (dialect, model),
         (dialect, model) => {
             let faults = [dialect.err(), model.err()];
-            return Err(faults.into_iter().flatten().flatten().collect::<Vec<_>>().into());
+            return Err(faults
+                .into_iter()
+                .flatten()
+                .flatten()
+                .collect::<Vec<_>>()
+                .into());
         }
     };
     let job = Job {

@@ -174,9 +174,13 @@ fn solutions(text: &mut String, found: &Solutions) {
         text,
         "solutions",
         &format!(
-            "for the tool tilted {}° towards azimuth {}°: {}, {} inside travel",
+            "for the tool tilted {}° towards azimuth {}°: {}{}, {} inside travel",
             number(found.tilt_deg, 2),
             number(found.azimuth_deg, 2),
+            match found.at_least {
+                true => "at least ",
+                false => "",
+            },
             plural(found.ways.len(), "way"),
             plural(found.inside, "solution"),
         ),
@@ -204,6 +208,11 @@ fn reach(text: &mut String, reach: &Reach) {
             format!("{}°", number(tilt, 2))
         })
     };
+    if reach.tied_to_the_tip {
+        let told = "the direction of the tool depends on the point: with the tip kept it cannot turn every way";
+        row(text, "reach", told);
+        return;
+    }
     if reach.freedom < 2 {
         let told = match (reach.freedom, reach.single_directions) {
             (_, Some(count)) => format!(
@@ -237,7 +246,7 @@ fn reach(text: &mut String, reach: &Reach) {
     row(text, "reach", &told);
     if let Some(grid) = reach.searched_every_deg {
         let told = format!(
-            "by search with the tip on the part origin, on a grid of {}°: at least so much",
+            "searched with the tip on the part origin, every {}°: at least so much",
             number(grid, 1)
         );
         row(text, "", &told);

@@ -248,7 +248,10 @@ fn useless_flags(arguments: &NewArguments, class: Class) -> Vec<Diagnostic> {
             faults.push(
                 Diagnostic::error(
                     "new",
-                    format!("{flag}: {} has no {part}, so that nothing would come of it", class.name()),
+                    format!(
+                        "{flag}: {} has no {part}, so that nothing would come of it",
+                        class.name()
+                    ),
                 )
                 .help(format!("leave it out; it is for {}", classes.join(", "))),
             );

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::number;
 use super::probe::{Probe, named};
+use super::{number, settings};
 use crate::description::{Axis, Machine, Positions};
 use crate::kinematics::Joint;
 use crate::kinematics::orientation::angle;
@@ -123,7 +123,12 @@ fn set_between_cuts(machine: &Machine, place: usize) -> Option<String> {
             "{name} is set to what the tool axis of each cut asks for, if that is one of its positions"
         ),
         (false, true) => {
-            format!("reach counts every position of {name}; what else follows holds with it at {at}°")
+            let positions = settings::positions(machine, place).len();
+            let counted = match positions > settings::MOST {
+                true => "some positions, spread over all",
+                false => "every position",
+            };
+            format!("reach counts {counted} of {name}; what else follows holds with it at {at}°")
         }
         (false, false) => format!("what follows holds with {name} at {at}°"),
     })

@@ -119,14 +119,24 @@ fn warnings(
 ) -> Vec<String> {
     let mut warnings = Vec::new();
     let machine = probe.machine();
+    // Where rotary axes place the tip, what can be made depends on the point.
+    let at_origin = match probe.closed_form() {
+        true => "",
+        false => " with the tip on the part origin",
+    };
     if reach.ways_upright == 0 {
-        warnings.push(
-            "the tool cannot stand upright in the part: no axis values inside travel point it along +Z, which is what a CL point without a tool axis asks for"
-                .to_owned(),
-        );
+        warnings.push(format!(
+            "the tool cannot stand upright in the part{at_origin}: no axis values inside travel point it along +Z, which is what a CL point without a tool axis asks for"
+        ));
     }
-    if reach.share_of_sphere == 0.0 && probe.freedom() == 2 {
-        warnings.push("no direction of the tool can be made inside travel".to_owned());
+    if reach.share_of_sphere == 0.0 && reach.freedom == 2 && !reach.tied_to_the_tip {
+        warnings.push(format!(
+            "no direction of the tool can be made inside travel{at_origin}{}",
+            match probe.closed_form() {
+                true => "",
+                false => ": does --mount or [workpiece] mount lie within reach?",
+            }
+        ));
     }
     if let Some(volume) = volume {
         for out in &volume.origin_out {
@@ -159,8 +169,7 @@ fn warnings(
             ));
         }
     }
-    let ways = probe.ways_of_tip();
-    if ways < 3 {
+    if let Some([ways @ 0..3, _]) = probe.ways_by_search() {
         warnings.push(format!(
             "while the tool keeps its direction the tip can go {}: most programs ask for more, and are refused where they do",
             match ways {

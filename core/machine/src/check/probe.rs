@@ -196,7 +196,12 @@ impl<'a> Probe<'a> {
             // Full turns make other positions of a list: the nearest of all.
             let value = joints[place];
             let nearest = [0.0, TAU, -TAU]
-                .map(|turn| indexed.positions.nearest(value + turn, axis.travel.is_none()) - turn)
+                .map(|turn| {
+                    indexed
+                        .positions
+                        .nearest(value + turn, axis.travel.is_none())
+                        - turn
+                })
                 .into_iter()
                 .min_by(|a, b| libm::fabs(a - value).total_cmp(&libm::fabs(b - value)))?;
             if libm::fabs(nearest - value) > tolerance {
@@ -269,15 +274,14 @@ impl<'a> Probe<'a> {
         })
     }
 
-    /// In how many independent ways the tip can be moved while the tool axis keeps its direction, the most over some
-    /// settings: a setting may happen to be singular.
-    pub(super) fn ways_of_tip(&self) -> usize {
-        let ways = SETTINGS.iter().map(|share| {
-            self.solver().ways_of_tip(&self.somewhere(*share))
-        });
-        ways.chain([self.solver().ways_of_tip(&self.home)])
-            .max()
-            .unwrap_or(0)
+    /// See [`Solver::ways`], the most over some settings: a setting may happen to be singular.
+    pub(super) fn ways_by_search(&self) -> Option<[usize; 2]> {
+        let settings = SETTINGS.map(|share| self.somewhere(share));
+        settings
+            .iter()
+            .chain([&self.home])
+            .filter_map(|joints| self.solver().ways(joints))
+            .reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])
     }
 
     /// The axes that point the tool somewhere in their travel, the others at rest.

@@ -21,7 +21,7 @@ const STEPS: usize = 180;
 const CURVE: usize = 361;
 
 /// The reachable cone.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Reach {
     /// In how many independent ways the tool axis can move in a cut: 0, 1 (along a curve), 2 (over an area).
     pub freedom: usize,
@@ -30,6 +30,9 @@ pub struct Reach {
     /// The chain has no closed form: each direction was searched with the tip on the part origin, on a grid of so many
     /// degrees; what was not found counts as not made.
     pub searched_every_deg: Option<f64>,
+    /// Rotary axes place the tip too, and there are too few of them for the tool axis to go over an area while the tip
+    /// stays: which directions can be made depends on the point.
+    pub tied_to_the_tip: bool,
     /// Axes that stand at positions alone: of the directions only those are made that one of them gives.
     pub at_positions_alone: Vec<String>,
     /// Single directions that an axis at its positions gives, if it alone turns the tool.
@@ -66,6 +69,12 @@ impl Reach {
             Self::along_a_curve(probe)
         } else if probe.closed_form() {
             Self::over_the_sphere(probe)
+        } else if probe.ways_by_search().is_some_and(|[_, ways]| ways < 2) {
+            Self {
+                freedom: probe.freedom(),
+                tied_to_the_tip: true,
+                ..Self::default()
+            }
         } else {
             Self::by_search(probe)
         };
@@ -114,56 +123,50 @@ impl Reach {
         Self {
             freedom: probe.freedom(),
             share_of_sphere,
-            searched_every_deg: None,
-            at_positions_alone: Vec::new(),
-            single_directions: None,
             shares_by_solutions: shares,
             tilt_in_all_azimuths_deg: (all >= 0.0).then(|| all.to_degrees()),
             tilt_in_some_azimuth_deg: some.map(|(tilt, _)| tilt.to_degrees()),
             azimuth_of_largest_tilt_deg: some.map(|(_, azimuth)| azimuth.to_degrees()),
-            ways_upright: 0,
             map: Map {
                 cells,
                 curve: Vec::new(),
             },
+            ..Self::default()
         }
     }
 
     /// Of a chain without a closed form: what the search over a coarse map finds.
     fn by_search(probe: &Probe<'_>) -> Self {
-        let cells = search::map(probe);
+        let search::Found { cells, borders } = search::directions(probe);
         let band = |edge: usize| PI * edge as f64 / search::TILTS as f64;
         let mut share = 0.0;
-        let (mut all, mut some) = (Some(search::TILTS), None);
         for (row, cells) in cells.iter().enumerate() {
-            let made = cells.iter().sum::<usize>();
             let area = (libm::cos(band(row)) - libm::cos(band(row + 1))) / 2.0;
-            share += area * made as f64 / search::AZIMUTHS as f64;
-            if made < search::AZIMUTHS {
-                all = all.map(|gap| gap.min(row));
-            }
-            if let Some(cell) = cells.iter().position(|made| *made > 0) {
-                let azimuth = TAU * (cell as f64 + 0.5) / search::AZIMUTHS as f64;
-                some = Some((band(row) + band(1) / 2.0, azimuth));
+            share += area * cells.iter().sum::<usize>() as f64 / search::AZIMUTHS as f64;
+        }
+        let firsts = borders.iter().map(|[first, _]| *first);
+        let all = firsts.reduce(|a, b| Some(a?.min(b?))).flatten();
+        let mut some: Option<(f64, f64)> = None;
+        for (cell, [_, last]) in borders.iter().enumerate() {
+            if let Some(tilt) = last
+                && some.is_none_or(|(most, _)| *tilt > most + 1e-6)
+            {
+                some = Some((*tilt, TAU * (cell as f64 + 0.5) / search::AZIMUTHS as f64));
             }
         }
-        // The middle of the last whole band was made.
-        let all = all.filter(|gap| *gap > 0);
         Self {
             freedom: probe.freedom(),
             share_of_sphere: share,
             searched_every_deg: Some(band(1).to_degrees()),
-            at_positions_alone: Vec::new(),
-            single_directions: None,
             shares_by_solutions: vec![1.0 - share, share],
-            tilt_in_all_azimuths_deg: all.map(|gap| (band(gap) - band(1) / 2.0).to_degrees()),
+            tilt_in_all_azimuths_deg: all.map(f64::to_degrees),
             tilt_in_some_azimuth_deg: some.map(|(tilt, _)| tilt.to_degrees()),
             azimuth_of_largest_tilt_deg: some.map(|(_, azimuth)| azimuth.to_degrees()),
-            ways_upright: 0,
             map: Map {
                 cells,
                 curve: Vec::new(),
             },
+            ..Self::default()
         }
     }
 
@@ -203,9 +206,6 @@ impl Reach {
         let upright = curve.iter().any(|[tilt, _]| *tilt < 1e-9);
         Self {
             freedom: probe.freedom(),
-            share_of_sphere: 0.0,
-            searched_every_deg: None,
-            at_positions_alone: Vec::new(),
             single_directions: (!positions.is_empty()).then_some(positions.len()),
             shares_by_solutions: vec![1.0],
             tilt_in_all_azimuths_deg: upright.then_some(0.0),
@@ -213,11 +213,11 @@ impl Reach {
             azimuth_of_largest_tilt_deg: largest
                 .filter(|[tilt, _]| *tilt > 1e-6)
                 .map(|[_, azimuth]| azimuth.to_degrees()),
-            ways_upright: 0,
             map: Map {
                 cells: Vec::new(),
                 curve,
             },
+            ..Self::default()
         }
     }
 }

@@ -29,11 +29,7 @@ pub struct RoundTrip {
 impl RoundTrip {
     pub(super) fn of(probe: &Probe<'_>) -> Self {
         let mut random = Random(0x706f_7374);
-        let poses = if probe.closed_form() {
-            POSES
-        } else {
-            SEARCHED
-        };
+        let poses = if probe.closed_form() { POSES } else { SEARCHED };
         let mut trip = Self {
             poses,
             solutions: 0,

@@ -6,7 +6,7 @@ use crate::kinematics::travel::{AT_END, passed};
 use crate::kinematics::{Joints, NoClosedForm, Solver};
 
 /// Settings that are asked, spread over all that there are.
-const MOST: usize = 16;
+pub(super) const MOST: usize = 8;
 
 /// The same of a chain that is searched.
 const MOST_SEARCHED: usize = 3;

@@ -87,7 +87,9 @@ impl NoClosedForm {
                 ),
                 match quills {
                     true => "share and reserve are for a quill beside three linear axes",
-                    false => "three axes at least must move the tip: with fewer than three linear ones, rotary axes that are not indexed make up for them",
+                    false => {
+                        "three axes at least must move the tip: with fewer than three linear ones, rotary axes that are not indexed make up for them"
+                    }
                 },
             ),
             Self::FlatTip { ways } => (

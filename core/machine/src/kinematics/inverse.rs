@@ -122,7 +122,9 @@ impl Solver {
                     .collect();
                 let ways = SETTINGS
                     .iter()
-                    .map(|share| numeric::ways(&chain, &free, &numeric::spread(&free, &held, *share)))
+                    .map(|share| {
+                        numeric::ways(&chain, &free, &numeric::spread(&free, &held, *share))
+                    })
                     .map(|ways| ways.of_tip);
                 let ways = ways.max().unwrap_or(0);
                 if ways < 3 {
@@ -269,13 +271,14 @@ impl Solver {
         &self.held
     }
 
-    /// In how many independent ways the tip can be moved from `joints` while the tool axis keeps its direction: 3, if
-    /// three linear axes place the tip.
-    pub fn ways_of_tip(&self, joints: &Joints) -> usize {
-        match &self.form {
-            Form::Closed { .. } => 3,
-            Form::Numeric { free, .. } => numeric::ways(&self.chain, free, joints).with_axis_kept,
-        }
+    /// For a chain without a closed form: in how many independent ways the tip can be moved from `joints` while the tool
+    /// axis keeps its direction (3 for any path), and the tool axis while the tip stays (2 for any).
+    pub fn ways(&self, joints: &Joints) -> Option<[usize; 2]> {
+        let Form::Numeric { free, .. } = &self.form else {
+            return None;
+        };
+        let ways = numeric::ways(&self.chain, free, joints);
+        Some([ways.with_axis_kept, ways.of_axis_with_tip_kept])
     }
 
     /// For a chain without a closed form: the solution next to `from`, verified.

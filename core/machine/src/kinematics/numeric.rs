@@ -80,6 +80,8 @@ pub(super) struct Ways {
     pub of_tip: usize,
     /// Those that are left while the tool axis keeps its direction.
     pub with_axis_kept: usize,
+    /// Independent ways of the tool axis to turn while the tip stays.
+    pub of_axis_with_tip_kept: usize,
 }
 
 /// A velocity is nothing where it is less than this share of the largest, or of what is left of it.
@@ -99,9 +101,11 @@ pub(super) fn ways(chain: &Chain, free: &[usize], joints: &Joints) -> Ways {
         };
         rank((0..free.len()).map(column).collect())
     };
+    let (all, tip) = (rank(0, 6), rank(0, 3));
     Ways {
-        of_tip: rank(0, 3),
-        with_axis_kept: rank(0, 6) - rank(3, 3),
+        of_tip: tip,
+        with_axis_kept: all.saturating_sub(rank(3, 3)),
+        of_axis_with_tip_kept: all.saturating_sub(tip),
     }
 }
 

@@ -80,7 +80,7 @@ fn an_upright_program_is_posted_where_the_check_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let part = folder.path().join("part.cls");
     fs::write(&part, UPRIGHT).unwrap();
-    let (mut posted, mut refused, mut unloaded) = (0, 0, 0);
+    let (mut posted, mut refused, mut unloaded, mut poor) = (0, 0, 0, 0);
     let mut faults = Vec::new();
     for (machine, settings) in variants() {
         let file: toml::Table = fs::read_to_string(root().join(format!("machines/{machine}.toml")))
@@ -106,10 +106,16 @@ fn an_upright_program_is_posted_where_the_check_says_so() {
             (Some(least), Some(most)) => {
                 [0, 1, 2].map(|index| mount[index] + (least[index] + most[index]) / 2.0)
             }
-            _ => mount,
+            // Where the table makes up for an axis, its middle is a place that no path goes through.
+            _ => [mount[0] + 100.0, mount[1], mount[2]],
         };
         let placed = text(placed);
         let told = check(&machine, &settings, &placed).unwrap();
+        let warnings = told["warnings"].to_string();
+        if warnings.contains("while the tool keeps its direction") {
+            poor += 1;
+            continue;
+        }
         let upright = told["reach"]["ways_upright"].as_u64().unwrap() > 0;
         let out = told["volume"]["origin_out"].as_array();
         let inside = out.is_some_and(Vec::is_empty);
@@ -142,7 +148,9 @@ fn an_upright_program_is_posted_where_the_check_says_so() {
             )),
         }
     }
-    println!("{posted} posted, {refused} refused by both, {unloaded} no machine");
+    println!(
+        "{posted} posted, {refused} refused by both, {poor} said to make few programs, {unloaded} no machine"
+    );
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     assert!(posted > 100 && refused > 10, "{posted} {refused}");
 }

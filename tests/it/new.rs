@@ -119,8 +119,6 @@ fn flags_say_everything() {
             "A=0,0.02,-35.5",
             "--gauge",
             "420",
-            "--tilt",
-            "-35.5",
             "--tolerance",
             "0.01",
         ],

@@ -224,7 +224,8 @@ fn name(probe: &Probe<'_>, rotary: &[usize], angles: &[Between]) -> String {
             text.push_str(&format!(" ({} beside another)", seconds.join(", ")));
         }
     }
-    if free.len() >= 2 {
+    // Of more axes that is nobody's name.
+    if (2..=3).contains(&free.len()) {
         let free_names: Vec<&String> = free.iter().map(|place| &axis(place).name).collect();
         let askew: Vec<String> = angles
             .iter()

@@ -6,7 +6,8 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 
 use super::{search, settings};
-use crate::description::{Machine, Positions};
+use crate::description::{Machine, Pole, Positions, SHARE_AT_POLES};
+use crate::kinematics::orientation::angle;
 use crate::kinematics::travel::passed;
 use crate::kinematics::{Chain, Joint, Joints, MAX_AXES, NoClosedForm, Pose, Solver, Unreachable};
 
@@ -175,10 +176,10 @@ impl<'a> Probe<'a> {
         for solver in &self.solvers {
             let found = self.solved(solver, Vector3::zeros(), axis, tolerance);
             for joints in found.unwrap_or_default() {
-                let at_rest = self
-                    .at_positions(solver, &joints, tolerance)
-                    .and_then(|joints| self.inside(&joints));
-                stands.extend(at_rest);
+                if let Some(joints) = self.at_positions(solver, &joints, tolerance) {
+                    let inside = self.inside(&joints);
+                    stands.extend(inside.or_else(|| self.at_ends(solver, &joints, axis)));
+                }
             }
         }
         stands
@@ -214,6 +215,30 @@ impl<'a> Probe<'a> {
             solver.place(Vector3::zeros(), &mut at, &turns).ok()?;
         }
         Some(at)
+    }
+
+    /// Close to a pole an axis that would tilt beyond its end stays there, if the tool axis keeps its tolerance.
+    fn at_ends(&self, solver: &Solver, joints: &Joints, wanted: Vector3<f64>) -> Option<Joints> {
+        let pole = solver.pole_joint()?;
+        if self.machine.solution.pole != Pole::Blend {
+            return None;
+        }
+        let tolerance = self.machine.accuracy.axis_tolerance;
+        let mut at = *joints;
+        for place in self.free().into_iter().filter(|place| *place != pole) {
+            if let Some([least, most]) = self.machine.axes[place].travel {
+                let value = at[place].clamp(least, most);
+                if libm::fabs(value - at[place]) < tolerance {
+                    at[place] = value;
+                }
+            }
+        }
+        let turns = solver.chain().turns(&at);
+        solver.place(Vector3::zeros(), &mut at, &turns).ok()?;
+        if angle(solver.chain().forward(&at).axis, wanted) > SHARE_AT_POLES * tolerance {
+            return None;
+        }
+        self.inside(&at)
     }
 
     /// Index axes that are solved for and stand at positions alone: places in the chain.

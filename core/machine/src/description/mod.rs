@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-pub use accuracy::{Accuracy, ControlPoint};
+pub use accuracy::{Accuracy, ControlPoint, SHARE_AT_POLES};
 pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;

@@ -244,4 +244,19 @@ fn an_arm_is_checked_and_posted() {
     let summary = common::read_json(&json);
     let tip = summary["tip_deviation_mm"]["value"].as_f64().unwrap();
     assert!(tip > 0.0 && tip <= 0.1, "{tip}");
+    // Without a place for its axes nothing leads the tool off the part: refused by both, in the same words.
+    let text = fs::read_to_string(root().join(ARM)).unwrap();
+    let bare: Vec<&str> = text
+        .lines()
+        .filter(|line| !line.starts_with("park"))
+        .collect();
+    let machine = folder.path().join("bare.toml");
+    fs::write(&machine, bare.join("\n")).unwrap();
+    let machine = machine.to_str().unwrap();
+    let checked = post(&["check", machine]);
+    let posted = post(&["-m", machine, "-o", "-", part.to_str().unwrap()]);
+    assert_eq!((checked.code, posted.code), (1, 1));
+    let said = "six-axis arm has no linear axis to lead the tool off the part with";
+    assert!(checked.err.contains(said), "{}", checked.err);
+    assert_eq!(checked.err, posted.err);
 }

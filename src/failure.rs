@@ -3,7 +3,6 @@
 use std::process::ExitCode;
 
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::NoClosedForm;
 
 use crate::files::FileFault;
 
@@ -14,13 +13,6 @@ pub enum Failure {
     Usage(clap::Error),
     /// A file cannot be read or written.
     File(FileFault),
-    /// The chain of a machine has no inverse solution.
-    Unsolvable {
-        /// Name of the machine.
-        machine: String,
-        /// What the chain lacks.
-        lack: NoClosedForm,
-    },
     /// Something that was read is refused: findings, each with its file and line, an error among them.
     Refused(Vec<Diagnostic>),
 }
@@ -33,7 +25,7 @@ impl Failure {
             Self::Usage(_) => ExitCode::SUCCESS,
             // What shells say of a command whose reader went away.
             Self::File(FileFault::ReaderGone(_)) => 141.into(),
-            Self::File(_) | Self::Unsolvable { .. } | Self::Refused(_) => 1.into(),
+            Self::File(_) | Self::Refused(_) => 1.into(),
         }
     }
 
@@ -42,10 +34,6 @@ impl Failure {
         match self {
             Self::Usage(_) => Vec::new(),
             Self::File(fault) => vec![fault.into()],
-            Self::Unsolvable { machine, lack } => {
-                let message = format!("{machine} cannot be solved: {lack:?}");
-                vec![Diagnostic::error("check", message)]
-            }
             Self::Refused(findings) => findings,
         }
     }

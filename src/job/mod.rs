@@ -16,7 +16,7 @@ use post_posting::{Job, Post};
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
-use crate::files::{ClInput, FileFault, PathArg};
+use crate::files::{ClInput, FileFault, NullSink, PathArg};
 use crate::terminal::Progress;
 pub use dry_run::DryRun;
 
@@ -30,10 +30,36 @@ pub fn machine(arguments: &JobArguments, more: &[Setting]) -> Result<Machine, Fa
 /// What can be derived from a machine with a tool of `length` mm. A chain that cannot be solved is mostly refused as
 /// its file is loaded.
 pub fn derive(machine: &Machine, length: f64) -> Result<Check, Failure> {
-    Check::of(machine, length).map_err(|lack| Failure::Unsolvable {
-        machine: machine.name.clone(),
-        lack,
-    })
+    Check::of(machine, length).map_err(|lack| machine.unsolvable(&lack).into())
+}
+
+/// Refuses a machine that posting would refuse before its first record: plugins that cannot be opened, options that they
+/// do not take, and what machine and dialect cannot do together.
+pub fn try_opening(machine: &Machine, plugins: &[PathBuf], length: f64) -> Result<(), Failure> {
+    let finder = plugin_finder::finder(plugins)?;
+    let (mut dialect, mut model) = match (
+        plugin_finder::dialect(&finder, machine, "CHECK", None),
+        plugin_finder::model(&finder, machine),
+    ) {
+        (Ok((dialect, _)), Ok((model, _))) => (dialect, model),
+        (dialect, model) => {
+            let faults = [dialect.err(), model.err()];
+            return Err(faults
+                .into_iter()
+                .flatten()
+                .flatten()
+                .collect::<Vec<_>>()
+                .into());
+        }
+    };
+    let job = Job {
+        tool_length: Some(length),
+        ..Job::default()
+    };
+    match Post::new(machine, job, &mut dialect, &mut model, &mut NullSink) {
+        Ok(_) => Ok(()),
+        Err(finding) => Err((*finding).into()),
+    }
 }
 
 /// How the CL file that is called `file` in messages is posted.

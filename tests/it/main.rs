@@ -6,6 +6,7 @@
 
 mod axes;
 mod check;
+mod check_posts;
 mod command;
 mod common;
 mod files;

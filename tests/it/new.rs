@@ -119,8 +119,6 @@ fn flags_say_everything() {
             "A=0,0.02,-35.5",
             "--gauge",
             "420",
-            "--tilt",
-            "-35.5",
             "--tolerance",
             "0.01",
         ],
@@ -293,4 +291,77 @@ fn what_cannot_be_is_refused() {
         nowhere.err
     );
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+/// A flag that nothing in the file stands on is refused for its class, and names the classes it is for; where it is
+/// taken, it changes the file.
+#[test]
+fn flags_are_used_or_refused_in_every_class() {
+    for (flag, value) in [
+        ("--pivot", "312.5"),
+        ("--tilt", "-35.25"),
+        ("--tcp", "control"),
+    ] {
+        let mut taken = Vec::new();
+        let mut refusals = Vec::new();
+        for class in CLASSES {
+            let folder = folder();
+            let arguments = ["new", "mill", "--class", class];
+            let plain = post_in(folder.path(), &arguments, "");
+            assert_eq!(plain.code, 0, "{class}: {}", plain.err);
+            let path = folder.path().join("mill.toml");
+            let before = fs::read_to_string(&path).unwrap();
+            fs::remove_file(&path).unwrap();
+            let mut all = arguments.to_vec();
+            all.extend([flag, value]);
+            let run = post_in(folder.path(), &all, "");
+            match fs::read_to_string(&path) {
+                Ok(after) => {
+                    assert_eq!(run.code, 0, "{class} {flag}: {}", run.err);
+                    assert!(after != before && after.contains(value), "{class} {flag}");
+                    taken.push(*class);
+                }
+                Err(_) => {
+                    assert_eq!(run.code, 1, "{class} {flag}");
+                    let said = format!("{flag}: {class} has no ");
+                    assert!(run.err.contains(&said), "{}", run.err);
+                    refusals.push(run.err);
+                }
+            }
+        }
+        assert!(!taken.is_empty() && !refusals.is_empty(), "{flag}");
+        for refusal in refusals {
+            let listed = refusal.split("it is for ").nth(1).unwrap();
+            let listed: Vec<&str> = listed.lines().next().unwrap().split(", ").collect();
+            assert_eq!(listed, taken, "{flag}");
+        }
+    }
+    let folder = folder();
+    // Two ways to say one thing.
+    let both = [
+        "new",
+        "mill",
+        "--class",
+        "head-head-ac",
+        "--pivot",
+        "1",
+        "--point",
+        "A=0,0,9",
+    ];
+    let run = post_in(folder.path(), &both, "");
+    assert_eq!(run.code, 1);
+    let said = "--pivot and --point A both say where the line of A runs";
+    assert!(run.err.contains(said), "{}", run.err);
+    // Asked for on a terminal the class is known only later.
+    let run = post_in(
+        folder.path(),
+        &["new", "mill", "--pivot", "1"],
+        "three-axis\n",
+    );
+    assert_eq!(run.code, 1);
+    assert!(
+        run.err.contains("--pivot: three-axis has no swivel head"),
+        "{}",
+        run.err
+    );
 }

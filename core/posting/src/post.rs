@@ -149,8 +149,9 @@ impl<'a> Post<'a> {
         job.reading.rules.clone_from(&machine.word_rules);
         job.reading.knife = machine.edge.is_some();
         let format = dialect.format().clone();
-        let fault =
-            refusal::too_fine(machine, &format).or_else(|| refusal::depth_counts_down(machine));
+        let fault = refusal::too_fine(machine, &format)
+            .or_else(|| refusal::depth_counts_down(machine))
+            .or_else(|| refusal::no_way_off(machine));
         if let Some(fault) = fault {
             return Err(fault.boxed());
         }

@@ -29,6 +29,27 @@ pub(crate) fn depth_counts_down(machine: &Machine) -> Option<Diagnostic> {
     })
 }
 
+/// Retracts go along linear axes. Without one nothing leads the tool off the part before a tool change and at the end,
+/// unless the machine file says where every axis stands then.
+pub(crate) fn no_way_off(machine: &Machine) -> Option<Diagnostic> {
+    let frame = &machine.frame;
+    // What `change` does not say is what `park` says.
+    let said = [&frame.park, &frame.change].iter().all(|positions| {
+        let placed = |place: usize| positions.iter().any(|(joint, _)| *joint == place);
+        (0..machine.axes.len()).all(placed)
+    });
+    (frame.retract.is_empty() && !said).then(|| {
+        Diagnostic::error(
+            "retract",
+            format!(
+                "{} has no linear axis to lead the tool off the part with: retracts by rotary axes are beyond this version",
+                machine.name
+            ),
+        )
+        .help("[control] park with a position for every axis says where it stands at tool changes and at the end; the way there, from where the CL file leaves the tool, is yours to answer for")
+    })
+}
+
 /// Why a point has no axis values.
 pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
     match *refused {

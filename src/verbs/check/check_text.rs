@@ -19,14 +19,9 @@ pub fn check(check: &Check) -> String {
     text.push('\n');
     axes(&mut text, &check.class.axes);
     signs(&mut text, &check.signs);
-    for axis in check.class.axes.iter().filter(|axis| axis.rotary) {
-        if let Some(at) = axis.indexed {
-            let told = format!(
-                "what follows holds with {} at {}°",
-                axis.name,
-                number(at, 3)
-            );
-            row(&mut text, "set between cuts", &told);
+    for axis in &check.class.axes {
+        if let Some(told) = &axis.set_between_cuts {
+            row(&mut text, "set between cuts", told);
         }
     }
     if let Some(typical) = &check.typical {
@@ -45,8 +40,15 @@ pub fn check(check: &Check) -> String {
         &mut text,
         "round trip",
         &format!(
-            "{} random poses, {} solutions: tip off by at most {:.1e} mm, tool axis by {:.1e} rad",
-            trip.poses, trip.solutions, trip.tip_mm, trip.axis_rad
+            "{} random poses{}, {} solutions: tip off by at most {:.1e} mm, tool axis by {:.1e} rad",
+            trip.poses,
+            match trip.not_found {
+                0 => String::new(),
+                count => format!(", {count} not found"),
+            },
+            trip.solutions,
+            trip.tip_mm,
+            trip.axis_rad
         ),
     );
     row(
@@ -172,9 +174,13 @@ fn solutions(text: &mut String, found: &Solutions) {
         text,
         "solutions",
         &format!(
-            "for the tool tilted {}° towards azimuth {}°: {}, {} inside travel",
+            "for the tool tilted {}° towards azimuth {}°: {}{}, {} inside travel",
             number(found.tilt_deg, 2),
             number(found.azimuth_deg, 2),
+            match found.at_least {
+                true => "at least ",
+                false => "",
+            },
             plural(found.ways.len(), "way"),
             plural(found.inside, "solution"),
         ),
@@ -202,9 +208,18 @@ fn reach(text: &mut String, reach: &Reach) {
             format!("{}°", number(tilt, 2))
         })
     };
+    if reach.tied_to_the_tip {
+        let told = "the direction of the tool depends on the point: with the tip kept it cannot turn every way";
+        row(text, "reach", told);
+        return;
+    }
     if reach.freedom < 2 {
-        let told = match reach.freedom {
-            0 => format!(
+        let told = match (reach.freedom, reach.single_directions) {
+            (_, Some(count)) => format!(
+                "{count} single directions, tilted up to {} from +Z",
+                tilt(reach.tilt_in_some_azimuth_deg)
+            ),
+            (0, _) => format!(
                 "one direction alone, tilted {} from +Z",
                 tilt(reach.tilt_in_some_azimuth_deg)
             ),
@@ -229,6 +244,21 @@ fn reach(text: &mut String, reach: &Reach) {
         let _ = write!(told, " (azimuth {}°)", number(azimuth, 0));
     }
     row(text, "reach", &told);
+    if let Some(grid) = reach.searched_every_deg {
+        let told = format!(
+            "searched with the tip on the part origin, every {}°: at least so much",
+            number(grid, 1)
+        );
+        row(text, "", &told);
+        return;
+    }
+    if !reach.at_positions_alone.is_empty() {
+        let told = format!(
+            "of these only what the positions of {} give",
+            reach.at_positions_alone.join(" and ")
+        );
+        row(text, "", &told);
+    }
     if reach.share_of_sphere > 0.0 {
         let each: Vec<String> = reach
             .shares_by_solutions
@@ -262,6 +292,9 @@ fn pole(pole: &Pole) -> String {
 }
 
 fn volume(text: &mut String, volume: &Volume, length: f64) {
+    let (Some(least), Some(most)) = (volume.least, volume.most) else {
+        return;
+    };
     let [x, y, z] = volume.axis.map(|value| number(value, 5));
     let rotary = match volume.rotary.as_slice() {
         [] => String::new(),
@@ -278,8 +311,8 @@ fn volume(text: &mut String, volume: &Volume, length: f64) {
     let spans = ["X", "Y", "Z"].iter().enumerate().map(|(index, name)| {
         format!(
             "{name} {} to {}",
-            number(volume.least[index], 3),
-            number(volume.most[index], 3)
+            number(least[index], 3),
+            number(most[index], 3)
         )
     });
     row(

@@ -28,10 +28,8 @@ const REMARK: usize = 58;
 pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
     let mut plain = machine.clone();
     plain.control.tcp = Tcp::Post;
-    let probe = Probe::new(&plain, arguments.tool_length).map_err(|lack| Failure::Unsolvable {
-        machine: machine.name.clone(),
-        lack,
-    })?;
+    let probe =
+        Probe::new(&plain, arguments.tool_length).map_err(|lack| machine.unsolvable(&lack))?;
     let order = axis_words::order(&plain);
     let plan = Commission::of(&probe, &order);
     let beside = PathArg::from(PathBuf::from("commission"));

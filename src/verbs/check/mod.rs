@@ -29,6 +29,7 @@ const JSON: Role = Role {
 
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
 ///
+/// What posting would refuse of the file is refused here too: its plugins are opened and given their options.
 /// Go through the sign table beside the machine, axis by axis, before the file moves it: a wrong sign breaks a
 /// spindle. --commission writes a short program for that, --nominal compares the file with another one.
 #[derive(Debug, Args)]
@@ -87,7 +88,7 @@ pub struct CheckArguments {
     #[arg(long, value_name = "FOLDER")]
     machines: Vec<PathBuf>,
 
-    /// A folder of plugin libraries, for the dialect of --commission; POST_PLUGINS adds more.
+    /// A folder of plugin libraries, for the dialect and the error model of the machine; POST_PLUGINS adds more.
     #[arg(long, value_name = "FOLDER")]
     plugins: Vec<PathBuf>,
 }
@@ -98,6 +99,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     if arguments.commission {
         return commission_program::write(arguments, &machine);
     }
+    job::try_opening(&machine, &arguments.plugins, arguments.tool_length)?;
     match &arguments.nominal {
         Some(nominal) => with_nominal(arguments, &machine, nominal),
         None => alone(arguments, &machine),

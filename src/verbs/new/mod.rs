@@ -81,11 +81,12 @@ pub struct NewArguments {
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = finite)]
     gauge: Option<f64>,
 
-    /// From the swivel axis of the head to the gauge line, mm. [default: 250]
+    /// From the swivel axis of the head to the gauge line, mm; for classes with a swivel head alone. [default: 250]
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = finite)]
     pivot: Option<f64>,
 
-    /// Height of the tilting axis of the table over its face, below is negative, mm. [default: 50]
+    /// Height of the tilting axis of the table over its face, below is negative, mm; for classes with a tilting table
+    /// alone. [default: 50]
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = finite)]
     tilt: Option<f64>,
 
@@ -138,7 +139,11 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
             .into());
     }
     let choices = choices(arguments, &path)?;
-    refuse_unknown_axes(&choices)?;
+    let mut faults = unknown_axes(&choices);
+    faults.extend(useless_flags(arguments, choices.class));
+    if !faults.is_empty() {
+        return Err(faults.into());
+    }
     let text = template::write(&choices);
     // Nothing is written that the loader would refuse.
     let source = description::Source {
@@ -212,8 +217,67 @@ fn choices(arguments: &NewArguments, path: &Path) -> Result<Choices, Failure> {
     Ok(choices)
 }
 
+/// Flags that nothing in the file of the class stands on.
+fn useless_flags(arguments: &NewArguments, class: Class) -> Vec<Diagnostic> {
+    type Has = fn(Class) -> bool;
+    let flags: [(&str, bool, Has, &str, Option<&str>); 3] = [
+        (
+            "--pivot",
+            arguments.pivot.is_some(),
+            Class::has_pivot,
+            "swivel head",
+            class.axis_at("pivot"),
+        ),
+        (
+            "--tilt",
+            arguments.tilt.is_some(),
+            Class::has_tilt,
+            "tilting table",
+            class.axis_at("tilt"),
+        ),
+        (
+            "--tcp",
+            arguments.tcp.is_some(),
+            Class::turns,
+            "rotary axis",
+            None,
+        ),
+    ];
+    let mut faults = Vec::new();
+    for (flag, _, has, part, axis) in flags.into_iter().filter(|(_, given, ..)| *given) {
+        if !has(class) {
+            let classes: Vec<String> = Class::value_variants()
+                .iter()
+                .filter(|class| has(**class))
+                .map(|class| class.name())
+                .collect();
+            faults.push(
+                Diagnostic::error(
+                    "new",
+                    format!(
+                        "{flag}: {} has no {part}, so that nothing would come of it",
+                        class.name()
+                    ),
+                )
+                .help(format!("leave it out; it is for {}", classes.join(", "))),
+            );
+        } else if let Some(axis) = axis
+            && arguments.point.iter().any(|given| given.axis == axis)
+        {
+            faults.push(
+                Diagnostic::error(
+                    "new",
+                    format!("{flag} and --point {axis} both say where the line of {axis} runs"),
+                )
+                .help("keep one of them"),
+            );
+        }
+    }
+    faults
+}
+
 /// Flags for axes that the class does not have.
-fn refuse_unknown_axes(choices: &Choices) -> Result<(), Failure> {
+fn unknown_axes(choices: &Choices) -> Vec<Diagnostic> {
     let known = choices.class.axes();
     let all = [
         (
@@ -235,8 +299,7 @@ fn refuse_unknown_axes(choices: &Choices) -> Result<(), Failure> {
             choices.point.iter().map(|given| &given.axis).collect(),
         ),
     ];
-    let faults: Vec<Diagnostic> = all
-        .iter()
+    all.iter()
         .flat_map(|(flag, axes)| axes.iter().map(move |axis| (flag, axis)))
         .filter(|(_, axis)| !known.contains(&axis.as_str()))
         .map(|(flag, axis)| {
@@ -246,12 +309,7 @@ fn refuse_unknown_axes(choices: &Choices) -> Result<(), Failure> {
             )
             .help(format!("its axes are {}", known.join(", ")))
         })
-        .collect();
-    if faults.is_empty() {
-        Ok(())
-    } else {
-        Err(faults.into())
-    }
+        .collect()
 }
 
 /// `X=…`, the axis in capitals.

@@ -141,14 +141,19 @@ impl Class {
 
     /// The distance `gauge + pivot` stands in its file.
     pub fn has_pivot(self) -> bool {
-        self.rotary()
-            .iter()
-            .any(|axis| axis.point.contains("pivot"))
+        self.axis_at("pivot").is_some()
     }
 
     /// The height `tilt` stands in its file.
     pub fn has_tilt(self) -> bool {
-        self.rotary().iter().any(|axis| axis.point.contains("tilt"))
+        self.axis_at("tilt").is_some()
+    }
+
+    /// The axis whose point is given by this parameter.
+    pub fn axis_at(self, parameter: &str) -> Option<&'static str> {
+        let mut rotary = self.rotary().into_iter();
+        let axis = rotary.find(|axis| axis.point.contains(parameter))?;
+        Some(axis.name)
     }
 
     /// Travel of an axis if nobody says another: mm or degrees; none turns without end.

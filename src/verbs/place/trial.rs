@@ -142,10 +142,7 @@ impl<'a> Trials<'a> {
         if let Some(prefer) = prefer {
             wide.solution.prefer = vec![prefer];
         }
-        let mut watch = MountBounds::new(&machine).map_err(|lack| Failure::Unsolvable {
-            machine: machine.name.clone(),
-            lack,
-        })?;
+        let mut watch = MountBounds::new(&machine).map_err(|lack| machine.unsolvable(&lack))?;
         let faults = match self.dry_run.pass(&wide, Some(&mut watch)) {
             Ok(_) => Vec::new(),
             Err(Failure::Refused(findings)) => findings,

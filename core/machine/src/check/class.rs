@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::number;
 use super::probe::named;
-use crate::description::{Axis, Machine};
+use super::{number, settings};
+use crate::description::{Axis, Machine, Positions};
 use crate::kinematics::Joint;
 use crate::kinematics::orientation::angle;
 
@@ -59,8 +59,10 @@ pub struct AxisLine {
     pub along: String,
     /// Least and largest reading, mm or degrees; none if it turns without end.
     pub travel: Option<[f64; 2]>,
-    /// It is set between cuts: its reading.
+    /// It is set between cuts: its reading at the start.
     pub indexed: Option<f64>,
+    /// What of the check holds for an axis that is set between cuts, as a sentence.
+    pub set_between_cuts: Option<String>,
     /// mm/min or deg/min; none if the file does not say.
     pub max_feed: Option<f64>,
 }
@@ -80,13 +82,16 @@ impl Class {
             carry_the_tool: names(&machine.axes, |axis| !axis.carries_part),
             angles,
             distances,
-            axes: machine.axes.iter().map(AxisLine::of).collect(),
+            axes: (0..machine.axes.len())
+                .map(|place| AxisLine::of(machine, place))
+                .collect(),
         }
     }
 }
 
 impl AxisLine {
-    fn of(axis: &Axis) -> Self {
+    fn of(machine: &Machine, place: usize) -> Self {
+        let axis = &machine.axes[place];
         Self {
             name: axis.name.clone(),
             rotary: axis.joint.rotary,
@@ -100,9 +105,33 @@ impl AxisLine {
                 .indexed
                 .as_ref()
                 .map(|indexed| axis.reading(indexed.start)),
+            set_between_cuts: set_between_cuts(machine, place),
             max_feed: Some(axis.max_feed / axis.unit()).filter(|feed| feed.is_finite()),
         }
     }
+}
+
+fn set_between_cuts(machine: &Machine, place: usize) -> Option<String> {
+    let axis = &machine.axes[place];
+    let indexed = axis.indexed.as_ref().filter(|_| axis.joint.rotary)?;
+    let name = &axis.name;
+    let at = number(axis.reading(indexed.start), 3);
+    let chosen = machine.pointing().contains(&place);
+    Some(match (chosen, indexed.positions != Positions::Any) {
+        (true, false) => format!("{name} is set to what the tool axis of each cut asks for"),
+        (true, true) => format!(
+            "{name} is set to what the tool axis of each cut asks for, if that is one of its positions"
+        ),
+        (false, true) => {
+            let positions = settings::positions(machine, place).len();
+            let counted = match positions > settings::MOST {
+                true => "some positions, spread over all",
+                false => "every position",
+            };
+            format!("reach counts {counted} of {name}; what else follows holds with it at {at}°")
+        }
+        (false, false) => format!("what follows holds with {name} at {at}°"),
+    })
 }
 
 fn names(axes: &[Axis], wanted: impl Fn(&Axis) -> bool) -> Vec<String> {
@@ -194,7 +223,8 @@ fn name(machine: &Machine, rotary: &[usize], angles: &[Between]) -> String {
             text.push_str(&format!(" ({} beside another)", seconds.join(", ")));
         }
     }
-    if free.len() >= 2 {
+    // Of more axes that is nobody's name.
+    if (2..=3).contains(&free.len()) {
         let free_names: Vec<&String> = free.iter().map(|place| &axis(place).name).collect();
         let askew: Vec<String> = angles
             .iter()

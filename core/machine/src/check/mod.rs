@@ -12,6 +12,8 @@ mod pointing;
 mod probe;
 mod reach;
 mod round_trip;
+mod search;
+mod settings;
 mod signs;
 mod volume;
 
@@ -26,7 +28,7 @@ pub use round_trip::RoundTrip;
 pub use signs::Sign;
 pub use volume::Volume;
 
-pub use probe::Probe;
+pub use probe::{Probe, Work};
 
 use crate::description::Machine;
 use crate::diagnostic::Diagnostic;
@@ -57,6 +59,9 @@ pub struct Check {
     pub round_trip: RoundTrip,
     /// What looks wrong.
     pub warnings: Vec<String>,
+    /// What it cost.
+    #[serde(skip)]
+    pub work: Work,
 }
 
 impl Check {
@@ -71,6 +76,8 @@ impl Check {
         let volume = Volume::of(&probe);
         let round_trip = RoundTrip::of(&probe);
         let warnings = warnings(&probe, &reach, volume.as_ref(), &round_trip);
+        let typical = pointing::typical(&probe);
+        let poles = Poles::of(&probe);
         Ok(Self {
             machine: machine.name.clone(),
             tool_length_mm: length,
@@ -82,12 +89,13 @@ impl Check {
             }
             .to_owned(),
             signs: signs::table(&probe),
-            typical: pointing::typical(&probe),
-            poles: Poles::of(&probe),
+            typical,
+            poles,
             reach,
             volume,
             round_trip,
             warnings,
+            work: probe.work(),
         })
     }
 
@@ -111,14 +119,24 @@ fn warnings(
 ) -> Vec<String> {
     let mut warnings = Vec::new();
     let machine = probe.machine();
+    // Where rotary axes place the tip, what can be made depends on the point.
+    let at_origin = match probe.closed_form() {
+        true => "",
+        false => " with the tip on the part origin",
+    };
     if reach.ways_upright == 0 {
-        warnings.push(
-            "the tool cannot stand upright in the part (axis +Z) inside the travel of the rotary axes"
-                .to_owned(),
-        );
+        warnings.push(format!(
+            "the tool cannot stand upright in the part{at_origin}: no axis values inside travel point it along +Z, which is what a CL point without a tool axis asks for"
+        ));
     }
-    if reach.share_of_sphere == 0.0 && probe.freedom() == 2 {
-        warnings.push("no direction of the tool can be made inside travel".to_owned());
+    if reach.share_of_sphere == 0.0 && reach.freedom == 2 && !reach.tied_to_the_tip {
+        warnings.push(format!(
+            "no direction of the tool can be made inside travel{at_origin}{}",
+            match probe.closed_form() {
+                true => "",
+                false => ": does --mount or [workpiece] mount lie within reach?",
+            }
+        ));
     }
     if let Some(volume) = volume {
         for out in &volume.origin_out {
@@ -151,7 +169,24 @@ fn warnings(
             ));
         }
     }
-    if round_trip.tip_mm > ROUND_TRIP || round_trip.not_found > 0 {
+    if let Some([ways @ 0..3, _]) = probe.ways_by_search() {
+        warnings.push(format!(
+            "while the tool keeps its direction the tip can go {}: most programs ask for more, and are refused where they do",
+            match ways {
+                0 => "nowhere",
+                1 => "along a line or curve alone",
+                _ => "over a surface alone",
+            }
+        ));
+    }
+    if !probe.closed_form() {
+        if round_trip.not_found == round_trip.poses {
+            warnings.push(format!(
+                "the search found axis values for none of {} poses that the machine stands in",
+                round_trip.poses
+            ));
+        }
+    } else if round_trip.tip_mm > ROUND_TRIP || round_trip.not_found > 0 {
         warnings.push(format!(
             "the inverse does not give back what the forward product made: off by up to {:.1e} mm, {} of {} poses not found",
             round_trip.tip_mm, round_trip.not_found, round_trip.poses

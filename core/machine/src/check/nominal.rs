@@ -12,13 +12,10 @@ use serde::Serialize;
 use super::pointing::Reading;
 use crate::description::{Axis, Machine};
 use crate::kinematics::orientation::angle;
-use crate::kinematics::{Chain, Joints, Pose, Solver};
+use crate::kinematics::{Chain, Joints, MAX_AXES, Pose, Solver};
 
-/// Settings of each rotary axis on the first grid.
-const GRID: usize = 37;
-
-/// The same for three and more of them.
-const COARSE: usize = 19;
+/// Settings of each rotary axis on the first grid, by how many there are: a few thousand together.
+const GRID: [usize; MAX_AXES + 1] = [1, 37, 37, 19, 9, 5, 4, 3, 3];
 
 /// Times that the step is halved around the largest.
 const HALVINGS: usize = 30;
@@ -238,7 +235,7 @@ fn worst(
             }
         }
     };
-    let steps = if rotary.len() > 2 { COARSE } else { GRID };
+    let steps = GRID[rotary.len()];
     let settings = (0..rotary.len()).fold(1, |product, _| product * steps);
     let mut best = *zero;
     let mut largest = f64::NEG_INFINITY;
@@ -259,7 +256,7 @@ fn worst(
             }
         }
     }
-    let mut share = 0.5 / (steps - 1) as f64;
+    let mut share = 0.5 / (steps - 1).max(1) as f64;
     for _ in 0..HALVINGS {
         for place in &rotary {
             let [least, most] = span(machine, *place);

@@ -20,7 +20,12 @@ pub struct Solutions {
     pub ways: Vec<WayOfPointing>,
     /// Solutions inside travel, full turns counted.
     pub inside: usize,
+    /// They were searched: there may be more.
+    pub at_least: bool,
 }
+
+/// Ways that are shown where there is no end of them.
+const MOST_SHOWN: usize = 8;
 
 /// One way to point the tool along a direction.
 #[derive(Clone, Debug, Serialize)]
@@ -47,7 +52,7 @@ pub(super) fn typical(probe: &Probe<'_>) -> Option<Solutions> {
         return None;
     }
     let tilted = direction(20f64.to_radians(), 30f64.to_radians());
-    let axis = if probe.ways(tilted) > 0 {
+    let axis = if probe.makes(tilted) {
         tilted
     } else {
         let mut joints = *probe.home();
@@ -57,7 +62,13 @@ pub(super) fn typical(probe: &Probe<'_>) -> Option<Solutions> {
         }
         probe.chain().forward(&joints).axis
     };
-    let found = probe.inverse(Vector3::zeros(), axis).ok()?;
+    let mut found = probe.inverse(Vector3::zeros(), axis).ok()?;
+    let at_least = !probe.closed_form();
+    if at_least {
+        // Of a machine with an axis to spare there is no end of them.
+        found.sort_by_key(|joints| probe.turns(joints) == 0);
+        found.truncate(MOST_SHOWN);
+    }
     let ways: Vec<WayOfPointing> = found
         .iter()
         .map(|joints| WayOfPointing {
@@ -71,6 +82,7 @@ pub(super) fn typical(probe: &Probe<'_>) -> Option<Solutions> {
         azimuth_deg: libm::atan2(axis.y, axis.x).to_degrees(),
         inside: ways.iter().map(|way| way.turns).sum(),
         ways,
+        at_least,
     })
 }
 

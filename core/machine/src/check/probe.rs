@@ -1,15 +1,33 @@
 //! A machine ready to be asked: its solver, where its axes stand at rest, and its travel.
 
+use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
-use crate::description::Machine;
+use super::{search, settings};
+use crate::description::{Machine, Pole, Positions, SHARE_AT_POLES};
+use crate::kinematics::orientation::angle;
 use crate::kinematics::travel::passed;
 use crate::kinematics::{Chain, Joint, Joints, MAX_AXES, NoClosedForm, Pose, Solver, Unreachable};
 
 /// A value is inside travel if it passes an end by no more than this, mm or radians.
 const GRACE: f64 = 1e-9;
+
+/// A direction that is missed by no more than this is made, where borders are looked for: radians.
+const EXACT: f64 = 1e-7;
+
+/// Where in their travel the axes stand for a look at what moves: shares of it.
+const SETTINGS: [f64; 4] = [0.31, 0.47, 0.62, 0.83];
+
+/// What was asked of the inverse, so that a check has an end by design on every chain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Poses that the inverse was asked for.
+    pub poses: usize,
+    /// Steps of numeric searches; none where there is a closed form.
+    pub steps: usize,
+}
 
 /// Step of a difference quotient, radians.
 const STEP: f64 = 1e-5;
@@ -18,8 +36,10 @@ const STEP: f64 = 1e-5;
 #[derive(Clone, Debug)]
 pub struct Probe<'a> {
     machine: &'a Machine,
-    solver: Solver,
+    /// See [`settings::solvers`].
+    solvers: Vec<Solver>,
     length: f64,
+    work: Cell<Work>,
     /// Axis values at rest: the drawing's zero, or the nearest value inside travel; an indexed axis where it starts.
     home: Joints,
     freedom: usize,
@@ -41,8 +61,9 @@ impl<'a> Probe<'a> {
         }
         let mut probe = Self {
             machine,
-            solver: machine.solver(length)?,
+            solvers: settings::solvers(machine, length)?,
             length,
+            work: Cell::default(),
             home,
             freedom: 0,
         };
@@ -62,7 +83,26 @@ impl<'a> Probe<'a> {
 
     /// Its chain with the tool in it.
     pub fn chain(&self) -> &Chain {
-        self.solver.chain()
+        self.solver().chain()
+    }
+
+    /// Its solver with the index axes where they start.
+    pub(super) fn solver(&self) -> &Solver {
+        // There is always one.
+        &self.solvers[0]
+    }
+
+    /// What was asked of the inverse up to now.
+    pub fn work(&self) -> Work {
+        self.work.get()
+    }
+
+    pub(super) fn count(&self, poses: usize, steps: usize) {
+        let work = self.work.get();
+        self.work.set(Work {
+            poses: work.poses + poses,
+            steps: work.steps + steps,
+        });
     }
 
     /// Axis values at rest.
@@ -82,7 +122,7 @@ impl<'a> Probe<'a> {
 
     /// The solutions come from formulas.
     pub fn closed_form(&self) -> bool {
-        self.solver.closed_form()
+        self.solver().closed_form()
     }
 
     /// Least and largest value of an axis; of one that turns without end, half a turn to both sides.
@@ -95,7 +135,8 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// All ways to put the tip on `tip` with the tool axis along `axis` (part frame), turns and travel left aside.
+    /// All ways to put the tip on `tip` with the tool axis along `axis` (part frame), the index axes where they start;
+    /// turns and travel left aside. Without a closed form: those that a bounded search finds.
     ///
     /// # Errors
     /// Why there is none.
@@ -104,12 +145,110 @@ impl<'a> Probe<'a> {
         tip: Vector3<f64>,
         axis: Vector3<f64>,
     ) -> Result<Vec<Joints>, Unreachable> {
+        self.solved(self.solver(), tip, axis, EXACT)
+    }
+
+    fn solved(
+        &self,
+        solver: &Solver,
+        tip: Vector3<f64>,
+        axis: Vector3<f64>,
+        tolerance: f64,
+    ) -> Result<Vec<Joints>, Unreachable> {
         let pose = Pose {
             tip,
             axis,
             ..Pose::default()
         };
-        self.solver.inverse(&pose, &self.home, 1e-7)
+        if !solver.closed_form() {
+            return search::solutions(self, solver, &pose, tolerance);
+        }
+        self.count(1, 0);
+        solver.inverse(&pose, &self.home, tolerance)
+    }
+
+    /// The ways of posting to put the tip on the part origin with the tool axis along `axis` (part frame): within the
+    /// machine's `axis_tolerance`, index axes at one of their positions, angles inside travel and on the turns nearest
+    /// to rest.
+    pub fn stands(&self, axis: Vector3<f64>) -> Vec<Joints> {
+        let tolerance = self.machine.accuracy.axis_tolerance;
+        let mut stands = Vec::new();
+        for solver in &self.solvers {
+            let found = self.solved(solver, Vector3::zeros(), axis, tolerance);
+            for joints in found.unwrap_or_default() {
+                if let Some(joints) = self.at_positions(solver, &joints, tolerance) {
+                    let inside = self.inside(&joints);
+                    stands.extend(inside.or_else(|| self.at_ends(solver, &joints, axis)));
+                }
+            }
+        }
+        stands
+    }
+
+    /// `joints` with the index axes that are solved for on their positions; none if one is farther from each of them
+    /// than `tolerance`, radians.
+    fn at_positions(&self, solver: &Solver, joints: &Joints, tolerance: f64) -> Option<Joints> {
+        let mut at = *joints;
+        for place in self.free() {
+            let axis = &self.machine.axes[place];
+            let Some(indexed) = &axis.indexed else {
+                continue;
+            };
+            // Full turns make other positions of a list: the nearest of all.
+            let value = joints[place];
+            let nearest = [0.0, TAU, -TAU]
+                .map(|turn| {
+                    indexed
+                        .positions
+                        .nearest(value + turn, axis.travel.is_none())
+                        - turn
+                })
+                .into_iter()
+                .min_by(|a, b| libm::fabs(a - value).total_cmp(&libm::fabs(b - value)))?;
+            if libm::fabs(nearest - value) > tolerance {
+                return None;
+            }
+            at[place] = nearest;
+        }
+        if at != *joints {
+            let turns = solver.chain().turns(&at);
+            solver.place(Vector3::zeros(), &mut at, &turns).ok()?;
+        }
+        Some(at)
+    }
+
+    /// Close to a pole an axis that would tilt beyond its end stays there, if the tool axis keeps its tolerance.
+    fn at_ends(&self, solver: &Solver, joints: &Joints, wanted: Vector3<f64>) -> Option<Joints> {
+        let pole = solver.pole_joint()?;
+        if self.machine.solution.pole != Pole::Blend {
+            return None;
+        }
+        let tolerance = self.machine.accuracy.axis_tolerance;
+        let mut at = *joints;
+        for place in self.free().into_iter().filter(|place| *place != pole) {
+            if let Some([least, most]) = self.machine.axes[place].travel {
+                let value = at[place].clamp(least, most);
+                if libm::fabs(value - at[place]) < tolerance {
+                    at[place] = value;
+                }
+            }
+        }
+        let turns = solver.chain().turns(&at);
+        solver.place(Vector3::zeros(), &mut at, &turns).ok()?;
+        if angle(solver.chain().forward(&at).axis, wanted) > SHARE_AT_POLES * tolerance {
+            return None;
+        }
+        self.inside(&at)
+    }
+
+    /// Index axes that are solved for and stand at positions alone: places in the chain.
+    pub fn at_positions_alone(&self) -> Vec<usize> {
+        let mut places = self.free();
+        places.retain(|place| {
+            let indexed = self.machine.axes[*place].indexed.as_ref();
+            indexed.is_some_and(|indexed| indexed.positions != Positions::Any)
+        });
+        places
     }
 
     /// How many full turns of the rotary values of `joints` lie inside travel; an axis that turns without end
@@ -142,12 +281,43 @@ impl<'a> Probe<'a> {
         Some(inside)
     }
 
-    /// Ways to point the tool along `axis` (part frame) inside the travel of the rotary axes.
+    /// Ways to point the tool along `axis` (part frame) inside the travel of the rotary axes, whichever positions index
+    /// axes have there: those that are not solved for are tried at each of theirs, the others taken to stand anywhere.
     pub fn ways(&self, axis: Vector3<f64>) -> usize {
-        match self.inverse(Vector3::zeros(), axis) {
-            Ok(solutions) => solutions.iter().map(|joints| self.turns(joints)).sum(),
-            Err(_) => 0,
+        let solved = self.solvers.iter().map(|solver| {
+            self.solved(solver, Vector3::zeros(), axis, EXACT)
+                .unwrap_or_default()
+        });
+        solved.flatten().map(|joints| self.turns(&joints)).sum()
+    }
+
+    /// There is such a way.
+    pub fn makes(&self, axis: Vector3<f64>) -> bool {
+        self.solvers.iter().any(|solver| {
+            self.solved(solver, Vector3::zeros(), axis, EXACT)
+                .is_ok_and(|found| found.iter().any(|joints| self.turns(joints) > 0))
+        })
+    }
+
+    /// See [`Solver::ways`], the most over some settings: a setting may happen to be singular.
+    pub(super) fn ways_by_search(&self) -> Option<[usize; 2]> {
+        let settings = SETTINGS.map(|share| self.somewhere(share));
+        settings
+            .iter()
+            .chain([&self.home])
+            .filter_map(|joints| self.solver().ways(joints))
+            .reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])
+    }
+
+    /// The axes that point the tool somewhere in their travel, the others at rest.
+    fn somewhere(&self, share: f64) -> Joints {
+        let mut joints = self.home;
+        for (index, place) in self.free().iter().enumerate() {
+            let [least, most] = self.span(*place);
+            let share = share + 0.07 * index as f64;
+            joints[*place] = least + (most - least) * (share - libm::floor(share));
         }
+        joints
     }
 
     /// `vector` as a given run of the chain's rotary axes turns it, the axes standing at `values`.
@@ -176,13 +346,8 @@ impl<'a> Probe<'a> {
     fn measure_freedom(&self) -> usize {
         let free = self.free();
         let mut freedom = 0;
-        for share in [0.31, 0.47, 0.62, 0.83] {
-            let mut joints = self.home;
-            for (index, place) in free.iter().enumerate() {
-                let [least, most] = self.span(*place);
-                let share = share + 0.07 * index as f64;
-                joints[*place] = least + (most - least) * (share - libm::floor(share));
-            }
+        for share in SETTINGS {
+            let joints = self.somewhere(share);
             let slopes: Vec<Vector3<f64>> = free
                 .iter()
                 .map(|place| {

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::pointing::direction;
 use super::probe::Probe;
+use super::{search, settings};
 use crate::kinematics::orientation::angle;
 
 /// Cells of the map: azimuths around, tilts from +Z to -Z.
@@ -20,13 +21,24 @@ const STEPS: usize = 180;
 const CURVE: usize = 361;
 
 /// The reachable cone.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Reach {
     /// In how many independent ways the tool axis can move in a cut: 0, 1 (along a curve), 2 (over an area).
     pub freedom: usize,
     /// Share of the sphere of directions that can be made, 0 to 1.
     pub share_of_sphere: f64,
-    /// For each number of solutions inside travel (place in the list), the share of the sphere that has as many.
+    /// The chain has no closed form: each direction was searched with the tip on the part origin, on a grid of so many
+    /// degrees; what was not found counts as not made.
+    pub searched_every_deg: Option<f64>,
+    /// Rotary axes place the tip too, and there are too few of them for the tool axis to go over an area while the tip
+    /// stays: which directions can be made depends on the point.
+    pub tied_to_the_tip: bool,
+    /// Axes that stand at positions alone: of the directions only those are made that one of them gives.
+    pub at_positions_alone: Vec<String>,
+    /// Single directions that an axis at its positions gives, if it alone turns the tool.
+    pub single_directions: Option<usize>,
+    /// For each number of solutions inside travel (place in the list), the share of the sphere that has as many. Where
+    /// the chain was searched, one counts for all.
     pub shares_by_solutions: Vec<f64>,
     /// Tilt from +Z up to which every azimuth can be made, degrees; none if not even +Z can.
     pub tilt_in_all_azimuths_deg: Option<f64>,
@@ -34,7 +46,8 @@ pub struct Reach {
     pub tilt_in_some_azimuth_deg: Option<f64>,
     /// Such an azimuth, from +X towards +Y, degrees.
     pub azimuth_of_largest_tilt_deg: Option<f64>,
-    /// Solutions for the tool upright in the part; an axis that may stand anywhere counts once.
+    /// Solutions for the tool upright in the part, within `axis_tolerance` and at the positions of index axes, as posting
+    /// takes them; an axis that may stand anywhere counts once, and so does one on every full turn.
     pub ways_upright: usize,
     /// For a picture.
     #[serde(skip)]
@@ -52,10 +65,29 @@ pub struct Map {
 
 impl Reach {
     pub(super) fn of(probe: &Probe<'_>) -> Self {
-        let ways_upright = probe.ways(Vector3::z());
-        if probe.freedom() < 2 {
-            return Self::along_a_curve(probe, ways_upright);
+        let mut reach = if probe.freedom() < 2 {
+            Self::along_a_curve(probe)
+        } else if probe.closed_form() {
+            Self::over_the_sphere(probe)
+        } else if probe.ways_by_search().is_some_and(|[_, ways]| ways < 2) {
+            Self {
+                freedom: probe.freedom(),
+                tied_to_the_tip: true,
+                ..Self::default()
+            }
+        } else {
+            Self::by_search(probe)
+        };
+        reach.ways_upright = probe.stands(Vector3::z()).len();
+        if reach.freedom < 2 && reach.ways_upright > 0 {
+            reach.tilt_in_all_azimuths_deg = Some(0.0);
         }
+        let name = |place: usize| probe.machine().axes[place].name.clone();
+        reach.at_positions_alone = probe.at_positions_alone().into_iter().map(name).collect();
+        reach
+    }
+
+    fn over_the_sphere(probe: &Probe<'_>) -> Self {
         let mut cells = Vec::with_capacity(TILTS);
         let mut shares = Vec::new();
         for band in 0..TILTS {
@@ -95,52 +127,104 @@ impl Reach {
             tilt_in_all_azimuths_deg: (all >= 0.0).then(|| all.to_degrees()),
             tilt_in_some_azimuth_deg: some.map(|(tilt, _)| tilt.to_degrees()),
             azimuth_of_largest_tilt_deg: some.map(|(_, azimuth)| azimuth.to_degrees()),
-            ways_upright,
             map: Map {
                 cells,
                 curve: Vec::new(),
             },
+            ..Self::default()
         }
     }
 
-    /// One free axis draws a circle of directions, none leaves a single one: no share of the sphere.
-    fn along_a_curve(probe: &Probe<'_>, ways_upright: usize) -> Self {
-        let mut curve = Vec::new();
-        let steps = if probe.freedom() == 0 { 1 } else { CURVE };
-        for step in 0..steps {
-            let mut joints = *probe.home();
-            if steps > 1 {
-                for place in probe.free() {
-                    let [least, most] = probe.span(place);
-                    joints[place] = least + (most - least) * step as f64 / (steps - 1) as f64;
-                }
-            }
-            let axis = probe.chain().forward(&joints).axis;
-            curve.push([angle(axis, Vector3::z()), libm::atan2(axis.y, axis.x)]);
+    /// Of a chain without a closed form: what the search over a coarse map finds.
+    fn by_search(probe: &Probe<'_>) -> Self {
+        let search::Found { cells, borders } = search::directions(probe);
+        let band = |edge: usize| PI * edge as f64 / search::TILTS as f64;
+        let mut share = 0.0;
+        for (row, cells) in cells.iter().enumerate() {
+            let area = (libm::cos(band(row)) - libm::cos(band(row + 1))) / 2.0;
+            share += area * cells.iter().sum::<usize>() as f64 / search::AZIMUTHS as f64;
         }
-        let largest = curve.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]));
-        let upright = curve.iter().any(|[tilt, _]| *tilt < 1e-9) || ways_upright > 0;
+        let firsts = borders.iter().map(|[first, _]| *first);
+        let all = firsts.reduce(|a, b| Some(a?.min(b?))).flatten();
+        let mut some: Option<(f64, f64)> = None;
+        for (cell, [_, last]) in borders.iter().enumerate() {
+            if let Some(tilt) = last
+                && some.is_none_or(|(most, _)| *tilt > most + 1e-6)
+            {
+                some = Some((*tilt, TAU * (cell as f64 + 0.5) / search::AZIMUTHS as f64));
+            }
+        }
         Self {
             freedom: probe.freedom(),
-            share_of_sphere: 0.0,
+            share_of_sphere: share,
+            searched_every_deg: Some(band(1).to_degrees()),
+            shares_by_solutions: vec![1.0 - share, share],
+            tilt_in_all_azimuths_deg: all.map(f64::to_degrees),
+            tilt_in_some_azimuth_deg: some.map(|(tilt, _)| tilt.to_degrees()),
+            azimuth_of_largest_tilt_deg: some.map(|(_, azimuth)| azimuth.to_degrees()),
+            map: Map {
+                cells,
+                curve: Vec::new(),
+            },
+            ..Self::default()
+        }
+    }
+
+    /// One free axis draws a circle of directions, or gives one at each of its positions; none leaves a single one: no
+    /// share of the sphere.
+    fn along_a_curve(probe: &Probe<'_>) -> Self {
+        let free = probe.free();
+        let positions = match (free.as_slice(), probe.freedom()) {
+            ([place], 1) => settings::positions(probe.machine(), *place),
+            _ => Vec::new(),
+        };
+        let steps = if probe.freedom() == 0 { 1 } else { CURVE };
+        let axis_at = |value: &dyn Fn(usize) -> f64| {
+            let mut joints = *probe.home();
+            for place in &free {
+                joints[*place] = value(*place);
+            }
+            let axis = probe.chain().forward(&joints).axis;
+            [angle(axis, Vector3::z()), libm::atan2(axis.y, axis.x)]
+        };
+        let curve: Vec<[f64; 2]> = if !positions.is_empty() {
+            let each = positions.iter();
+            each.map(|position| axis_at(&|_| *position)).collect()
+        } else if steps == 1 {
+            vec![axis_at(&|place| probe.home()[place])]
+        } else {
+            let share = |step: usize| step as f64 / (steps - 1) as f64;
+            let value = |place: usize, share: f64| {
+                let [least, most] = probe.span(place);
+                least + (most - least) * share
+            };
+            (0..steps)
+                .map(|step| axis_at(&|place| value(place, share(step))))
+                .collect()
+        };
+        let largest = curve.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]));
+        let upright = curve.iter().any(|[tilt, _]| *tilt < 1e-9);
+        Self {
+            freedom: probe.freedom(),
+            single_directions: (!positions.is_empty()).then_some(positions.len()),
             shares_by_solutions: vec![1.0],
             tilt_in_all_azimuths_deg: upright.then_some(0.0),
             tilt_in_some_azimuth_deg: largest.map(|[tilt, _]| tilt.to_degrees()),
             azimuth_of_largest_tilt_deg: largest
                 .filter(|[tilt, _]| *tilt > 1e-6)
                 .map(|[_, azimuth]| azimuth.to_degrees()),
-            ways_upright,
             map: Map {
                 cells: Vec::new(),
                 curve,
             },
+            ..Self::default()
         }
     }
 }
 
 /// Along one azimuth: the tilt up to which all can be made (none if not even +Z), and the largest of all.
 fn tilts(probe: &Probe<'_>, azimuth: f64) -> (Option<f64>, Option<f64>) {
-    let made = |tilt: f64| probe.ways(direction(tilt, azimuth)) > 0;
+    let made = |tilt: f64| probe.makes(direction(tilt, azimuth));
     let at = |step: usize| PI * step as f64 / STEPS as f64;
     let states: Vec<bool> = (0..=STEPS).map(|step| made(at(step))).collect();
     // The border between two tilts of which the first can be made and the second cannot.

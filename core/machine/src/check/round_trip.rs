@@ -8,6 +8,9 @@ use crate::kinematics::orientation::angle;
 /// Poses that are tried.
 const POSES: usize = 1000;
 
+/// The same of a chain that is searched.
+const SEARCHED: usize = 25;
+
 /// The largest differences.
 #[derive(Clone, Debug, Serialize)]
 pub struct RoundTrip {
@@ -26,14 +29,15 @@ pub struct RoundTrip {
 impl RoundTrip {
     pub(super) fn of(probe: &Probe<'_>) -> Self {
         let mut random = Random(0x706f_7374);
+        let poses = if probe.closed_form() { POSES } else { SEARCHED };
         let mut trip = Self {
-            poses: POSES,
+            poses,
             solutions: 0,
             not_found: 0,
             tip_mm: 0.0,
             axis_rad: 0.0,
         };
-        for _ in 0..POSES {
+        for _ in 0..poses {
             let mut joints = *probe.home();
             let count = probe.machine().axes.len();
             for (place, value) in joints.iter_mut().enumerate().take(count) {

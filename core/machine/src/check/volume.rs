@@ -15,10 +15,10 @@ pub struct Volume {
     pub axis: [f64; 3],
     /// Where the rotary axes stand for it.
     pub rotary: Vec<Reading>,
-    /// Least tip, mm.
-    pub least: [f64; 3],
-    /// Largest tip, mm.
-    pub most: [f64; 3],
+    /// Least tip, mm; none where rotary axes place the tip too.
+    pub least: Option<[f64; 3]>,
+    /// Largest tip, mm; none where rotary axes place the tip too.
+    pub most: Option<[f64; 3]>,
     /// Axes that stand outside their travel with the tip on the part origin.
     pub origin_out: Vec<Out>,
 }
@@ -37,12 +37,12 @@ pub struct Out {
 impl Volume {
     /// None if the linear axes cannot be solved there.
     pub(super) fn of(probe: &Probe<'_>) -> Option<Self> {
-        let upright = first_inside(probe, Vector3::z());
+        let upright = first(probe, Vector3::z());
         let (axis, at_origin) = match upright {
             Some(joints) => (Vector3::z(), joints),
             None => {
                 let axis = probe.chain().forward(probe.home()).axis;
-                (axis, first_inside(probe, axis)?)
+                (axis, first(probe, axis)?)
             }
         };
         let machine = probe.machine();
@@ -87,15 +87,22 @@ impl Volume {
         Some(Self {
             axis: axis.into(),
             rotary,
-            least: least.into(),
-            most: most.into(),
+            least: probe.closed_form().then(|| least.into()),
+            most: probe.closed_form().then(|| most.into()),
             origin_out,
         })
     }
 }
 
-/// Axis values with the tip on the part origin and the tool along `axis`, the rotary ones inside travel.
-fn first_inside(probe: &Probe<'_>, axis: Vector3<f64>) -> Option<Joints> {
-    let found = probe.inverse(Vector3::zeros(), axis).ok()?;
-    found.iter().find_map(|joints| probe.inside(joints))
+/// Axis values with the tip on the part origin and the tool along `axis`, as posting may take them: the first of which
+/// the linear ones are inside travel too, else the first.
+fn first(probe: &Probe<'_>, axis: Vector3<f64>) -> Option<Joints> {
+    let stands = probe.stands(axis);
+    let inside = |joints: &&Joints| {
+        let axes = probe.machine().axes.iter().zip(joints.iter());
+        axes.filter(|(axis, _)| !axis.joint.rotary)
+            .all(|(axis, value)| passed(axis.travel, *value, 1e-6).is_none())
+    };
+    let best = stands.iter().find(inside).or(stands.first());
+    best.copied()
 }

@@ -9,6 +9,9 @@ use super::build::Builder;
 use super::file::{AccuracyFile, ControlPointFile, Method, Placement, Quantity};
 use crate::diagnostic::{Place, Short};
 
+/// Of the tool axis' tolerance so much may be used close to a pole; the rest is for what happens between points.
+pub const SHARE_AT_POLES: f64 = 0.75;
+
 /// Tolerances and how they are kept.
 #[derive(Clone, Debug)]
 pub struct Accuracy {

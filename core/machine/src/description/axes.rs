@@ -129,7 +129,7 @@ impl Builder<'_> {
                 "machine-chain",
                 chain_span,
                 format!("{} axes; at most {MAX_AXES} are possible", axes.len()),
-                "",
+                "leave out of chain and [axis] what no program moves",
             );
         }
         sound.then_some(axes)

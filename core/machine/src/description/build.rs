@@ -14,7 +14,6 @@ use super::options::take_options;
 use super::setting::Setting;
 use super::{Axis, Control, Frame, GivenOption, Head, Machine};
 use crate::diagnostic::{Diagnostic, Place, Short};
-use crate::kinematics::NoClosedForm;
 
 /// Loads a machine: `source`, what it extends (found by `find`), and `settings`, the last of
 /// which wins.
@@ -377,42 +376,9 @@ impl Builder<'_> {
 
     /// A chain that cannot be solved is refused when the machine is loaded, not at the first cut.
     fn check_chain(&mut self, machine: &Machine, span: Range<usize>) {
-        let name = |joint: usize| machine.axes[joint].name.as_str();
-        let Err(lack) = machine.solver(0.0) else {
-            return;
-        };
-        let (message, help) = match lack {
-            NoClosedForm::LinearAxes { count } => (
-                format!("{count} linear axes place the tip; three are needed"),
-                "a quill says share, reserve or indexed; with fewer than three, rotary axes must make up for them",
-            ),
-            NoClosedForm::FlatLinearAxes => (
-                "the three linear axes lie in one plane: they span no volume".to_owned(),
-                "check their directions",
-            ),
-            NoClosedForm::RotaryAxes { joints } => (
-                format!(
-                    "{} rotary axes move at once ({}); at most two can be free",
-                    joints.len(),
-                    joints
-                        .iter()
-                        .map(|joint| name(*joint))
-                        .collect::<Vec<_>>()
-                        .join(", ")
-                ),
-                "indexed = 0 holds an axis at an angle during cuts; three axes follow a tool that has an [tool] edge",
-            ),
-            NoClosedForm::Parallel {
-                joints: [first, second],
-            } => (
-                format!(
-                    "{} and {} turn about parallel axes: they cannot point the tool",
-                    name(first),
-                    name(second)
-                ),
-                "check their directions, or hold one with indexed = 0",
-            ),
-        };
-        self.fault("machine-chain", span, message, help);
+        if let Err(lack) = machine.solver(0.0) {
+            let (message, help) = lack.told(|joint| &machine.axes[joint].name);
+            self.fault("machine-chain", span, message, help);
+        }
     }
 }

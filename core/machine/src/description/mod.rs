@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-pub use accuracy::{Accuracy, ControlPoint};
+pub use accuracy::{Accuracy, ControlPoint, SHARE_AT_POLES};
 pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
@@ -33,7 +33,7 @@ pub use schema::schema;
 pub use setting::Setting;
 pub use spindle::SpindleSpeeds;
 
-use crate::diagnostic::Place;
+use crate::diagnostic::{Diagnostic, Place};
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
 
 /// A machine.
@@ -298,6 +298,17 @@ impl Machine {
                 .collect(),
         };
         Solver::with(chain, &freedom)
+    }
+
+    /// That the chain cannot be solved, as a finding. What its file alone says was refused when it was loaded: this is
+    /// for index axes that stand elsewhere since.
+    pub fn unsolvable(&self, lack: &NoClosedForm) -> Diagnostic {
+        let (message, help) = lack.told(|joint| &self.axes[joint].name);
+        Diagnostic::error(
+            "machine-chain",
+            format!("{} cannot be solved: {message}", self.name),
+        )
+        .help(help)
     }
 
     /// Rotary axes that are solved for from the wanted tool axis: those that move in cuts, and as many of the

@@ -24,10 +24,24 @@ pub enum Unreachable {
 /// What a chain lacks for being solved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoClosedForm {
-    /// Not three linear axes that place the tip.
-    LinearAxes {
-        /// How many there are.
-        count: usize,
+    /// More linear axes move at once than the three that a tip needs.
+    ManyLinearAxes {
+        /// Their places in the chain.
+        joints: Vec<usize>,
+    },
+    /// Fewer than three linear axes, and rotary ones do not make up for them.
+    FewAxes {
+        /// Linear axes that move by themselves.
+        linear: usize,
+        /// Rotary axes that are solved for.
+        rotary: usize,
+        /// Others move along with them.
+        quills: bool,
+    },
+    /// Fewer than three linear axes, and all that moves takes the tip along fewer than three directions.
+    FlatTip {
+        /// How many: 1 along a curve, 2 over a surface.
+        ways: usize,
     },
     /// The three linear directions lie in one plane.
     FlatLinearAxes,
@@ -41,4 +55,76 @@ pub enum NoClosedForm {
         /// Their places in the chain.
         joints: [usize; 2],
     },
+}
+
+impl NoClosedForm {
+    /// What is wrong, and what would help; `name` gives the address of the axis at a place in the chain.
+    pub fn told<'n>(&self, name: impl Fn(usize) -> &'n str) -> (String, &'static str) {
+        let names = |joints: &[usize]| {
+            let names: Vec<&str> = joints.iter().map(|joint| name(*joint)).collect();
+            names.join(", ")
+        };
+        match self {
+            Self::ManyLinearAxes { joints } => (
+                format!(
+                    "{} linear axes move at once ({}); the tip is placed by three",
+                    joints.len(),
+                    names(joints)
+                ),
+                "share = 0.5 or reserve = true moves a quill along with the axis beside it, indexed = 0 holds an axis during cuts",
+            ),
+            Self::FewAxes {
+                linear,
+                rotary,
+                quills,
+            } => (
+                format!(
+                    "{linear} linear and {rotary} rotary axes move by themselves{}: they cannot place the tip",
+                    match quills {
+                        true => ", others along with them",
+                        false => "",
+                    }
+                ),
+                match quills {
+                    true => "share and reserve are for a quill beside three linear axes",
+                    false => {
+                        "three axes at least must move the tip: with fewer than three linear ones, rotary axes that are not indexed make up for them"
+                    }
+                },
+            ),
+            Self::FlatTip { ways } => (
+                format!(
+                    "all axes together move the tip {} alone: they do not span the space",
+                    match ways {
+                        2 => "over a surface",
+                        1 => "along a curve",
+                        _ => "nowhere, in one point",
+                    }
+                ),
+                "check directions and points: a rotary axis through the tip, or parallel to the others, adds nothing",
+            ),
+            Self::FlatLinearAxes => (
+                "the three linear axes lie in one plane: they span no volume".to_owned(),
+                "check their directions",
+            ),
+            Self::RotaryAxes { joints } => (
+                format!(
+                    "{} rotary axes move at once ({}); at most two can be free",
+                    joints.len(),
+                    names(joints)
+                ),
+                "indexed = 0 holds an axis at an angle during cuts; three axes follow a tool that has an [tool] edge",
+            ),
+            Self::Parallel {
+                joints: [first, second],
+            } => (
+                format!(
+                    "{} and {} turn about parallel axes: they cannot point the tool",
+                    name(*first),
+                    name(*second)
+                ),
+                "check their directions, or hold one with indexed = 0",
+            ),
+        }
+    }
 }

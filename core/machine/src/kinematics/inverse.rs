@@ -23,6 +23,9 @@ const MOST_SEEDS: usize = 243;
 /// Numeric solutions of which every axis is closer than this to another's are the same: mm or radians.
 const SAME: f64 = 1e-4;
 
+/// Settings of the axes at which the ways of the tip are counted: a single one may happen to be singular.
+const SETTINGS: [f64; 3] = [0.31, 0.57, 0.83];
+
 /// Which joints are solved for, and what becomes of the others.
 #[derive(Clone, Debug, Default)]
 pub struct Freedom {
@@ -95,9 +98,19 @@ impl Solver {
                 }
             }
             // Rotary axes have to place the tip as well.
-            Err(NoClosedForm::LinearAxes { count })
-                if count < 3 && count + freedom.rotary.len() >= 3 && freedom.seconds.is_empty() =>
-            {
+            Err(NoClosedForm::FewAxes {
+                linear: count,
+                quills,
+                ..
+            }) => {
+                let rotary = freedom.rotary.len();
+                if quills || count + rotary < 3 {
+                    return Err(NoClosedForm::FewAxes {
+                        linear: count,
+                        rotary,
+                        quills,
+                    });
+                }
                 let free: Vec<usize> = (0..chain.joints().len())
                     .filter(|joint| {
                         if chain.joints()[*joint].rotary {
@@ -107,6 +120,16 @@ impl Solver {
                         }
                     })
                     .collect();
+                let ways = SETTINGS
+                    .iter()
+                    .map(|share| {
+                        numeric::ways(&chain, &free, &numeric::spread(&free, &held, *share))
+                    })
+                    .map(|ways| ways.of_tip);
+                let ways = ways.max().unwrap_or(0);
+                if ways < 3 {
+                    return Err(NoClosedForm::FlatTip { ways });
+                }
                 let slides = |joint: &usize| !chain.joints()[*joint].rotary;
                 Form::Numeric {
                     linear: free.iter().copied().filter(slides).collect(),
@@ -248,6 +271,16 @@ impl Solver {
         &self.held
     }
 
+    /// For a chain without a closed form: in how many independent ways the tip can be moved from `joints` while the tool
+    /// axis keeps its direction (3 for any path), and the tool axis while the tip stays (2 for any).
+    pub fn ways(&self, joints: &Joints) -> Option<[usize; 2]> {
+        let Form::Numeric { free, .. } = &self.form else {
+            return None;
+        };
+        let ways = numeric::ways(&self.chain, free, joints);
+        Some([ways.with_axis_kept, ways.of_axis_with_tip_kept])
+    }
+
     /// For a chain without a closed form: the solution next to `from`, verified.
     ///
     /// # Errors
@@ -258,6 +291,20 @@ impl Solver {
         from: &Joints,
         tolerance: f64,
     ) -> Result<Joints, Unreachable> {
+        self.search_within(pose, from, tolerance, &mut { numeric::STEPS })
+    }
+
+    /// [`Solver::search`] in no more steps than `left`, from which it takes those that it needed.
+    ///
+    /// # Errors
+    /// By how much the nearest pose that was come to misses.
+    pub fn search_within(
+        &self,
+        pose: &Pose,
+        from: &Joints,
+        tolerance: f64,
+        left: &mut usize,
+    ) -> Result<Joints, Unreachable> {
         let Form::Numeric { free, .. } = &self.form else {
             return Err(Unreachable::Linear);
         };
@@ -265,7 +312,7 @@ impl Solver {
         for joint in free {
             start[*joint] = from[*joint];
         }
-        let (joints, miss) = numeric::solve(&self.chain, free, pose, &start);
+        let (joints, miss) = numeric::solve(&self.chain, free, pose, &start, left);
         if self.verified(&joints, pose, tolerance.max(VERIFIED)) {
             Ok(joints)
         } else {
@@ -280,18 +327,9 @@ impl Solver {
         last: &Joints,
         tolerance: f64,
     ) -> Result<Vec<Joints>, Unreachable> {
-        let Form::Numeric { free, .. } = &self.form else {
-            return Err(Unreachable::Linear);
-        };
-        let rotary: Vec<usize> = free
-            .iter()
-            .copied()
-            .filter(|joint| self.chain.joints()[*joint].rotary)
-            .collect();
-        let mut found: Vec<Joints> = Vec::new();
-        let mut least = f64::INFINITY;
+        let rotary = self.rotary();
         let count = SEEDS.len().pow(rotary.len() as u32).min(MOST_SEEDS);
-        for seed in 0..=count {
+        let starts = (0..=count).map(|seed| {
             let mut start = *last;
             if seed > 0 {
                 let mut digits = seed - 1;
@@ -300,7 +338,45 @@ impl Solver {
                     digits /= SEEDS.len();
                 }
             }
-            match self.search(pose, &start, tolerance) {
+            start
+        });
+        self.inverse_from(pose, starts, tolerance, &mut { usize::MAX })
+    }
+
+    /// Rotary joints that a numeric search moves.
+    fn rotary(&self) -> Vec<usize> {
+        let Form::Numeric { free, .. } = &self.form else {
+            return Vec::new();
+        };
+        let free = free.iter().copied();
+        free.filter(|joint| self.chain.joints()[*joint].rotary)
+            .collect()
+    }
+
+    /// For a chain without a closed form: all solutions that searches from `starts` find, in no more steps than `left`,
+    /// from which it takes those that it needed. Angles lie in -π to π.
+    ///
+    /// # Errors
+    /// By how much the nearest pose that was come to misses.
+    pub fn inverse_from(
+        &self,
+        pose: &Pose,
+        starts: impl IntoIterator<Item = Joints>,
+        tolerance: f64,
+        left: &mut usize,
+    ) -> Result<Vec<Joints>, Unreachable> {
+        let Form::Numeric { free, .. } = &self.form else {
+            return Err(Unreachable::Linear);
+        };
+        let rotary = self.rotary();
+        let mut found: Vec<Joints> = Vec::new();
+        let mut least = f64::INFINITY;
+        for start in starts {
+            let mut steps = numeric::STEPS.min(*left);
+            *left -= steps;
+            let searched = self.search_within(pose, &start, tolerance, &mut steps);
+            *left += steps;
+            match searched {
                 Ok(mut joints) => {
                     for joint in &rotary {
                         joints[*joint] = libm::remainder(joints[*joint], std::f64::consts::TAU);
@@ -315,6 +391,9 @@ impl Solver {
                 }
                 Err(Unreachable::Numeric { miss }) => least = least.min(miss),
                 Err(_) => {}
+            }
+            if *left == 0 {
+                break;
             }
         }
         if found.is_empty() {

@@ -72,13 +72,17 @@ impl Linear {
             .filter(|index| !held.contains(index))
             .filter(|index| seconds.iter().all(|(joint, ..)| joint != index))
             .collect();
-        let joints: [usize; 3] =
-            places
-                .as_slice()
-                .try_into()
-                .map_err(|_| NoClosedForm::LinearAxes {
-                    count: places.len(),
-                })?;
+        let joints: [usize; 3] = match *places.as_slice() {
+            [first, second, third] => [first, second, third],
+            [_, _, _, ..] => return Err(NoClosedForm::ManyLinearAxes { joints: places }),
+            _ => {
+                return Err(NoClosedForm::FewAxes {
+                    linear: places.len(),
+                    rotary: 0,
+                    quills: !seconds.is_empty(),
+                });
+            }
+        };
         let columns = joints.map(|index| chain.joints()[index].direction);
         let between = chain.joints()[joints[0]..joints[2]]
             .iter()

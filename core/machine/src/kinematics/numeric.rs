@@ -12,7 +12,7 @@ use super::chain::{Chain, Joints, MAX_AXES, Pose, turn};
 const ARM: f64 = 300.0;
 
 /// Steps from one start; quadratic convergence needs a handful.
-const STEPS: usize = 60;
+pub(super) const STEPS: usize = 60;
 
 /// Residuals below this are taken as none, mm.
 const SOLVED: f64 = 1e-10;
@@ -20,16 +20,24 @@ const SOLVED: f64 = 1e-10;
 type Rows = SVector<f64, 9>;
 
 /// Axis values near `start` that reach `pose`, moving the joints of `free` alone. The best that was found, and
-/// by how much it misses (mm, the axis on its arm).
-pub(super) fn solve(chain: &Chain, free: &[usize], pose: &Pose, start: &Joints) -> (Joints, f64) {
+/// by how much it misses (mm, the axis on its arm). In no more steps than `left`, from which it takes those that it
+/// needed.
+pub(super) fn solve(
+    chain: &Chain,
+    free: &[usize],
+    pose: &Pose,
+    start: &Joints,
+    left: &mut usize,
+) -> (Joints, f64) {
     let mut joints = *start;
     let (mut residual, mut jacobian) = linearised(chain, free, pose, &joints);
     let mut damping = 1e-6;
-    for _ in 0..STEPS {
+    while *left > 0 {
         let size = residual.norm();
         if size < SOLVED {
             break;
         }
+        *left -= 1;
         // Square in the joints, whose number never exceeds eight; unused rows are the identity.
         let mut normal: SMatrix<f64, MAX_AXES, MAX_AXES> = jacobian.transpose() * jacobian;
         let scale = normal.diagonal().max();
@@ -63,6 +71,71 @@ pub(super) fn solve(chain: &Chain, free: &[usize], pose: &Pose, start: &Joints) 
         }
     }
     (joints, residual.norm())
+}
+
+/// What moves with the free joints, at one setting of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ways {
+    /// Independent directions of the tip.
+    pub of_tip: usize,
+    /// Those that are left while the tool axis keeps its direction.
+    pub with_axis_kept: usize,
+    /// Independent ways of the tool axis to turn while the tip stays.
+    pub of_axis_with_tip_kept: usize,
+}
+
+/// A velocity is nothing where it is less than this share of the largest, or of what is left of it.
+const NOTHING: f64 = 1e-7;
+
+/// In how many ways tip and tool move, the free joints standing at `joints`.
+pub(super) fn ways(chain: &Chain, free: &[usize], joints: &Joints) -> Ways {
+    let (_, jacobian) = linearised(chain, free, &Pose::default(), joints);
+    let rank = |from: usize, rows: usize| {
+        let column = |place: usize| {
+            let mut column = Rows::zeros();
+            let part = jacobian.column(place);
+            column
+                .rows_mut(from, rows)
+                .copy_from(&part.rows(from, rows));
+            column
+        };
+        rank((0..free.len()).map(column).collect())
+    };
+    let (all, tip) = (rank(0, 6), rank(0, 3));
+    Ways {
+        of_tip: tip,
+        with_axis_kept: all.saturating_sub(rank(3, 3)),
+        of_axis_with_tip_kept: all.saturating_sub(tip),
+    }
+}
+
+/// How many of these vectors are independent: the longest that is left is taken out of the others, until nothing is.
+fn rank(mut columns: Vec<Rows>) -> usize {
+    // A radian moves the tip by far more than a millimetre does: each in its own measure.
+    for column in &mut columns {
+        *column = column.try_normalize(1e-9).unwrap_or_default();
+    }
+    let mut rank = 0;
+    while let Some(longest) = columns
+        .iter()
+        .max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))
+        .and_then(|longest| longest.try_normalize(NOTHING))
+    {
+        rank += 1;
+        for column in &mut columns {
+            *column -= longest * longest.dot(column);
+        }
+    }
+    rank
+}
+
+/// The free joints somewhere in their turns, no two alike; the others as in `held`.
+pub(super) fn spread(free: &[usize], held: &Joints, share: f64) -> Joints {
+    let mut joints = *held;
+    for (index, joint) in free.iter().enumerate() {
+        joints[*joint] = 5.0 * (share + 0.37 * index as f64) % std::f64::consts::TAU;
+    }
+    joints
 }
 
 /// Puts the linear joints of `linear` (fewer than three) where the tip comes closest to `tip`: least squares,

@@ -5,6 +5,7 @@
 )]
 
 mod batch;
+mod chains;
 mod check;
 mod freedom;
 mod kept_tip;

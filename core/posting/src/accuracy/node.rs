@@ -121,7 +121,7 @@ impl Placer {
         let solver = |length: f64| {
             machine
                 .solver_at(length, held)
-                .map_err(|lack| fault(format!("the chain cannot be solved: {lack:?}")))
+                .map_err(|lack| machine.unsolvable(&lack).boxed())
         };
         let tip = solver(length)?;
         let mut words = Words::new(machine, format);

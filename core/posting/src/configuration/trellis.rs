@@ -7,7 +7,7 @@ use super::metric::Measure;
 use super::solution::{Axes, Found, Stand};
 use crate::accuracy::Placer;
 use crate::program::{Motion, Pace};
-use post_machine::description::{Machine, Pole};
+use post_machine::description::{Machine, Pole, SHARE_AT_POLES};
 use post_machine::kinematics::orientation::{Branches, angle};
 use post_machine::kinematics::{Joints, Pose, Unreachable};
 
@@ -61,9 +61,6 @@ const MOST_STATES: usize = 64;
 /// A pole joint is eased where the tolerance leaves it more than this, radians (2°): elsewhere little would be
 /// gained, and the points stay exact.
 const WORTH: f64 = 0.034_906_585_039_886_59;
-
-/// Of the tool axis' tolerance so much may be used close to a pole; the rest is for what happens between points.
-const SHARE: f64 = 0.75;
 
 /// What the states at a point can go on to.
 struct Ways {
@@ -150,7 +147,9 @@ impl Trellis {
     /// With poles met in this way, whatever the machine file says.
     pub(crate) fn close_to_poles(machine: &Machine, placer: &Placer, pole: Pole) -> Self {
         let freedom = match pole {
-            Pole::Blend => SHARE * machine.accuracy.axis_tolerance - placer.axis_rounding(),
+            Pole::Blend => {
+                SHARE_AT_POLES * machine.accuracy.axis_tolerance - placer.axis_rounding()
+            }
             Pole::Exact => 0.0,
         }
         .max(0.0);

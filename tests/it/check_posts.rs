@@ -206,7 +206,7 @@ fn the_check_refuses_plugins_and_options_as_posting_does() {
 }
 
 /// A fixture: an arm of six rotary axes with a spindle.
-const ARM: &str = "tests/machines/six-axis-arm.toml";
+const ARM: &str = "tests/chains/six-axis-arm.toml";
 
 /// It is solved numerically by both: the check ends, and a program is certified.
 #[test]

@@ -38,7 +38,8 @@ pub(crate) fn no_way_off(machine: &Machine) -> Option<Diagnostic> {
         let placed = |place: usize| positions.iter().any(|(joint, _)| *joint == place);
         (0..machine.axes.len()).all(placed)
     });
-    (frame.retract.is_empty() && !said).then(|| {
+    let turns_alone = machine.axes.iter().all(|axis| axis.joint.rotary);
+    (turns_alone && !said).then(|| {
         Diagnostic::error(
             "retract",
             format!(

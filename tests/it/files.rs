@@ -461,6 +461,31 @@ fn pairs_of_two_runs_are_not_mixed() {
     assert_eq!(names(folder.path()).len(), 6);
 }
 
+/// Somebody makes the file while the questions are answered.
+#[test]
+fn answers_do_not_replace_a_file_that_came_in_the_meantime() {
+    use std::io::{Read as _, Write as _};
+    use std::process::Stdio;
+    let folder = tempfile::tempdir().unwrap();
+    let mut new = command();
+    new.current_dir(folder.path()).args(["new", "mill"]);
+    let streams = new.stdin(Stdio::piped()).stderr(Stdio::piped());
+    let mut asking = streams.stdout(Stdio::null()).spawn().unwrap();
+    let mut asked = asking.stderr.take().unwrap();
+    asked.read_exact(&mut [0]).unwrap();
+    fs::write(folder.path().join("mill.toml"), "mine").unwrap();
+    let mut answers = asking.stdin.take().unwrap();
+    answers.write_all(b"three-axis\n").unwrap();
+    answers.write_all(&b"\n".repeat(30)).unwrap();
+    drop(answers);
+    let mut told = String::new();
+    asked.read_to_string(&mut told).unwrap();
+    assert_eq!(asking.wait().unwrap().code(), Some(1), "{told}");
+    assert_contains(&told, &["mill.toml is there already", "--force"]);
+    let kept = fs::read_to_string(folder.path().join("mill.toml")).unwrap();
+    assert_eq!(kept, "mine");
+}
+
 #[test]
 fn a_study_takes_no_file_of_another_for_its_own() {
     for name in ["moves.csv", "sweep.csv", "left.svg"] {

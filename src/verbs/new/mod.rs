@@ -132,12 +132,7 @@ pub struct Choices {
 /// Writes the file.
 pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
     let path = file(&arguments.name)?;
-    if path.exists() && !arguments.force {
-        let message = format!("{} is there already", path.display());
-        return Err(Diagnostic::error("new", message)
-            .help("--force replaces it")
-            .into());
-    }
+    refuse_existing(arguments, &path)?;
     let choices = choices(arguments, &path)?;
     let mut faults = unknown_axes(&choices);
     faults.extend(useless_flags(arguments, choices.class));
@@ -154,6 +149,8 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
         Err(format!("there is no machine {parent}"))
     })?;
     let checked = job::derive(&machine, 0.0)?;
+    // Answers take their time.
+    refuse_existing(arguments, &path)?;
     files::write(&[(MACHINE, &path.clone().into(), &text)])?;
     terminal::findings(&checked.findings());
     terminal::print(&format!(
@@ -163,6 +160,16 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
         path.display()
     ));
     Ok(())
+}
+
+/// A file that is there stays, unless the user says otherwise.
+fn refuse_existing(arguments: &NewArguments, path: &Path) -> Result<(), Failure> {
+    if arguments.force || !path.exists() {
+        return Ok(());
+    }
+    let message = format!("{} is there already", path.display());
+    let finding = Diagnostic::error("new", message);
+    Err(finding.help("--force replaces it").into())
 }
 
 /// `NAME.toml`.

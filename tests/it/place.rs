@@ -223,6 +223,33 @@ fn least_time_is_no_more_than_where_the_part_sits() {
 }
 
 #[test]
+fn a_turn_of_the_part_turns_the_axes_less() {
+    let base = [
+        "-m",
+        "ab-trunnion",
+        "tests/machines/ab-trunnion.apt",
+        "--tool-length",
+        "100",
+    ];
+    let found = post(
+        &[
+            &["place", "--least", "rotary", "--search-turn=45"][..],
+            &base,
+        ]
+        .concat(),
+    );
+    assert_eq!(found.code, 0, "{}", found.err);
+    let turns = |words: &[String]| {
+        let summary = obeyed(words).1;
+        let axes = summary["axes"].as_array().unwrap().iter();
+        let axes = axes.filter(|axis| ["A", "B"].contains(&axis["name"].as_str().unwrap()));
+        axes.map(|axis| axis["way"].as_f64().unwrap()).sum::<f64>()
+    };
+    let (before, after) = (turns(&base.map(str::to_owned)), turns(&printed(&found.out)));
+    assert!(after <= before, "{after} {before}");
+}
+
+#[test]
 fn what_no_mount_helps_is_refused_and_why() {
     let refused = post(&[
         "place",
@@ -313,7 +340,8 @@ fn the_picture_has_a_bar_for_each_axis() {
     for axis in ["X", "Y", "Z", "B", "C"] {
         assert!(svg.contains(&format!(">{axis}</text>")), "{axis}");
     }
-    assert_eq!(svg.matches("left</text>").count(), 2 * 4);
+    let ends = |unit: &str| svg.matches(&format!("{unit} left</text>")).count();
+    assert_eq!((ends(" mm"), ends("°")), (2 * 3, 2));
     assert_eq!(svg.matches("endless</text>").count(), 1);
     assert!(!Path::new("travel.svg").exists());
 }

@@ -5,7 +5,7 @@ use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::{Joints, NoClosedForm};
 use post_machine::place::{End, Room};
 
-use crate::blocks::{Block, MotionKind};
+use crate::blocks::{Block, MotionKind, Reason};
 use crate::observer::Observer;
 use crate::program::Command;
 use crate::stream::Flow;
@@ -76,6 +76,11 @@ impl<'m> MountBounds<'m> {
         let Some((_, room)) = self.rooms.get_mut(self.at) else {
             return;
         };
+        // A way off the part is as long as travel lets it be: on a machine whose travel is opened it says nothing.
+        if block.reason == Reason::Leave {
+            self.last = None;
+            return;
+        }
         room.take(&block.joints, block.line);
         let moves = matches!(block.kind, MotionKind::Linear | MotionKind::Rapid);
         if let Some((joints, tip)) = &self.last

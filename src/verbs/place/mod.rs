@@ -49,7 +49,8 @@ pub struct PlaceArguments {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     runs: u32,
 
-    /// Draws the travel of each axis, what the program uses and what is left.
+    /// Draws the travel of each axis, what the program uses and what is left; `-` is standard output,
+    /// alone there.
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
     svg: Option<PathArg>,
 }
@@ -84,8 +85,12 @@ pub fn run(arguments: &PlaceArguments) -> Result<(), Failure> {
         taken = files::write(&[(PICTURE, target, &travel_picture::draw(&found))])?;
     }
     terminal::findings(&found.best.findings);
-    if !taken {
-        terminal::print(&place_text::text(arguments, &found));
+    let text = place_text::text(arguments, &found);
+    // Standard output is for the picture, alone there.
+    if taken {
+        terminal::tell(&text);
+    } else {
+        terminal::print(&text);
     }
     Ok(())
 }

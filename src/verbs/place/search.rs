@@ -206,7 +206,7 @@ impl<'s, 'a> Search<'s, 'a> {
             let Some(point) = nearest(&bodies, &wished, self.margin() + ROUNDING) else {
                 return Ok(Err(Nothing::Short(self.short(&bounds, turn))));
             };
-            seat.mount = rounded(&bodies, &point, self.margin()).unwrap_or(point);
+            seat.mount = rounded(&bodies, &point, self.margin()).unwrap_or(tidy(&point));
             match self.trials.post(seat)? {
                 Ok(trial) if self.holds(&trial) => return Ok(Ok(seated(trial, bounds))),
                 Ok(_) => {}
@@ -273,6 +273,7 @@ impl<'s, 'a> Search<'s, 'a> {
             if !inside || fault.is_some() || self.trials.spent() {
                 return None;
             }
+            let mount = tidy(&mount);
             match self.trials.post(Seat { mount, turn }) {
                 Ok(Ok(trial)) if self.holds(&trial) => {
                     let cost = trial.cost;
@@ -402,10 +403,14 @@ fn out_of_travel(findings: &[Diagnostic]) -> bool {
     findings.iter().any(|finding| codes.contains(&finding.code))
 }
 
+/// Without what sums leave in the last digits: as it is told, so it is tried.
+fn tidy(mount: &Vector3<f64>) -> Vector3<f64> {
+    // Adding zero turns -0 into 0.
+    mount.map(|value| libm::rint(value * 1e6) / 1e6 + 0.0)
+}
+
 /// `X,Y,Z`, as `--mount` takes it.
 pub fn mount_text(mount: &Vector3<f64>) -> String {
-    // Adding zero turns -0 into 0; what sums leave in the last digits is not told.
-    let number = |value: f64| libm::rint(value * 1e6) / 1e6 + 0.0;
-    let [x, y, z] = [mount.x, mount.y, mount.z].map(number);
-    format!("{x},{y},{z}")
+    let mount = tidy(mount);
+    format!("{},{},{}", mount.x, mount.y, mount.z)
 }

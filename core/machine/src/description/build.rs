@@ -49,6 +49,17 @@ pub fn load(
                 .help("a head says what differs: directions, points, gauge; an axis that it lacks is held with indexed = 0"),
             ]);
         }
+        if other.turn != machine.turn {
+            let message = format!(
+                "[head.{}] turns the part: a head is swapped, and the part stays",
+                head.name
+            );
+            return Err(vec![
+                Diagnostic::error("machine-head", message)
+                    .at(head.place)
+                    .help("[workpiece] turn is that of the machine"),
+            ]);
+        }
         machine.heads.push(Head {
             name: head.name,
             word: head.word,

@@ -93,7 +93,9 @@ impl Room {
     /// Takes a point of the program: the axis values there, with the part where the machine has it, and the line of the
     /// CL file.
     pub fn take(&mut self, joints: &Joints, line: u64) {
-        if self.slides.is_empty() {
+        // Where the machine was opened, what goes to the end of travel on purpose says nothing.
+        let mut slides = self.slides.iter();
+        if slides.any(|(joint, _)| libm::fabs(joints[*joint]) > OPEN / 2.0) {
             return;
         }
         if self

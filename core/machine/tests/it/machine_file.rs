@@ -496,6 +496,18 @@ fn a_machine_extends_another_key_by_key() {
 }
 
 #[test]
+fn a_part_sits_turned_whatever_head_is_in() {
+    let machine = try_load(GOOD, &["workpiece.turn=\"30 + half / 25.25\""]).unwrap();
+    assert!((machine.turn - 31f64.to_radians()).abs() < 1e-15);
+    assert_eq!(try_load(GOOD, &[]).unwrap().turn, 0.0);
+    let head = format!("{GOOD}\n[head.other]\nword = \"M6\"\ntool.gauge = [0, 0, 350]\n");
+    assert_eq!(try_load(&head, &[]).unwrap().heads.len(), 1);
+    let turns = format!("{head}workpiece.turn = 90\n");
+    let found = try_load(&turns, &[]).unwrap_err();
+    assert!(found[0].message.contains("turns the part"), "{found:?}");
+}
+
+#[test]
 fn settings_win_over_the_file() {
     let machine = try_load(
         GOOD,

@@ -1,8 +1,12 @@
 //! What is said to the user: where, what, how much, and what would help.
 
+mod nearest;
+
 use std::ops::Range;
 
 use post_grammar::SyntaxFault;
+
+pub use nearest::nearest;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,0 +1,84 @@
+//! What a misspelt name was most likely meant to be.
+
+/// Letters beyond this are compared no more: a word of any length may stand in a stranger's file.
+const LONGEST: usize = 64;
+
+/// The candidate that `word` was most likely meant to be; none if none is near.
+///
+/// Near is the same name in other letters (`FANUC`, `dmu-50` for `dmu_50`), one slip for three letters (a letter
+/// missing, doubled, wrong or exchanged with its neighbour), or the one name that begins with the word. Of several
+/// that are equally near the first is taken, so the answer does not depend on anything but the order given.
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let letters = |text: &str| -> Option<String> {
+        let plain = text.chars().map(|letter| match letter {
+            '_' | ' ' => '-',
+            other => other.to_ascii_lowercase(),
+        });
+        let plain: String = plain.take(LONGEST + 1).collect();
+        (plain.chars().count() <= LONGEST).then_some(plain)
+    };
+    let word = letters(word).filter(|word| !word.is_empty())?;
+    let mut best: Option<(usize, &str)> = None;
+    let mut longer = Vec::new();
+    for candidate in candidates {
+        let Some(plain) = letters(candidate) else {
+            continue;
+        };
+        let slips = strsim::osa_distance(&word, &plain);
+        let allowed = word.chars().count().max(plain.chars().count()).max(3) / 3;
+        if slips <= allowed && best.is_none_or(|(least, _)| slips < least) {
+            best = Some((slips, candidate));
+        }
+        if plain.starts_with(&word) {
+            longer.push(candidate);
+        }
+    }
+    let begun = || match longer.as_slice() {
+        [only] => Some(*only),
+        _ => None,
+    };
+    best.map(|(_, candidate)| candidate).or_else(begun)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DIALECTS: [&str; 3] = ["fanuc", "heidenhain", "linuxcnc"];
+
+    #[test]
+    fn a_slip_finds_its_name() {
+        for (word, name) in [
+            ("fanuk", "fanuc"),
+            ("Fanuc", "fanuc"),
+            ("FANUC", "fanuc"),
+            ("faunc", "fanuc"),
+            ("heidenhein", "heidenhain"),
+            ("haidenhein", "heidenhain"),
+            ("linux-cnc", "linuxcnc"),
+            // The beginning of one name alone.
+            ("heid", "heidenhain"),
+        ] {
+            assert_eq!(nearest(word, DIALECTS), Some(name), "{word}");
+        }
+        assert_eq!(nearest("ac_trunion", ["ac-trunnion"]), Some("ac-trunnion"));
+    }
+
+    #[test]
+    fn another_word_finds_nothing() {
+        for word in ["", "siemens", "x", "fnc3k", "cnc"] {
+            assert_eq!(nearest(word, DIALECTS), None, "{word}");
+        }
+        // The beginning of several.
+        assert_eq!(nearest("coolant", ["coolant_through", "coolant_air"]), None);
+        let endless = "a".repeat(1_000_000);
+        assert_eq!(nearest(&endless, [endless.as_str()]), None);
+    }
+
+    #[test]
+    fn the_nearest_wins_and_among_equals_the_first() {
+        assert_eq!(nearest("tcp_of", ["tcp_on", "tcp_off"]), Some("tcp_on"));
+        assert_eq!(nearest("tcp_oof", ["tcp_on", "tcp_off"]), Some("tcp_off"));
+        assert_eq!(nearest("dmu60", ["dmu50", "dmu65"]), Some("dmu50"));
+    }
+}

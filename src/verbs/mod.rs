@@ -5,10 +5,10 @@ mod check;
 mod list_machines;
 mod list_words;
 mod new;
+mod plugin;
 mod post;
 mod print_schema;
 mod study;
-mod test_plugin;
 
 use clap::{Parser, Subcommand};
 
@@ -17,10 +17,10 @@ use check::CheckArguments;
 use list_machines::MachinesArguments;
 use list_words::WordsArguments;
 use new::NewArguments;
+use plugin::PluginArguments;
 use post::PostArguments;
 use print_schema::SchemaArguments;
 use study::StudyArguments;
-use test_plugin::PluginArguments;
 
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
 ///
@@ -76,7 +76,7 @@ impl CommandLine {
             Some(Verb::Check(arguments)) => check::run(&arguments),
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),
-            Some(Verb::Plugin(arguments)) => test_plugin::run(&arguments),
+            Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
         }
     }
 }

@@ -3,25 +3,13 @@
 use std::env::consts::DLL_SUFFIX;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Subcommand};
+use clap::Args;
 use post_host::{GivenValue, Plugin, conformance};
 use post_machine::diagnostic::Diagnostic;
 
 use crate::failure::Failure;
 use crate::job::plugin_finder::{diagnostic, finder};
 use crate::terminal::print;
-
-/// Works with plugins.
-#[derive(Debug, Args)]
-pub struct PluginArguments {
-    #[command(subcommand)]
-    command: PluginCommand,
-}
-
-#[derive(Debug, Subcommand)]
-enum PluginCommand {
-    Test(TestArguments),
-}
 
 /// Runs a plugin on cases whose answer is known, and says what it gets wrong.
 ///
@@ -36,7 +24,7 @@ enum PluginCommand {
   post plugin test harmonic --option order=3
 
 Exit codes: 0 nothing is wrong; 1 something is, the messages say what; 2 the command line is wrong.")]
-struct TestArguments {
+pub struct TestArguments {
     /// The library, or the name of a plugin in a folder of --plugins or built in. Opening a library runs its
     /// code.
     #[arg(value_name = "PLUGIN")]
@@ -52,8 +40,7 @@ struct TestArguments {
 }
 
 /// Does as the arguments say.
-pub fn run(arguments: &PluginArguments) -> Result<(), Failure> {
-    let PluginCommand::Test(arguments) = &arguments.command;
+pub fn run(arguments: &TestArguments) -> Result<(), Failure> {
     let plugin = find(arguments)?;
     let report = conformance::test(&plugin, &arguments.option)
         .map_err(|fault| diagnostic(&fault, &[], None))?;

@@ -1,7 +1,5 @@
 //! What a verb can fail with, and the exit code of each way to fail.
 
-use std::process::ExitCode;
-
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::NoClosedForm;
 
@@ -27,11 +25,11 @@ pub enum Failure {
 
 impl Failure {
     /// What the program ends with, as `--help` documents it: 1 refused, 2 the command line is wrong.
-    pub fn exit_code(&self) -> ExitCode {
+    pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(error) if error.use_stderr() => 2.into(),
-            Self::Usage(_) => ExitCode::SUCCESS,
-            Self::File(_) | Self::Unsolvable { .. } | Self::Refused(_) => 1.into(),
+            Self::Usage(error) if error.use_stderr() => 2,
+            Self::Usage(_) => 0,
+            Self::File(_) | Self::Unsolvable { .. } | Self::Refused(_) => 1,
         }
     }
 

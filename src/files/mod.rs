@@ -13,7 +13,7 @@ pub use atomic_file::{AtomicFile, NullSink};
 pub use cl_input::ClInput;
 pub use file_fault::FileFault;
 pub use path_arg::PathArg;
-pub use temporary::delete_on_signals;
+pub use temporary::{delete_on_signals, delete_temporary_files};
 
 /// Writes a text whole, or not at all.
 pub fn write(target: &PathArg, text: &[u8]) -> Result<(), FileFault> {

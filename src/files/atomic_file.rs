@@ -8,6 +8,7 @@ use post_posting::Output;
 
 use super::temporary::Temporary;
 use super::{FileFault, PathArg};
+use crate::terminal;
 
 /// What a text becomes at the end.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -108,7 +109,7 @@ impl Output for NullSink {
 fn place(file: BufWriter<Temporary>, target: Target) -> io::Result<()> {
     let mut file = file.into_inner().map_err(|fault| fault.into_error())?;
     match target {
-        Target::Standard => copy(&mut file, &mut io::stdout().lock()),
+        Target::Standard => copy(&mut file, &mut terminal::results()),
         Target::Stream(path) => copy(&mut file, &mut OpenOptions::new().write(true).open(path)?),
         Target::File(path) => {
             readable(&file, &path)?;

@@ -179,7 +179,7 @@ impl Plugin {
             }));
         }
         let options = check_options(self.options(), &setup.options)
-            .map_err(|fault| self.fault(Reason::Option(fault)))?;
+            .map_err(|fault| self.fault(Reason::Option(Box::new(fault))))?;
         let refused = |message| self.fault(Reason::Refused { message });
         let nonsense = |message| self.fault(Reason::Nonsense { message });
         let linked = self

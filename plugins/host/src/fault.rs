@@ -89,7 +89,7 @@ pub enum Reason {
         message: String,
     },
     /// An option does not fit.
-    Option(OptionFault),
+    Option(Box<OptionFault>),
     /// It refused, in its own words.
     Refused {
         /// The plugin's sentence.
@@ -104,6 +104,8 @@ pub struct OptionFault {
     pub key: String,
     /// What is wrong with it.
     pub message: String,
+    /// The key or the text that was written where one of `allowed` was meant.
+    pub written: String,
     /// The keys, or the values, that are allowed.
     pub allowed: Vec<String>,
 }

@@ -44,7 +44,7 @@ impl Plugin {
             return Err(self.other_kind(Kind::ErrorModel));
         };
         let options = check_options(self.options(), options)
-            .map_err(|fault| self.fault(Reason::Option(fault)))?;
+            .map_err(|fault| self.fault(Reason::Option(Box::new(fault))))?;
         let pairs: Vec<PostPair> = options
             .iter()
             .map(|(key, value)| PostPair::new(key, &value.as_value()))

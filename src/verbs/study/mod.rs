@@ -26,7 +26,7 @@ use post_study::{Distribution, Keeper, Kept, Row, Survey};
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{self, FileFault};
-use crate::job::plugin_finder;
+use crate::job::{self, plugin_finder};
 use crate::terminal;
 use dry_run::DryRun;
 use sweep::{Sweep, Swept};
@@ -127,6 +127,7 @@ pub struct Models {
 pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
     let dry_run = DryRun::new(&arguments.job, arguments.exact)?;
     let machine = dry_run.machine(&[])?;
+    job::say_what_is_left(&arguments.job);
     let folder = folder(arguments);
     let (names, mut models) = models(&dry_run, &machine)?;
     let (surveyed, findings) = survey(&dry_run, &machine, &names, &mut models)?;

@@ -24,6 +24,8 @@ pub enum Setting {
     Mount([f64; 3]),
     /// Who keeps the tip on its path.
     Tcp(Tcp),
+    /// The dialect, a plugin's name.
+    Dialect(String),
     /// Largest deviation of the tip in cuts, mm.
     Tolerance(f64),
     /// CL points that the tolerance makes needless are left out.
@@ -59,6 +61,7 @@ impl Setting {
             Self::Number { name, value } => written(name, &format!("{value:?}")),
             Self::Mount([x, y, z]) => format!("workpiece.mount = [{x:?}, {y:?}, {z:?}]"),
             Self::Tcp(tcp) => format!("control.tcp = {:?}", tcp.name()),
+            Self::Dialect(dialect) => format!("control.dialect = {dialect:?}"),
             Self::Tolerance(tolerance) => format!("accuracy.tolerance = {tolerance:?}"),
             Self::Reduce(reduce) => format!("accuracy.reduce = {reduce}"),
             Self::Placement(placement) => format!("accuracy.placement = {:?}", placement.name()),

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 static int context;
+static uint32_t words;
 
 static void *ends_it(void *nothing) {
     exit(0);
@@ -47,7 +48,8 @@ __attribute__((constructor)) static void constructor(void) {
 }
 
 static void *open_(const PostSetup *setup, const PostSink *error) {
-    (void)setup, (void)error;
+    (void)error;
+    words = (uint32_t)setup->words_len;
 #ifdef FAULT_OPEN
     return NULL;
 #endif
@@ -70,7 +72,8 @@ static void *open_(const PostSetup *setup, const PostSink *error) {
 
 static int32_t format(void *ctx, PostFormat *f) {
     (void)ctx;
-    f->words_len = 1;
+    f->words_len = words;
+    memset(f->words, 3, words);
     f->inverse_time = -1;
 #ifdef FAULT_WORDS
     f->words_len = 4000000000u;

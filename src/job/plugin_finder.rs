@@ -180,20 +180,23 @@ pub fn diagnostic(
         _ => place,
     };
     let diagnostic = Diagnostic::error("plugin", fault.to_string()).at(place);
-    let help: Vec<String> = meant(fault).into_iter().chain([fault.help()]).collect();
-    match help.join("; ").trim_end_matches("; ") {
-        "" => diagnostic,
-        help => diagnostic.help(help),
+    let help = match (meant(fault), fault.help()) {
+        (None, help) => help,
+        (Some(meant), help) => format!("did you mean `{meant}`? {help}"),
+    };
+    if help.is_empty() {
+        diagnostic
+    } else {
+        diagnostic.help(help)
     }
 }
 
 /// What was misspelt, most likely.
-fn meant(fault: &PluginFault) -> Option<String> {
+fn meant(fault: &PluginFault) -> Option<&str> {
     let (written, known) = match &fault.reason {
         Reason::NotFound { known, .. } => (&fault.plugin, known),
         Reason::Option(option) => (&option.written, &option.allowed),
         _ => return None,
     };
-    let meant = nearest(written, known.iter().map(String::as_str))?;
-    Some(format!("did you mean `{meant}`?"))
+    nearest(written, known.iter().map(String::as_str))
 }

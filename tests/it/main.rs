@@ -23,6 +23,7 @@ mod schema;
 #[cfg(unix)]
 mod signals;
 mod snapshots;
+mod strangers;
 mod study;
 mod words;
 mod writable;

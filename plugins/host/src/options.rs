@@ -156,7 +156,7 @@ pub fn default_of(spec: &OptionSpec) -> String {
         Value::Flag(flag) => flag.to_string(),
         Value::Integer(integer) => integer.to_string(),
         Value::Number(number) => number.to_string(),
-        Value::Text(text) => format!("\"{text}\""),
+        Value::Text(text) => format!("\"{}\"", text.replace('\n', "\\n")),
     }
 }
 

@@ -24,7 +24,11 @@ pub enum Target {
 impl Target {
     /// What stands at a path, or would. A link is followed, and stays.
     pub fn of(target: &PathArg) -> Self {
-        let Some(path) = target.path() else {
+        // By its other names too: libraries are kept out of standard output (`terminal::results`), so that what
+        // these names lead to is another stream by now.
+        let standard = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].map(Path::new);
+        let path = target.path().filter(|path| !standard.contains(path));
+        let Some(path) = path else {
             return Self::Standard;
         };
         match fs::metadata(path) {

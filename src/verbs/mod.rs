@@ -41,6 +41,7 @@ use study::StudyArguments;
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg
   post study part.cls --machine ac-trunnion
+  post plugin show fanuc
   post plugin test target/release/libpost_mine.so
 
 Exit codes: 0 the program is written; 1 refused, the messages say why; 2 the command line is wrong;

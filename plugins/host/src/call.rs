@@ -28,6 +28,7 @@ thread_local! {
 }
 
 /// The library that is at work on this thread.
+#[cfg(unix)]
 pub(crate) fn at_work() -> Option<&'static LoadedLibrary> {
     AT_WORK.get()
 }

@@ -3,12 +3,15 @@
 #![allow(unsafe_code)]
 
 use std::io::Write as _;
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use crate::call::{LoadedLibrary, at_work};
-use crate::{PluginFault, Reason};
+use crate::PluginFault;
+#[cfg(unix)]
+use crate::Reason;
+use crate::call::LoadedLibrary;
+#[cfg(unix)]
+use crate::call::at_work;
 
 /// What tells the user.
 static TELL: OnceLock<fn(&PluginFault)> = OnceLock::new();
@@ -72,6 +75,7 @@ fn opened() -> Vec<&'static LoadedLibrary> {
 }
 
 /// Whoever ends the process now.
+#[cfg(unix)]
 fn culprit() -> Option<PluginFault> {
     let fault = |library: &LoadedLibrary, message: &str| PluginFault {
         plugin: library.name.clone(),
@@ -97,7 +101,7 @@ fn culprit() -> Option<PluginFault> {
                 .collect();
             Some(PluginFault {
                 plugin: names.join("`, `"),
-                path: None::<PathBuf>,
+                path: None,
                 reason: Reason::Nonsense {
                     message: "the command was ended in the middle of its work, by a thread of one of these plugins"
                         .to_owned(),

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use post_plugin::raw::{PostDialect, PostModel, PostPlugin};
 use post_plugin::{Linked, OptionSpec};
@@ -48,6 +48,10 @@ pub(crate) enum Table {
 /// The hash of each library that was opened, by where it lies. The system hands out a library that is open already
 /// whatever its file has become since.
 static OPENED: Mutex<BTreeMap<PathBuf, String>> = Mutex::new(BTreeMap::new());
+
+fn opened() -> MutexGuard<'static, BTreeMap<PathBuf, String>> {
+    OPENED.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// What a plugin says about itself, once it was found to hold together.
 pub(crate) struct Described {
@@ -190,16 +194,12 @@ fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
             symbol: symbol.clone(),
         },
     })?;
-    let mut opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
-    let earlier = opened
-        .entry(file.path.clone())
-        .or_insert_with(|| file.hash.clone());
-    if *earlier != file.hash {
+    let earlier = opened().get(&file.path).cloned();
+    if earlier.is_some_and(|earlier| earlier != file.hash) {
         return Err(system(
             "it is open already, and its file was changed since".to_owned(),
         ));
     }
-    drop(opened);
     let loaded: &'static LoadedLibrary = Box::leak(Box::new(LoadedLibrary {
         name: name.to_owned(),
         path: path.to_owned(),
@@ -218,6 +218,7 @@ fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
     let Some(exported) = found else {
         return Err(Reason::NoSymbol { symbol });
     };
+    opened().insert(file.path.clone(), file.hash.clone());
     if !file.is_unchanged() {
         return Err(system(
             "its file was changed while it was opened".to_owned(),

@@ -1,7 +1,5 @@
 //! What a verb can fail with, and the exit code of each way to fail.
 
-use std::process::ExitCode;
-
 use post_machine::diagnostic::Diagnostic;
 
 use crate::files::FileFault;
@@ -18,14 +16,15 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// What the program ends with, as `--help` documents it: 1 refused, 2 the command line is wrong, 141 the reader of a pipe went away.
-    pub fn exit_code(&self) -> ExitCode {
+    /// What the program ends with, as `--help` documents it: 1 refused, 2 the command line is wrong, 141 the reader of a
+    /// pipe went away.
+    pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(error) if error.use_stderr() => 2.into(),
-            Self::Usage(_) => ExitCode::SUCCESS,
+            Self::Usage(error) if error.use_stderr() => 2,
+            Self::Usage(_) => 0,
             // What shells say of a command whose reader went away.
-            Self::File(FileFault::ReaderGone(_)) => 141.into(),
-            Self::File(_) | Self::Refused(_) => 1.into(),
+            Self::File(FileFault::ReaderGone(_)) => 141,
+            Self::File(_) | Self::Refused(_) => 1,
         }
     }
 

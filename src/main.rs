@@ -7,23 +7,29 @@ mod job;
 mod terminal;
 mod verbs;
 
-use std::process::ExitCode;
-
 use clap::Parser;
 
 use failure::Failure;
+use job::plugin_finder;
+use post_host::PluginFault;
 use verbs::CommandLine;
 
-fn main() -> ExitCode {
+fn main() {
     files::delete_on_signals();
+    let _watch = post_host::watch_for_exit(ended_by_a_plugin);
     let done = CommandLine::try_parse()
         .map_err(Failure::Usage)
         .and_then(CommandLine::run)
         .and_then(|()| terminal::all_printed());
-    let Err(failure) = done else {
-        return ExitCode::SUCCESS;
-    };
-    let code = failure.exit_code();
-    terminal::explain(failure);
-    code
+    let code = done.as_ref().map_or_else(Failure::exit_code, |()| 0);
+    if let Err(failure) = done {
+        terminal::explain(failure);
+    }
+    post_host::leave(code)
+}
+
+/// A plugin that ends the process would else look like a command that has done its work.
+fn ended_by_a_plugin(fault: &PluginFault) {
+    files::delete_temporary_files();
+    terminal::findings(&[plugin_finder::diagnostic(fault, &[], None)]);
 }

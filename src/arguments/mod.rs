@@ -125,6 +125,11 @@ pub struct JobArguments {
     #[arg(long, value_parser = word::<TcpWord, Tcp>(), value_name = "WHO", help_heading = "Machine")]
     pub tcp: Option<Tcp>,
 
+    /// Posts in another dialect than the machine file names, with the options that it has for that one; short for
+    /// --set control.dialect=… (`post plugin list`).
+    #[arg(long, value_name = "NAME", help_heading = "Machine")]
+    pub dialect: Option<String>,
+
     /// A further folder of machine files; the environment variable POST_MACHINES adds more.
     #[arg(long, value_name = "FOLDER", help_heading = "Machine")]
     pub machines: Vec<PathBuf>,
@@ -154,6 +159,7 @@ impl JobArguments {
         settings.extend(self.turn.map(Setting::Turn));
         settings.extend(self.tolerance.map(Setting::Tolerance));
         settings.extend(self.tcp.map(Setting::Tcp));
+        settings.extend(self.dialect.clone().map(Setting::Dialect));
         settings
     }
 }

@@ -13,7 +13,7 @@ use super::naming::{self, Unnamed};
 use super::outcome::{self, Became};
 use super::target::{Place, Role, Target, refuse_losses};
 use super::temporary::Temporary;
-use super::{FileFault, PathArg, rights};
+use super::{FileFault, PathArg, rights, standard};
 
 /// A text in the making. Dropped before [`AtomicFile::finish`], it leaves nothing behind, nor if the command is
 /// interrupted.
@@ -232,19 +232,6 @@ fn copy(from: &mut Temporary, to: &mut dyn Write, begun: &mut bool) -> io::Resul
 fn open(path: Option<&Path>) -> io::Result<Box<dyn Write>> {
     match path {
         Some(path) => Ok(Box::new(OpenOptions::new().write(true).open(path)?)),
-        None => standard_output(),
+        None => standard::open(),
     }
-}
-
-/// Standard output without the buffer, in which a text would seem to have got through.
-#[cfg(unix)]
-fn standard_output() -> io::Result<Box<dyn Write>> {
-    use std::os::fd::AsFd;
-    let own = io::stdout().as_fd().try_clone_to_owned()?;
-    Ok(Box::new(fs::File::from(own)))
-}
-
-#[cfg(not(unix))]
-fn standard_output() -> io::Result<Box<dyn Write>> {
-    Ok(Box::new(io::stdout()))
 }

@@ -36,10 +36,10 @@ impl FileId {
         }
     }
 
-    /// What standard output is.
+    /// What an open stream is.
     #[cfg(unix)]
-    pub fn of_standard_output() -> Option<Self> {
-        of_stream(io::stdout(), false)
+    pub fn of_stream(stream: impl std::os::fd::AsFd) -> Option<Self> {
+        of_stream(stream, false)
     }
 
     /// The file that standard input is; none for a pipe or a terminal.
@@ -48,9 +48,9 @@ impl FileId {
         of_stream(io::stdin(), true)
     }
 
-    /// What standard output is: not known on this system.
+    /// What an open stream is: not known on this system.
     #[cfg(not(unix))]
-    pub fn of_standard_output() -> Option<Self> {
+    pub fn of_stream<S>(_: S) -> Option<Self> {
         None
     }
 

@@ -12,6 +12,7 @@ pub mod outcome;
 mod path_arg;
 pub mod read_files;
 mod rights;
+pub mod standard;
 pub mod svg;
 mod target;
 mod temporary;
@@ -25,7 +26,7 @@ pub use cl_input::ClInput;
 pub use file_fault::FileFault;
 pub use path_arg::PathArg;
 pub use target::Role;
-pub use temporary::delete_on_signals;
+pub use temporary::{delete_on_signals, delete_temporary_files};
 
 /// Writes texts whole: all of them, or none. Standard output is taken if one of them went there.
 pub fn write(texts: &[(Role, &PathArg, &str)]) -> Result<bool, FileFault> {

@@ -1,11 +1,11 @@
 //! Where a text goes, and that no file of the user's is lost by it.
 
 use std::fs::{self, Metadata, OpenOptions};
-use std::io::{self, IsTerminal};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::file_id::{FileId, followed};
-use super::{FileFault, PathArg, read_files};
+use super::{FileFault, PathArg, read_files, standard};
 
 /// What a text is to the user.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +69,7 @@ impl Target {
     /// Which file it is; none where the system does not say.
     fn id(&self) -> Option<FileId> {
         match &self.place {
-            Place::Standard => FileId::of_standard_output(),
+            Place::Standard => standard::id(),
             Place::Stream(path) | Place::File(path) => FileId::of(path).ok(),
         }
     }
@@ -109,6 +109,9 @@ fn place(role: Role, named: &PathArg) -> Result<Place, FileFault> {
     let (Some(path), Some(shown)) = (named.absolute(), named.path()) else {
         return Ok(Place::Standard);
     };
+    if standard::is_named(path) {
+        return Ok(Place::Standard);
+    }
     let fault = |error| FileFault::write(named, error);
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => Err(FileFault::WriteFolder(shown.to_owned())),
@@ -146,9 +149,9 @@ fn place(role: Role, named: &PathArg) -> Result<Place, FileFault> {
 /// The path leads to what standard output is: `/dev/stdout`, or the file that a shell lets it go to. Replaced, it would
 /// be cut off from the command.
 fn is_standard_output(path: &Path, found: &Metadata) -> bool {
-    let same = FileId::of(path).is_ok_and(|id| Some(id) == FileId::of_standard_output());
+    let same = FileId::of(path).is_ok_and(|id| Some(id) == standard::id());
     // Whoever sends it to /dev/null may send a text there, too.
-    same && (!is_device(found) || io::stdout().is_terminal())
+    same && (!is_device(found) || standard::is_terminal())
 }
 
 #[cfg(unix)]

@@ -112,6 +112,16 @@ impl Seek for Temporary {
     }
 }
 
+/// Deletes the temporary files. No file is made or named any more: the command is about to end.
+pub fn delete_temporary_files() {
+    let live = live();
+    for path in live.iter() {
+        // Nobody is left to tell of a folder that was taken away.
+        let _ = std::fs::remove_file(path);
+    }
+    std::mem::forget(live);
+}
+
 /// From here on a signal that ends the command (SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU) has the temporary files deleted
 /// first; the exit code is that of shells: 128 and the signal's number. A file that outgrows the limit of the shell is a
 /// fault of writing and no signal.
@@ -135,13 +145,8 @@ pub fn delete_on_signals() {
     };
     let waiting = move || {
         if let Some(signal) = signals.forever().next() {
-            // Kept locked: no file is made or named any more.
-            let live = live();
-            for path in live.iter() {
-                // Nobody is left to tell of a folder that was taken away.
-                let _ = std::fs::remove_file(path);
-            }
-            std::process::exit(128 + signal);
+            delete_temporary_files();
+            post_host::leave_at_once(128 + signal as u8);
         }
     };
     let _ = std::thread::Builder::new()

@@ -2,7 +2,9 @@
 
 mod dry_run;
 pub mod machine_files;
+pub mod other_dialect;
 pub mod plugin_finder;
+mod plugin_folders;
 
 use std::env;
 use std::path::PathBuf;
@@ -25,6 +27,16 @@ pub fn machine(arguments: &JobArguments, more: &[Setting]) -> Result<Machine, Fa
     let mut settings = arguments.settings();
     settings.extend_from_slice(more);
     machine_files::load(arguments.machine(), &arguments.machines, &settings)
+}
+
+/// Says once what `--dialect` leaves behind.
+pub fn say_what_is_left(arguments: &JobArguments) {
+    other_dialect::say_what_is_left(
+        arguments.dialect.as_deref(),
+        arguments.machine(),
+        &arguments.machines,
+        &arguments.settings(),
+    );
 }
 
 /// What can be derived from a machine with a tool of `length` mm. A chain that cannot be solved is mostly refused as

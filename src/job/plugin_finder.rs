@@ -1,5 +1,6 @@
 //! The plugins that are part of the command, and those that the user's folders hold.
 
+use std::env::consts::DLL_SUFFIX;
 use std::path::{Path, PathBuf};
 
 use post_host::{
@@ -8,19 +9,22 @@ use post_host::{
 };
 use post_machine::axis_words;
 use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, Place, nearest};
 use post_plugin::{Accuracy, Tolerance, Units};
 use post_posting::report::PluginUse;
 
-use super::folders;
-use crate::files::{PathArg, read_files};
+use super::plugin_folders;
+use crate::files::{PathArg, read_files, standard};
 
-/// The finder for a run, with the folders that the user `named`.
+/// The finder for a run, with the folders that the user `named`. Once a library may be opened, results are kept apart
+/// from what it prints.
 pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
-    let folders = folders(named, "POST_PLUGINS");
-    missing(named)?;
+    let folders = plugin_folders::named(named)?;
     for folder in &folders {
         read_files::note_libraries(folder);
+    }
+    if !folders.is_empty() {
+        standard::keep_apart();
     }
     let linked = post_stock::plugins()
         .iter()
@@ -31,23 +35,17 @@ pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
     Ok(Finder { folders, linked })
 }
 
-/// A folder that the user names must be there: a slip would take the built-in plugin in silence.
-fn missing(folders: &[PathBuf]) -> Result<(), Vec<Diagnostic>> {
-    let missing: Vec<Diagnostic> = folders
-        .iter()
-        .filter(|folder| !folder.is_dir())
-        .map(|folder| {
-            Diagnostic::error(
-                "plugin",
-                format!("--plugins {}: no such folder", folder.display()),
-            )
-        })
-        .collect();
-    if missing.is_empty() {
-        Ok(())
+/// The plugin that is called so, or the library at this path.
+pub fn by_name_or_file(plugin: &Path, named: &[PathBuf]) -> Result<Plugin, Vec<Diagnostic>> {
+    let text = plugin.to_string_lossy();
+    let is_file = plugin.components().count() > 1 || text.ends_with(DLL_SUFFIX);
+    let found = if is_file {
+        standard::keep_apart();
+        Plugin::open(plugin)
     } else {
-        Err(missing)
-    }
+        finder(named)?.find(&text)
+    };
+    found.map_err(|fault| vec![diagnostic(&fault, &[], None)])
 }
 
 /// Opens the dialect of a machine for the program `program`, made from the CL file `cl_file`.
@@ -183,11 +181,24 @@ pub fn diagnostic(
             .or(place),
         _ => place,
     };
-    let help = fault.help();
     let diagnostic = Diagnostic::error("plugin", fault.to_string()).at(place);
+    let help = match (meant(fault), fault.help()) {
+        (None, help) => help,
+        (Some(meant), help) => format!("did you mean `{meant}`? {help}"),
+    };
     if help.is_empty() {
         diagnostic
     } else {
         diagnostic.help(help)
     }
+}
+
+/// What was misspelt, most likely.
+fn meant(fault: &PluginFault) -> Option<&str> {
+    let (written, known) = match &fault.reason {
+        Reason::NotFound { known, .. } => (&fault.plugin, known),
+        Reason::Option(option) => (&option.written, &option.allowed),
+        _ => return None,
+    };
+    nearest(written, known.iter().map(String::as_str))
 }

@@ -12,7 +12,7 @@ pub use progress::Progress;
 pub use quantity::{clock, number};
 
 use crate::failure::Failure;
-use crate::files::{FileFault, outcome};
+use crate::files::{FileFault, outcome, standard};
 
 /// Why a result could not be printed: the first fault of the run.
 static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
@@ -20,10 +20,10 @@ static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
 /// Prints a result to standard output. A reader that has seen enough closes the pipe; any other fault is told by
 /// [`all_printed`] at the end.
 pub fn print(text: &str) {
-    let mut stdout = io::stdout().lock();
-    let printed = stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush());
+    let printed = standard::open().and_then(|mut out| {
+        out.write_all(text.as_bytes())?;
+        out.flush()
+    });
     match printed {
         Ok(()) => outcome::printed(),
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {}

@@ -6,10 +6,10 @@ mod list_machines;
 mod list_words;
 mod new;
 mod place;
+mod plugin;
 mod post;
 mod print_schema;
 mod study;
-mod test_plugin;
 
 use clap::{Parser, Subcommand};
 
@@ -19,10 +19,10 @@ use list_machines::MachinesArguments;
 use list_words::WordsArguments;
 use new::NewArguments;
 use place::PlaceArguments;
+use plugin::PluginArguments;
 use post::PostArguments;
 use print_schema::SchemaArguments;
 use study::StudyArguments;
-use test_plugin::PluginArguments;
 
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
 ///
@@ -44,6 +44,7 @@ use test_plugin::PluginArguments;
   post check my-mill.toml --svg reach.svg
   post study part.cls --machine ac-trunnion
   post place part.cls --machine dmu50 --svg travel.svg
+  post plugin show fanuc
   post plugin test target/release/libpost_mine.so
 
 Exit codes: 0 the program is written; 1 refused, the messages say why, and what was written nevertheless;
@@ -82,7 +83,7 @@ impl CommandLine {
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),
             Some(Verb::Place(arguments)) => place::run(&arguments),
-            Some(Verb::Plugin(arguments)) => test_plugin::run(&arguments),
+            Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
         }
     }
 }

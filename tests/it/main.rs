@@ -31,6 +31,7 @@ mod settings;
 #[cfg(unix)]
 mod signals;
 mod snapshots;
+mod strangers;
 mod study;
 mod summary;
 mod words;

@@ -224,6 +224,7 @@ typedef struct {
     void (*loaded)(void);
     const PostDialect *dialect; /* null in a model */
     const PostModel *model;     /* null in a dialect */
+    PostText about;             /* what it is, in one sentence; may be empty */
 } PostPlugin;
 
 /* The fields of PostPlugin up to `layout`. */
@@ -697,7 +698,7 @@ POST_ASSERT(offsetof(PostFormat, words_len) == 52, "PostFormat.words_len");
 POST_ASSERT(offsetof(PostFormat, extension) == 56, "PostFormat.extension");
 POST_ASSERT(offsetof(PostFormat, writes) == 72, "PostFormat.writes");
 POST_ASSERT(offsetof(PostFormat, most_inverse_time) == 80, "PostFormat.most_inverse_time");
-POST_ASSERT(sizeof(PostPlugin) == 96 && POST_ALIGN(PostPlugin) == 8, "PostPlugin");
+POST_ASSERT(sizeof(PostPlugin) == 112 && POST_ALIGN(PostPlugin) == 8, "PostPlugin");
 POST_ASSERT(offsetof(PostPlugin, magic) == 0, "PostPlugin.magic");
 POST_ASSERT(offsetof(PostPlugin, abi) == 8, "PostPlugin.abi");
 POST_ASSERT(offsetof(PostPlugin, kind) == 12, "PostPlugin.kind");
@@ -710,6 +711,7 @@ POST_ASSERT(offsetof(PostPlugin, describe) == 64, "PostPlugin.describe");
 POST_ASSERT(offsetof(PostPlugin, loaded) == 72, "PostPlugin.loaded");
 POST_ASSERT(offsetof(PostPlugin, dialect) == 80, "PostPlugin.dialect");
 POST_ASSERT(offsetof(PostPlugin, model) == 88, "PostPlugin.model");
+POST_ASSERT(offsetof(PostPlugin, about) == 96, "PostPlugin.about");
 POST_ASSERT(sizeof(PostDialect) == 40 && POST_ALIGN(PostDialect) == 8, "PostDialect");
 POST_ASSERT(offsetof(PostDialect, open) == 0, "PostDialect.open");
 POST_ASSERT(offsetof(PostDialect, format) == 8, "PostDialect.format");

@@ -155,16 +155,24 @@ impl<D: Dialect> LinkedDialect for Context<D> {
 pub struct Exported(PostPlugin);
 
 impl Exported {
-    pub const fn dialect<D: Dialect>(name: &'static str, version: &'static str) -> Self {
-        let mut plugin = common(name, version, raw::KIND_DIALECT);
+    pub const fn dialect<D: Dialect>(
+        name: &'static str,
+        version: &'static str,
+        about: &'static str,
+    ) -> Self {
+        let mut plugin = common([name, version, about], raw::KIND_DIALECT);
         plugin.describe = Some(describe_dialect::<D>);
         plugin.table_size = size_of::<PostDialect>() as u32;
         plugin.dialect = Table::<D>::DIALECT;
         Exported(plugin)
     }
 
-    pub const fn model<M: ErrorModel>(name: &'static str, version: &'static str) -> Self {
-        let mut plugin = common(name, version, raw::KIND_MODEL);
+    pub const fn model<M: ErrorModel>(
+        name: &'static str,
+        version: &'static str,
+        about: &'static str,
+    ) -> Self {
+        let mut plugin = common([name, version, about], raw::KIND_MODEL);
         plugin.describe = Some(describe_model::<M>);
         plugin.table_size = size_of::<PostModel>() as u32;
         plugin.model = Table::<M>::MODEL;
@@ -172,7 +180,7 @@ impl Exported {
     }
 }
 
-const fn common(name: &'static str, version: &'static str, kind: u32) -> PostPlugin {
+const fn common([name, version, about]: [&'static str; 3], kind: u32) -> PostPlugin {
     PostPlugin {
         magic: raw::MAGIC,
         abi: raw::ABI,
@@ -186,13 +194,15 @@ const fn common(name: &'static str, version: &'static str, kind: u32) -> PostPlu
         loaded: Some(loaded),
         dialect: null(),
         model: null(),
+        about: PostText::new(about),
     }
 }
 
 /// Exports a [`Dialect`](crate::Dialect) as `post_plugin_<name>` from the crate `post_<name>`, and makes
 /// `pub fn plugin() -> Linked` for those who link the crate.
 ///
-/// The symbol carries the name, so that several plugins can be linked into one program.
+/// The symbol carries the name, so that several plugins can be linked into one program. Version and description are
+/// those of the crate.
 ///
 /// ```ignore
 /// post_plugin::export_dialect!(fanuc, Fanuc);
@@ -226,8 +236,11 @@ macro_rules! export_plugin {
 
         #[allow(unsafe_code)]
         #[unsafe(export_name = concat!("post_plugin_", stringify!($name)))]
-        static POST_PLUGIN: $crate::export::Exported =
-            $crate::export::Exported::$kind::<$type>(stringify!($name), env!("CARGO_PKG_VERSION"));
+        static POST_PLUGIN: $crate::export::Exported = $crate::export::Exported::$kind::<$type>(
+            stringify!($name),
+            env!("CARGO_PKG_VERSION"),
+            env!("CARGO_PKG_DESCRIPTION"),
+        );
 
         /// This plugin, linked in.
         pub const fn plugin() -> $crate::Linked {

@@ -24,7 +24,7 @@ pub use setup::with_setup;
 pub const MAGIC: u64 = u64::from_le_bytes(*b"POSTPLUG");
 
 /// Version of the contract. It changes when a struct of [`LAYOUTS`] or the meaning of a call does. What may grow
-/// without a new one: tables of functions, [`PostSetup`] and [`PostFormat`] at their end, events (more kinds; more
+/// without a new one: tables of functions, [`PostPlugin`], [`PostSetup`] and [`PostFormat`] at their end, events (more kinds; more
 /// numbers and texts behind those of a kind), capabilities.
 pub const ABI: u32 = 2;
 
@@ -289,6 +289,8 @@ pub struct PostPlugin {
     pub dialect: *const PostDialect,
     /// The functions of an error model, else null.
     pub model: *const PostModel,
+    /// What the plugin is, in one sentence, for lists; may be empty. A library whose `size` ends before it has none.
+    pub about: PostText,
 }
 
 // SAFETY: every pointer in it leads to constants that live as long as the library, which is never closed.

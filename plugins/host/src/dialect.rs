@@ -11,8 +11,10 @@ use post_plugin::{
     Promise, Setup, Tool, Units, Value, WriteFault,
 };
 
+use crate::call::Caller;
 use crate::plugin::Table;
-use crate::sink::{message, with_sink};
+use crate::shown::{is_odd, quoted, sentence};
+use crate::sink::{MOST_TEXT, message, with_sink};
 use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};
 
 /// What a dialect is told about a program.
@@ -146,6 +148,7 @@ enum Way {
 
 /// A context behind the C contract.
 struct Library {
+    caller: Caller,
     table: &'static PostDialect,
     ctx: *mut c_void,
     /// The batch in its raw form; empty but during a call.
@@ -176,7 +179,7 @@ impl Plugin {
             }));
         }
         let options = check_options(self.options(), &setup.options)
-            .map_err(|fault| self.fault(Reason::Option(fault)))?;
+            .map_err(|fault| self.fault(Reason::Option(Box::new(fault))))?;
         let refused = |message| self.fault(Reason::Refused { message });
         let nonsense = |message| self.fault(Reason::Nonsense { message });
         let linked = self
@@ -190,7 +193,7 @@ impl Plugin {
             }
             None => {
                 let library = setup
-                    .with(&options, |setup| Library::open(table, setup))
+                    .with(&options, |setup| Library::open(self.caller(), table, setup))
                     .map_err(refused)?;
                 let (format, capabilities) = library.ask_format(words).map_err(nonsense)?;
                 (Way::Library(library), format, capabilities)
@@ -245,14 +248,18 @@ fn check_format(format: &Format, words: usize) -> Result<(), String> {
 impl Library {
     /// # Errors
     /// Why it refuses.
-    fn open(table: &'static PostDialect, setup: &Setup<'_>) -> Result<Self, String> {
+    fn open(
+        caller: Caller,
+        table: &'static PostDialect,
+        setup: &Setup<'_>,
+    ) -> Result<Self, String> {
         let mut ctx = std::ptr::null_mut();
         let refusal = message(|sink| {
-            ctx = raw::with_setup(setup, |setup| {
-                // SAFETY: the setup and the sink live for the call; the pointer was checked at loading.
-                table
-                    .open
-                    .map_or(std::ptr::null_mut(), |open| unsafe { open(setup, sink) })
+            raw::with_setup(setup, |setup| {
+                if let Some(open) = table.open {
+                    // SAFETY: the setup and the sink live for the call.
+                    ctx = caller.call(|| unsafe { open(setup, sink) });
+                }
             });
         });
         if ctx.is_null() {
@@ -260,6 +267,7 @@ impl Library {
         }
         // From here on, dropping it closes the context.
         Ok(Library {
+            caller,
             table,
             ctx,
             events: Vec::new(),
@@ -275,7 +283,7 @@ impl Library {
         let failed = self
             .table
             .format
-            .is_none_or(|format| unsafe { format(self.ctx, &mut raw) } != 0);
+            .is_none_or(|format| self.caller.call(|| unsafe { format(self.ctx, &mut raw) }) != 0);
         if failed {
             return Err(self.last_error());
         }
@@ -306,7 +314,7 @@ impl Library {
         message(|sink| {
             if let Some(last_error) = self.table.last_error {
                 // SAFETY: the context is open and the sink lives for the call.
-                unsafe { last_error(self.ctx, sink) };
+                self.caller.call(|| unsafe { last_error(self.ctx, sink) });
             }
         })
     }
@@ -325,12 +333,14 @@ impl Library {
         let ctx = self.ctx;
         // SAFETY: the events and what they point to (the batch) live for the call, `ends` has room for
         // one number each, the sink is in force, and the context is open and used by this call alone.
-        let written = with_sink(&mut self.written, |sink| unsafe {
-            write(ctx, events, count, sink, ends)
+        let caller = &self.caller;
+        let written = with_sink(&mut self.written, MOST_TEXT, |sink| {
+            caller.call(|| unsafe { write(ctx, events, count, sink, ends) })
         });
         // They point into the batch, which is the caller's.
         self.events.clear();
         self.texts.clear();
+        let written = written?;
         if written > count {
             return Err(format!("it says it wrote {written} events of {count}"));
         }
@@ -392,7 +402,7 @@ impl Drop for Library {
     fn drop(&mut self) {
         if let Some(close) = self.table.close {
             // SAFETY: the context is open, and this is its last use.
-            unsafe { close(self.ctx) };
+            self.caller.call(|| unsafe { close(self.ctx) });
         }
     }
 }
@@ -430,7 +440,8 @@ impl DialectSession for OpenedDialect {
             WriteFault {
                 message: format!(
                     "dialect `{}`, event {event}: {}",
-                    self.plugin, fault.message
+                    self.plugin,
+                    sentence(&fault.message)
                 ),
                 ..fault
             }
@@ -450,7 +461,8 @@ impl fmt::Debug for OpenedDialect {
 
 /// No reason is no sentence.
 fn reason_of(message: String) -> String {
-    if message.trim().is_empty() {
+    let message = sentence(&message);
+    if message.is_empty() {
         "it gives no reason".to_owned()
     } else {
         message
@@ -466,13 +478,19 @@ fn check_batch(
     ends: &mut Vec<usize>,
     first: usize,
 ) -> Result<(), WriteFault> {
+    if out.len() - base > MOST_TEXT {
+        out.truncate(base);
+        ends.truncate(first);
+        let message = format!("it wrote more than {MOST_TEXT} bytes in one call");
+        return Err(WriteFault { index: 0, message });
+    }
     // All at once, at the speed of memory; event by event only to name the one that is at fault.
     let bytes = out.as_bytes();
     let sound = is_sound(&bytes[base..]);
     let mut from = base;
     for (index, &to) in ends[first..].iter().enumerate() {
         if !(sound && (to == from || bytes[to - 1] == b'\n'))
-            && let Err(message) = check_text(&bytes[from..to], &batch.event(index))
+            && let Err(message) = check_text(&out[from..to], &batch.event(index))
         {
             out.truncate(from);
             ends.truncate(first + index);
@@ -513,18 +531,28 @@ fn is_sound(text: &[u8]) -> bool {
 }
 
 /// The text of one event is whole lines that a control can read, and a move's numbers are numbers.
-fn check_text(text: &[u8], event: &Event<'_>) -> Result<(), String> {
-    if text.last().is_some_and(|byte| *byte != b'\n') {
-        return Err("its text does not end with a line feed".to_owned());
+fn check_text(text: &str, event: &Event<'_>) -> Result<(), String> {
+    let Some(lines) = text.strip_suffix('\n') else {
+        return match text.is_empty() {
+            true => Ok(()),
+            false => Err("its text does not end with a line feed".to_owned()),
+        };
+    };
+    for line in lines.split('\n') {
+        let inner = line.strip_suffix('\r').unwrap_or(line);
+        let odd = |letter: &char| is_odd(*letter) && *letter != '\t';
+        if let Some(letter) = inner.chars().find(odd) {
+            return Err(format!(
+                "its line `{}` holds the character U+{:04X}: a line of a program is printable letters, blanks and tabs, and ends with a line feed, or with CR and LF",
+                quoted(line),
+                u32::from(letter)
+            ));
+        }
     }
-    let odd = |byte: &&u8| byte.is_ascii_control() && !matches!(byte, b'\n' | b'\r' | b'\t');
-    if let Some(byte) = text.iter().find(odd) {
-        return Err(format!("its text holds the control character {byte}"));
-    }
-    if event.moves() && has_no_number(text) {
+    if event.moves() && has_no_number(text.as_bytes()) {
         return Err(format!(
             "it wrote something that is no number: {}",
-            String::from_utf8_lossy(text).trim()
+            quoted(text.trim())
         ));
     }
     Ok(())

@@ -21,8 +21,8 @@ pub enum Reason {
     NotFound {
         /// Files that would have been taken.
         tried: Vec<PathBuf>,
-        /// Names of the plugins that are linked in.
-        linked: Vec<String>,
+        /// Names of the plugins that there are, those that are linked in first.
+        known: Vec<String>,
     },
     /// The file's name is not that of a plugin.
     FileName {
@@ -63,9 +63,16 @@ pub enum Reason {
         found: u32,
         /// The least.
         wanted: u32,
+        /// The most.
+        most: u32,
     },
     /// A pointer is null that must not be.
     Null {
+        /// Which.
+        what: &'static str,
+    },
+    /// A pointer does not stand where a table can.
+    NotAligned {
         /// Which.
         what: &'static str,
     },
@@ -82,7 +89,7 @@ pub enum Reason {
         message: String,
     },
     /// An option does not fit.
-    Option(OptionFault),
+    Option(Box<OptionFault>),
     /// It refused, in its own words.
     Refused {
         /// The plugin's sentence.
@@ -97,6 +104,8 @@ pub struct OptionFault {
     pub key: String,
     /// What is wrong with it.
     pub message: String,
+    /// The key or the text that was written where one of `allowed` was meant.
+    pub written: String,
     /// The keys, or the values, that are allowed.
     pub allowed: Vec<String>,
 }
@@ -105,8 +114,8 @@ impl PluginFault {
     /// What would help; empty if nothing general can be said.
     pub fn help(&self) -> String {
         match &self.reason {
-            Reason::NotFound { tried, linked } => {
-                let mut help = format!("built in are {}", linked.join(", "));
+            Reason::NotFound { tried, known } => {
+                let mut help = format!("there are {}", known.join(", "));
                 for path in tried {
                     help.push_str(&format!("; looked for {}", path.display()));
                 }
@@ -129,7 +138,7 @@ impl PluginFault {
                 "build the plugin again with this version of post-plugin (or of post_plugin.h)"
                     .to_owned()
             }
-            Reason::Null { .. } | Reason::Nonsense { .. } => {
+            Reason::Null { .. } | Reason::NotAligned { .. } | Reason::Nonsense { .. } => {
                 "the fault is in the plugin: tell its author".to_owned()
             }
             Reason::OtherKind { .. } => {
@@ -167,11 +176,20 @@ impl fmt::Display for PluginFault {
                 f,
                 "it was built against other structs (layout {found:016x}, here {wanted:016x})"
             ),
-            Reason::Size { of, found, wanted } => {
-                write!(
-                    f,
-                    "its {of} has {found} bytes, at least {wanted} are needed"
-                )
+            Reason::Size {
+                of,
+                found,
+                wanted,
+                most,
+            } => {
+                let (limit, what) = match found < wanted {
+                    true => (wanted, "at least"),
+                    false => (most, "at most"),
+                };
+                write!(f, "its {of} has {found} bytes, {what} {limit} can be")
+            }
+            Reason::NotAligned { what } => {
+                write!(f, "its `{what}` is at an address that no table can have")
             }
             Reason::Null { what } => write!(f, "its `{what}` is null"),
             Reason::OtherKind { wanted, found } => {

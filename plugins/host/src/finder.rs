@@ -1,8 +1,10 @@
 //! A name in a machine file is the registry: no list to edit.
 
-use std::path::PathBuf;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
 
-use crate::plugin::{file_name, is_name};
+use crate::plugin::{file_name, is_name, name_of};
 use crate::{Plugin, PluginFault, Reason};
 
 /// Where plugins are looked for.
@@ -15,36 +17,98 @@ pub struct Finder {
     pub linked: Vec<Plugin>,
 }
 
+/// A plugin that could be found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Listed {
+    /// Its name.
+    pub name: String,
+    /// Its file; none if it is linked in.
+    pub path: Option<PathBuf>,
+    /// Another of the same name comes first.
+    pub hidden: bool,
+}
+
 impl Finder {
     /// The plugin `name`; in file names `-` is written as `_`.
     ///
     /// # Errors
-    /// If there is none, or the file that should be it is none: a broken file in a named folder is never
-    /// passed over in silence.
+    /// If there is none, or what should be it is none: a broken file in a named folder, a link that leads nowhere, a
+    /// folder that cannot be looked into are never passed over in silence.
     pub fn find(&self, name: &str) -> Result<Plugin, PluginFault> {
         let wanted = name.replace('-', "_");
         let mut tried = Vec::new();
         if is_name(&wanted) {
             for folder in &self.folders {
                 let path = folder.join(file_name(&wanted));
-                if path.exists() {
-                    return Plugin::open(&path);
+                match path.symlink_metadata() {
+                    Ok(_) => return Plugin::open(&path),
+                    Err(error) if error.kind() == io::ErrorKind::NotFound => tried.push(path),
+                    Err(error) => {
+                        return Err(PluginFault {
+                            plugin: wanted,
+                            path: Some(path),
+                            reason: Reason::Open {
+                                message: error.to_string(),
+                            },
+                        });
+                    }
                 }
-                tried.push(path);
             }
         }
         let linked = self.linked.iter().find(|plugin| plugin.name() == wanted);
-        linked.cloned().ok_or_else(|| PluginFault {
-            plugin: name.to_owned(),
-            path: None,
-            reason: Reason::NotFound {
-                tried,
-                linked: self
-                    .linked
-                    .iter()
-                    .map(|plugin| plugin.name().to_owned())
-                    .collect(),
-            },
+        linked.cloned().ok_or_else(|| {
+            let linked = self.linked.iter().map(|plugin| plugin.name().to_owned());
+            let mut known: Vec<String> = linked.collect();
+            for (name, _) in self
+                .folders
+                .iter()
+                .flat_map(|folder| names(folder))
+                .flatten()
+            {
+                if !known.contains(&name) {
+                    known.push(name);
+                }
+            }
+            PluginFault {
+                plugin: name.to_owned(),
+                path: None,
+                reason: Reason::NotFound { tried, known },
+            }
         })
     }
+
+    /// All plugins, by the names of their files alone: none is opened. In the order in which they are looked for.
+    ///
+    /// # Errors
+    /// Which folder cannot be read, and why.
+    pub fn list(&self) -> Result<Vec<Listed>, (PathBuf, io::Error)> {
+        let mut listed: Vec<Listed> = Vec::new();
+        let mut add = |name: String, path| {
+            let hidden = listed.iter().any(|other| other.name == name);
+            listed.push(Listed { name, path, hidden });
+        };
+        for folder in &self.folders {
+            let names = names(folder).map_err(|error| (folder.clone(), error))?;
+            for (name, path) in names {
+                add(name, Some(path));
+            }
+        }
+        for plugin in &self.linked {
+            add(plugin.name().to_owned(), None);
+        }
+        Ok(listed)
+    }
+}
+
+/// The plugins of a folder and their files, in the order of their names.
+fn names(folder: &Path) -> io::Result<Vec<(String, PathBuf)>> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if let Some(name) = name_of(&path) {
+            names.push((name.to_owned(), path));
+        }
+    }
+    names.sort();
+    Ok(names)
 }

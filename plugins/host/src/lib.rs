@@ -4,18 +4,28 @@
 //! linked-in dialect writes straight into the host's text instead, by the code that stands behind those pointers.
 //! Nothing that a plugin returns is believed before it was checked.
 
+mod call;
 pub mod conformance;
 mod dialect;
 mod fault;
 mod finder;
+mod float_mode;
+mod judge;
+mod leave;
+mod library_file;
 mod model;
 mod options;
 mod plugin;
+mod results;
+mod shown;
 mod sink;
+mod working_folder;
 
 pub use dialect::{OpenedDialect, ProgramAhead, ProgramSetup, ProgramTool, ProgramWord};
 pub use fault::{OptionFault, PluginFault, Reason};
-pub use finder::Finder;
+pub use finder::{Finder, Listed};
+pub use leave::{ExitWatch, leave, leave_at_once, watch_for_exit};
 pub use model::OpenedModel;
-pub use options::{GivenValue, check_options};
+pub use options::{GivenValue, check_options, default_of, takes};
 pub use plugin::{Kind, Plugin};
+pub use results::keep_results_apart;

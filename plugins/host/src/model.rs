@@ -10,6 +10,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use post_plugin::raw::{self, PostModel, PostPair};
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
+use crate::call::Caller;
+use crate::float_mode::FloatMode;
 use crate::plugin::Table;
 use crate::sink::message;
 use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};
@@ -18,6 +20,7 @@ use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};
 #[derive(Debug)]
 pub struct OpenedModel {
     plugin: String,
+    caller: Caller,
     table: &'static PostModel,
     ctx: *mut c_void,
     /// Why a value since the last fit could not be had.
@@ -41,16 +44,17 @@ impl Plugin {
             return Err(self.other_kind(Kind::ErrorModel));
         };
         let options = check_options(self.options(), options)
-            .map_err(|fault| self.fault(Reason::Option(fault)))?;
+            .map_err(|fault| self.fault(Reason::Option(Box::new(fault))))?;
         let pairs: Vec<PostPair> = options
             .iter()
             .map(|(key, value)| PostPair::new(key, &value.as_value()))
             .collect();
+        let caller = self.caller();
         let mut ctx = std::ptr::null_mut();
         let refusal = message(|sink| {
             if let Some(open) = table.open {
                 // SAFETY: the options and the sink live for the call.
-                ctx = unsafe { open(pairs.as_ptr(), pairs.len(), sink) };
+                ctx = caller.call(|| unsafe { open(pairs.as_ptr(), pairs.len(), sink) });
             }
         });
         if ctx.is_null() {
@@ -58,6 +62,7 @@ impl Plugin {
         }
         Ok(OpenedModel {
             plugin: self.name.clone(),
+            caller,
             table,
             ctx,
             fault: RefCell::new(None),
@@ -74,7 +79,7 @@ impl OpenedModel {
         let reason = message(|sink| {
             if let Some(last_error) = self.table.last_error {
                 // SAFETY: the context is open and the sink lives for the call.
-                unsafe { last_error(self.ctx, sink) };
+                self.caller.call(|| unsafe { last_error(self.ctx, sink) });
             }
         });
         self.say(&reason)
@@ -87,8 +92,9 @@ impl OpenedModel {
     ) -> Result<[Deviation; N], String> {
         let mut out = [Deviation::default(); N];
         // SAFETY: the context is open, all pointers live for the call and hold `N` things.
-        let failed = self.table.value.is_none_or(|value| unsafe {
-            value(self.ctx, curve, N, ts.as_ptr(), out.as_mut_ptr()) != 0
+        let failed = self.table.value.is_none_or(|value| {
+            let call = || unsafe { value(self.ctx, curve, N, ts.as_ptr(), out.as_mut_ptr()) };
+            self.caller.short_call(call) != 0
         });
         if failed {
             return Err(self.last_error());
@@ -133,7 +139,9 @@ impl OpenedModel {
         }
         let mut bridge = Bridge {
             deviation,
+            mode: FloatMode::now(),
             panic: None,
+            fault: None,
         };
         let mut curve = Curve {
             tip_peak: f64::NAN,
@@ -143,18 +151,17 @@ impl OpenedModel {
             terms: [0.0; 60],
         };
         // SAFETY: the context is open, all pointers live for the call, and `ask` takes the bridge.
-        let failed = self.table.fit.is_none_or(|fit| unsafe {
-            fit(
-                self.ctx,
-                tolerance,
-                ask,
-                (&raw mut bridge).cast(),
-                &mut curve,
-            ) != 0
+        let host = (&raw mut bridge).cast();
+        let failed = self.table.fit.is_none_or(|fit| {
+            let call = || unsafe { fit(self.ctx, tolerance, ask, host, &mut curve) };
+            self.caller.call(call) != 0
         });
         if let Some(payload) = bridge.panic {
             // The panic was ours, not the plugin's.
             resume_unwind(payload);
+        }
+        if let Some(fault) = bridge.fault {
+            return Err(self.say(&fault));
         }
         if failed {
             return Err(self.last_error());
@@ -193,37 +200,54 @@ impl Drop for OpenedModel {
     fn drop(&mut self) {
         if let Some(close) = self.table.close {
             // SAFETY: the context is open, and this is its last use.
-            unsafe { close(self.ctx) };
+            self.caller.call(|| unsafe { close(self.ctx) });
         }
     }
 }
+
+/// Most places of a move that a model may ask for at once.
+const MOST_PLACES: usize = 1 << 20;
 
 /// The host's function on its way through the plugin.
 struct Bridge<'a> {
     deviation: &'a mut dyn FnMut(&[f64], &mut [Deviation]),
+    /// The host computes with its own rounding, whatever the plugin has set.
+    mode: FloatMode,
     /// No panic may cross the plugin, so it waits here.
     panic: Option<Box<dyn Any + Send>>,
+    /// What the plugin asked for that cannot be answered.
+    fault: Option<String>,
 }
 
 unsafe extern "C" fn ask(host: *mut c_void, n: usize, ts: *const f64, out: *mut Deviation) {
-    if n == 0 || out.is_null() {
+    // SAFETY: `host` is the bridge of `fit`, which waits for this call.
+    let bridge = unsafe { &mut *host.cast::<Bridge<'_>>() };
+    if n == 0 || bridge.panic.is_some() || bridge.fault.is_some() {
         return;
     }
-    // SAFETY: `host` is the bridge of `fit`, which waits for this call; the plugin vouches for `n` places
-    // to read and to write. The latter may be fresh memory, so they are filled before they are borrowed.
-    let (bridge, ts, out) = unsafe {
+    bridge.fault = if n > MOST_PLACES {
+        Some(format!("it asks for {n} deviations at once"))
+    } else if ts.is_null() || out.is_null() {
+        Some("it asks for deviations by a null pointer".to_owned())
+    } else if !ts.is_aligned() || !out.is_aligned() {
+        Some("it asks for deviations by a pointer that is not aligned".to_owned())
+    } else {
+        None
+    };
+    if bridge.fault.is_some() {
+        return;
+    }
+    // SAFETY: the plugin vouches for `n` places to read and to write. The latter may be fresh memory, so they are
+    // filled before they are borrowed.
+    let (ts, out) = unsafe {
         for index in 0..n {
             out.add(index).write(Deviation::default());
         }
-        (
-            &mut *host.cast::<Bridge<'_>>(),
-            raw::slice(ts, n),
-            std::slice::from_raw_parts_mut(out, n),
-        )
+        (raw::slice(ts, n), std::slice::from_raw_parts_mut(out, n))
     };
-    if bridge.panic.is_some() || ts.len() != n {
-        return;
-    }
+    let of_plugin = FloatMode::now();
+    bridge.mode.restore();
     let call = AssertUnwindSafe(|| (bridge.deviation)(ts, out));
     bridge.panic = catch_unwind(call).err();
+    of_plugin.restore();
 }

@@ -59,6 +59,7 @@ pub fn check_options(
         return Err(OptionFault {
             key: key.clone(),
             message: message.to_owned(),
+            written: key.clone(),
             allowed: specs.iter().map(|spec| spec.key.to_owned()).collect(),
         });
     }
@@ -81,6 +82,10 @@ pub(crate) fn check(spec: &OptionSpec, value: &GivenValue) -> Result<GivenValue,
         Err(OptionFault {
             key: spec.key.to_owned(),
             message,
+            written: match value {
+                GivenValue::Text(text) => text.clone(),
+                _ => String::new(),
+            },
             allowed: allowed.iter().map(|&text| text.to_owned()).collect(),
         })
     };
@@ -130,6 +135,28 @@ pub(crate) fn check(spec: &OptionSpec, value: &GivenValue) -> Result<GivenValue,
             &[],
         ),
         (OptionKind::Choice(choices), _) => fault("must be text, in quotes".to_owned(), choices),
+    }
+}
+
+/// What an option takes, for tables.
+pub fn takes(kind: OptionKind) -> String {
+    match kind {
+        OptionKind::Flag => "true, false".to_owned(),
+        OptionKind::Integer { min, max } => format!("{min} to {max}"),
+        OptionKind::Number { min, max } => format!("{min} to {max}, any number"),
+        OptionKind::Text => "text".to_owned(),
+        OptionKind::Lines => "a line, or an array of lines".to_owned(),
+        OptionKind::Choice(choices) => choices.join(", "),
+    }
+}
+
+/// The default of an option as a machine file would have it.
+pub fn default_of(spec: &OptionSpec) -> String {
+    match spec.default {
+        Value::Flag(flag) => flag.to_string(),
+        Value::Integer(integer) => integer.to_string(),
+        Value::Number(number) => number.to_string(),
+        Value::Text(text) => format!("\"{}\"", text.replace('\n', "\\n")),
     }
 }
 

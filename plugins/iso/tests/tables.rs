@@ -78,12 +78,12 @@ fn bench<C: Control>(exported: &'static Exported) -> Bench {
 }
 
 fn small() -> Bench {
-    static SMALL: Exported = Exported::dialect::<Iso<Small>>("small", "1");
+    static SMALL: Exported = Exported::dialect::<Iso<Small>>("small", "1", "");
     bench::<Small>(&SMALL)
 }
 
 fn ordered() -> Bench {
-    static ORDERED: Exported = Exported::dialect::<Iso<Ordered>>("ordered", "1");
+    static ORDERED: Exported = Exported::dialect::<Iso<Ordered>>("ordered", "1", "");
     bench::<Ordered>(&ORDERED)
 }
 

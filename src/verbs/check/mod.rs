@@ -14,7 +14,7 @@ use post_machine::diagnostic::Diagnostic;
 use crate::arguments::flag_values;
 use crate::failure::Failure;
 use crate::files::{self, PathArg, Role};
-use crate::job::{self, machine_files};
+use crate::job::{self, machine_files, other_dialect};
 use crate::terminal::{self, print};
 
 const PICTURE: Role = Role {
@@ -84,6 +84,10 @@ pub struct CheckArguments {
     #[arg(long, value_name = "NAME=VALUE", value_parser = flag_values::setting)]
     set: Vec<Setting>,
 
+    /// Checks the machine with another dialect than its file names; short for --set control.dialect=…
+    #[arg(long, value_name = "NAME")]
+    dialect: Option<String>,
+
     /// A further folder of machine files; the environment variable POST_MACHINES adds more.
     #[arg(long, value_name = "FOLDER")]
     machines: Vec<PathBuf>,
@@ -149,7 +153,10 @@ fn with_nominal(
 fn machine(arguments: &CheckArguments) -> Result<Machine, Failure> {
     let mut settings = arguments.set.clone();
     settings.extend(arguments.mount.map(Setting::Mount));
+    settings.extend(arguments.dialect.clone().map(Setting::Dialect));
     let machine = machine_files::load(&arguments.machine, &arguments.machines, &settings)?;
+    let dialect = arguments.dialect.as_deref();
+    other_dialect::say_what_is_left(dialect, &arguments.machine, &arguments.machines, &settings);
     match &arguments.head {
         Some(name) => with_head(machine, name),
         None => Ok(machine),

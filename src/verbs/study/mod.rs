@@ -26,7 +26,7 @@ use post_study::{Distribution, Keeper, Kept, Row, Survey};
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{self, FileFault, PathArg, Role};
-use crate::job::{DryRun, plugin_finder};
+use crate::job::{self, DryRun, plugin_finder};
 use crate::terminal;
 use sweep::{Sweep, Swept};
 
@@ -131,6 +131,7 @@ pub struct Models {
 pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
     let dry_run = DryRun::new("study", &arguments.job, arguments.exact)?;
     let machine = self::machine(&dry_run, &[])?;
+    job::say_what_is_left(&arguments.job);
     let folder = folder(arguments);
     refuse_strangers(&folder)?;
     let (names, mut models) = models(&dry_run, &machine)?;

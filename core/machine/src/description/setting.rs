@@ -26,6 +26,8 @@ pub enum Setting {
     Turn(f64),
     /// Who keeps the tip on its path.
     Tcp(Tcp),
+    /// The dialect, a plugin's name.
+    Dialect(String),
     /// Largest deviation of the tip in cuts, mm.
     Tolerance(f64),
     /// CL points that the tolerance makes needless are left out.
@@ -62,6 +64,7 @@ impl Setting {
             Self::Mount([x, y, z]) => format!("workpiece.mount = [{x:?}, {y:?}, {z:?}]"),
             Self::Turn(turn) => format!("workpiece.turn = {turn:?}"),
             Self::Tcp(tcp) => format!("control.tcp = {:?}", tcp.name()),
+            Self::Dialect(dialect) => format!("control.dialect = {dialect:?}"),
             Self::Tolerance(tolerance) => format!("accuracy.tolerance = {tolerance:?}"),
             Self::Reduce(reduce) => format!("accuracy.reduce = {reduce}"),
             Self::Placement(placement) => format!("accuracy.placement = {:?}", placement.name()),

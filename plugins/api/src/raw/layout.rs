@@ -58,7 +58,7 @@ pub const TABLES: &[Layout] = layouts! {
         size words feed inverse_time feed_per_revolution words_len extension writes most_inverse_time
     }
     PostPlugin as "PostPlugin" {
-        magic abi kind size table_size layout name version describe loaded dialect model
+        magic abi kind size table_size layout name version describe loaded dialect model about
     }
     PostDialect as "PostDialect" { open format write last_error close }
     PostModel as "PostModel" { open fit value last_error close }

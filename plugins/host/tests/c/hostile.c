@@ -1,21 +1,79 @@
-/* A dialect with one fault, chosen by -DFAULT_…; the host must refuse each. */
+/* A dialect with one fault, chosen by -DFAULT_…; the host must refuse each, or undo it. */
+#define _GNU_SOURCE
 #include "post_plugin.h"
 
+#include <fenv.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static int context;
+static uint32_t words;
+
+static void *ends_it(void *nothing) {
+    exit(0);
+    return nothing;
+}
+
+static void ends_it_well(void) {
+    _exit(0);
+}
+
+/* What the process is left in. */
+static void disturb(void) {
+    fesetround(FE_UPWARD);
+    if (chdir("/"))
+        abort();
+}
+
+__attribute__((constructor)) static void constructor(void) {
+#ifdef FAULT_EXIT_LOAD
+    exit(0);
+#endif
+#ifdef FAULT_DISTURB
+    disturb();
+#endif
+#ifdef FAULT_LATE_EXIT
+    atexit(ends_it_well);
+#endif
+#ifdef FAULT_SELF
+    /* another file takes its name */
+    char other[4096];
+    snprintf(other, sizeof other, "%s.other", getenv("HOSTILE_PATH"));
+    if (rename(other, getenv("HOSTILE_PATH")))
+        abort();
+#endif
+}
 
 static void *open_(const PostSetup *setup, const PostSink *error) {
-    (void)setup, (void)error;
+    (void)error;
+    words = (uint32_t)setup->words_len;
 #ifdef FAULT_OPEN
     return NULL;
+#endif
+#ifdef FAULT_EXIT_OPEN
+    exit(0);
+#endif
+#ifdef FAULT_QUICK_EXIT
+    quick_exit(0);
+#endif
+#ifdef FAULT_PRINTS
+    printf("G0 Z-500\n");
+#endif
+#ifdef FAULT_EXIT_THREAD
+    pthread_t thread;
+    pthread_create(&thread, NULL, ends_it, NULL);
+    pthread_join(thread, NULL);
 #endif
     return &context;
 }
 
 static int32_t format(void *ctx, PostFormat *f) {
     (void)ctx;
-    f->words_len = 1;
+    f->words_len = words;
+    memset(f->words, 3, words);
     f->inverse_time = -1;
 #ifdef FAULT_WORDS
     f->words_len = 4000000000u;
@@ -32,6 +90,52 @@ static int32_t format(void *ctx, PostFormat *f) {
 static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSink *out, uint64_t *ends) {
     (void)ctx, (void)events;
     const char *text = "G0 X1\n";
+    size_t length = 0;
+#ifdef FAULT_DISTURB
+    disturb();
+#endif
+#ifdef FAULT_EXIT
+    exit(0);
+#endif
+#ifdef FAULT_CR
+    text = "(x)\rG0 Z-50\n";
+#endif
+#ifdef FAULT_CR_CR
+    text = "G0 X1\r\r\n";
+#endif
+#ifdef FAULT_CRLF
+    text = "G0\tX1\r\n";
+#endif
+#ifdef FAULT_NEL
+    text = "(x)\xc2\x85G0 Z-50\n";
+#endif
+#ifdef FAULT_SEPARATOR
+    text = "(x)\xe2\x80\xa8G0 Z-50\n";
+#endif
+#ifdef FAULT_FEED
+    text = "(x)\fG0 Z-50\n";
+#endif
+#ifdef FAULT_BACKWARD
+    text = "(\xe2\x80\xae)G0 Z-50\n";
+#endif
+#ifdef FAULT_NUL
+    text = "G0\0X1\n";
+    length = 6;
+#endif
+#ifdef FAULT_NULL_TEXT
+    out->write(out->ctx, NULL, 100);
+#endif
+#ifdef FAULT_HUGE_TEXT
+    out->write(out->ctx, (const uint8_t *)text, SIZE_MAX / 4);
+#endif
+#ifdef FAULT_FLOOD
+    static char flood[1 << 20];
+    for (long i = 0; i < 100000; i++)
+        out->write(out->ctx, (const uint8_t *)flood, sizeof flood);
+#endif
+#ifdef FAULT_MESSAGE
+    return 0;
+#endif
 #ifdef FAULT_NAN
     text = "G0 X-nan\n";
 #endif
@@ -46,8 +150,9 @@ static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSin
 #endif
     uint64_t end = 0;
     for (size_t i = 0; i < n; i++) {
-        out->write(out->ctx, (const uint8_t *)text, strlen(text));
-        end += strlen(text);
+        size_t len = length ? length : strlen(text);
+        out->write(out->ctx, (const uint8_t *)text, len);
+        end += len;
         ends[i] = end;
     }
 #ifdef FAULT_ENDS
@@ -68,13 +173,63 @@ static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSin
 
 static void last_error(void *ctx, const PostSink *out) {
     (void)ctx, (void)out;
+#ifdef FAULT_MESSAGE
+    const char *text = "\033[2J\033]0;owned\007 all\r\nis well";
+    out->write(out->ctx, (const uint8_t *)text, strlen(text));
+    for (int i = 0; i < 100000; i++)
+        out->write(out->ctx, (const uint8_t *)"ha ", 3);
+#endif
 }
 
 static void close_(void *ctx) {
     (void)ctx;
 }
 
-#ifdef FAULT_DEFAULT
+#if defined FAULT_MANY || defined FAULT_CHOICES || defined FAULT_NO_CHOICES || defined FAULT_KEY || defined FAULT_LONG \
+    || defined FAULT_HELP || defined FAULT_TWICE || defined FAULT_UNALIGNED || defined FAULT_NOTHING
+static void describe(void *host, PostEmit emit) {
+    PostOption option = {0};
+    option.key = (PostText)POST_TEXT("speed");
+    option.kind = POST_OPTION_FLAG;
+    option.default_value.kind = POST_OPTION_FLAG;
+    int times = 1;
+#ifdef FAULT_MANY
+    times = 100000;
+#endif
+#ifdef FAULT_TWICE
+    times = 2;
+#endif
+#ifdef FAULT_CHOICES
+    option.kind = POST_OPTION_CHOICE;
+    option.choices = &option.key;
+    option.choices_len = SIZE_MAX / 8;
+#endif
+#ifdef FAULT_NO_CHOICES
+    option.kind = POST_OPTION_CHOICE;
+    option.choices = (const PostText *)((const char *)&option.key + 1);
+    option.choices_len = 1;
+#endif
+#ifdef FAULT_KEY
+    option.key = (PostText)POST_TEXT("a\nb");
+#endif
+#ifdef FAULT_LONG
+    option.key.len = SIZE_MAX / 2 + 5;
+#endif
+#ifdef FAULT_HELP
+    option.help.len = 7;
+#endif
+#ifdef FAULT_UNALIGNED
+    emit(host, (const PostOption *)((const char *)&option + 1));
+    return;
+#endif
+#ifdef FAULT_NOTHING
+    emit(host, NULL);
+    return;
+#endif
+    for (int i = 0; i < times; i++)
+        emit(host, &option);
+}
+#elif defined FAULT_DEFAULT
 static void describe(void *host, PostEmit emit) {
     PostOption option = {0};
     option.key = (PostText)POST_TEXT("speed");
@@ -114,11 +269,15 @@ const PostPlugin post_plugin_hostile = {
 #endif
 #ifdef FAULT_SIZE
     4000000000u,
+#elif defined(FAULT_EARLIER)
+    offsetof(PostPlugin, about), /* a library of the first days of version 2 */
 #else
     sizeof(PostPlugin),
 #endif
 #ifdef FAULT_TABLE_SIZE
     sizeof(PostDialect) - 8,
+#elif defined(FAULT_TABLE_HUGE)
+    4000000000u,
 #else
     sizeof(PostDialect),
 #endif
@@ -134,14 +293,23 @@ const PostPlugin post_plugin_hostile = {
 #else
     POST_TEXT("hostile"),
 #endif
+#ifdef FAULT_VERSION
+    POST_TEXT("1.0\033[2J"),
+#elif defined(FAULT_LONG_VERSION)
+    {(const uint8_t *)"1.0", SIZE_MAX / 2 + 5},
+#else
     POST_TEXT("1.0"),
+#endif
     describe,
     NULL,
 #ifdef FAULT_NULL_TABLE
     NULL,
+#elif defined(FAULT_ALIGN)
+    (const PostDialect *)((const char *)&dialect + 1),
 #else
     &dialect,
 #endif
     NULL,
+    POST_TEXT("It means no good."),
 };
 #endif

@@ -229,4 +229,5 @@ const PostPlugin post_plugin_minimal = {
     NULL,
     &dialect,
     NULL,
+    POST_TEXT("A control for nothing but moves."),
 };

@@ -1,7 +1,6 @@
 //! The guide shows what is built and tested here, and lists the options that there are.
 
-use post_host::Plugin;
-use post_plugin::{OptionKind, Value};
+use post_host::{Plugin, default_of, takes};
 
 const GUIDE: &str = include_str!("../../../README.md");
 
@@ -34,20 +33,7 @@ fn the_guide_lists_the_options_of_the_stock_plugins() {
         let mut table =
             String::from("| option | takes | default | what it does |\n|---|---|---|---|\n");
         for spec in plugin.options() {
-            let takes = match spec.kind {
-                OptionKind::Flag => "true, false".to_owned(),
-                OptionKind::Integer { min, max } => format!("{min} to {max}"),
-                OptionKind::Number { min, max } => format!("{min} to {max}, any number"),
-                OptionKind::Text => "text".to_owned(),
-                OptionKind::Lines => "a line, or an array of lines".to_owned(),
-                OptionKind::Choice(choices) => choices.join(", "),
-            };
-            let default = match spec.default {
-                Value::Flag(flag) => flag.to_string(),
-                Value::Integer(integer) => integer.to_string(),
-                Value::Number(number) => number.to_string(),
-                Value::Text(text) => format!("\"{text}\""),
-            };
+            let (takes, default) = (takes(spec.kind), default_of(spec));
             let (key, help) = (spec.key, spec.help);
             table.push_str(&format!("| `{key}` | {takes} | {default} | {help} |\n"));
         }

@@ -180,7 +180,7 @@ struct Sloppy {
 
 /// The dialect; its option `fault` says what is wrong with it, nothing where it is empty.
 pub fn plugin() -> Linked {
-    static SLOPPY: Exported = Exported::dialect::<Sloppy>("sloppy", "1");
+    static SLOPPY: Exported = Exported::dialect::<Sloppy>("sloppy", "1", "");
     Linked::dialect::<Sloppy>(&SLOPPY, "sloppy")
 }
 

@@ -1,27 +1,15 @@
 //! `post plugin test`: the conformance kit on a plugin.
 
-use std::env::consts::DLL_SUFFIX;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use clap::{Args, Subcommand};
-use post_host::{GivenValue, Plugin, conformance};
+use clap::Args;
+use post_host::{GivenValue, conformance};
 use post_machine::diagnostic::Diagnostic;
 
+use super::title;
 use crate::failure::Failure;
-use crate::job::plugin_finder::{diagnostic, finder};
+use crate::job::plugin_finder::{by_name_or_file, diagnostic};
 use crate::terminal::print;
-
-/// Works with plugins.
-#[derive(Debug, Args)]
-pub struct PluginArguments {
-    #[command(subcommand)]
-    command: PluginCommand,
-}
-
-#[derive(Debug, Subcommand)]
-enum PluginCommand {
-    Test(TestArguments),
-}
 
 /// Runs a plugin on cases whose answer is known, and says what it gets wrong.
 ///
@@ -36,7 +24,7 @@ enum PluginCommand {
   post plugin test harmonic --option order=3
 
 Exit codes: 0 nothing is wrong; 1 something is, the messages say what; 2 the command line is wrong.")]
-struct TestArguments {
+pub struct TestArguments {
     /// The library, or the name of a plugin in a folder of --plugins or built in. Opening a library runs its
     /// code.
     #[arg(value_name = "PLUGIN")]
@@ -52,21 +40,11 @@ struct TestArguments {
 }
 
 /// Does as the arguments say.
-pub fn run(arguments: &PluginArguments) -> Result<(), Failure> {
-    let PluginCommand::Test(arguments) = &arguments.command;
-    let plugin = find(arguments)?;
+pub fn run(arguments: &TestArguments) -> Result<(), Failure> {
+    let plugin = by_name_or_file(&arguments.plugin, &arguments.plugins)?;
     let report = conformance::test(&plugin, &arguments.option)
         .map_err(|fault| diagnostic(&fault, &[], None))?;
-    let from = match plugin.path() {
-        Some(path) => path.display().to_string(),
-        None => "built in".to_owned(),
-    };
-    let (name, version) = (plugin.name(), plugin.version());
-    let kind = plugin.kind().name();
-    print(&format!(
-        "{name} {version} ({from}), {kind}\n\n{}",
-        report.table()
-    ));
+    print(&format!("{}\n\n{}", title(&plugin), report.table()));
     if report.is_good() {
         let cases = report.cases.len();
         print(&format!("\nNothing is wrong in {cases} cases.\n"));
@@ -77,18 +55,6 @@ pub fn run(arguments: &PluginArguments) -> Result<(), Failure> {
         .map(|sentence| Diagnostic::error("plugin-test", sentence))
         .collect();
     Err(findings.into())
-}
-
-fn find(arguments: &TestArguments) -> Result<Plugin, Failure> {
-    let path: &Path = &arguments.plugin;
-    let text = path.to_string_lossy();
-    let file = path.components().count() > 1 || text.ends_with(DLL_SUFFIX);
-    let found = if file {
-        Plugin::open(path)
-    } else {
-        finder(&arguments.plugins)?.find(&text)
-    };
-    Ok(found.map_err(|fault| diagnostic(&fault, &[], None))?)
 }
 
 /// `order=3`; text may stand in quotes, as in a machine file.

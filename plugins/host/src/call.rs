@@ -1,0 +1,72 @@
+//! A call into a library: what it leaves changed is put back, and who is at work is known if the process ends in it.
+
+use std::cell::Cell;
+use std::path::PathBuf;
+
+use crate::float_mode::FloatMode;
+use crate::working_folder::WorkingFolder;
+
+/// A library that was opened from a file. It stays for ever, like the library itself.
+#[derive(Debug)]
+pub(crate) struct LoadedLibrary {
+    /// Name of the plugin.
+    pub(crate) name: String,
+    /// The file as the user named it.
+    pub(crate) path: PathBuf,
+}
+
+/// A way into a library, or into what is linked in.
+#[derive(Debug)]
+pub(crate) struct Caller {
+    /// None for a plugin that is part of this program: it leaves things as they are.
+    stranger: Option<(&'static LoadedLibrary, WorkingFolder)>,
+}
+
+thread_local! {
+    /// The library that is at work on this thread.
+    static AT_WORK: Cell<Option<&'static LoadedLibrary>> = const { Cell::new(None) };
+}
+
+/// The library that is at work on this thread.
+#[cfg(unix)]
+pub(crate) fn at_work() -> Option<&'static LoadedLibrary> {
+    AT_WORK.get()
+}
+
+impl Caller {
+    /// For calls into `library`: the working folder will stay what it is now.
+    pub(crate) fn new(library: Option<&'static LoadedLibrary>) -> Self {
+        Caller {
+            stranger: library.map(|library| (library, WorkingFolder::now())),
+        }
+    }
+
+    /// Runs `call`, which is nothing but a call into the library. What the processor does with numbers is restored
+    /// behind it, and so is the working folder.
+    pub(crate) fn call<R>(&self, call: impl FnOnce() -> R) -> R {
+        let Some((library, folder)) = &self.stranger else {
+            return call();
+        };
+        let result = enter(library, call);
+        folder.restore();
+        result
+    }
+
+    /// As [`Caller::call`], for calls so short that the system would take longer than they do: the folder waits for the
+    /// next call, and a session ends with one.
+    pub(crate) fn short_call<R>(&self, call: impl FnOnce() -> R) -> R {
+        match &self.stranger {
+            Some((library, _)) => enter(library, call),
+            None => call(),
+        }
+    }
+}
+
+fn enter<R>(library: &'static LoadedLibrary, call: impl FnOnce() -> R) -> R {
+    let before = AT_WORK.replace(Some(library));
+    let mode = FloatMode::now();
+    let result = call();
+    mode.restore();
+    AT_WORK.set(before);
+    result
+}

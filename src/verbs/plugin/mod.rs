@@ -1,0 +1,48 @@
+//! `post plugin`: what is done with plugins beside posting, a file each.
+
+mod list;
+mod show;
+mod test;
+
+use clap::{Args, Subcommand};
+use post_host::Plugin;
+
+use crate::failure::Failure;
+use list::ListArguments;
+use show::ShowArguments;
+use test::TestArguments;
+
+/// Works with plugins.
+#[derive(Debug, Args)]
+pub struct PluginArguments {
+    #[command(subcommand)]
+    command: PluginCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum PluginCommand {
+    List(ListArguments),
+    Show(ShowArguments),
+    Test(TestArguments),
+}
+
+/// Does as the arguments say.
+pub fn run(arguments: &PluginArguments) -> Result<(), Failure> {
+    match &arguments.command {
+        PluginCommand::List(arguments) => list::run(arguments),
+        PluginCommand::Show(arguments) => show::run(arguments),
+        PluginCommand::Test(arguments) => test::run(arguments),
+    }
+}
+
+/// Which plugin it is, and the hash of its file.
+fn title(plugin: &Plugin) -> String {
+    let (name, version) = (plugin.name(), plugin.version());
+    let kind = plugin.kind().name();
+    let from = match (plugin.path(), plugin.hash()) {
+        (Some(path), Some(hash)) => format!("{}, {hash}", path.display()),
+        (Some(path), None) => path.display().to_string(),
+        (None, _) => "built in".to_owned(),
+    };
+    format!("{name} {version} ({from}), {kind}")
+}

@@ -1,0 +1,119 @@
+//! `post plugin show`: the options of a plugin, and what a dialect writes.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use post_host::{Kind, OpenedDialect, Plugin, ProgramSetup, ProgramWord, default_of, takes};
+use post_plugin::{CAPABILITIES, DialectSession, Format};
+
+use super::title;
+use crate::failure::Failure;
+use crate::job::plugin_finder::by_name_or_file;
+use crate::terminal::print;
+
+/// Prints the options of a plugin, and what a dialect writes.
+#[derive(Debug, Args)]
+pub struct ShowArguments {
+    /// The name of a plugin in a folder of --plugins or built in, or a library. Opening a library runs its code.
+    #[arg(value_name = "PLUGIN")]
+    plugin: PathBuf,
+
+    /// A folder of plugin libraries; POST_PLUGINS adds more.
+    #[arg(long, value_name = "FOLDER")]
+    plugins: Vec<PathBuf>,
+}
+
+/// Does as the arguments say.
+pub fn run(arguments: &ShowArguments) -> Result<(), Failure> {
+    let plugin = by_name_or_file(&arguments.plugin, &arguments.plugins)?;
+    let mut text = format!("{}\n", title(&plugin));
+    if !plugin.about().is_empty() {
+        text.push_str(&format!("{}\n", plugin.about()));
+    }
+    text.push_str(&options(&plugin));
+    if plugin.kind() == Kind::Dialect {
+        text.push_str(&match plugin.dialect(&five_axes()) {
+            Ok(opened) => writes(&opened),
+            Err(fault) => format!("\nWhat it writes cannot be asked: {fault}\n"),
+        });
+    }
+    print(&text);
+    Ok(())
+}
+
+fn options(plugin: &Plugin) -> String {
+    let section = match plugin.kind() {
+        Kind::Dialect => "control",
+        Kind::ErrorModel => "accuracy",
+    };
+    if plugin.options().is_empty() {
+        return "\nIt has no options.\n".to_owned();
+    }
+    let mut text = format!("\nOptions, [{section}.{}]:\n", plugin.name());
+    for spec in plugin.options() {
+        let (key, default) = (spec.key, default_of(spec));
+        text.push_str(&format!("  {key} = {default}    # {}\n", takes(spec.kind)));
+        if !spec.help.is_empty() {
+            text.push_str(&format!("      {}\n", spec.help));
+        }
+    }
+    text
+}
+
+fn writes(opened: &OpenedDialect) -> String {
+    let format = opened.format();
+    let mut text = format!("\nNumbers: {}\n", numbers(format));
+    let capabilities = opened.capabilities();
+    let written = CAPABILITIES
+        .iter()
+        .filter(|spec| capabilities.has(spec.set));
+    let mut known = 0;
+    let mut rows = String::new();
+    for spec in written {
+        known |= spec.set.bits();
+        let doc = spec.doc.trim().replace('`', "");
+        rows.push_str(&format!("  {:<16} {doc}\n", spec.name));
+    }
+    match rows.as_str() {
+        "" => text.push_str("\nIt writes straight moves and plain commands alone.\n"),
+        rows => text.push_str(&format!("\nBeyond straight moves it writes:\n{rows}")),
+    }
+    let unknown = (capabilities.bits() & !known).count_ones();
+    if unknown > 0 {
+        text.push_str(&format!(
+            "  and {unknown} more that this version does not know and does not ask for\n"
+        ));
+    }
+    text
+}
+
+fn numbers(format: &Format) -> String {
+    let decimals: Vec<String> = format.words.iter().map(u8::to_string).collect();
+    let inverse_time = match format.inverse_time {
+        Some(decimals) => format!("inverse time with {decimals}"),
+        None => "no inverse time".to_owned(),
+    };
+    format!(
+        "{} decimals of X, Y, Z, A, C in mm and degrees; feeds with {}, {inverse_time}; files end with .{}",
+        decimals.join(", "),
+        format.feed,
+        format.extension
+    )
+}
+
+/// A machine that every dialect knows.
+fn five_axes() -> ProgramSetup {
+    let word = |name: &str| ProgramWord {
+        name: name.to_owned(),
+        rotary: matches!(name, "A" | "C"),
+        depth: name == "Z",
+        carries_part: matches!(name, "A" | "C"),
+        ..ProgramWord::default()
+    };
+    ProgramSetup {
+        program: "show".to_owned(),
+        machine: "five axes".to_owned(),
+        words: ["X", "Y", "Z", "A", "C"].map(word).to_vec(),
+        ..ProgramSetup::default()
+    }
+}

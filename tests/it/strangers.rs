@@ -1,0 +1,321 @@
+//! Libraries that mean no good, and folders of libraries that are not what they should be: the command says so, ends
+//! with 1, and leaves the program that was there.
+
+#![cfg(unix)]
+// Clippy lets test functions unwrap, but not the helpers beside them.
+#![allow(clippy::unwrap_used)]
+
+use crate::common::{Run, command, names, post, root, run, sample};
+
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::fs;
+use std::os::unix::fs::{PermissionsExt as _, symlink};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn library(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{DLL_PREFIX}post_{name}{DLL_SUFFIX}"))
+}
+
+/// A folder with the dialect `hostile`, which has one fault.
+fn hostile(fault: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let done = Command::new("cc")
+        .args(["-O2", "-shared", "-fPIC", &format!("-DFAULT_{fault}"), "-I"])
+        .arg(root().join("plugins/api/include"))
+        .arg(root().join("plugins/host/tests/c/hostile.c"))
+        .arg("-o")
+        .arg(library(folder.path(), "hostile"))
+        .args(["-lm", "-pthread"])
+        .status();
+    assert!(done.unwrap().success());
+    folder
+}
+
+/// Posts the blade to `part.nc` in a folder, in the dialect of `fault`.
+fn post_with(fault: &str, arguments: &[&str]) -> (Run, tempfile::TempDir) {
+    let plugins = hostile(fault);
+    let folder = tempfile::tempdir().unwrap();
+    fs::copy(
+        root().join(sample("blade.cls")),
+        folder.path().join("blade.cls"),
+    )
+    .unwrap();
+    fs::write(folder.path().join("part.nc"), "as it was\n").unwrap();
+    let done = run(
+        command()
+            .current_dir(folder.path())
+            .env("TMPDIR", folder.path())
+            .args(["-m", "ac-trunnion", "blade.cls", "--dialect", "hostile"])
+            .arg("--plugins")
+            .arg(plugins.path())
+            .args(arguments),
+        b"",
+    );
+    (done, folder)
+}
+
+#[test]
+fn a_plugin_that_ends_the_command_is_named_and_nothing_is_written() {
+    for fault in [
+        "EXIT_LOAD",
+        "EXIT_OPEN",
+        "EXIT",
+        "QUICK_EXIT",
+        "EXIT_THREAD",
+    ] {
+        let (done, folder) = post_with(fault, &["-o", "part.nc", "--summary", "part.json"]);
+        assert_eq!(done.code, 1, "{fault}: {}", done.err);
+        assert!(
+            done.err.contains("error[plugin]: plugin `hostile` ("),
+            "{fault}: {}",
+            done.err
+        );
+        assert!(
+            done.err.contains("in the middle of its work"),
+            "{fault}: {}",
+            done.err
+        );
+        assert!(done.err.ends_with("1 error; nothing was written\n"));
+        assert_eq!(names(folder.path()), ["blade.cls", "part.nc"], "{fault}");
+        let part = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+        assert_eq!(part, "as it was\n", "{fault}");
+    }
+}
+
+#[test]
+fn what_a_plugin_left_to_be_run_at_the_end_changes_no_exit_code() {
+    let (done, _) = post_with(
+        "LATE_EXIT",
+        &[
+            "-o",
+            "part.nc",
+            "--unknown",
+            "error",
+            "--set",
+            "control.hostile.x=1",
+        ],
+    );
+    assert_eq!(done.code, 1, "{}", done.err);
+    let (done, folder) = post_with("LATE_EXIT", &["-o", "part.nc"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let part = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    assert!(part.starts_with("G0 X1\n"), "{part}");
+}
+
+#[test]
+fn what_a_plugin_prints_is_no_part_of_the_program() {
+    let (done, _) = post_with("PRINTS", &["-o", "-"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(done.out.starts_with("G0 X1\n") && done.out.ends_with("G0 X1\n"));
+    assert!(!done.out.contains("Z-500"), "{}", done.out);
+    // By another name it is the same stream.
+    let (named, _) = post_with("PRINTS", &["-o", "/dev/stdout"]);
+    assert_eq!((named.code, &named.out), (0, &done.out), "{}", named.err);
+    // It is not lost either.
+    assert!(done.err.contains("G0 Z-500\n"), "{}", done.err);
+}
+
+#[test]
+fn a_plugin_s_line_that_a_control_reads_as_two_is_refused_with_its_cl_line() {
+    let (done, folder) = post_with("CR", &["-o", "part.nc"]);
+    assert_eq!(done.code, 1, "{}", done.err);
+    let message = "error[dialect]: dialect `hostile`, event Start: its line `(x)\\rG0 Z-50` holds the character U+000D";
+    assert!(done.err.contains(message), "{}", done.err);
+    assert!(done.err.contains("blade.cls:"), "{}", done.err);
+    let part = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    assert_eq!(part, "as it was\n");
+}
+
+/// Posts the blade as `ac-trunnion` says, with `POST_PLUGINS` as it is given.
+fn post_from(variable: &std::ffi::OsStr) -> Run {
+    let arguments = ["-m", "ac-trunnion", "tests/samples/blade.cls", "-o", "-"];
+    run(command().args(arguments).env("POST_PLUGINS", variable), b"")
+}
+
+#[test]
+fn a_folder_that_is_not_what_it_should_be_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::create_dir(at("good")).unwrap();
+    fs::write(at("file"), "").unwrap();
+    symlink("nowhere", at("dangling")).unwrap();
+    symlink(at("round"), at("round")).unwrap();
+    for (entry, message) in [
+        (
+            at("missing").display().to_string(),
+            "missing: no such folder",
+        ),
+        (
+            at("dangling").display().to_string(),
+            "dangling: no such folder",
+        ),
+        (
+            at("file").display().to_string(),
+            "file: it cannot be read: Not a directory",
+        ),
+        (
+            at("round").display().to_string(),
+            "round: it cannot be read: ",
+        ),
+        (
+            format!(":{}", at("good").display()),
+            "POST_PLUGINS has an empty entry",
+        ),
+        (
+            format!("{}:", at("good").display()),
+            "POST_PLUGINS has an empty entry",
+        ),
+        (
+            "tests".to_owned(),
+            "POST_PLUGINS tests: a folder in this variable must not be relative",
+        ),
+    ] {
+        let done = post_from(entry.as_ref());
+        assert_eq!((done.code, done.out.as_str()), (1, ""), "{entry}");
+        assert!(done.err.contains(message), "{entry}: {}", done.err);
+    }
+    assert_eq!(post_from("".as_ref()).code, 0);
+    assert_eq!(post_from(at("good").as_os_str()).code, 0);
+}
+
+#[test]
+fn a_link_that_leads_nowhere_is_not_replaced_by_the_stock_plugin() {
+    let folder = tempfile::tempdir().unwrap();
+    symlink("nowhere", library(folder.path(), "fanuc")).unwrap();
+    let done = post_from(folder.path().as_os_str());
+    assert_eq!((done.code, done.out.as_str()), (1, ""));
+    assert!(
+        done.err.contains("it cannot be opened: No such file"),
+        "{}",
+        done.err
+    );
+}
+
+#[test]
+fn a_folder_that_everybody_may_write_to_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(
+        !post_from(folder.path().as_os_str())
+            .err
+            .contains("everybody")
+    );
+    fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o777)).unwrap();
+    let done = post_from(folder.path().as_os_str());
+    assert_eq!(done.code, 0, "{}", done.err);
+    let message = "everybody may write to this folder, and a plugin in it runs with your rights";
+    assert!(done.err.contains(message), "{}", done.err);
+}
+
+#[test]
+fn plugins_are_listed_with_what_they_are_and_where_they_are_from() {
+    let plain = post(&["plugin", "list"]);
+    assert_eq!((plain.code, plain.err.as_str()), (0, ""));
+    for row in [
+        "fanuc            dialect      0.1.0      built in\n    The dialect of Fanuc controls: ",
+        "sampled          error model  0.1.0      built in\n",
+    ] {
+        assert!(plain.out.contains(row), "{}", plain.out);
+    }
+    let folder = hostile("NONE");
+    fs::write(library(folder.path(), "fanuc"), "no library").unwrap();
+    let path = folder.path().to_str().unwrap();
+    let more = post(&["plugin", "list", "--plugins", path]);
+    assert_eq!(more.code, 0, "{}", more.err);
+    let row = |name: &str| {
+        let rows: Vec<&str> = more
+            .out
+            .lines()
+            .filter(|line| line.starts_with(name))
+            .collect();
+        rows
+    };
+    assert!(
+        row("hostile ")[0].contains("dialect      1.0 "),
+        "{}",
+        more.out
+    );
+    let [broken, hidden] = row("fanuc ")[..] else {
+        panic!("{}", more.out)
+    };
+    assert!(broken.contains("broken") && hidden.contains("built in"));
+    assert!(
+        more.out
+            .contains("not used: another of this name comes first")
+    );
+    assert!(
+        more.err.contains("warning[plugin]: plugin `fanuc` ("),
+        "{}",
+        more.err
+    );
+}
+
+#[test]
+fn a_plugin_shows_its_options_and_what_it_writes() {
+    let shown = post(&["plugin", "show", "linuxcnc"]);
+    assert_eq!((shown.code, shown.err.as_str()), (0, ""));
+    for part in [
+        "linuxcnc 0.1.0 (built in), a dialect\n",
+        "Options, [control.linuxcnc]:\n",
+        "  block_step = 10    # 1 to 1000\n      From one N to the next.\n",
+        "  tcp_on = \"M428\"    # a line, or an array of lines\n",
+        "files end with .ngc\n",
+        "  COMPENSATE_TCP   Compensate also while",
+    ] {
+        assert!(shown.out.contains(part), "{part}\n{}", shown.out);
+    }
+    let model = post(&["plugin", "show", "sampled"]);
+    assert!(
+        model.out.contains("Options, [accuracy.sampled]:\n"),
+        "{}",
+        model.out
+    );
+    let slip = post(&["plugin", "show", "fanuk"]);
+    assert_eq!((slip.code, slip.out.as_str()), (1, ""));
+    assert!(
+        slip.err.contains("did you mean `fanuc`? there are fanuc, "),
+        "{}",
+        slip.err
+    );
+}
+
+#[test]
+fn another_dialect_for_one_run() {
+    let blade = sample("blade.cls");
+    let post_as = |arguments: &[&str]| {
+        let fixed = ["-m", "ac-trunnion", blade.to_str().unwrap(), "-o", "-"];
+        post(&[&fixed, arguments].concat())
+    };
+    let short = post_as(&["--dialect", "heidenhain"]);
+    let long = post_as(&["--set", "control.dialect=heidenhain"]);
+    assert_eq!(short.code, 0, "{}", short.err);
+    assert!(short.out.starts_with("0 BEGIN PGM ") && short.out == long.out);
+    let message = "--dialect heidenhain is not the machine's own, which is fanuc";
+    assert!(short.err.contains(message), "{}", short.err);
+
+    // Options of the machine's own stay behind, and it is said which.
+    let options = ["--set", "control.fanuc.block_numbers=true"];
+    let told = post_as(&[&options, &["--dialect", "linuxcnc"][..]].concat());
+    assert_eq!(told.code, 0, "{}", told.err);
+    let message = "its options are not carried over (block_numbers)";
+    assert!(told.err.contains(message), "{}", told.err);
+    assert!(!told.out.contains("N10 "), "{}", told.out);
+    // Those of the other one are used.
+    let options = ["--set", "control.linuxcnc.block_numbers=true"];
+    let used = post_as(&[&options, &["--dialect", "linuxcnc"][..]].concat());
+    assert!(used.out.contains("N10 "), "{}", used.out);
+
+    // Its own is no other one.
+    let own = post_as(&["--dialect", "fanuc"]);
+    assert_eq!(own.out, post_as(&[]).out);
+    assert!(!own.err.contains("--dialect"), "{}", own.err);
+    let slip = post_as(&["--dialect", "hiedenhain"]);
+    assert_eq!(slip.code, 1);
+    assert!(
+        slip.err.contains("did you mean `heidenhain`? "),
+        "{}",
+        slip.err
+    );
+    let check = post(&["check", "ac-trunnion", "--dialect", "heidenhain"]);
+    assert_eq!(check.code, 0, "{}", check.err);
+}

@@ -10,11 +10,12 @@ use toml::de::{DeTable, DeValue, Deserializer};
 
 use super::file::{MachineFile, Quantity, Rapid, Tcp};
 use super::layers::{Source, Sources, overlay};
+use super::limits::{MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_PARAMETERS};
 use super::options::take_options;
 use super::setting::Setting;
 use super::{Axis, Control, Frame, GivenOption, Head, Machine};
 use crate::diagnostic::{Diagnostic, Place};
-use crate::kinematics::NoClosedForm;
+use crate::kinematics::{MAX_AXES, NoClosedForm};
 
 /// Loads a machine: `source`, what it extends (found by `find`), and `settings`, the last of
 /// which wins.
@@ -88,6 +89,12 @@ fn take_heads<'i>(
     let DeValue::Table(heads) = heads.into_inner() else {
         return Err(fault(span));
     };
+    if heads.len() > MOST_HEADS {
+        let message = format!("{} heads; at most {MOST_HEADS} are possible", heads.len());
+        return Err(vec![
+            Diagnostic::error("machine-head", message).at(sources.place(span)),
+        ]);
+    }
     let mut taken = Vec::new();
     for (name, head) in heads {
         let span = head.span();
@@ -135,6 +142,7 @@ fn read(mut table: Spanned<DeTable<'_>>, sources: &Sources) -> Result<Machine, V
     let mut builder = Builder {
         sources,
         parameters: &file.parameters,
+        values: BTreeMap::new(),
         faults,
     };
     let machine = builder.machine(&file, control_options, model_options);
@@ -147,6 +155,8 @@ fn read(mut table: Spanned<DeTable<'_>>, sources: &Sources) -> Result<Machine, V
 pub(super) struct Builder<'a> {
     pub(super) sources: &'a Sources,
     pub(super) parameters: &'a BTreeMap<String, Quantity>,
+    /// The parameters that have a value.
+    pub(super) values: BTreeMap<&'a str, f64>,
     pub(super) faults: Vec<Diagnostic>,
 }
 
@@ -158,6 +168,9 @@ impl Builder<'_> {
         message: String,
         help: &str,
     ) {
+        if self.faults.len() >= MOST_FAULTS {
+            return;
+        }
         let place = self.sources.place(span);
         let mut diagnostic = Diagnostic::error(code, message).at(place);
         if !help.is_empty() {
@@ -172,10 +185,11 @@ impl Builder<'_> {
         mut control_options: BTreeMap<String, Vec<GivenOption>>,
         mut model_options: BTreeMap<String, Vec<GivenOption>>,
     ) -> Option<Machine> {
-        // A parameter that nothing uses is checked too: it may be used tomorrow.
-        for quantity in self.parameters.values() {
-            self.number(quantity);
+        self.check_sizes(file);
+        if !self.faults.is_empty() {
+            return None;
         }
+        self.evaluate_parameters();
         if !self.faults.is_empty() {
             // Whatever uses them would only repeat it.
             return None;
@@ -281,6 +295,31 @@ impl Builder<'_> {
         }
         self.check_chain(&machine, file.chain.span());
         Some(machine)
+    }
+
+    /// Tables that are gone through entry by entry have an end.
+    fn check_sizes(&mut self, file: &MachineFile) {
+        let chain = file.chain.span();
+        for (what, count, most) in [
+            ("[parameters]", file.parameters.len(), MOST_PARAMETERS),
+            ("[tools]", file.tools.len(), MOST_ENTRIES),
+            ("[cl.words]", file.cl.words.len(), MOST_ENTRIES),
+            ("[axis]", file.axis.len(), 2 * MAX_AXES),
+            (
+                "[solution] exclusive",
+                file.solution.exclusive.len(),
+                MOST_GROUPS,
+            ),
+        ] {
+            if count > most {
+                self.fault(
+                    "machine-size",
+                    chain.clone(),
+                    format!("{what} has {count} entries; at most {most} are possible"),
+                    "is this a machine file?",
+                );
+            }
+        }
     }
 
     /// A rapid is written as a feed move at the feed of its slowest axis, so that each must have one.

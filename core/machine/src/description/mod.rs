@@ -8,6 +8,7 @@ mod cl_words;
 mod file;
 mod frame;
 mod layers;
+mod limits;
 mod numbers;
 mod options;
 mod schema;
@@ -28,6 +29,7 @@ pub use file::{
 };
 pub use frame::Frame;
 pub use layers::Source;
+pub use limits::MOST_BYTES;
 pub use schema::schema;
 pub use setting::Setting;
 pub use spindle::SpindleSpeeds;

@@ -15,7 +15,7 @@ use super::options::take_options;
 use super::setting::Setting;
 use super::{Axis, Control, Frame, GivenOption, Head, Machine};
 use crate::diagnostic::{Diagnostic, Place};
-use crate::kinematics::{MAX_AXES, NoClosedForm};
+use crate::kinematics::NoClosedForm;
 
 /// Loads a machine: `source`, what it extends (found by `find`), and `settings`, the last of
 /// which wins.
@@ -299,26 +299,29 @@ impl Builder<'_> {
 
     /// Tables that are gone through entry by entry have an end.
     fn check_sizes(&mut self, file: &MachineFile) {
-        let chain = file.chain.span();
-        for (what, count, most) in [
-            ("[parameters]", file.parameters.len(), MOST_PARAMETERS),
-            ("[tools]", file.tools.len(), MOST_ENTRIES),
-            ("[cl.words]", file.cl.words.len(), MOST_ENTRIES),
-            ("[axis]", file.axis.len(), 2 * MAX_AXES),
-            (
-                "[solution] exclusive",
-                file.solution.exclusive.len(),
-                MOST_GROUPS,
-            ),
-        ] {
-            if count > most {
-                self.fault(
-                    "machine-size",
-                    chain.clone(),
-                    format!("{what} has {count} entries; at most {most} are possible"),
-                    "is this a machine file?",
-                );
-            }
+        let parameters = file.parameters.values().map(Spanned::span);
+        self.check_size("[parameters]", parameters, MOST_PARAMETERS);
+        let tools = file.tools.values().map(Spanned::span);
+        self.check_size("[tools]", tools, MOST_ENTRIES);
+        let words = file.cl.words.keys().map(Spanned::span);
+        self.check_size("[cl.words]", words, MOST_ENTRIES);
+        let groups = file.solution.exclusive.iter();
+        let groups = groups.map(|group| group.first().map_or(0..0, Spanned::span));
+        self.check_size("[solution] exclusive", groups, MOST_GROUPS);
+    }
+
+    /// A table with an entry at each of `spans`.
+    fn check_size(
+        &mut self,
+        what: &str,
+        mut spans: impl ExactSizeIterator<Item = Range<usize>>,
+        most: usize,
+    ) {
+        let count = spans.len();
+        if count > most {
+            let message = format!("{what} has {count} entries; at most {most} are possible");
+            let first = spans.next().unwrap_or_default();
+            self.fault("machine-size", first, message, "is this a machine file?");
         }
     }
 

@@ -40,7 +40,9 @@ pub(super) fn take_options(
                 "[{section}.{name}] has {} options; at most {MOST_OPTIONS} are possible",
                 options.len()
             );
-            faults.push(Diagnostic::error("machine-option", message));
+            let first = options.keys().next().map_or(0..0, Spanned::span);
+            let place = sources.place(first);
+            faults.push(Diagnostic::error("machine-option", message).at(place));
             continue;
         }
         let mut given = Vec::new();

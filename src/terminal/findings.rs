@@ -6,8 +6,6 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use post_grammar::text::escaped;
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 
-use super::printable;
-
 /// Findings of one severity that are told; of the others how many there are.
 const MOST_TOLD: usize = 120;
 
@@ -56,7 +54,8 @@ fn render(finding: &Diagnostic, renderer: &Renderer) -> String {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
-    let message = printable(&finding.message);
+    // A message is one line: the name of a file must not pretend to be the next.
+    let message = escaped(&finding.message, &[]);
     let title = level.primary_title(message.as_ref()).id(finding.code);
     let place = finding.place.as_ref().map(legible);
     let mut group = match &place {
@@ -75,7 +74,7 @@ fn render(finding: &Diagnostic, renderer: &Renderer) -> String {
         ),
         None => Group::with_title(title),
     };
-    let help = finding.help.as_deref().map(printable);
+    let help = finding.help.as_deref().map(|help| escaped(help, &[]));
     if let Some(help) = &help {
         group = group.element(Level::HELP.message(help.as_ref()));
     }

@@ -78,7 +78,7 @@ fn curves_without_end_are_refused() {
                 "error[spline]",
                 "countless chords",
                 "1000000 are possible",
-                "1:",
+                "GOTO/1,1,1",
             ],
         ),
         (

@@ -77,7 +77,7 @@ impl Frame {
         } else {
             angle
         };
-        if !(angle.abs() <= MOST_DEGREES.to_radians()) {
+        if angle.abs() > MOST_DEGREES.to_radians() {
             return Err("this index move turns by more than a hundred turns");
         }
         let eighth = std::f64::consts::FRAC_PI_4;

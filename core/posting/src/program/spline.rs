@@ -73,14 +73,13 @@ impl Spline {
     fn count(&self, span: usize, tolerance: f64) -> (f64, f64) {
         let (from, to) = (self.knots[span], self.knots[span + 1]);
         let width = to - from;
-        let bend = self
-            .second(span, from)
-            .norm()
-            .max(self.second(span, to).norm())
-            * width
-            * width;
+        let ends = [from, to].map(|end| self.second(span, end).norm());
+        // `max` would take what is no number for the other.
+        let bend = match ends.iter().any(|bend| bend.is_nan()) {
+            true => f64::NAN,
+            false => ends[0].max(ends[1]) * width * width,
+        };
         let count = libm::ceil(libm::sqrt(bend / (8.0 * tolerance)));
-        // `max` takes what is no number for the other.
         (if count < 1.0 { 1.0 } else { count }, bend)
     }
 
@@ -195,6 +194,26 @@ mod tests {
                     .fold(f64::INFINITY, f64::min);
                 assert!(nearest <= tolerance, "{nearest} at {u}");
             }
+        }
+    }
+
+    #[test]
+    fn chords_are_counted_before_they_are_made() {
+        for tolerance in [1.0, 0.01, 0.001] {
+            let mut made = 0;
+            wave().flatten(tolerance, &mut |_, _| made += 1);
+            assert_eq!(wave().chords(tolerance), Some(made));
+        }
+        let points = vec![
+            Vector3::zeros(),
+            Vector3::x(),
+            Vector3::y(),
+            Vector3::z(),
+            Vector3::x(),
+        ];
+        for knot in [1e-300, 1e-320, 1e-200] {
+            let spline = Spline::new(&[knot, 1.0], points.clone()).unwrap();
+            assert_eq!(spline.chords(0.001), None, "{knot}");
         }
     }
 

@@ -32,10 +32,10 @@ impl Interpreter {
         axis: Option<[f64; 3]>,
     ) {
         self.rapid = false;
-        if self.set_axis(record, axis) {
-            if let Some(tip) = self.point(record, point) {
-                self.arrive(tip);
-            }
+        if self.set_axis(record, axis)
+            && let Some(tip) = self.point(record, point)
+        {
+            self.arrive(tip);
         }
     }
 

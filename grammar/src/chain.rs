@@ -42,6 +42,9 @@ pub enum LinkKind {
     },
 }
 
+/// Longest structural code, in bytes: a machine has a handful of axes.
+const LONGEST: usize = 1024;
+
 const FORM: &str = "write it from workpiece to tool, such as [w C' A' b Y X Z (S) t]";
 
 /// Reads a structural code of ISO 10791, such as `[w C' A' b Y X Z (S) t]`.
@@ -49,6 +52,10 @@ const FORM: &str = "write it from workpiece to tool, such as [w C' A' b Y X Z (S
 /// The code begins with `w`, ends with `t`, and has one `b` between. Which axes there are, whether a name comes twice
 /// and whether the primes agree with the side of `b` is for the machine to judge.
 pub fn parse_chain(text: &str) -> Result<Vec<Link>, SyntaxFault> {
+    if text.len() > LONGEST {
+        let message = format!("a structural code has at most {LONGEST} bytes");
+        return Err(SyntaxFault::new(text, 0..text.len(), message).help(FORM));
+    }
     let pairs = Grammar::parse(Rule::chain, text).map_err(|error| {
         let at = match error.location {
             InputLocation::Pos(at) => at,

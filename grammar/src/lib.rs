@@ -11,6 +11,7 @@ mod cl;
 mod expression;
 mod fault;
 mod template;
+pub mod text;
 
 pub use chain::{Link, LinkKind, parse_chain};
 pub use cl::*;

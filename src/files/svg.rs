@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use post_grammar::text::escaped;
+
 /// The beginning of a picture on white; `</svg>` is its end.
 pub fn open(width: f64, height: f64) -> String {
     let mut svg = String::new();
@@ -34,8 +36,26 @@ pub fn upright(svg: &mut String, [x, y]: [f64; 2], text: &str) {
     );
 }
 
+/// XML has no form for most control characters: they are written as escapes.
 fn safe(text: &str) -> String {
-    text.replace('&', "&amp;")
+    escaped(text, &[])
+        .replace(['\u{FFFE}', '\u{FFFF}'], "?")
+        .replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_label_holds_nothing_that_xml_has_no_form_for() {
+        let mut svg = String::new();
+        label(&mut svg, [0.0, 0.0], "start", "a<b>&\u{1B}\u{0}\u{FFFF}\n");
+        assert_eq!(
+            svg,
+            "<text x=\"0.00\" y=\"0.00\" text-anchor=\"start\">a&lt;b&gt;&amp;\\u{1b}\\u{0}?\\u{a}</text>\n"
+        );
+    }
 }

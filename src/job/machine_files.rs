@@ -1,10 +1,11 @@
 //! Where machines come from: a file, a machine folder, or built in.
 
 use std::collections::BTreeSet;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
-use post_machine::description::{self, Machine, Setting, Source};
+use post_machine::description::{self, MOST_BYTES, Machine, Setting, Source};
 use post_machine::diagnostic::{Diagnostic, nearest};
 
 use crate::failure::Failure;
@@ -27,6 +28,7 @@ pub fn load(name: &str, named: &[PathBuf], settings: &[Setting]) -> Result<Machi
         .collect();
     near.extend(folders);
     let machine = description::load(source, settings, &mut |parent| {
+        check_extended(parent, &near)?;
         find(parent, &near).map_err(|missing| match missing.help {
             Some(help) => format!("{}; {help}", missing.message),
             None => missing.message,
@@ -107,12 +109,37 @@ fn find(name: &str, folders: &[PathBuf]) -> Result<Source, Missing> {
     })
 }
 
+/// A machine file may be a stranger's, and name any file of the user's: what it extends is a machine by its name, or a
+/// regular file that ends in `.toml`. (A pipe could keep the command waiting, a device has no end.)
+fn check_extended(name: &str, folders: &[PathBuf]) -> Result<(), String> {
+    let path = Path::new(name);
+    let toml = path.extension().is_some_and(|ending| ending == "toml");
+    if !toml && path.components().count() < 2 {
+        return Ok(());
+    }
+    if !toml {
+        return Err(format!(
+            "extends names a machine or a file that ends in .toml, and {name} is neither"
+        ));
+    }
+    let beside = folders.iter().map(|folder| folder.join(path));
+    let mut places = std::iter::once(path.to_owned()).chain(beside);
+    match places.any(|place| place.is_file()) {
+        false if path.exists() => Err(format!("{name} is no regular file")),
+        _ => Ok(()),
+    }
+}
+
 fn read(path: &Path) -> Result<Source, Missing> {
     let fault = |why: String| Missing {
         message: format!("{}: {why}", path.display()),
         help: None,
     };
-    let bytes = fs::read(path).map_err(|error| fault(error.to_string()))?;
+    let bytes = read_bounded(path).map_err(|error| fault(error.to_string()))?;
+    if bytes.len() > MOST_BYTES {
+        let why = format!("longer than {MOST_BYTES} bytes, which no machine file is");
+        return Err(fault(why));
+    }
     read_files::note("the machine file", path);
     let text = String::from_utf8(bytes)
         .map_err(|_| fault("a machine file is UTF-8 text, this is not".to_owned()))?;
@@ -120,6 +147,14 @@ fn read(path: &Path) -> Result<Source, Missing> {
         name: path.display().to_string(),
         text,
     })
+}
+
+/// The bytes of a file, up to one more than a machine file may have.
+fn read_bounded(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let most = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX);
+    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// A machine that a bare name finds.

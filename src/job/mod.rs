@@ -9,6 +9,7 @@ mod plugin_folders;
 use std::env;
 use std::path::PathBuf;
 
+use post_grammar::text::as_remark;
 use post_grammar::{ReadError, Reader};
 use post_machine::check::Check;
 use post_machine::description::{Machine, Setting};
@@ -99,7 +100,7 @@ pub fn program_name(source: &PathArg, target: Option<&PathArg>) -> String {
     target
         .and_then(PathArg::stem)
         .or_else(|| source.stem())
-        .unwrap_or_else(|| "PROGRAM".to_owned())
+        .map_or_else(|| "PROGRAM".to_owned(), as_remark)
 }
 
 /// Reads a CL file to its end, or until there are so many faults that it is given up.

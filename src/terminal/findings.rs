@@ -3,12 +3,13 @@
 use std::io::{IsTerminal, Write};
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use post_grammar::text::escaped;
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 
 use crate::files::outcome;
 
-/// Longest line shown whole; of a longer one the part around the fault is shown.
-const WIDEST: usize = 200;
+/// Findings of one severity that are told; of the others how many there are.
+const MOST_TOLD: usize = 120;
 
 /// Writes findings to standard error, warnings first, and how many errors there were.
 pub fn findings(findings: &[Diagnostic]) {
@@ -20,9 +21,20 @@ pub fn findings(findings: &[Diagnostic]) {
     };
     let mut sorted: Vec<&Diagnostic> = findings.iter().collect();
     sorted.sort_by_key(|finding| finding.severity);
-    for finding in &sorted {
-        // A closed standard error leaves nobody to tell.
-        let _ = writeln!(stderr, "{}\n", render(finding, &renderer));
+    for severity in [Severity::Warning, Severity::Error] {
+        let of_it = |finding: &&&Diagnostic| finding.severity == severity;
+        for finding in sorted.iter().filter(of_it).take(MOST_TOLD) {
+            // A closed standard error leaves nobody to tell.
+            let _ = writeln!(stderr, "{}\n", render(finding, &renderer));
+        }
+        let more = sorted
+            .iter()
+            .filter(of_it)
+            .count()
+            .saturating_sub(MOST_TOLD);
+        if more > 0 {
+            let _ = writeln!(stderr, "… and {more} more\n");
+        }
     }
     let errors = sorted
         .iter()
@@ -46,10 +58,10 @@ fn render(finding: &Diagnostic, renderer: &Renderer) -> String {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
-    let title = level
-        .primary_title(finding.message.as_str())
-        .id(finding.code);
-    let place = finding.place.as_ref().map(shortened);
+    // A message is one line: the name of a file must not pretend to be the next.
+    let message = escaped(&finding.message, &[]);
+    let title = level.primary_title(message.as_ref()).id(finding.code);
+    let place = finding.place.as_ref().map(legible);
     let mut group = match &place {
         Some(place) if !place.text.is_empty() => {
             let line = usize::try_from(place.line).unwrap_or(usize::MAX);
@@ -66,29 +78,44 @@ fn render(finding: &Diagnostic, renderer: &Renderer) -> String {
         ),
         None => Group::with_title(title),
     };
-    if let Some(help) = &finding.help {
-        group = group.element(Level::HELP.message(help.as_str()));
+    let help = finding.help.as_deref().map(|help| escaped(help, &[]));
+    if let Some(help) = &help {
+        group = group.element(Level::HELP.message(help.as_ref()));
     }
     renderer.render(&[group])
 }
 
-/// A very long line cut down to what surrounds the fault, at character borders.
-fn shortened(place: &Place) -> Place {
-    let mut place = place.clone();
-    let border = |text: &str, mut at: usize| {
-        while !text.is_char_boundary(at) {
-            at -= 1;
-        }
-        at
-    };
-    let end = border(&place.text, place.span.end.min(place.text.len()));
-    let start = border(&place.text, place.span.start.min(end));
-    place.span = start..end;
-    if place.text.len() > WIDEST {
-        let from = border(&place.text, start.saturating_sub(WIDEST / 4));
-        let to = border(&place.text, (from + WIDEST).min(place.text.len()));
-        place.text = place.text[from..to].to_owned();
-        place.span = start - from..end.min(to) - from;
+/// The place with what a terminal would obey written as escapes; tabs are blanks to the renderer.
+fn legible(place: &Place) -> Place {
+    let plain = |text: &str| escaped(text, &['\t']).into_owned();
+    let span = &place.span;
+    let start = plain(&place.text[..span.start]).len();
+    Place {
+        file: plain(&place.file),
+        line: place.line,
+        text: plain(&place.text),
+        span: start..start + plain(&place.text[span.clone()]).len(),
     }
-    place
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_terminal_would_obey_is_written_as_an_escape() {
+        let text = "PPRINT \u{1B}[31mred\u{202E} end";
+        let place = Place::new("a\u{1B}b.cls", 3, text, 7..15);
+        let finding = Diagnostic::error("x", "say \u{9B}1m\nit")
+            .help("\u{7}")
+            .at(Some(place));
+        let shown = render(&finding, &Renderer::plain());
+        assert!(!shown.contains(|letter: char| letter != '\n' && letter.is_control()));
+        assert!(shown.contains("\\u{1b}[31mred"), "{shown}");
+        // As many marks as the escaped text has letters.
+        assert!(
+            shown.contains(&"^".repeat("\\u{1b}[31mred".len() - 1)),
+            "{shown}"
+        );
+    }
 }

@@ -4,8 +4,11 @@ mod findings;
 mod progress;
 mod quantity;
 
+use std::borrow::Cow;
 use std::io::{self, Write as _};
 use std::sync::{Mutex, PoisonError};
+
+use post_grammar::text::escaped;
 
 pub use findings::findings;
 pub use progress::Progress;
@@ -14,6 +17,12 @@ pub use quantity::{clock, number};
 use crate::failure::Failure;
 use crate::files::{FileFault, outcome, standard};
 
+/// Lines of text in which names and texts from files, plugins and the command line cannot switch the terminal: what it
+/// would obey is written as an escape.
+fn printable(text: &str) -> Cow<'_, str> {
+    escaped(text, &['\n', '\t'])
+}
+
 /// Why a result could not be printed: the first fault of the run.
 static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
 
@@ -21,7 +30,7 @@ static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
 /// [`all_printed`] at the end.
 pub fn print(text: &str) {
     let printed = standard::open().and_then(|mut out| {
-        out.write_all(text.as_bytes())?;
+        out.write_all(printable(text).as_bytes())?;
         out.flush()
     });
     match printed {
@@ -47,7 +56,7 @@ pub fn all_printed() -> Result<(), Failure> {
 /// Prints what is no result to standard error, such as questions; a closed one leaves nobody to tell.
 pub fn tell(text: &str) {
     let mut stderr = io::stderr().lock();
-    let _ = stderr.write_all(text.as_bytes());
+    let _ = stderr.write_all(printable(text).as_bytes());
     let _ = stderr.flush();
 }
 
@@ -55,7 +64,14 @@ pub fn tell(text: &str) {
 pub fn explain(failure: Failure) {
     match failure {
         Failure::Usage(error) => {
-            let _ = error.print();
+            let plain = error.render().to_string();
+            match printable(&plain) {
+                // Colours are the terminal's own here.
+                Cow::Borrowed(_) => {
+                    let _ = error.print();
+                }
+                Cow::Owned(legible) => tell(&legible),
+            }
         }
         other => findings(&other.findings()),
     }

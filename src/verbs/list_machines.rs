@@ -29,7 +29,9 @@ pub struct MachinesArguments {
 /// Lists them, or prints one.
 pub fn run(arguments: &MachinesArguments) -> Result<(), Failure> {
     if let Some(name) = &arguments.print {
-        terminal::print(&machine_files::text(name, &arguments.machines)?);
+        let text = machine_files::text(name, &arguments.machines)?;
+        // Line ends as everywhere in what is printed.
+        terminal::print(&text.replace("\r\n", "\n"));
         return Ok(());
     }
     let rows: Vec<[String; 5]> = machine_files::list(&arguments.machines)?

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use clap::Args;
 use post_grammar::{MajorWord, ReadError, Reader, Usage};
-use post_machine::diagnostic::unreadable;
+use post_machine::diagnostic::{Diagnostic, unreadable};
+use post_posting::MOST_FAULTS;
+use post_posting::program::limits::MOST_WORDS;
 
 use crate::failure::Failure;
 use crate::files::{ClInput, FileFault, PathArg};
@@ -50,12 +52,20 @@ pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
                     if matches!(usage, Usage::Unknown | Usage::Refused) {
                         *known = usage;
                     }
+                } else if words.len() == MOST_WORDS {
+                    let message = format!("more than {MOST_WORDS} different words");
+                    let fault = Diagnostic::error("words", message);
+                    return Err(fault.help("is this a cutter-location file?").into());
                 } else {
                     words.insert(word.to_owned(), (1, record.line, usage));
                 }
             }
             Err(ReadError::Io(error)) => return Err(FileFault::Read { name, error }.into()),
-            Err(ReadError::Syntax(fault)) => faults.push(unreadable(&name, &fault)),
+            Err(ReadError::Syntax(fault)) => {
+                if faults.len() < MOST_FAULTS {
+                    faults.push(unreadable(&name, &fault));
+                }
+            }
         }
     }
     let mut rows: Vec<_> = words.into_iter().collect();

@@ -123,7 +123,12 @@ pub fn sample(name: &str) -> PathBuf {
 
 /// The command, run in the project's folder without the user's settings.
 pub fn command() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_post"));
+    command_as(env!("CARGO_BIN_EXE_post"))
+}
+
+/// Another program that runs the command, as [`command`] does.
+pub fn command_as(program: &str) -> Command {
+    let mut command = Command::new(program);
     command
         .current_dir(root())
         .env_remove("POST_MACHINES")

@@ -5,6 +5,8 @@
 )]
 
 mod axes;
+#[cfg(target_os = "linux")]
+mod bounds;
 mod check;
 mod check_posts;
 mod command;

@@ -5,7 +5,7 @@ use crate::common::{Run, command, post, run};
 use std::fs;
 
 /// Words that a program without them would cut otherwise, as CAM systems write them.
-const CHANGING: [&str; 16] = [
+const CHANGING: [&str; 24] = [
     "SET/OFSETL,1",
     "OFSETL/2",
     "MIRROR/XYPLAN",
@@ -22,6 +22,14 @@ const CHANGING: [&str; 16] = [
     "TRANS/0,0,1",
     "ORIGIN/0,0,1",
     "COUPLE/1",
+    "INCLUD/PART2",
+    "JUMPTO/L1",
+    "LOOPST",
+    "IF/A,1,2,3",
+    "SYN/G,GOTO",
+    "REFSYS/MAT1",
+    "GOLFT/L1,TO,L2",
+    "DNTCUT",
 ];
 
 fn file(lines: &str) -> String {

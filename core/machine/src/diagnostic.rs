@@ -6,6 +6,13 @@ mod short;
 use std::ops::Range;
 
 use post_grammar::SyntaxFault;
+use post_grammar::text::excerpt;
+
+/// Longest sentence of a finding, in bytes: what a file holds is cut before it fills a terminal.
+const LONGEST_SENTENCE: usize = 1500;
+
+/// So much of a line is kept for a message, in bytes: the part around what is wrong.
+const SHOWN: usize = 200;
 
 pub use nearest::nearest;
 pub use short::Short;
@@ -56,7 +63,7 @@ pub struct Place {
     pub file: String,
     /// Line, counted from 1.
     pub line: u64,
-    /// The line's text.
+    /// The line's text; of a long one the part around `span`.
     pub text: String,
     /// What to underline, bytes of `text`.
     pub span: Range<usize>,
@@ -69,7 +76,7 @@ impl Diagnostic {
             severity: Severity::Error,
             code,
             place: None,
-            message: message.into(),
+            message: cut(message.into()),
             help: None,
             extreme: None,
         }
@@ -85,7 +92,7 @@ impl Diagnostic {
 
     /// Adds what would help.
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        self.help = Some(cut(help.into()));
         self
     }
 
@@ -107,15 +114,45 @@ impl Diagnostic {
     }
 }
 
+impl Place {
+    /// The place `span` (bytes of `text`) in a line; of a long line what surrounds it, at character borders.
+    pub fn new(file: &str, line: u64, text: &str, span: Range<usize>) -> Self {
+        let border = |mut at: usize| {
+            while !text.is_char_boundary(at) {
+                at -= 1;
+            }
+            at
+        };
+        let end = border(span.end.min(text.len()));
+        let start = border(span.start.min(end));
+        let (from, to) = if text.len() > SHOWN {
+            let from = border(start.saturating_sub(SHOWN / 4));
+            (from, border((from + SHOWN).min(text.len())))
+        } else {
+            (0, text.len())
+        };
+        Self {
+            file: file.to_owned(),
+            line,
+            text: text[from..to].to_owned(),
+            span: start - from..end.min(to) - from,
+        }
+    }
+}
+
+fn cut(sentence: String) -> String {
+    if sentence.len() <= LONGEST_SENTENCE {
+        return sentence;
+    }
+    excerpt(&sentence, LONGEST_SENTENCE).into_owned()
+}
+
 /// A line of the CL file `file` that cannot be read.
 pub fn unreadable(file: &str, fault: &SyntaxFault) -> Diagnostic {
-    let place = Place {
-        file: file.to_owned(),
-        line: fault.line,
-        text: fault.text.clone(),
-        span: fault.span.clone(),
-    };
-    let mut diagnostic = Diagnostic::error("syntax", fault.message.clone()).at(Some(place));
-    diagnostic.help.clone_from(&fault.help);
-    diagnostic
+    let place = Place::new(file, fault.line, &fault.text, fault.span.clone());
+    let diagnostic = Diagnostic::error("syntax", fault.message.clone()).at(Some(place));
+    match &fault.help {
+        Some(help) => diagnostic.help(help.as_str()),
+        None => diagnostic,
+    }
 }

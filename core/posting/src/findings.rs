@@ -14,6 +14,9 @@ use crate::source_buffer::SourceBuffer;
 /// Faults of one run that are told, those found first; what comes after is most likely more of the same.
 pub const MOST_FAULTS: usize = 20;
 
+/// Warnings of one run that are told; of the others how many there are.
+pub const MOST_WARNINGS: usize = 100;
+
 /// The findings of one run. Every stage may add to them.
 #[derive(Debug)]
 pub(crate) struct Findings {
@@ -30,6 +33,8 @@ struct Inner {
     repeats: Vec<Repeat>,
     /// Faults, repeated ones counted once.
     faults: usize,
+    /// Warnings beyond those that are told.
+    untold: u64,
 }
 
 /// How often something was found.
@@ -122,12 +127,7 @@ impl Findings {
     #[cold]
     pub(crate) fn at(&self, line: u64, finding: Diagnostic) {
         let text = self.text(line);
-        let place = Place {
-            file: self.file.clone(),
-            line,
-            span: 0..text.len(),
-            text,
-        };
+        let place = Place::new(&self.file, line, &text, 0..text.len());
         self.add(finding.at(Some(place)));
     }
 
@@ -148,6 +148,9 @@ impl Findings {
                 return;
             }
             inner.faults += 1;
+        } else if inner.found.len() >= MOST_WARNINGS + inner.faults {
+            inner.untold += 1;
+            return;
         }
         let line = finding.place.as_ref().map_or(0, |place| place.line);
         inner.repeats.push(Repeat {
@@ -245,7 +248,12 @@ impl Inner {
             finding.message.push_str(&more);
             finding
         };
-        self.found.iter().zip(&self.repeats).map(told).collect()
+        let mut all: Vec<Diagnostic> = self.found.iter().zip(&self.repeats).map(told).collect();
+        if self.untold > 0 {
+            let message = format!("… and {} more warnings", self.untold);
+            all.push(Diagnostic::warning("more", message));
+        }
+        all
     }
 }
 

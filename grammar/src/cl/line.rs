@@ -4,6 +4,7 @@ use super::record::{Argument, Statement};
 use super::statements;
 use super::vocabulary::{self, Behind, MajorWord};
 use crate::fault::SyntaxFault;
+use crate::text::excerpt;
 use pest::Parser;
 use pest::error::InputLocation;
 use pest::iterators::Pair;
@@ -45,6 +46,12 @@ fn is_text_word(word: &str) -> bool {
 fn is_directive(word: &[u8], rest: &[u8]) -> bool {
     word.eq_ignore_ascii_case(b"REMARK") && rest.starts_with(b"->")
 }
+
+/// Longest major word, in bytes. What is longer is none, and each that is not known is counted by its name.
+pub(super) const LONGEST_WORD: usize = 64;
+
+/// So much of an item is told in a message.
+pub(crate) const SHOWN: usize = 60;
 
 /// One item behind the slash.
 pub(crate) struct Item<'t> {
@@ -190,6 +197,14 @@ fn line<'t>(text: &'t str, statement: Pair<'t, Rule>) -> Result<Line<'t>, Syntax
     for pair in statement.into_inner() {
         let span = pair.as_span();
         match pair.as_rule() {
+            Rule::word if pair.as_str().len() > LONGEST_WORD => {
+                let message = format!(
+                    "a word of {} characters: none has more than {LONGEST_WORD}",
+                    pair.as_str().len()
+                );
+                let fault = SyntaxFault::new(text, span.start()..span.end(), message);
+                return Err(fault.help("is this a cutter-location file?"));
+            }
             Rule::word => {
                 match vocabulary::find(pair.as_str()) {
                     Some((spelling, known)) => {
@@ -235,7 +250,8 @@ fn number(text: &str, pair: &Pair<'_, Rule>) -> Result<f64, SyntaxFault> {
         Ok(value) if value.is_finite() => Ok(value),
         _ => {
             let span = pair.as_span();
-            let message = format!("{} is beyond any number a program can hold", pair.as_str());
+            let shown = excerpt(pair.as_str(), SHOWN);
+            let message = format!("{shown} is beyond any number a program can hold");
             Err(SyntaxFault::new(text, span.start()..span.end(), message))
         }
     }

@@ -4,7 +4,7 @@
 
 use std::borrow::Cow;
 
-use super::line::{Item, Line};
+use super::line::{Item, LONGEST_WORD, Line};
 use super::number::{number, short_number};
 use super::record::Statement;
 use super::statements::statement;
@@ -121,6 +121,9 @@ pub(super) fn record(raw: &[u8]) -> Option<Statement> {
     }
     let rest = run(&raw[end..], WORD);
     let word_span = at..end + rest;
+    if word_span.len() > LONGEST_WORD {
+        return None;
+    }
     if rest > 0 {
         known = vocabulary::find(&text[word_span.clone()]);
     }

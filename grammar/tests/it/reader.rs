@@ -158,7 +158,7 @@ fn reading_goes_on_after_a_fault() {
     expect(
         text,
         &[
-            (1, "! GOTO takes 3 or 6 numbers, 2 are given"),
+            (1, "! GOTO takes 3, 6 or 9 numbers, 2 are given"),
             (2, "GOTO/1,2,3"),
             (3, "! a record begins with a word"),
             (4, "! FEDRAT needs a number"),

@@ -785,9 +785,9 @@ fn faults_say_where_and_what() {
         (
             "GOTO/1,2,3,4",
             "1,2,3,4",
-            "GOTO takes 3 or 6 numbers, 4 are given",
+            "GOTO takes 3, 6 or 9 numbers, 4 are given",
         ),
-        ("GOTO/1", "1", "GOTO takes 3 or 6 numbers, 1 is given"),
+        ("GOTO/1", "1", "GOTO takes 3, 6 or 9 numbers, 1 is given"),
         ("GOTO/", "", "GOTO needs numbers"),
         ("GOTO", "", "GOTO needs numbers"),
         ("GOTO/1,2,x3", "x3", "a number is expected, not `x3`"),
@@ -943,6 +943,6 @@ fn faults_say_where_and_what() {
     let fault = parse_record("GOTO/1,2").unwrap_err();
     assert_eq!(
         fault.to_string(),
-        "line 1: GOTO takes 3 or 6 numbers, 2 are given (expected GOTO/x,y,z, GOTO/x,y,z,i,j,k or, with the direction of an edge, GOTO/x,y,z,i,j,k,u,v,w)"
+        "line 1: GOTO takes 3, 6 or 9 numbers, 2 are given (expected GOTO/x,y,z, GOTO/x,y,z,i,j,k or, with the direction of an edge, GOTO/x,y,z,i,j,k,u,v,w)"
     );
 }

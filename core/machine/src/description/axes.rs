@@ -8,6 +8,7 @@ use toml::Spanned;
 
 use super::build::Builder;
 use super::file::{AxisFile, MachineFile, Quantity};
+use super::limits::MOST_ENTRIES;
 use super::{Axis, Clamp, Indexed, Positions};
 use crate::diagnostic::Short;
 use crate::kinematics::travel::{AT_END, passed};
@@ -320,6 +321,18 @@ impl Builder<'_> {
         }
         let positions = match (&axis.positions, &axis.step) {
             (None, None) => Positions::Any,
+            (Some(list), None) if list.get_ref().len() > MOST_ENTRIES => {
+                self.fault(
+                    "machine-size",
+                    list.span(),
+                    format!(
+                        "{name} has {} positions; at most {MOST_ENTRIES} are possible",
+                        list.get_ref().len()
+                    ),
+                    "step = 0.1 lets it stand at 0, 0.1, 0.2 …",
+                );
+                Positions::Any
+            }
             (Some(list), None) => {
                 let values: Vec<f64> = list
                     .get_ref()

@@ -10,6 +10,7 @@ use toml::de::{DeTable, DeValue};
 use super::file::{MachineFile, Quantity, Rapid, Tcp};
 use super::keys::typed;
 use super::layers::{Source, Sources, overlay};
+use super::limits::{MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_PARAMETERS};
 use super::options::take_options;
 use super::setting::Setting;
 use super::{Axis, Control, Frame, GivenOption, Head, Machine};
@@ -98,6 +99,12 @@ fn take_heads<'i>(
     let DeValue::Table(heads) = heads.into_inner() else {
         return Err(fault(span));
     };
+    if heads.len() > MOST_HEADS {
+        let message = format!("{} heads; at most {MOST_HEADS} are possible", heads.len());
+        return Err(vec![
+            Diagnostic::error("machine-head", message).at(sources.place(span)),
+        ]);
+    }
     let mut taken = Vec::new();
     for (name, head) in heads {
         let span = head.span();
@@ -144,6 +151,7 @@ fn read(mut table: Spanned<DeTable<'_>>, sources: &Sources) -> Result<Machine, V
     let mut builder = Builder {
         sources,
         parameters: &file.parameters,
+        values: BTreeMap::new(),
         faults,
     };
     let machine = builder.machine(&file, control_options, model_options);
@@ -156,6 +164,8 @@ fn read(mut table: Spanned<DeTable<'_>>, sources: &Sources) -> Result<Machine, V
 pub(super) struct Builder<'a> {
     pub(super) sources: &'a Sources,
     pub(super) parameters: &'a BTreeMap<String, Quantity>,
+    /// The parameters that have a value.
+    pub(super) values: BTreeMap<&'a str, f64>,
     pub(super) faults: Vec<Diagnostic>,
 }
 
@@ -167,6 +177,9 @@ impl Builder<'_> {
         message: String,
         help: &str,
     ) {
+        if self.faults.len() >= MOST_FAULTS {
+            return;
+        }
         let place = self.sources.place(span);
         let mut diagnostic = Diagnostic::error(code, message).at(place);
         if !help.is_empty() {
@@ -181,10 +194,11 @@ impl Builder<'_> {
         mut control_options: BTreeMap<String, Vec<GivenOption>>,
         mut model_options: BTreeMap<String, Vec<GivenOption>>,
     ) -> Option<Machine> {
-        // A parameter that nothing uses is checked too: it may be used tomorrow.
-        for quantity in self.parameters.values() {
-            self.number(quantity);
+        self.check_sizes(file);
+        if !self.faults.is_empty() {
+            return None;
         }
+        self.evaluate_parameters();
         if !self.faults.is_empty() {
             // Whatever uses them would only repeat it.
             return None;
@@ -293,6 +307,34 @@ impl Builder<'_> {
         }
         self.check_chain(&machine, file.chain.span());
         Some(machine)
+    }
+
+    /// Tables that are gone through entry by entry have an end.
+    fn check_sizes(&mut self, file: &MachineFile) {
+        let parameters = file.parameters.values().map(Spanned::span);
+        self.check_size("[parameters]", parameters, MOST_PARAMETERS);
+        let tools = file.tools.values().map(Spanned::span);
+        self.check_size("[tools]", tools, MOST_ENTRIES);
+        let words = file.cl.words.keys().map(Spanned::span);
+        self.check_size("[cl.words]", words, MOST_ENTRIES);
+        let groups = file.solution.exclusive.iter();
+        let groups = groups.map(|group| group.first().map_or(0..0, Spanned::span));
+        self.check_size("[solution] exclusive", groups, MOST_GROUPS);
+    }
+
+    /// A table with an entry at each of `spans`.
+    fn check_size(
+        &mut self,
+        what: &str,
+        mut spans: impl ExactSizeIterator<Item = Range<usize>>,
+        most: usize,
+    ) {
+        let count = spans.len();
+        if count > most {
+            let message = format!("{what} has {count} entries; at most {most} are possible");
+            let first = spans.next().unwrap_or_default();
+            self.fault("machine-size", first, message, "is this a machine file?");
+        }
     }
 
     /// A rapid is written as a feed move at the feed of its slowest axis, so that each must have one.

@@ -5,10 +5,12 @@
 
 use std::ops::Range;
 
+use post_grammar::text::is_unprintable;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use super::keys::meant;
+use super::limits::{MOST_BYTES, MOST_FAULTS};
 use super::setting::Setting;
 use crate::diagnostic::{Diagnostic, Place};
 
@@ -28,6 +30,8 @@ const DEPTH: usize = 8;
 #[derive(Debug)]
 pub(crate) struct Sources {
     sources: Vec<(usize, Source)>,
+    /// Of each source where its lines begin: a finding is placed without a walk through the text.
+    lines: Vec<Vec<usize>>,
     /// So many of them are files; the rest are settings.
     files: usize,
 }
@@ -43,9 +47,11 @@ impl Sources {
         find: &mut dyn FnMut(&str) -> Result<Source, String>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let mut all = Self {
-            sources: vec![(0, source)],
+            sources: Vec::new(),
+            lines: Vec::new(),
             files: 1,
         };
+        all.push(source)?;
         while let Some(name) = all.extends() {
             let place = all.place(name.span());
             let fault = |message: String| {
@@ -57,25 +63,41 @@ impl Sources {
                 )));
             }
             let parent = find(name.get_ref()).map_err(fault)?;
-            all.push(parent);
+            // A stranger's file may name any file of the user's: nothing of what is no machine is shown.
+            if !is_machine(&parent.text) {
+                let message = format!("{} is no machine file", parent.name);
+                return Err(fault(message));
+            }
+            all.push(parent)?;
             all.files += 1;
         }
         for setting in settings {
             all.push(Source {
                 name: "--set".to_owned(),
                 text: setting.line().map_err(|fault| vec![*fault])?,
-            });
+            })?;
         }
         Ok(all)
     }
 
-    fn push(&mut self, source: Source) {
+    fn push(&mut self, source: Source) -> Result<(), Vec<Diagnostic>> {
+        if source.text.len() > MOST_BYTES {
+            let message = format!(
+                "{} holds {} bytes; a machine file has at most {MOST_BYTES}",
+                source.name,
+                source.text.len()
+            );
+            return Err(vec![Diagnostic::error("machine", message)]);
+        }
         // One more, so that a span at the very end of a text is not taken for the next one's start.
         let start = self
             .sources
             .last()
             .map_or(0, |(start, last)| start + last.text.len() + 1);
+        let ends = source.text.match_indices('\n').map(|(end, _)| end + 1);
+        self.lines.push(std::iter::once(0).chain(ends).collect());
         self.sources.push((start, source));
+        Ok(())
     }
 
     /// What the last file extends; a file with syntax errors extends nothing here and is refused later.
@@ -107,6 +129,7 @@ impl Sources {
                 Diagnostic::error("machine-syntax", fault.message()).at(place)
             }));
             let layer = moved_table(table.into_inner(), *start);
+            self.check_texts(&layer, &mut errors);
             if is_setting && let Err(error) = check_parameters(&layer, &merged) {
                 errors.push(*error);
             }
@@ -122,30 +145,91 @@ impl Sources {
 
     /// The line that a span begins in.
     pub(crate) fn place(&self, span: Range<usize>) -> Option<Place> {
-        let (start, source) = self
+        let index = self
             .sources
             .iter()
-            .rev()
-            .find(|(start, _)| *start <= span.start)?;
+            .rposition(|(start, _)| *start <= span.start)?;
+        let (start, source) = &self.sources[index];
         let text = &source.text;
         let at = (span.start - start).min(text.len());
-        let begin = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
-        let end = text[at..]
-            .find('\n')
-            .map_or(text.len(), |newline| at + newline);
+        let number = self.lines[index].partition_point(|begin| *begin <= at);
+        let begin = self.lines[index][number - 1];
+        let end = self.lines[index]
+            .get(number)
+            .map_or(text.len(), |next| next - 1);
         let line = text[begin..end].trim_end_matches('\r');
         let from = (at - begin).min(line.len());
         let to = span
             .end
             .saturating_sub(start + begin)
             .clamp(from, line.len());
-        Some(Place {
-            file: source.name.clone(),
-            line: 1 + text[..begin].matches('\n').count() as u64,
-            text: line.to_owned(),
-            span: from..to,
-        })
+        Some(Place::new(&source.name, number as u64, line, from..to))
     }
+
+    /// Every text and key of a layer stays in its line wherever it is written: one that holds a line end could put a line
+    /// into a program that nobody wrote.
+    fn check_texts(&self, table: &DeTable<'_>, errors: &mut Vec<Diagnostic>) {
+        for (key, value) in table {
+            self.check_text(key.get_ref(), key.span(), errors);
+            self.check_value(value, errors);
+        }
+    }
+
+    fn check_value(&self, value: &Spanned<DeValue<'_>>, errors: &mut Vec<Diagnostic>) {
+        match value.get_ref() {
+            DeValue::String(text) => self.check_text(text, value.span(), errors),
+            DeValue::Array(items) => {
+                for item in items {
+                    self.check_value(item, errors);
+                }
+            }
+            DeValue::Table(table) => self.check_texts(table, errors),
+            _ => {}
+        }
+    }
+
+    fn check_text(&self, text: &str, span: Range<usize>, errors: &mut Vec<Diagnostic>) {
+        let Some(odd) = text.chars().find(|letter| is_unprintable(*letter)) else {
+            return;
+        };
+        if errors.len() >= MOST_FAULTS {
+            return;
+        }
+        let message = format!(
+            "this text holds U+{:04X}, which ends a line, switches something or hides text",
+            u32::from(odd)
+        );
+        let fault = Diagnostic::error("machine-text", message).at(self.place(span));
+        errors.push(fault.help("a text of a machine file is one line of what can be read; several lines are a list of texts"));
+    }
+}
+
+/// Keys that a machine file has at its top.
+const TOP: &[&str] = &[
+    "name",
+    "chain",
+    "extends",
+    "parameters",
+    "workpiece",
+    "tool",
+    "tools",
+    "axis",
+    "control",
+    "spindle",
+    "cl",
+    "accuracy",
+    "solution",
+    "rewind",
+    "head",
+];
+
+/// The text is a machine file, whatever else may be wrong with it: TOML, with keys of a machine file alone.
+fn is_machine(text: &str) -> bool {
+    let Ok(table) = DeTable::parse(text) else {
+        return false;
+    };
+    let mut keys = table.get_ref().keys().peekable();
+    keys.peek().is_some() && keys.all(|key| TOP.contains(&key.get_ref().as_ref()))
 }
 
 /// Settings of parameters must meet parameters that the machine has: a misspelt one would be lost.

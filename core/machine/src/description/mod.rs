@@ -9,6 +9,7 @@ mod file;
 mod frame;
 mod keys;
 mod layers;
+mod limits;
 mod numbers;
 mod options;
 mod schema;
@@ -29,6 +30,7 @@ pub use file::{
 };
 pub use frame::Frame;
 pub use layers::Source;
+pub use limits::MOST_BYTES;
 pub use schema::schema;
 pub use setting::Setting;
 pub use spindle::SpindleSpeeds;

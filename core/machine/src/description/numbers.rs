@@ -1,13 +1,16 @@
 //! Numbers, vectors and directions of a machine file; any number may be an expression of its parameters.
 
-use std::collections::BTreeMap;
-
 use nalgebra::Vector3;
-use post_grammar::parse_expression;
+use post_grammar::text::excerpt;
+use post_grammar::{Expression, parse_expression};
 
 use super::build::Builder;
 use super::file::{Number, Quantity};
 use super::keys::meant;
+use super::limits::MOST_NUMBER;
+
+/// So much of an expression is told in a message, in bytes.
+const SHOWN: usize = 80;
 
 impl Builder<'_> {
     pub(super) fn vector(&mut self, quantities: &[Quantity; 3]) -> Vector3<f64> {
@@ -40,48 +43,83 @@ impl Builder<'_> {
 
     /// The value; no number and a fault if it has none, so that what is said of numbers is not said of it too.
     pub(super) fn number(&mut self, quantity: &Quantity) -> f64 {
-        match self.evaluate(quantity.get_ref(), 0) {
-            Ok(value) if value.is_finite() => value,
+        match self.evaluate(quantity.get_ref()) {
+            Ok(value) if value.abs() <= MOST_NUMBER => value,
             Ok(value) => {
-                self.fault(
-                    "machine-number",
-                    quantity.span(),
-                    format!("{value} is no finite number"),
-                    "",
-                );
+                let message = if value.is_finite() {
+                    format!(
+                        "{value:e} is no number of a machine: none is larger than {MOST_NUMBER:e}"
+                    )
+                } else {
+                    format!("{value} is no finite number")
+                };
+                self.fault("machine-number", quantity.span(), message, "");
                 f64::NAN
             }
             Err(message) => {
-                let known: Vec<&str> = self.parameters.keys().map(String::as_str).collect();
-                let help = meant(&unknown(quantity, &known), "the parameters are", &known);
-                self.fault("machine-expression", quantity.span(), message, &help);
+                self.without_value(quantity, message);
                 f64::NAN
             }
         }
     }
 
-    /// Parameters may be expressions of other parameters; a circle runs into the depth limit.
-    fn evaluate(&self, number: &Number, depth: usize) -> Result<f64, String> {
+    /// The expression has no value.
+    fn without_value(&mut self, quantity: &Quantity, message: String) {
+        let known: Vec<&str> = self.parameters.keys().map(String::as_str).collect();
+        let help = meant(&unknown(quantity, &known), "the parameters are", &known);
+        self.fault("machine-expression", quantity.span(), message, &help);
+    }
+
+    /// Gives each parameter its value, once, those first that others are defined by. One that nothing uses is checked
+    /// too: it may be used tomorrow.
+    pub(super) fn evaluate_parameters(&mut self) {
+        let parameters = self.parameters;
+        for (name, quantity) in parameters {
+            if let Err(message) = self.settle(name, quantity.get_ref(), 0) {
+                self.without_value(quantity, message);
+            } else {
+                self.number(quantity);
+            }
+        }
+    }
+
+    /// Gives a parameter its value, and before that those that it is defined by; `depth` of them wait for it.
+    fn settle(&mut self, name: &str, number: &Number, depth: usize) -> Result<(), String> {
+        let parameters = self.parameters;
+        let Some((name, _)) = parameters.get_key_value(name) else {
+            return Ok(());
+        };
+        if self.values.contains_key(name.as_str()) {
+            return Ok(());
+        }
+        if depth > parameters.len() {
+            let name = excerpt(name, SHOWN);
+            return Err(format!(
+                "{name}: parameters that are defined by one another in a circle"
+            ));
+        }
+        if let Number::Expression(text) = number {
+            let expression = parsed(text)?;
+            for other in expression.names() {
+                if let Some(quantity) = parameters.get(other) {
+                    self.settle(other, quantity.get_ref(), depth + 1)?;
+                }
+            }
+        }
+        let value = self.evaluate(number)?;
+        self.values.insert(name, value);
+        Ok(())
+    }
+
+    /// A number or an expression of the parameters that have a value.
+    fn evaluate(&self, number: &Number) -> Result<f64, String> {
         let text = match number {
             Number::Value(value) => return Ok(*value),
             Number::Expression(text) => text,
         };
-        if depth > self.parameters.len() {
-            return Err(format!(
-                "{text}: parameters that are defined by one another in a circle"
-            ));
-        }
-        let expression =
-            parse_expression(text).map_err(|fault| format!("{text}: {}", fault.message))?;
-        let mut values = BTreeMap::new();
-        for name in expression.names() {
-            if let Some(quantity) = self.parameters.get(name) {
-                values.insert(name, self.evaluate(quantity.get_ref(), depth + 1)?);
-            }
-        }
-        expression
-            .evaluate(&|name| values.get(name).copied())
-            .map_err(|fault| format!("{text}: {}", fault.message))
+        parsed(text)?
+            .evaluate(&|name| self.values.get(name).copied())
+            .map_err(|fault| format!("{}: {}", excerpt(text, SHOWN), fault.message))
     }
 }
 
@@ -90,11 +128,15 @@ fn unknown(quantity: &Quantity, known: &[&str]) -> String {
     let Number::Expression(text) = quantity.get_ref() else {
         return String::new();
     };
-    parse_expression(text)
+    parsed(text)
         .ok()
         .and_then(|expression| {
             let mut names = expression.names().into_iter();
             names.find(|name| !known.contains(name)).map(str::to_owned)
         })
         .unwrap_or_default()
+}
+
+fn parsed(text: &str) -> Result<Expression, String> {
+    parse_expression(text).map_err(|fault| format!("{}: {}", excerpt(text, SHOWN), fault.message))
 }

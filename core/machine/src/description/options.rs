@@ -6,6 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::layers::Sources;
+use super::limits::MOST_OPTIONS;
 use super::{GivenOption, OptionValue};
 use crate::diagnostic::Diagnostic;
 
@@ -34,6 +35,16 @@ pub(super) fn take_options(
         else {
             continue;
         };
+        if options.len() > MOST_OPTIONS {
+            let message = format!(
+                "[{section}.{name}] has {} options; at most {MOST_OPTIONS} are possible",
+                options.len()
+            );
+            let first = options.keys().next().map_or(0..0, Spanned::span);
+            let place = sources.place(first);
+            faults.push(Diagnostic::error("machine-option", message).at(place));
+            continue;
+        }
         let mut given = Vec::new();
         for (key, value) in options {
             let place = sources.place(key.span());

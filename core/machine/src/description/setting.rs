@@ -1,5 +1,6 @@
 //! Values over what a machine file says, for one run.
 
+use post_grammar::text::is_unprintable;
 use toml::de::DeTable;
 
 use super::file::{Method, Placement, Tcp};
@@ -50,6 +51,12 @@ impl Setting {
     /// A setting without a value.
     pub(super) fn line(&self) -> Result<String, Box<Diagnostic>> {
         Ok(match self {
+            Self::Written(setting) if setting.contains(is_unprintable) => {
+                let message = format!("--set {setting}: one line of what can be read is meant");
+                return Err(Diagnostic::error("setting", message)
+                    .help("write --set NAME=VALUE")
+                    .boxed());
+            }
             Self::Written(setting) => match setting.split_once('=') {
                 Some((name, value)) => written(name.trim(), value.trim()),
                 None => {

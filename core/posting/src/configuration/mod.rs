@@ -27,6 +27,7 @@ use post_plugin::{Format, Spindle};
 use crate::accuracy::Placer;
 use crate::expand::Line;
 use crate::findings::Findings;
+use crate::program::limits::MOST_TOOLS;
 use crate::program::{Command, Motion, Tool};
 use crate::report::{LengthSource, ToolUse};
 use crate::stream::{Flow, Outlet};
@@ -387,6 +388,12 @@ impl<'a> Configuration<'a> {
             source: self.source,
         };
         if self.tools.contains(&used) {
+            return;
+        }
+        if self.tools.len() >= MOST_TOOLS {
+            let fault =
+                Diagnostic::error("tool", format!("more than {MOST_TOOLS} different tools"));
+            findings.at(line, fault.help("is this the CL file of one program?"));
             return;
         }
         if self.source == LengthSource::Unknown {

@@ -11,6 +11,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::findings::Findings;
+use crate::program::limits::MOST_CHORDS;
 use crate::program::{ArcStep, Command, CycleStep, Leg, Motion, Pace, SplineStep, Step};
 use crate::stream::{Flow, Outlet};
 use tangential::Tangential;
@@ -23,9 +24,6 @@ pub struct Line {
     /// The move.
     pub motion: Motion,
 }
-
-/// Chords of one arc; more is a slip of the decimal point.
-const MOST_CHORDS: u64 = 10_000_000;
 
 /// The first stage behind the interpreter.
 #[derive(Debug)]
@@ -132,14 +130,7 @@ impl Expand {
         } = step;
         let (count, chord) = arc.chords(self.chord_tolerance);
         if count > MOST_CHORDS {
-            let fault = Diagnostic::error(
-                "arc",
-                format!(
-                    "this arc needs {count} chords to stay within {} mm",
-                    self.chord_tolerance
-                ),
-            );
-            findings.at(line, fault.help("widen the tolerance"));
+            findings.at(line, self.too_many_chords("arc", &count.to_string()));
             return;
         }
         let pace = match end.pace {
@@ -167,8 +158,27 @@ impl Expand {
         }
     }
 
+    fn too_many_chords(&self, curve: &'static str, count: &str) -> Diagnostic {
+        Diagnostic::error(
+            curve,
+            format!(
+                "this {curve} needs {count} chords to stay within {} mm; {MOST_CHORDS} are possible",
+                self.chord_tolerance
+            ),
+        )
+        .help("check its numbers, widen the tolerance, or let the CAM system write GOTOs")
+    }
+
     fn spline(&mut self, line: u64, step: &SplineStep, out: &mut Out<'_>, findings: &Findings) {
         let SplineStep { spline, end } = step;
+        match spline.chords(self.chord_tolerance) {
+            Some(count) if count <= MOST_CHORDS => {}
+            count => {
+                let count = count.map_or("countless".to_owned(), |count| count.to_string());
+                findings.at(line, self.too_many_chords("spline", &count));
+                return;
+            }
+        }
         spline.flatten(self.chord_tolerance, &mut |tip, chord| {
             self.go(line, Motion { tip, chord, ..*end }, out, findings);
         });

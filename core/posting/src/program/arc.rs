@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
+use super::limits::direction;
+
 /// An arc about an axis; a spiral or a helix where its ends differ in radius or height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
@@ -34,7 +36,7 @@ impl Arc {
         axis: Vector3<f64>,
         turns: u32,
     ) -> Result<Self, &'static str> {
-        let axis = axis.try_normalize(1e-9).ok_or("its axis is null")?;
+        let axis = direction(axis).ok_or("its axis has no direction")?;
         let split = |point: Vector3<f64>| {
             let height = axis.dot(&(point - centre));
             (point - centre - axis * height, height)

@@ -2,6 +2,8 @@
 
 use post_grammar::{Argument, CycleDefinition};
 
+use super::limits::{LONGEST_DWELL, MOST_COORDINATE, MOST_PECKS, short};
+
 /// How a cycle drills, lengths in mm along the tool axis from the programmed point, plus is away from the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrillCycle {
@@ -52,9 +54,6 @@ const PECKED: [&str; 5] = ["DEEP", "DEEP2", "DEEPHL", "BRKCHP", "CHIP"];
 /// Above the last depth a peck begins at feed, and a chip is broken by going back so far: mm.
 const GAP: f64 = 0.5;
 
-/// Pecks in one hole; more is a slip of the decimal point.
-const MOST_PECKS: f64 = 10_000.0;
-
 impl DrillCycle {
     /// Reads a definition; `scale` takes the file's lengths to mm.
     ///
@@ -87,6 +86,28 @@ impl DrillCycle {
                 "a clearance of {clearance} mm lies below the point: the rapid would end in the part"
             ));
         }
+        for height in [
+            Some(depth),
+            cycle.clearance,
+            cycle.retract,
+            cycle.step,
+            cycle.later_step,
+        ] {
+            let height = height.unwrap_or(0.0) * scale;
+            if libm::fabs(height) > MOST_COORDINATE {
+                return Err(format!(
+                    "a height of {} mm: none is larger than {MOST_COORDINATE:e} mm",
+                    short(height)
+                ));
+            }
+        }
+        let dwell = cycle.dwell.unwrap_or(0.0);
+        if !(0.0..=LONGEST_DWELL).contains(&dwell) {
+            return Err(format!(
+                "a dwell of {} s: from 0 to {LONGEST_DWELL} s is possible",
+                short(dwell)
+            ));
+        }
         let bottom = -libm::fabs(depth) * scale;
         let retract = cycle
             .retract
@@ -115,7 +136,7 @@ impl DrillCycle {
             bottom,
             retract,
             peck,
-            dwell: cycle.dwell.unwrap_or(0.0),
+            dwell,
             feed_out: is("BORE") || is("REAM"),
         })
     }

@@ -3,6 +3,8 @@
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use post_grammar::{Rotate, Sense};
 
+use super::limits::MOST_DEGREES;
+
 /// The frame in force.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Frame {
@@ -48,7 +50,8 @@ impl Frame {
         y: Vector3<f64>,
     ) -> Result<(), &'static str> {
         let z = x.cross(&y);
-        if (z.norm() - 1.0).abs() > 1e-3 {
+        let is_one = |length: f64| (length - 1.0).abs() <= 1e-3;
+        if ![x, y, z].iter().all(|vector| is_one(vector.norm())) {
             return Err("X and Y of this MSYS are not two unit vectors at a right angle");
         }
         // Seven decimals leave the axes a little off: make them a rotation.
@@ -63,7 +66,7 @@ impl Frame {
     /// axis (`A`, `B`, `C`) and where it stands, radians.
     ///
     /// # Errors
-    /// If no axis is named.
+    /// If no axis is named, or the angle is none.
     pub(crate) fn rotate(&mut self, rotate: &Rotate) -> Result<(char, f64), &'static str> {
         let place = rotate
             .axis
@@ -83,6 +86,9 @@ impl Frame {
         } else {
             angle
         };
+        if angle.abs() > MOST_DEGREES.to_radians() {
+            return Err("this index move turns by more than a hundred turns");
+        }
         let eighth = std::f64::consts::FRAC_PI_4;
         let near = (angle / eighth).round() * eighth;
         self.index[place] = if (angle - near).abs() < NEAR {

@@ -4,6 +4,7 @@ mod arc;
 mod cycle;
 mod frame;
 mod interpret;
+pub mod limits;
 mod spline;
 mod step;
 mod word_census;

@@ -57,6 +57,32 @@ impl Spline {
         self.points.last().copied().unwrap_or_default()
     }
 
+    /// How many chords [`Spline::flatten`] makes; none if they cannot be counted.
+    pub fn chords(&self, tolerance: f64) -> Option<u64> {
+        let mut chords = 0.0;
+        for span in DEGREE..self.points.len() {
+            if self.knots[span + 1] > self.knots[span] {
+                chords += self.count(span, tolerance).0;
+            }
+        }
+        (chords < 1e15).then_some(chords as u64)
+    }
+
+    /// Chords of one knot span, and the bound on its second derivative times the square of its width, mm. No number
+    /// if the knots lie so close that there is none.
+    fn count(&self, span: usize, tolerance: f64) -> (f64, f64) {
+        let (from, to) = (self.knots[span], self.knots[span + 1]);
+        let width = to - from;
+        let ends = [from, to].map(|end| self.second(span, end).norm());
+        // `max` would take what is no number for the other.
+        let bend = match ends.iter().any(|bend| bend.is_nan()) {
+            true => f64::NAN,
+            false => ends[0].max(ends[1]) * width * width,
+        };
+        let count = libm::ceil(libm::sqrt(bend / (8.0 * tolerance)));
+        (if count < 1.0 { 1.0 } else { count }, bend)
+    }
+
     /// Calls `emit` with the ends of chords that stay within `tolerance` mm, and how far each strays.
     ///
     /// In one knot span the second derivative is linear, so it is largest at an end of the span, and a chord
@@ -68,13 +94,7 @@ impl Spline {
                 continue;
             }
             let width = to - from;
-            let bend = self
-                .second(span, from)
-                .norm()
-                .max(self.second(span, to).norm())
-                * width
-                * width;
-            let count = libm::ceil(libm::sqrt(bend / (8.0 * tolerance))).max(1.0);
+            let (count, bend) = self.count(span, tolerance);
             let stray = bend / (8.0 * count * count);
             for piece in 1..=count as u64 {
                 emit(self.at(span, from + width * piece as f64 / count), stray);
@@ -174,6 +194,26 @@ mod tests {
                     .fold(f64::INFINITY, f64::min);
                 assert!(nearest <= tolerance, "{nearest} at {u}");
             }
+        }
+    }
+
+    #[test]
+    fn chords_are_counted_before_they_are_made() {
+        for tolerance in [1.0, 0.01, 0.001] {
+            let mut made = 0;
+            wave().flatten(tolerance, &mut |_, _| made += 1);
+            assert_eq!(wave().chords(tolerance), Some(made));
+        }
+        let points = vec![
+            Vector3::zeros(),
+            Vector3::x(),
+            Vector3::y(),
+            Vector3::z(),
+            Vector3::x(),
+        ];
+        for knot in [1e-300, 1e-320, 1e-200] {
+            let spline = Spline::new(&[knot, 1.0], points.clone()).unwrap();
+            assert_eq!(spline.chords(0.001), None, "{knot}");
         }
     }
 

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use post_grammar::{MajorWord, Usage};
 use post_machine::diagnostic::{Diagnostic, Place, nearest};
 
+use super::limits::MOST_WORDS;
+
 /// What to do with a word that is not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unknown {
@@ -34,11 +36,20 @@ struct WordCount {
 }
 
 impl WordCensus {
-    /// Counts a word; `place` is asked for its first occurrence alone.
-    pub(crate) fn count(&mut self, word: &str, usage: Usage, place: impl FnOnce() -> Place) {
+    /// Counts a word; `place` is asked for its first occurrence alone. False if it is one word too many.
+    #[must_use]
+    pub(crate) fn count(
+        &mut self,
+        word: &str,
+        usage: Usage,
+        place: impl FnOnce() -> Place,
+    ) -> bool {
         if let Some(count) = self.counts.get_mut(word) {
             count.count += 1;
-            return;
+            return true;
+        }
+        if self.counts.len() >= MOST_WORDS {
+            return false;
         }
         let count = WordCount {
             usage,
@@ -46,6 +57,7 @@ impl WordCensus {
             first: place(),
         };
         self.counts.insert(word.to_owned(), count);
+        true
     }
 
     /// Counts a word at `place` that is not carried out because the user allows it; `instead` is what is done.

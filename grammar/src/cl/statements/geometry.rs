@@ -17,7 +17,7 @@ pub(crate) fn goto(items: &mut Items<'_, '_>) -> Read<Statement> {
             edge: [u, v, w],
         });
     }
-    let (point, axis) = items.point(FORM)?;
+    let (point, axis) = items.point_or("3, 6 or 9", FORM)?;
     Ok(Statement::Goto { point, axis })
 }
 

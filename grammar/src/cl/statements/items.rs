@@ -4,9 +4,10 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::{Read, other};
-use crate::cl::line::{Item, Line};
+use crate::cl::line::{Item, Line, SHOWN};
 use crate::cl::record::{Direction, Point, Statement};
 use crate::fault::SyntaxFault;
+use crate::text::excerpt;
 
 /// The items of a line, taken one by one.
 pub(crate) struct Items<'l, 't> {
@@ -92,12 +93,17 @@ impl<'l, 't> Items<'l, 't> {
 
     /// All items: a point, or a point and a tool axis.
     pub(super) fn point(&self, form: &str) -> Read<(Point, Option<Direction>)> {
+        self.point_or("3 or 6", form)
+    }
+
+    /// [`Items::point`], where `counts` says how many numbers there may be in all forms of the word.
+    pub(super) fn point_or(&self, counts: &str, form: &str) -> Read<(Point, Option<Direction>)> {
         if let Some(point) = self.exactly() {
             return Ok((point, None));
         }
         match self.exactly() {
             Some([x, y, z, i, j, k]) => Ok(([x, y, z], Some([i, j, k]))),
-            None => Err(self.miscounted("3 or 6", self.numbers(form)?.len(), form)),
+            None => Err(self.miscounted(counts, self.numbers(form)?.len(), form)),
         }
     }
 
@@ -140,7 +146,7 @@ impl<'l, 't> Items<'l, 't> {
     pub(super) fn unexpected(&self, item: &Item<'_>, message: &str, form: &str) -> SyntaxFault {
         let message = match item.text {
             "" => format!("{message}, nothing stands between the commas"),
-            text => format!("{message}, not `{text}`"),
+            text => format!("{message}, not `{}`", excerpt(text, SHOWN)),
         };
         self.fault(item.span(), message, form)
     }

@@ -4,10 +4,8 @@ use nalgebra::Vector3;
 use post_grammar::{Circle, Record, Sense, Statement};
 
 use super::{Interpreter, Pending};
+use crate::program::limits::MOST_SPLINE_NUMBERS;
 use crate::program::{Arc, ArcStep, Spline, SplineStep, Step};
-
-/// Knots or control points of one spline; a longer one would not stream.
-const MOST_SPLINE_NUMBERS: usize = 1_000_000;
 
 /// Ends of an arc whose distances from its centre differ by more are no arc: mm.
 const ARC_MISMATCH: f64 = 0.1;
@@ -38,7 +36,9 @@ impl Interpreter {
             Some(Sense::Clockwise) => -Vector3::from(circle.axis),
             _ => Vector3::from(circle.axis),
         };
-        let centre = self.point(circle.centre);
+        let Some(centre) = self.point(record, circle.centre) else {
+            return;
+        };
         let arc = match Arc::new(start, end, centre, axis, circle.turns.unwrap_or(1)) {
             Ok(arc) => arc,
             Err(message) => {
@@ -110,7 +110,13 @@ impl Interpreter {
     }
 
     pub(super) fn spline_data(&mut self, record: &Record<'_>) {
-        let scale = self.scale;
+        let point = match &record.statement {
+            Statement::Control { point, .. } => match self.point(record, *point) {
+                Some(point) => point,
+                None => return,
+            },
+            _ => Vector3::zeros(),
+        };
         let Some(Pending::Spline { knots, points }) = &mut self.pending else {
             self.fault(
                 record,
@@ -132,7 +138,7 @@ impl Interpreter {
         }
         match &record.statement {
             Statement::Knot(numbers) => knots.extend_from_slice(numbers),
-            Statement::Control { point, axis: None } => points.push(Vector3::from(*point) * scale),
+            Statement::Control { axis: None, .. } => points.push(point),
             _ => self.fault(
                 record,
                 "spline",

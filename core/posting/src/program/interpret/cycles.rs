@@ -1,9 +1,10 @@
 //! Cycles.
 
 use nalgebra::Vector3;
+use post_grammar::text::excerpt;
 use post_grammar::{Cycle, CycleDefinition, Record};
 
-use super::{FeedWord, Interpreter};
+use super::{FeedWord, Interpreter, SHOWN_NAME};
 use crate::program::{CycleStep, DrillCycle, Pace, Step};
 
 impl Interpreter {
@@ -31,8 +32,9 @@ impl Interpreter {
         axis: Option<[f64; 3]>,
     ) {
         self.rapid = false;
-        if self.set_axis(record, axis) {
-            let tip = self.point(point);
+        if self.set_axis(record, axis)
+            && let Some(tip) = self.point(record, point)
+        {
             self.arrive(tip);
         }
     }
@@ -81,7 +83,10 @@ impl Interpreter {
             self.warn(
                 record,
                 "cycle",
-                format!("of this cycle is left out: {}", left.join(", ")),
+                format!(
+                    "of this cycle is left out: {}",
+                    excerpt(&left.join(", "), SHOWN_NAME)
+                ),
             );
         }
         let Some(feed) = feed.filter(|feed| *feed != FeedWord::Pace(Pace::Rapid)) else {

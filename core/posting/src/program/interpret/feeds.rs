@@ -4,6 +4,7 @@ use post_grammar::{FeedRate, FeedUnit, Record, Units};
 
 use super::{FeedWord, Interpreter, millimetres};
 use crate::program::Pace;
+use crate::program::limits::{FEEDS, FEEDS_A_TURN, FEEDS_BY_TIME, short};
 
 impl Interpreter {
     /// A feed word as the spindle turns now.
@@ -14,9 +15,9 @@ impl Interpreter {
         }
         match (feed, self.rpm) {
             (FeedWord::Pace(pace), _) => Some(pace),
-            (FeedWord::PerRevolution(feed), Some(rpm)) if rpm > 0.0 => {
-                Some(Pace::PerMinute(feed * rpm))
-            }
+            (FeedWord::PerRevolution(feed), Some(rpm)) if rpm > 0.0 => self
+                .in_range(record, (feed * rpm, FEEDS, "mm/min"))
+                .map(Pace::PerMinute),
             (FeedWord::PerRevolution(_), _) => {
                 self.fault(
                     record,
@@ -83,15 +84,39 @@ impl Interpreter {
             Some(FeedUnit::MillimetresPerRevolution) => (true, length(self, Units::Millimetre)),
             Some(FeedUnit::InchesPerRevolution) => (true, length(self, Units::Inch)),
             Some(FeedUnit::InverseTime) => {
-                return Some(FeedWord::Pace(Pace::InverseTime(value)));
+                return self
+                    .in_range(record, (value, FEEDS_BY_TIME, "moves a minute"))
+                    .map(|feed| FeedWord::Pace(Pace::InverseTime(feed)));
             }
             Some(FeedUnit::Rapid) => return Some(FeedWord::Pace(Pace::Rapid)),
         };
-        Some(if per_revolution {
-            FeedWord::PerRevolution(value * scale)
-        } else {
-            FeedWord::Pace(Pace::PerMinute(value * scale))
-        })
+        let feed = value * scale;
+        if per_revolution {
+            return self
+                .in_range(record, (feed, FEEDS_A_TURN, "mm a revolution"))
+                .map(FeedWord::PerRevolution);
+        }
+        self.in_range(record, (feed, FEEDS, "mm/min"))
+            .map(|feed| FeedWord::Pace(Pace::PerMinute(feed)))
+    }
+
+    /// The value, if it lies within its limits; else a fault.
+    fn in_range(
+        &mut self,
+        record: &Record<'_>,
+        (value, [least, most], unit): (f64, [f64; 2], &str),
+    ) -> Option<f64> {
+        if (least..=most).contains(&value) {
+            return Some(value);
+        }
+        let message = format!(
+            "a feed of {} {unit}: from {} to {} {unit} is possible",
+            short(value),
+            short(least),
+            short(most)
+        );
+        self.fault(record, "feed", message, "let the CAM system write another");
+        None
     }
 }
 

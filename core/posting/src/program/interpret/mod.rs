@@ -11,6 +11,7 @@ mod tools;
 mod words;
 
 use nalgebra::Vector3;
+use post_grammar::text::{as_remark, excerpt};
 use post_grammar::{
     Circle, Coolant as CoolantWord, Delay, Delta, Record, Side, Statement, Units, Usage,
 };
@@ -19,6 +20,7 @@ use post_plugin::{Coolant, SpindleSense};
 pub use reading::{Reading, ToldSpindle};
 
 use super::frame::Frame;
+use super::limits::{LONGEST_DWELL, MOST_WORDS, direction, short};
 use super::word_census::WordCensus;
 use super::{Command, DrillCycle, Pace, PlaneStep, Step};
 use post_machine::diagnostic::{Diagnostic, Place};
@@ -119,6 +121,9 @@ enum FeedWord {
     /// mm.
     PerRevolution(f64),
 }
+
+/// So much of a name or a text of the file is told in a message, in bytes.
+const SHOWN_NAME: usize = 80;
 
 /// A curve that is not yet complete.
 #[derive(Clone, Debug)]
@@ -269,20 +274,18 @@ impl Interpreter {
         }
         match &record.statement {
             Statement::Goto { point, axis } => self.goto(record, *point, *axis, emit),
-            Statement::GotoEdge { point, axis, edge } => {
-                match Vector3::from(*edge).try_normalize(1e-9) {
-                    Some(edge) => {
-                        self.edge = edge;
-                        self.goto(record, *point, Some(*axis), emit);
-                    }
-                    None => self.fault(
-                        record,
-                        "axis",
-                        "the direction of the leading edge is null".to_owned(),
-                        "the last three of nine numbers say where the edge points",
-                    ),
+            Statement::GotoEdge { point, axis, edge } => match direction(Vector3::from(*edge)) {
+                Some(edge) => {
+                    self.edge = edge;
+                    self.goto(record, *point, Some(*axis), emit);
                 }
-            }
+                None => self.fault(
+                    record,
+                    "axis",
+                    "the direction of the leading edge is null".to_owned(),
+                    "the last three of nine numbers say where the edge points",
+                ),
+            },
             Statement::Head(name) => {
                 self.tip = None;
                 emit(Step::Command(Command::Head(name.clone())));
@@ -314,7 +317,9 @@ impl Interpreter {
                 self.goto(record, point.into(), None, emit);
             }
             Statement::From { point, axis } => {
-                let tip = self.point(*point);
+                let Some(tip) = self.point(record, *point) else {
+                    return;
+                };
                 if !self.set_axis(record, *axis) {
                     return;
                 }
@@ -362,8 +367,8 @@ impl Interpreter {
                     emit(Step::Command(Command::Preselect(*number)));
                 }
             }
-            Statement::ToolData { numbers, .. } => self.cutter(numbers, 2),
-            Statement::Cutter(numbers) => self.cutter(numbers, 6),
+            Statement::ToolData { numbers, .. } => self.cutter(record, numbers, 2),
+            Statement::Cutter(numbers) => self.cutter(record, numbers, 6),
             Statement::Units(units) => {
                 let scale = millimetres(self.reading.units.unwrap_or(*units));
                 if scale != self.scale && self.measured {
@@ -384,7 +389,9 @@ impl Interpreter {
                 }
             }
             Statement::Msys { origin, x, y } => {
-                let origin = self.point(*origin);
+                let Some(origin) = self.point(record, *origin) else {
+                    return;
+                };
                 let done = self
                     .frame
                     .set_msys(origin, Vector3::from(*x), Vector3::from(*y));
@@ -459,7 +466,7 @@ impl Interpreter {
                     "write ROTABL/AAXIS,…, BAXIS or CAXIS",
                 ),
             },
-            Statement::ToolAxis(axis) => match Vector3::from(*axis).try_normalize(1e-9) {
+            Statement::ToolAxis(axis) => match direction(Vector3::from(*axis)) {
                 Some(axis) => {
                     self.told_axis = Some(axis);
                     if self.frame.turned().is_none() {
@@ -468,11 +475,9 @@ impl Interpreter {
                 }
                 None => self.fault(record, "axis", "the tool axis is null".to_owned(), ""),
             },
-            Statement::Delay(Delay::Seconds(seconds)) => {
-                emit(Step::Command(Command::Dwell(*seconds)))
-            }
+            Statement::Delay(Delay::Seconds(seconds)) => self.dwell(record, *seconds, emit),
             Statement::Delay(Delay::Revolutions(turns)) => match self.rpm {
-                Some(rpm) if rpm > 0.0 => emit(Step::Command(Command::Dwell(turns * 60.0 / rpm))),
+                Some(rpm) if rpm > 0.0 => self.dwell(record, turns * 60.0 / rpm, emit),
                 _ => self.fault(
                     record,
                     "dwell",
@@ -486,10 +491,11 @@ impl Interpreter {
                 self.end_spline(record, emit);
                 // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
                 self.axis = Vector3::z();
-                self.tool_name = tool.clone().unwrap_or_default();
-                self.path = Some(name.clone());
+                self.tool_name = as_remark(tool.clone().unwrap_or_default());
+                let name = as_remark(name.clone());
+                self.path = Some(excerpt(&name, SHOWN_NAME).into_owned());
                 self.paths = true;
-                emit(Step::Command(Command::Operation(name.clone())));
+                emit(Step::Command(Command::Operation(name)));
             }
             Statement::EndOfPath => {
                 self.end_spline(record, emit);
@@ -497,7 +503,7 @@ impl Interpreter {
                 emit(Step::Command(Command::OperationEnd));
             }
             Statement::PartName(text) | Statement::Print(text) => {
-                emit(Step::Command(Command::Comment(text.clone())))
+                emit(Step::Command(Command::Comment(as_remark(text.clone()))))
             }
             Statement::Insert(text) => self.insert(record, text, emit),
             Statement::Csys(_) | Statement::Remark(_) => {
@@ -516,9 +522,35 @@ impl Interpreter {
         }
     }
 
+    fn dwell(&mut self, record: &Record<'_>, seconds: f64, emit: &mut impl FnMut(Step)) {
+        if !(0.0..=LONGEST_DWELL).contains(&seconds) {
+            self.fault(
+                record,
+                "dwell",
+                format!(
+                    "a dwell of {} s: from 0 to {LONGEST_DWELL} s is possible",
+                    short(seconds)
+                ),
+                "let the CAM system write another; a stop is OPSTOP or STOP",
+            );
+            return;
+        }
+        emit(Step::Command(Command::Dwell(seconds)));
+    }
+
     fn count(&mut self, word: &str, record: &Record<'_>, usage: Usage) {
-        self.census
-            .count(word, usage, || record_place(&self.reading.file, record));
+        let file = &self.reading.file;
+        let counted = self
+            .census
+            .count(word, usage, || record_place(file, record));
+        if !counted {
+            self.fault(
+                record,
+                "words",
+                format!("{word} is one word too many: more than {MOST_WORDS} different ones without an effect"),
+                "is this a cutter-location file?",
+            );
+        }
     }
 
     fn place(&self, record: &Record<'_>) -> Option<Place> {
@@ -550,13 +582,8 @@ impl Interpreter {
 
 /// Where a record stands.
 pub(crate) fn record_place(file: &str, record: &Record<'_>) -> Place {
-    let text = record.text().into_owned();
-    Place {
-        file: file.to_owned(),
-        line: record.line,
-        span: 0..text.len(),
-        text,
-    }
+    let text = record.text();
+    Place::new(file, record.line, &text, 0..text.len())
 }
 
 /// mm in one unit.

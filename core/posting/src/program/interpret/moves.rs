@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use post_grammar::Record;
 
 use super::{Interpreter, Pending};
+use crate::program::limits::{MOST_COORDINATE, is_near};
 use crate::program::{Motion, Pace, Step};
 
 impl Interpreter {
@@ -22,7 +23,9 @@ impl Interpreter {
         if self.due {
             self.before_move(record, emit);
         }
-        let tip = self.point(point);
+        let Some(tip) = self.point(record, point) else {
+            return;
+        };
         if let Some(pace) = self.pace(record) {
             self.arrive(tip);
             emit(Step::Move(self.motion(tip, pace)));
@@ -58,7 +61,9 @@ impl Interpreter {
             return;
         }
         self.before_move(record, emit);
-        let tip = self.point(point);
+        let Some(tip) = self.point(record, point) else {
+            return;
+        };
         if let Some(circle) = pending {
             self.arc(record, &circle, tip, start_axis, emit);
         } else if let Some((drill, feed)) = self.cycle
@@ -76,11 +81,16 @@ impl Interpreter {
         };
         let axis = Vector3::from(axis);
         let square = axis.norm_squared();
-        if square < 1e-12 {
+        // Of any length but one whose square is lost.
+        if !(1e-12..1e18).contains(&square) {
+            let message = match square < 1e-12 {
+                true => "the tool axis is null",
+                false => "the tool axis has no length that a direction could have",
+            };
             self.fault(
                 record,
                 "axis",
-                "the tool axis is null".to_owned(),
+                message.to_owned(),
                 "i, j, k are a direction, from the tip to the holder",
             );
             return false;
@@ -89,9 +99,29 @@ impl Interpreter {
         true
     }
 
+    /// A point of the file in mm; a fault if no machine could reach it.
     #[inline]
-    pub(super) fn point(&self, point: [f64; 3]) -> Vector3<f64> {
-        Vector3::from(point) * self.scale
+    pub(super) fn point(&mut self, record: &Record<'_>, point: [f64; 3]) -> Option<Vector3<f64>> {
+        let point = Vector3::from(point) * self.scale;
+        if is_near(point) {
+            return Some(point);
+        }
+        self.far(record, point);
+        None
+    }
+
+    /// A point that no machine could reach.
+    #[cold]
+    fn far(&mut self, record: &Record<'_>, point: Vector3<f64>) {
+        self.fault(
+            record,
+            "coordinate",
+            format!(
+                "a coordinate of {:.3e} mm: none is larger than {MOST_COORDINATE:e} mm",
+                point.amax()
+            ),
+            "is a decimal point missing, or are the units wrong (--units)?",
+        );
     }
 
     /// How fast the next move goes; a fault if nothing says so.

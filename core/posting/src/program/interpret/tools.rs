@@ -1,11 +1,13 @@
 //! Tools, cutters, spindle and radius compensation.
 
+use post_grammar::text::excerpt;
 use post_grammar::{
     Argument, Cutcom, LoadTool, Record, Sense, Side, Spindle as SpindleWord, SpindleUnit,
 };
 use post_plugin::{Compensation, Spindle, SpindleSense};
 
-use super::{Described, Interpreter};
+use super::{Described, Interpreter, SHOWN_NAME};
+use crate::program::limits::MOST_TOOLS;
 use crate::program::{Command, Step, Tool};
 use post_machine::description::{CompensationOnCentre, ToolLength};
 use post_machine::diagnostic::Diagnostic;
@@ -189,14 +191,17 @@ impl Interpreter {
                     Argument::Word(word) => word.clone(),
                 })
                 .collect();
-            let message = format!("of this tool change is left out: {}", rest.join(", "));
+            let message = format!(
+                "of this tool change is left out: {}",
+                excerpt(&rest.join(", "), SHOWN_NAME)
+            );
             self.warn(record, "tool", message);
         }
         self.load(record, tool, emit);
     }
 
     /// A cutter's description; `length` is where its length stands.
-    pub(super) fn cutter(&mut self, numbers: &[f64], length: usize) {
+    pub(super) fn cutter(&mut self, record: &Record<'_>, numbers: &[f64], length: usize) {
         let cutter = Described {
             length,
             numbers: numbers.to_vec(),
@@ -215,6 +220,16 @@ impl Interpreter {
             let place = known.unwrap_or(self.cutters.len());
             if known.is_none() {
                 self.cutters.push(cutter.clone());
+            }
+            if self.cutters.len() > MOST_TOOLS {
+                self.cutters.pop();
+                self.fault(
+                    record,
+                    "tool",
+                    format!("more than {MOST_TOOLS} different cutters"),
+                    "is this the CL file of one program?",
+                );
+                return;
             }
             self.cutter_due = u32::try_from(place + 1).ok();
         } else {

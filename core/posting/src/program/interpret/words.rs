@@ -1,9 +1,10 @@
 //! Words without a meaning of their own, and `INSERT`: carried out by a rule of the machine file, left out, or refused.
 
+use post_grammar::text::{as_remark, escaped, excerpt, is_unprintable};
 use post_grammar::{Argument, Record, Usage};
 use post_machine::description::Insert;
 
-use super::Interpreter;
+use super::{Interpreter, SHOWN_NAME};
 use crate::program::{Command, Step, Unknown};
 
 impl Interpreter {
@@ -35,7 +36,9 @@ impl Interpreter {
         }
         self.count(word, record, usage);
         if usage == Usage::Unknown && self.reading.unknown == Unknown::Pass {
-            emit(Step::Command(Command::Comment(record.text().into_owned())));
+            emit(Step::Command(Command::Comment(as_remark(
+                record.text().into_owned(),
+            ))));
         }
     }
 
@@ -74,11 +77,25 @@ impl Interpreter {
 
     /// A line of the user's own.
     pub(super) fn insert(&mut self, record: &Record<'_>, text: &str, emit: &mut impl FnMut(Step)) {
+        // Tabs are blanks, here as in all of a CL file.
+        let text = text.replace('\t', " ");
+        let shown = escaped(&excerpt(&text, SHOWN_NAME), &[]).into_owned();
         if self.reading.insert == Insert::Literal {
-            emit(Step::Command(Command::Literal(text.to_owned())));
+            match text.chars().find(|letter| is_unprintable(*letter)) {
+                None => emit(Step::Command(Command::Literal(text))),
+                Some(odd) => self.fault(
+                    record,
+                    "insert",
+                    format!(
+                        "INSERT {shown} would be a line of the program, and U+{:04X} in it ends a line or hides text",
+                        u32::from(odd)
+                    ),
+                    "take the character out, or let INSERT be a remark: --set control.insert=comment",
+                ),
+            }
             return;
         }
-        match Inserted::of(text) {
+        match Inserted::of(&text) {
             Inserted::Remark => {}
             Inserted::Code if self.reading.allows("INSERT") => {
                 self.allow("INSERT", "is written as a remark", record);
@@ -86,16 +103,16 @@ impl Interpreter {
             Inserted::Code => self.fault(
                 record,
                 "insert",
-                format!("INSERT {text} is a line for the control, and would be written as a remark"),
+                format!("INSERT {shown} is a line for the control, and would be written as a remark"),
                 "--set control.insert=literal writes what INSERT holds as lines of the program; --allow INSERT as remarks",
             ),
             Inserted::Mixed => self.warn(
                 record,
                 "insert",
-                format!("INSERT {text} is written as a remark, and holds a G or M word"),
+                format!("INSERT {shown} is written as a remark, and holds a G or M word"),
             ),
         }
-        emit(Step::Command(Command::Comment(text.to_owned())));
+        emit(Step::Command(Command::Comment(as_remark(text))));
     }
 }
 
@@ -123,6 +140,9 @@ enum Inserted {
 impl Inserted {
     fn of(text: &str) -> Self {
         let code = without_remarks(text);
+        if is_statement(&code) {
+            return Self::Code;
+        }
         let (mut whole, mut switches, mut any) = (true, false, false);
         for piece in code.split_whitespace() {
             match words(piece) {
@@ -139,6 +159,68 @@ impl Inserted {
             (false, false) => Self::Remark,
         }
     }
+}
+
+/// What lines of a program begin with that have no words of a letter and a number: those of conversational controls,
+/// and what calls, repeats, jumps or moves the frame. `#` stands for a number, `…` for the rest of a line.
+const STATEMENTS: &[&str] = &[
+    // Heidenhain
+    "CALL LBL …",
+    "CALL PGM …",
+    "CALL SELECTED …",
+    "LBL # …",
+    "CYCL DEF …",
+    "CYCL CALL …",
+    "TOOL CALL …",
+    "TOOL DEF …",
+    "FN # …",
+    "PLANE RESET …",
+    "PLANE SPATIAL …",
+    "FUNCTION …",
+    "L X# …",
+    "L Y# …",
+    "L Z# …",
+    // Siemens
+    "TRAORI …",
+    "TRAFOOF …",
+    "TRANS X# …",
+    "TRANS Y# …",
+    "TRANS Z# …",
+    "ATRANS …",
+    "ROT X# …",
+    "ROT Y# …",
+    "ROT Z# …",
+    "AROT …",
+    "SUPA …",
+    "GOTOF …",
+    "GOTOB …",
+    // Fanuc and LinuxCNC
+    "GOTO # …",
+    "IF [ …",
+    "IF # …",
+    "WHILE [ …",
+];
+
+/// The text begins as one of [`STATEMENTS`].
+fn is_statement(text: &str) -> bool {
+    // A variable is a number: `#1`; what opens an expression stands by itself.
+    let spaced = text.to_ascii_uppercase().replace('[', " [ ");
+    let is_number = |piece: &str| {
+        let digits = piece.trim_start_matches(['+', '-', '#', 'Q', 'R']);
+        digits.starts_with(|first: char| first.is_ascii_digit() || first == '.')
+    };
+    STATEMENTS.iter().any(|form| {
+        let mut pieces = spaced.split_whitespace();
+        form.split(' ').all(|wanted| {
+            let piece = pieces.next();
+            match (wanted.strip_suffix('#'), piece) {
+                _ if wanted == "…" => true,
+                (_, None) => false,
+                (Some(letter), Some(piece)) => piece.strip_prefix(letter).is_some_and(is_number),
+                (None, Some(piece)) => piece == wanted,
+            }
+        })
+    })
 }
 
 /// A text without what a control takes for a remark: what stands in parentheses, and what follows a semicolon.
@@ -197,6 +279,22 @@ mod tests {
             ("(FIRST) G55 ; SECOND", Inserted::Code),
             ("#100=5", Inserted::Code),
             ("R1=2", Inserted::Code),
+            ("CALL LBL 1", Inserted::Code),
+            ("call lbl 1 REP 3", Inserted::Code),
+            ("CYCL DEF 7.0 DATUM SHIFT", Inserted::Code),
+            ("LBL 0", Inserted::Code),
+            ("L X+10 R0 FMAX", Inserted::Code),
+            ("FN 0: Q1 = +5", Inserted::Code),
+            ("TOOL CALL 5 Z S1000", Inserted::Code),
+            ("TRAORI", Inserted::Code),
+            ("GOTO 100", Inserted::Code),
+            ("IF [#1 EQ 2] GOTO 10", Inserted::Code),
+            ("IF#1 EQ 2", Inserted::Remark),
+            ("CALL THE FOREMAN", Inserted::Remark),
+            ("IF IT RATTLES STOP", Inserted::Remark),
+            ("TOOL 5 IS LONG", Inserted::Remark),
+            ("ROT X AXIS FREE", Inserted::Remark),
+            ("M 5 SCREWS", Inserted::Remark),
             // Real ones of SolidWorks CAM.
             ("14MM CRB 4FL 32 LOC", Inserted::Remark),
             ("4.0mm JOBBER DRILL", Inserted::Remark),

@@ -1,0 +1,28 @@
+//! What a machine file may hold: beyond these it is a slip, or the file means harm.
+//!
+//! A file may come from a stranger. No part of it makes work or memory that grows faster than its text, and its text has an
+//! end.
+
+/// Longest machine file, in bytes, settings and what it extends each for itself. The largest of the library has 4 kB.
+pub const MOST_BYTES: usize = 1 << 20;
+
+/// A number, in the file's units. Larger ones say "without end", which has words of its own; their squares stay finite.
+pub(super) const MOST_NUMBER: f64 = 1e12;
+
+/// Parameters. One may be defined by all others, one behind another.
+pub(super) const MOST_PARAMETERS: usize = 1_000;
+
+/// Heads: each is a machine of its own.
+pub(super) const MOST_HEADS: usize = 32;
+
+/// Entries of `[tools]`, of `[cl.words]`, and positions of an indexed axis: they are gone through one by one.
+pub(super) const MOST_ENTRIES: usize = 2_000;
+
+/// Options of one plugin.
+pub(super) const MOST_OPTIONS: usize = 200;
+
+/// Groups of axes that exclude one another.
+pub(super) const MOST_GROUPS: usize = 32;
+
+/// Faults of a file that are told.
+pub(super) const MOST_FAULTS: usize = 50;

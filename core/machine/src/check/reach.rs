@@ -107,13 +107,24 @@ impl Reach {
             }
             cells.push(row);
         }
-        let share_of_sphere = shares.iter().skip(1).sum();
-        let mut all = f64::INFINITY;
-        let mut some: Option<(f64, f64)> = None;
-        for cell in 0..AZIMUTHS {
+        let borders = (0..AZIMUTHS).map(|cell| {
             let azimuth = TAU * cell as f64 / AZIMUTHS as f64;
-            let (first_gap, largest) = tilts(probe, azimuth);
-            all = all.min(first_gap.unwrap_or(-1.0));
+            (azimuth, tilts(probe, azimuth))
+        });
+        Self::over_an_area(probe, cells, shares, borders)
+    }
+
+    /// `borders` has for azimuths the tilt up to which all can be made (none if not even +Z), and the largest of all.
+    fn over_an_area(
+        probe: &Probe<'_>,
+        cells: Vec<Vec<usize>>,
+        shares: Vec<f64>,
+        borders: impl Iterator<Item = (f64, [Option<f64>; 2])>,
+    ) -> Self {
+        let mut all = Some(PI);
+        let mut some: Option<(f64, f64)> = None;
+        for (azimuth, [first_gap, largest]) in borders {
+            all = all.and_then(|all| Some(all.min(first_gap?)));
             if let Some(largest) = largest
                 && some.is_none_or(|(tilt, _)| largest > tilt + 1e-6)
             {
@@ -122,9 +133,9 @@ impl Reach {
         }
         Self {
             freedom: probe.freedom(),
-            share_of_sphere,
+            share_of_sphere: shares.iter().skip(1).sum(),
             shares_by_solutions: shares,
-            tilt_in_all_azimuths_deg: (all >= 0.0).then(|| all.to_degrees()),
+            tilt_in_all_azimuths_deg: all.map(f64::to_degrees),
             tilt_in_some_azimuth_deg: some.map(|(tilt, _)| tilt.to_degrees()),
             azimuth_of_largest_tilt_deg: some.map(|(_, azimuth)| azimuth.to_degrees()),
             map: Map {
@@ -144,29 +155,12 @@ impl Reach {
             let area = (libm::cos(band(row)) - libm::cos(band(row + 1))) / 2.0;
             share += area * cells.iter().sum::<usize>() as f64 / search::AZIMUTHS as f64;
         }
-        let firsts = borders.iter().map(|[first, _]| *first);
-        let all = firsts.reduce(|a, b| Some(a?.min(b?))).flatten();
-        let mut some: Option<(f64, f64)> = None;
-        for (cell, [_, last]) in borders.iter().enumerate() {
-            if let Some(tilt) = last
-                && some.is_none_or(|(most, _)| *tilt > most + 1e-6)
-            {
-                some = Some((*tilt, TAU * (cell as f64 + 0.5) / search::AZIMUTHS as f64));
-            }
-        }
+        let azimuth = |cell: usize| TAU * (cell as f64 + 0.5) / search::AZIMUTHS as f64;
+        let borders = borders.into_iter().enumerate();
+        let borders = borders.map(|(cell, border)| (azimuth(cell), border));
         Self {
-            freedom: probe.freedom(),
-            share_of_sphere: share,
             searched_every_deg: Some(band(1).to_degrees()),
-            shares_by_solutions: vec![1.0 - share, share],
-            tilt_in_all_azimuths_deg: all.map(f64::to_degrees),
-            tilt_in_some_azimuth_deg: some.map(|(tilt, _)| tilt.to_degrees()),
-            azimuth_of_largest_tilt_deg: some.map(|(_, azimuth)| azimuth.to_degrees()),
-            map: Map {
-                cells,
-                curve: Vec::new(),
-            },
-            ..Self::default()
+            ..Self::over_an_area(probe, cells, vec![1.0 - share, share], borders)
         }
     }
 
@@ -223,7 +217,7 @@ impl Reach {
 }
 
 /// Along one azimuth: the tilt up to which all can be made (none if not even +Z), and the largest of all.
-fn tilts(probe: &Probe<'_>, azimuth: f64) -> (Option<f64>, Option<f64>) {
+fn tilts(probe: &Probe<'_>, azimuth: f64) -> [Option<f64>; 2] {
     let made = |tilt: f64| probe.makes(direction(tilt, azimuth));
     let at = |step: usize| PI * step as f64 / STEPS as f64;
     let states: Vec<bool> = (0..=STEPS).map(|step| made(at(step))).collect();
@@ -246,5 +240,5 @@ fn tilts(probe: &Probe<'_>, azimuth: f64) -> (Option<f64>, Option<f64>) {
         end_of(run - 1)
     });
     let largest = states.iter().rposition(|state| *state).map(end_of);
-    (first_gap, largest)
+    [first_gap, largest]
 }

@@ -211,10 +211,11 @@ fn chains_without_an_answer_are_refused_with_the_reason() {
             Line("Z", &z, slide),
         ]
     };
+    let beside = |more: Vec<_>| linear().into_iter().chain(more).collect();
     let cases: Vec<(&str, Vec<Line<'_>>, &str)> = vec![
         (
             "[w b X Y Z W t]",
-            linear().into_iter().chain([Line("W", &z, slide)]).collect(),
+            beside(vec![Line("W", &z, slide)]),
             "4 linear axes move at once (X, Y, Z, W); the tip is placed by three",
         ),
         (
@@ -239,37 +240,28 @@ fn chains_without_an_answer_are_refused_with_the_reason() {
         ),
         (
             "[w A' b X Y Z B t]",
-            linear()
-                .into_iter()
-                .chain([Line("A", &a, turn), Line("B", &a, turn)])
-                .collect(),
+            beside(vec![Line("A", &a, turn), Line("B", &a, turn)]),
             "A and B turn about parallel axes: they cannot point the tool",
         ),
         (
             "[w A' B' b X Y Z C t]",
-            linear()
-                .into_iter()
-                .chain([
-                    Line("A", &a, turn),
-                    Line("B", &b, turn),
-                    Line("C", &c, turn),
-                ])
-                .collect(),
+            beside(vec![
+                Line("A", &a, turn),
+                Line("B", &b, turn),
+                Line("C", &c, turn),
+            ]),
             "3 rotary axes move at once (A, B, C); at most two can be free",
         ),
         (
             "[w A' B' C' b X Y Z U V W t]",
-            linear()
-                .into_iter()
-                .chain([
-                    Line("A", &a, turn),
-                    Line("B", &b, turn),
-                    Line("C", &c, turn),
-                    Line("U", &a, turn),
-                    Line("V", &b, turn),
-                    Line("W", &c, turn),
-                ])
-                .collect(),
+            beside(vec![
+                Line("A", &a, turn),
+                Line("B", &b, turn),
+                Line("C", &c, turn),
+                Line("U", &a, turn),
+                Line("V", &b, turn),
+                Line("W", &c, turn),
+            ]),
             "9 axes; at most 8 are possible",
         ),
     ];

@@ -131,7 +131,7 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
 
 /// What to do about a linear axis that leaves its travel.
 pub(crate) const FINDS_A_MOUNT: &str =
-    "`post place CL-FILE --machine MACHINE` finds the mount that fits, or says that none does";
+    "`post place CL-FILE --machine MACHINE` finds the --mount that fits, or says that none does";
 
 /// `312.400 mm, its limit is 300.000 mm, passed by 12.400 mm`.
 pub(crate) fn beyond(machine: &Machine, over: &OverTravel) -> String {

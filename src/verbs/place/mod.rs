@@ -45,8 +45,8 @@ pub struct PlaceArguments {
     #[arg(long, value_name = "DEG", num_args = 0..=1, require_equals = true, default_missing_value = "15", value_parser = step)]
     search_turn: Option<f64>,
 
-    /// No more dry runs than this.
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    /// No more dry runs than this; three are needed.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(3..))]
     runs: u32,
 
     /// Draws the travel of each axis, what the program uses and what is left; `-` is standard output,

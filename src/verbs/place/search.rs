@@ -12,6 +12,9 @@ use crate::failure::Failure;
 /// Mounts that are found one from the other before a route is given up: each is bound by what was found at those before.
 const ROUNDS: usize = 4;
 
+/// Dry runs that a mount takes: with travel opened, to see what is left, and there, to see that it holds.
+const A_LOOK: u32 = 2;
+
 /// Steps of the search for a mount that costs less, mm.
 const STEPS: [f64; 5] = [100.0, 40.0, 15.0, 5.0, 1.0];
 
@@ -124,7 +127,7 @@ impl<'s, 'a> Search<'s, 'a> {
             best: trial,
             present,
             runs: self.trials.runs,
-            spent: self.trials.spent(),
+            spent: self.trials.left() < A_LOOK,
             evenly,
         })
     }
@@ -146,7 +149,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 }
                 Err(found) => nothing = nothing.or(Some(found)),
             }
-            if self.trials.spent() {
+            if self.trials.left() < A_LOOK {
                 break;
             }
         }
@@ -212,7 +215,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 Ok(_) => {}
                 Err(findings) => refused = findings,
             }
-            if self.trials.spent() || !(refused.is_empty() || out_of_travel(&refused)) {
+            if self.trials.left() < A_LOOK || !(refused.is_empty() || out_of_travel(&refused)) {
                 break;
             }
         }
@@ -246,7 +249,7 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     fn better(&mut self, best: &mut Option<Seated>, turn: f64) -> Result<(), Failure> {
-        if self.trials.spent() {
+        if self.trials.left() < A_LOOK {
             return Ok(());
         }
         // From -180 exclusive to 180 inclusive, and no more digits than one would set.
@@ -270,7 +273,7 @@ impl<'s, 'a> Search<'s, 'a> {
         let mut least = trial.clone();
         descend(start, &STEPS, |mount: Vector3<f64>| {
             let inside = bodies.iter().all(|body| body.room(&mount) >= margin);
-            if !inside || fault.is_some() || self.trials.spent() {
+            if !inside || fault.is_some() || self.trials.left() == 0 {
                 return None;
             }
             let mount = tidy(&mount);

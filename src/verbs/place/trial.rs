@@ -76,9 +76,9 @@ impl<'a> Trials<'a> {
         &self.dry_run.name
     }
 
-    /// No more dry runs are to be made.
-    pub fn spent(&self) -> bool {
-        self.runs >= self.most
+    /// How many dry runs may still be made.
+    pub fn left(&self) -> u32 {
+        self.most.saturating_sub(self.runs)
     }
 
     /// The machine with the part where the command line has it.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-/// The points `p` with `normal · p + least room ≤ most`.
+/// The points `p` with `normal · p ≤ most`; what `normal · p` leaves to `most` is the room there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
     /// How far the bounded value goes for one mm of the point along each axis.

@@ -110,7 +110,7 @@ fn what_a_plugin_prints_is_no_part_of_the_program() {
     assert!(done.out.starts_with("G0 X1\n") && done.out.ends_with("G0 X1\n"));
     assert!(!done.out.contains("Z-500"), "{}", done.out);
     // By another name it is the same stream.
-    let (named, _) = post_with("PRINTS", &["-o", "/dev/stdout"]);
+    let (named, _) = post_with("PRINTS", &["-q", "-o", "/dev/stdout"]);
     assert_eq!((named.code, &named.out), (0, &done.out), "{}", named.err);
     // It is not lost either.
     assert!(done.err.contains("G0 Z-500\n"), "{}", done.err);

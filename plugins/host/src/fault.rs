@@ -183,10 +183,10 @@ impl fmt::Display for PluginFault {
                 most,
             } => {
                 let (limit, what) = match found < wanted {
-                    true => (wanted, "at least"),
-                    false => (most, "at most"),
+                    true => (wanted, "it must have at least"),
+                    false => (most, "it can have at most"),
                 };
-                write!(f, "its {of} has {found} bytes, {what} {limit} can be")
+                write!(f, "its {of} has {found} bytes, {what} {limit}")
             }
             Reason::NotAligned { what } => {
                 write!(f, "its `{what}` is at an address that no table can have")

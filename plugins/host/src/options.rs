@@ -3,6 +3,7 @@
 use post_plugin::{OptionKind, OptionSpec, Value};
 
 use crate::OptionFault;
+use crate::shown::is_odd;
 
 /// Value of an option, as a machine file gives it.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,11 +92,11 @@ pub(crate) fn check(spec: &OptionSpec, value: &GivenValue) -> Result<GivenValue,
     };
     match (spec.kind, value) {
         (OptionKind::Flag, GivenValue::Flag(_)) => Ok(value.clone()),
-        (OptionKind::Text, GivenValue::Text(text)) if text.contains(char::is_control) => {
+        (OptionKind::Text, GivenValue::Text(text)) if text.contains(is_odd) => {
             fault("must be one line of text".to_owned(), &[])
         }
         (OptionKind::Lines, GivenValue::Text(text))
-            if text.contains(|letter: char| letter.is_control() && letter != '\n') =>
+            if text.contains(|letter: char| is_odd(letter) && letter != '\n') =>
         {
             fault("holds a character that no line has".to_owned(), &[])
         }
@@ -225,6 +226,10 @@ mod tests {
         let text = |text: &str| GivenValue::Text(text.to_owned());
         assert_eq!(
             fault("note", text("A\nB")).message,
+            "must be one line of text"
+        );
+        assert_eq!(
+            fault("note", text("A\u{2028}B")).message,
             "must be one line of text"
         );
         assert_eq!(

@@ -244,11 +244,11 @@ fn a_library_that_is_no_plugin_is_refused() {
     assert!(refusal("LAYOUT").starts_with("it was built against other structs"));
     assert_eq!(
         refusal("SIZE"),
-        "its PostPlugin has 4000000000 bytes, at most 65632 can be"
+        "its PostPlugin has 4000000000 bytes, it can have at most 65632"
     );
     assert_eq!(
         refusal("TABLE_SIZE"),
-        "its PostDialect has 32 bytes, at least 40 can be"
+        "its PostDialect has 32 bytes, it must have at least 40"
     );
     assert_eq!(refusal("NULL_WRITE"), "its `write` is null");
     assert_eq!(refusal("NULL_TABLE"), "its `dialect` is null");

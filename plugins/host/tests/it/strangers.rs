@@ -108,7 +108,7 @@ fn what_a_library_declares_is_bounded_and_stands_where_it_can() {
     for (flag, message) in [
         (
             "TABLE_HUGE",
-            "its PostDialect has 4000000000 bytes, at most 65576 can be",
+            "its PostDialect has 4000000000 bytes, it can have at most 65576",
         ),
         (
             "ALIGN",

@@ -201,7 +201,7 @@ fn words_and_findings_are_counted_to_an_end() {
         let _ = writeln!(words, "W{}/1", letters(number));
     }
     let run = posted("vmc", &file(&words));
-    refused(&run, &["error[words]", "more than 1000 different ones"]);
+    refused(&run, &["error[words]", "more than 1000 different words"]);
     let run = bounded(&["words", "-"], file(&words).as_bytes());
     refused(&run, &["more than 1000 different words"]);
 

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use clap::builder::{EnumValueParser, TypedValueParser};
 use post_grammar::Units;
 use post_machine::description::{OutputUnits, Setting, Tcp};
-use post_posting::program::{ToldSpindle, Unknown};
+use post_posting::program::{ToldSpindle, Unknown, limits};
 
 /// `--units`.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -137,6 +137,30 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
     match finite(text)? {
         number if number >= 0.0 => Ok(number),
         number => Err(format!("{number} is below zero")),
+    }
+}
+
+/// A feed, mm/min.
+pub fn feed(text: &str) -> Result<f64, String> {
+    let feed = positive(text)?;
+    let [least, most] = limits::FEEDS;
+    if (least..=most).contains(&feed) {
+        Ok(feed)
+    } else {
+        Err(format!(
+            "{feed:e} is no feed: the largest is {most:e} mm/min"
+        ))
+    }
+}
+
+/// A length from zero up, mm.
+pub fn length(text: &str) -> Result<f64, String> {
+    match not_negative(text)? {
+        length if length <= limits::MOST_COORDINATE => Ok(length),
+        length => Err(format!(
+            "{length:e} mm is no length of a tool: the largest is {:e} mm",
+            limits::MOST_COORDINATE
+        )),
     }
 }
 

@@ -13,7 +13,7 @@ use post_posting::program::{ToldSpindle, Unknown};
 
 use crate::files::PathArg;
 use flag_values::{
-    Msys, TcpWord, UnitsWord, UnknownWord, cl_word, finite, not_negative, point, positive, setting,
+    Msys, TcpWord, UnitsWord, UnknownWord, cl_word, feed, finite, length, point, positive, setting,
     spindle, word,
 };
 
@@ -78,7 +78,7 @@ pub struct JobArguments {
     pub spindle: Option<ToldSpindle>,
 
     /// Feed of the cuts for which the CL file gives none, mm/min.
-    #[arg(long, value_name = "MM_A_MINUTE", value_parser = positive, help_heading = "Reading")]
+    #[arg(long, value_name = "MM_A_MINUTE", value_parser = feed, help_heading = "Reading")]
     pub feed: Option<f64>,
 
     /// Where the part origin sits for this job, all axes at zero, machine frame, mm.
@@ -108,7 +108,7 @@ pub struct JobArguments {
         long,
         value_name = "MM",
         allow_hyphen_values = true,
-        value_parser = not_negative,
+        value_parser = length,
         help_heading = "Machine"
     )]
     pub tool_length: Option<f64>,

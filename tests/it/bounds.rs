@@ -61,7 +61,6 @@ fn curves_without_end_are_refused() {
             "NURBS/\nKNOT/{knots}\n{points}CNTRL/1,1,1\nGOTO/1,1,1"
         ))
     };
-    let far = "CNTRL/9e6,0,0\nCNTRL/0,9e6,0\n";
     for (text, parts) in [
         (
             spline("1", "CNTRL/1e12,0,0\nCNTRL/0,1e12,0\n"),
@@ -79,15 +78,6 @@ fn curves_without_end_are_refused() {
                 "countless chords",
                 "1000000 are possible",
                 "GOTO/1,1,1",
-            ],
-        ),
-        (
-            spline("1e-9,1", &format!("{far}CNTRL/2,1,1\n")),
-            [
-                "error[spline]",
-                "chords to stay within 0.0025 mm",
-                "1000000",
-                "widen",
             ],
         ),
         (
@@ -116,6 +106,11 @@ fn curves_without_end_are_refused() {
 #[test]
 fn numbers_that_no_machine_has_are_refused_with_their_limit() {
     for (lines, parts) in [
+        (
+            "LOADTL/2,LENGTH,1e300",
+            ["error[tool]", "1e300 mm", "1e7 mm"],
+        ),
+        ("CUTTER/1e300", ["error[cutter]", "1e300", "1e7 mm"]),
         ("DELAY/1e300", ["error[dwell]", "1e300 s", "86400 s"]),
         ("DELAY/-1", ["error[dwell]", "-1 s", "86400 s"]),
         ("DELAY/1e300,REV", ["error[dwell]", "e298 s", "86400 s"]),
@@ -177,6 +172,22 @@ fn numbers_that_no_machine_has_are_refused_with_their_limit() {
 }
 
 #[test]
+fn flags_have_the_limits_of_the_file() {
+    for (flag, value, part) in [
+        ("--tool-length", "1e300", "1e7 mm"),
+        ("--feed", "1e300", "1e6 mm/min"),
+        ("--feed", "inf", "no number"),
+        ("--tolerance", "nan", "no number"),
+    ] {
+        let run = bounded(&["-m", "vmc", flag, value, "-"], b"");
+        assert_eq!(run.code, 2, "{}", run.err);
+        assert!(run.err.contains(part), "{}", run.err);
+    }
+    let mount = bounded(&["-m", "vmc", "--mount", "1e308,0,0", "-"], b"");
+    refused(&mount, &["none is larger than 1e12", "--set"]);
+}
+
+#[test]
 fn words_and_findings_are_counted_to_an_end() {
     let letters = |number: usize| -> String {
         let digits = number.to_string();
@@ -190,7 +201,7 @@ fn words_and_findings_are_counted_to_an_end() {
         let _ = writeln!(words, "W{}/1", letters(number));
     }
     let run = posted("vmc", &file(&words));
-    refused(&run, &["error[words]", "more than 1000 different ones"]);
+    refused(&run, &["error[words]", "more than 1000 different words"]);
     let run = bounded(&["words", "-"], file(&words).as_bytes());
     refused(&run, &["more than 1000 different words"]);
 

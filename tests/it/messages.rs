@@ -14,7 +14,7 @@ fn a_message_says_where_what_how_much_and_what_helps() {
             &[
                 "over-travel",
                 "X would be 412.500 mm",
-                "300.000 mm",
+                "300.000 mm, passed by 112.500 mm",
                 "--mount",
             ][..],
         ),

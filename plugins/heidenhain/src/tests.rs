@@ -46,7 +46,7 @@ fn options_change_what_they_say() {
 #[test]
 fn what_cannot_be_written_is_refused() {
     let refused = |events: &[Event<'_>]| bench().write(events).unwrap_err();
-    assert!(refused(&[timed(P1, 2.0)]).contains("InverseTime"));
+    assert!(refused(&[timed(P1, 2.0)]).contains("in inverse time"));
     assert!(refused(&[Event::Coolant(Coolant::Mist)]).contains("coolant_mist"));
     assert!(refused(&[Event::Spindle(Spindle::Orient)]).contains("cycle"));
     assert!(refused(&[Event::Unknown { kind: 99 }]).contains("99"));

@@ -107,7 +107,7 @@ fn what_a_control_has_no_word_for_is_left_out_or_refused() {
          G4 P0.50\nG53 G0 Z500.000\nM5\nM9\nM30\n"
     );
     let refused = |event| small().write(&[Event::Start, event]).unwrap_err();
-    assert!(refused(timed(P1, 2.0)).contains("InverseTime"));
+    assert!(refused(timed(P1, 2.0)).contains("in inverse time"));
     assert!(refused(Event::linear(P1, Feed::PerRevolution(0.1))).contains("PerRevolution"));
     let left = Event::Compensate(Compensation::Left { register: 1 });
     assert!(refused(left).ends_with("no words for cutter radius compensation"));

@@ -32,7 +32,7 @@ pub const FEEDS_BY_TIME: [f64; 2] = [1e-12, 1e9];
 /// An angle of an index axis, degrees: a hundred turns.
 pub const MOST_DEGREES: f64 = 36_000.0;
 
-/// Different words that are counted. Of the real files at hand none has more than 19; one with fifty times as many is no
+/// Different words that post does not know. Of the real files at hand none has more than 19; one with fifty times as many is no
 /// cutter-location file.
 pub const MOST_WORDS: usize = 1_000;
 

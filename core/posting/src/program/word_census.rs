@@ -48,7 +48,7 @@ impl WordCensus {
             count.count += 1;
             return true;
         }
-        if self.counts.len() >= MOST_WORDS {
+        if self.counts.len() >= MOST_WORDS && MajorWord::find(word).is_none() {
             return false;
         }
         let count = WordCount {

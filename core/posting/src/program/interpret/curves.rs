@@ -111,10 +111,8 @@ impl Interpreter {
 
     pub(super) fn spline_data(&mut self, record: &Record<'_>) {
         let point = match &record.statement {
-            Statement::Control { point, .. } => match self.point(record, *point) {
-                Some(point) => point,
-                None => return,
-            },
+            // One that was refused is still counted.
+            Statement::Control { point, .. } => self.point(record, *point).unwrap_or_default(),
             _ => Vector3::zeros(),
         };
         let Some(Pending::Spline { knots, points }) = &mut self.pending else {

@@ -547,7 +547,7 @@ impl Interpreter {
             self.fault(
                 record,
                 "words",
-                format!("{word} is one word too many: more than {MOST_WORDS} different ones without an effect"),
+                format!("more than {MOST_WORDS} different words that post does not know"),
                 "is this a cutter-location file?",
             );
         }

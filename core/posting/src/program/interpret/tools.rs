@@ -7,7 +7,7 @@ use post_grammar::{
 use post_plugin::{Compensation, Spindle, SpindleSense};
 
 use super::{Described, Interpreter, SHOWN_NAME};
-use crate::program::limits::MOST_TOOLS;
+use crate::program::limits::{MOST_COORDINATE, MOST_TOOLS, short};
 use crate::program::{Command, Step, Tool};
 use post_machine::description::{CompensationOnCentre, ToolLength};
 use post_machine::diagnostic::Diagnostic;
@@ -101,6 +101,18 @@ impl Interpreter {
             ToolLength::Assembly => None,
         };
         let length = tool.length.map(|length| length * self.scale).or(cutter);
+        if let Some(length) = length.filter(|length| libm::fabs(*length) > MOST_COORDINATE) {
+            self.fault(
+                record,
+                "tool",
+                format!(
+                    "a tool of {} mm: none is longer than {MOST_COORDINATE:e} mm",
+                    short(length)
+                ),
+                "is a decimal point missing, or are the units wrong (--units)?",
+            );
+            return;
+        }
         // NX repeats LOAD in every operation; the same tool stays in the spindle.
         let loaded = Some((tool.number, register, tool.length));
         if self.loaded == loaded {
@@ -202,6 +214,15 @@ impl Interpreter {
 
     /// A cutter's description; `length` is where its length stands.
     pub(super) fn cutter(&mut self, record: &Record<'_>, numbers: &[f64], length: usize) {
+        let far = |number: &&f64| libm::fabs(**number * self.scale) > MOST_COORDINATE;
+        if let Some(size) = numbers.iter().find(far) {
+            let message = format!(
+                "a cutter with {}: no size of one is larger than {MOST_COORDINATE:e} mm",
+                short(*size)
+            );
+            self.fault(record, "cutter", message, "");
+            return;
+        }
         let cutter = Described {
             length,
             numbers: numbers.to_vec(),

@@ -108,7 +108,7 @@ fn what_a_control_has_no_word_for_is_left_out_or_refused() {
     );
     let refused = |event| small().write(&[Event::Start, event]).unwrap_err();
     assert!(refused(timed(P1, 2.0)).contains("in inverse time"));
-    assert!(refused(Event::linear(P1, Feed::PerRevolution(0.1))).contains("PerRevolution"));
+    assert!(refused(Event::linear(P1, Feed::PerRevolution(0.1))).contains("a revolution"));
     let left = Event::Compensate(Compensation::Left { register: 1 });
     assert!(refused(left).ends_with("no words for cutter radius compensation"));
     assert!(small().tcp().write(&[]).unwrap_err().contains("tcp = "));

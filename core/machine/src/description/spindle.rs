@@ -30,7 +30,10 @@ impl SpindleSpeeds {
     pub fn refuse(&self, rpm: f64) -> Option<Diagnostic> {
         // S has no decimals.
         if !(0.5..MOST).contains(&rpm) {
-            let message = format!("a spindle at {} rpm is none", Short(rpm));
+            let message = format!(
+                "a spindle at {} rpm: from 0.5 to {MOST} rpm are possible",
+                Short(rpm)
+            );
             return Some(
                 Diagnostic::error("spindle-speed", message)
                     .help("another speed in the CAM system, in revolutions a minute"),

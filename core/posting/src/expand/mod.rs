@@ -8,7 +8,7 @@ mod tangential;
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Short};
 
 use crate::findings::Findings;
 use crate::program::limits::MOST_CHORDS;
@@ -163,7 +163,7 @@ impl Expand {
             curve,
             format!(
                 "this {curve} needs {count} chords to stay within {} mm; {MOST_CHORDS} are possible",
-                self.chord_tolerance
+                Short(self.chord_tolerance)
             ),
         )
         .help("check its numbers, widen the tolerance, or let the CAM system write GOTOs")

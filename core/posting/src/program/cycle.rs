@@ -2,7 +2,9 @@
 
 use post_grammar::{Argument, CycleDefinition};
 
-use super::limits::{LONGEST_DWELL, MOST_COORDINATE, MOST_PECKS, short};
+use post_machine::diagnostic::Short;
+
+use super::limits::{LONGEST_DWELL, MOST_COORDINATE, MOST_PECKS};
 
 /// How a cycle drills, lengths in mm along the tool axis from the programmed point, plus is away from the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +85,8 @@ impl DrillCycle {
             * scale;
         if clearance < 0.0 {
             return Err(format!(
-                "a clearance of {clearance} mm lies below the point: the rapid would end in the part"
+                "a clearance of {} mm lies below the point: the rapid would end in the part",
+                Short(clearance)
             ));
         }
         for height in [
@@ -97,7 +100,7 @@ impl DrillCycle {
             if libm::fabs(height) > MOST_COORDINATE {
                 return Err(format!(
                     "a height of {} mm: none is larger than {MOST_COORDINATE:e} mm",
-                    short(height)
+                    Short(height)
                 ));
             }
         }
@@ -105,7 +108,7 @@ impl DrillCycle {
         if !(0.0..=LONGEST_DWELL).contains(&dwell) {
             return Err(format!(
                 "a dwell of {} s: from 0 to {LONGEST_DWELL} s is possible",
-                short(dwell)
+                Short(dwell)
             ));
         }
         let bottom = -libm::fabs(depth) * scale;
@@ -127,8 +130,9 @@ impl DrillCycle {
             && (clearance - bottom) / least > MOST_PECKS
         {
             return Err(format!(
-                "a peck of {least} mm over a depth of {} mm is more than {MOST_PECKS} pecks",
-                -bottom
+                "a peck of {} mm over a depth of {} mm is more than {MOST_PECKS} pecks",
+                Short(least),
+                Short(-bottom)
             ));
         }
         Ok(Self {

@@ -52,12 +52,3 @@ pub(crate) fn direction(vector: Vector3<f64>) -> Option<Vector3<f64>> {
 pub(crate) fn is_near(point: Vector3<f64>) -> bool {
     point.amax() <= MOST_COORDINATE
 }
-
-/// A number that may be of any size, for a message.
-pub(crate) fn short(number: f64) -> String {
-    if (1e-4..1e7).contains(&number.abs()) || number == 0.0 {
-        number.to_string()
-    } else {
-        format!("{number:e}")
-    }
-}

@@ -6,6 +6,7 @@ use post_grammar::{Circle, Record, Sense, Statement};
 use super::{Interpreter, Pending};
 use crate::program::limits::MOST_SPLINE_NUMBERS;
 use crate::program::{Arc, ArcStep, Spline, SplineStep, Step};
+use post_machine::diagnostic::Short;
 
 /// Ends of an arc whose distances from its centre differ by more are no arc: mm.
 const ARC_MISMATCH: f64 = 0.1;
@@ -90,7 +91,8 @@ impl Interpreter {
                 record,
                 "arc",
                 format!(
-                    "the CIRCLE before this point says radius {radius}, its points lie at {:.4}",
+                    "the CIRCLE before this point says radius {}, its points lie at {:.4}",
+                    Short(radius),
                     arc.radius() / self.scale
                 ),
             );

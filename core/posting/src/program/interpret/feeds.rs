@@ -4,7 +4,8 @@ use post_grammar::{FeedRate, FeedUnit, Record, Units};
 
 use super::{FeedWord, Interpreter, millimetres};
 use crate::program::Pace;
-use crate::program::limits::{FEEDS, FEEDS_A_TURN, FEEDS_BY_TIME, short};
+use crate::program::limits::{FEEDS, FEEDS_A_TURN, FEEDS_BY_TIME};
+use post_machine::diagnostic::Short;
 
 impl Interpreter {
     /// A feed word as the spindle turns now.
@@ -56,7 +57,7 @@ impl Interpreter {
                 self.fault(
                     record,
                     "feed",
-                    format!("a feed of {value}: it must be above zero"),
+                    format!("a feed of {}: it must be above zero", Short(value)),
                     "the CAM system must write one; --feed MM_A_MINUTE stands for a feed of 0",
                 );
             }
@@ -111,9 +112,9 @@ impl Interpreter {
         }
         let message = format!(
             "a feed of {} {unit}: from {} to {} {unit} is possible",
-            short(value),
-            short(least),
-            short(most)
+            Short(value),
+            Short(least),
+            Short(most)
         );
         self.fault(record, "feed", message, "let the CAM system write another");
         None

@@ -20,10 +20,10 @@ use post_plugin::{Coolant, SpindleSense};
 pub use reading::{Reading, ToldSpindle};
 
 use super::frame::Frame;
-use super::limits::{LONGEST_DWELL, MOST_WORDS, direction, short};
+use super::limits::{LONGEST_DWELL, MOST_WORDS, direction};
 use super::word_census::WordCensus;
 use super::{Command, DrillCycle, Pace, PlaneStep, Step};
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, Place, Short};
 
 /// Turns records into steps.
 #[derive(Debug)]
@@ -529,7 +529,7 @@ impl Interpreter {
                 "dwell",
                 format!(
                     "a dwell of {} s: from 0 to {LONGEST_DWELL} s is possible",
-                    short(seconds)
+                    Short(seconds)
                 ),
                 "let the CAM system write another; a stop is OPSTOP or STOP",
             );

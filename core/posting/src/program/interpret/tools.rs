@@ -7,10 +7,10 @@ use post_grammar::{
 use post_plugin::{Compensation, Spindle, SpindleSense};
 
 use super::{Described, Interpreter, SHOWN_NAME};
-use crate::program::limits::{MOST_COORDINATE, MOST_TOOLS, short};
+use crate::program::limits::{MOST_COORDINATE, MOST_TOOLS};
 use crate::program::{Command, Step, Tool};
 use post_machine::description::{CompensationOnCentre, ToolLength};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Short};
 
 impl Interpreter {
     pub(super) fn spindle(
@@ -107,7 +107,7 @@ impl Interpreter {
                 "tool",
                 format!(
                     "a tool of {} mm: none is longer than {MOST_COORDINATE:e} mm",
-                    short(length)
+                    Short(length)
                 ),
                 "is a decimal point missing, or are the units wrong (--units)?",
             );
@@ -218,7 +218,7 @@ impl Interpreter {
         if let Some(size) = numbers.iter().find(far) {
             let message = format!(
                 "a cutter with {}: no size of one is larger than {MOST_COORDINATE:e} mm",
-                short(*size)
+                Short(*size)
             );
             self.fault(record, "cutter", message, "");
             return;

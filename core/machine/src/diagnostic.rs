@@ -14,7 +14,7 @@ const LONGEST_SENTENCE: usize = 1500;
 /// So much of a line is kept for a message, in bytes: the part around what is wrong.
 const SHOWN: usize = 200;
 
-pub use nearest::nearest;
+pub use nearest::{meant, nearest};
 pub use short::Short;
 
 /// How bad it is.

@@ -12,7 +12,7 @@ use post_plugin::{
 };
 
 use crate::call::Caller;
-use crate::plugin::Table;
+use crate::described::Table;
 use crate::shown::{is_odd, quoted, sentence};
 use crate::sink::{MOST_TEXT, message, with_sink};
 use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};

@@ -4,7 +4,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::plugin::{file_name, is_name, name_of};
+use crate::described::is_name;
+use crate::plugin::{file_name, name_of};
 use crate::{Plugin, PluginFault, Reason};
 
 /// Where plugins are looked for.

@@ -9,8 +9,8 @@ use post_plugin::raw::{self, PostDialect, PostModel, PostOption, PostPlugin, Pos
 use post_plugin::{OptionKind, OptionSpec, Value};
 
 use crate::call::Caller;
+use crate::described::{Described, Table, is_name};
 use crate::options::check;
-use crate::plugin::{Described, Table, is_name};
 use crate::shown::{is_odd, quoted, sentence};
 use crate::{GivenValue, Reason};
 

@@ -6,6 +6,7 @@
 
 mod call;
 pub mod conformance;
+mod described;
 mod dialect;
 mod fault;
 mod finder;

@@ -11,8 +11,8 @@ use post_plugin::raw::{self, PostModel, PostPair};
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
 use crate::call::Caller;
+use crate::described::Table;
 use crate::float_mode::FloatMode;
-use crate::plugin::Table;
 use crate::sink::message;
 use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};
 

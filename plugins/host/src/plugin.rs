@@ -6,10 +6,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use post_plugin::raw::{PostDialect, PostModel, PostPlugin};
+use post_plugin::raw::PostPlugin;
 use post_plugin::{Linked, OptionSpec};
 
 use crate::call::{Caller, LoadedLibrary};
+use crate::described::{Described, Table, is_name};
 use crate::judge::judge;
 use crate::leave::library_opened;
 use crate::library_file::LibraryFile;
@@ -38,28 +39,12 @@ pub enum Kind {
     ErrorModel,
 }
 
-/// The functions of a plugin. Every pointer in them was found not to be null.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Table {
-    Dialect(&'static PostDialect),
-    Model(&'static PostModel),
-}
-
 /// The hash of each library that was opened, by where it lies. The system hands out a library that is open already
 /// whatever its file has become since.
 static OPENED: Mutex<BTreeMap<PathBuf, String>> = Mutex::new(BTreeMap::new());
 
 fn opened() -> MutexGuard<'static, BTreeMap<PathBuf, String>> {
     OPENED.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// What a plugin says about itself, once it was found to hold together.
-pub(crate) struct Described {
-    pub(crate) name: String,
-    pub(crate) version: String,
-    pub(crate) about: String,
-    pub(crate) table: Table,
-    pub(crate) options: &'static [OptionSpec],
 }
 
 impl Plugin {
@@ -268,10 +253,4 @@ pub(crate) fn name_of(path: &Path) -> Option<&str> {
     let stem = path.file_name()?.to_str()?.strip_suffix(DLL_SUFFIX)?;
     let name = stem.strip_prefix(DLL_PREFIX)?.strip_prefix("post_")?;
     is_name(name).then_some(name)
-}
-
-/// `name` can be part of a symbol, and of a file name without leaving its folder.
-pub(crate) fn is_name(name: &str) -> bool {
-    let known = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
-    !name.is_empty() && name.bytes().all(known)
 }

@@ -7,6 +7,7 @@
 
 mod class;
 mod commission;
+mod halton;
 mod nominal;
 mod pointing;
 mod probe;

@@ -5,11 +5,15 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
-use super::{search, settings};
+use super::{halton, settings};
 use crate::description::{Machine, Pole, Positions, SHARE_AT_POLES};
 use crate::kinematics::orientation::angle;
 use crate::kinematics::travel::passed;
 use crate::kinematics::{Chain, Joint, Joints, MAX_AXES, NoClosedForm, Pose, Solver, Unreachable};
+
+/// Searches for one pose of a chain without a closed form, and the steps that they take together at most.
+pub(super) const STARTS: u32 = 32;
+const STEPS: usize = 1200;
 
 /// A value is inside travel if it passes an end by no more than this, mm or radians.
 const GRACE: f64 = 1e-9;
@@ -135,6 +139,20 @@ impl<'a> Probe<'a> {
         }
     }
 
+    /// Where a search begins: at rest first, then at places spread over the travels.
+    pub fn start(&self, number: u32) -> Joints {
+        let mut joints = self.home;
+        if number > 0 {
+            let moving = self.machine.axes.iter().enumerate();
+            let moving = moving.filter(|(_, axis)| axis.indexed.is_none());
+            for ((place, _), share) in moving.zip(halton::place(number)) {
+                let [least, most] = self.span(place);
+                joints[place] = least + (most - least) * share;
+            }
+        }
+        joints
+    }
+
     /// All ways to put the tip on `tip` with the tool axis along `axis` (part frame), the index axes where they start;
     /// turns and travel left aside. Without a closed form: those that a bounded search finds.
     ///
@@ -161,7 +179,11 @@ impl<'a> Probe<'a> {
             ..Pose::default()
         };
         if !solver.closed_form() {
-            return search::solutions(self, solver, &pose, tolerance);
+            let mut left = STEPS;
+            let starts = (0..STARTS).map(|number| self.start(number));
+            let found = solver.inverse_from(&pose, starts, tolerance, &mut left);
+            self.count(1, STEPS - left);
+            return found;
         }
         self.count(1, 0);
         solver.inverse(&pose, &self.home, tolerance)

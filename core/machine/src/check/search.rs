@@ -1,5 +1,5 @@
-//! What a chain without a closed form is asked: each question begins a bounded number of searches, from places spread
-//! over the travels, and the map of directions goes from each direction that was made to its neighbours.
+//! The map of the directions that a chain without a closed form makes: a bounded search goes from each direction that
+//! was made to its neighbours.
 
 use std::collections::VecDeque;
 use std::f64::consts::{PI, TAU};
@@ -7,13 +7,9 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 
 use super::pointing::direction;
-use super::probe::Probe;
+use super::probe::{Probe, STARTS};
 use crate::kinematics::orientation::angle;
-use crate::kinematics::{Joints, Pose, Solver, Unreachable};
-
-/// Searches for one pose, and the steps that they take together at most.
-const STARTS: u32 = 32;
-const STEPS: usize = 1200;
+use crate::kinematics::{Joints, Pose};
 
 /// Steps of all searches for the map together, and of the one from a neighbour: from so near it takes a handful.
 const MAP_STEPS: usize = 200_000;
@@ -28,49 +24,6 @@ const HALVINGS: usize = 16;
 /// Cells of the map: azimuths around, tilts from +Z to -Z.
 pub(super) const AZIMUTHS: usize = 72;
 pub(super) const TILTS: usize = 36;
-
-/// The solutions for `pose` that searches from rest and from places all over the travels find.
-pub(super) fn solutions(
-    probe: &Probe<'_>,
-    solver: &Solver,
-    pose: &Pose,
-    tolerance: f64,
-) -> Result<Vec<Joints>, Unreachable> {
-    let mut left = STEPS;
-    let starts = (0..STARTS).map(|number| start(probe, number));
-    let found = solver.inverse_from(pose, starts, tolerance, &mut left);
-    probe.count(1, STEPS - left);
-    found
-}
-
-/// Rest first, then places spread over the travels.
-fn start(probe: &Probe<'_>, number: u32) -> Joints {
-    let mut joints = *probe.home();
-    if number == 0 {
-        return joints;
-    }
-    let moving = probe.machine().axes.iter().enumerate();
-    let moving = moving.filter(|(_, axis)| axis.indexed.is_none());
-    for ((place, _), base) in moving.zip(PRIMES) {
-        let [least, most] = probe.span(place);
-        joints[place] = least + (most - least) * halton(number, base);
-    }
-    joints
-}
-
-/// Bases of the Halton sequence, one an axis.
-const PRIMES: [u32; 8] = [2, 3, 5, 7, 11, 13, 17, 19];
-
-/// Digits of `number` in `base` behind the point, in reverse: spread evenly over 0 to 1.
-fn halton(mut number: u32, base: u32) -> f64 {
-    let (mut value, mut digit) = (0.0, 1.0);
-    while number > 0 {
-        digit /= f64::from(base);
-        value += digit * f64::from(number % base);
-        number /= base;
-    }
-    value
-}
 
 /// Which directions were found to be made inside the travel of the rotary axes, the tip on the part origin.
 pub(super) struct Found {
@@ -97,7 +50,7 @@ pub(super) fn directions(probe: &Probe<'_>) -> Found {
     flood.spread();
     // What lies apart from all of that.
     for number in 0..STARTS {
-        let from = start(probe, number);
+        let from = probe.start(number);
         flood.reach(cell_of(probe.chain().forward(&from).axis), &from);
         flood.spread();
     }

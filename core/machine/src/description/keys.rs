@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue, Deserializer};
 use super::Axis;
 use super::file::MachineFile;
 use super::layers::Sources;
-use crate::diagnostic::{Diagnostic, nearest};
+use crate::diagnostic::{Diagnostic, meant};
 
 /// Unknown keys of one file that are told, each by itself.
 const MOST: usize = 20;
@@ -66,15 +66,6 @@ fn explained(message: &str) -> (String, Option<String>) {
         );
     }
     (message.to_owned(), None)
-}
-
-/// `did you mean `b`? known are a, b`, or without the question where nothing is near.
-pub(super) fn meant(word: &str, known: &str, names: &[&str]) -> String {
-    let all = format!("{known} {}", names.join(", "));
-    match nearest(word, names.iter().copied()) {
-        Some(name) => format!("did you mean `{name}`? {all}"),
-        None => all,
-    }
 }
 
 /// `its axes are C, A, Y, X, Z`.

@@ -9,10 +9,9 @@ use post_grammar::text::is_unprintable;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::keys::meant;
 use super::limits::{MOST_BYTES, MOST_FAULTS};
 use super::setting::Setting;
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Place, meant};
 
 /// A text and the name that the user knows it by.
 #[derive(Clone, Debug, PartialEq, Eq)]

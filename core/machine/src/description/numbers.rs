@@ -6,8 +6,8 @@ use post_grammar::{Expression, parse_expression};
 
 use super::build::Builder;
 use super::file::{Number, Quantity};
-use super::keys::meant;
 use super::limits::MOST_NUMBER;
+use crate::diagnostic::meant;
 
 /// So much of an expression is told in a message, in bytes.
 const SHOWN: usize = 80;

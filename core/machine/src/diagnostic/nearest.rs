@@ -40,6 +40,15 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     best.map(|(_, candidate)| candidate).or_else(begun)
 }
 
+/// `did you mean `b`? known are a, b`, or without the question where nothing is near.
+pub fn meant(word: &str, known: &str, names: &[&str]) -> String {
+    let all = format!("{known} {}", names.join(", "));
+    match nearest(word, names.iter().copied()) {
+        Some(name) => format!("did you mean `{name}`? {all}"),
+        None => all,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,0 +1,26 @@
+//! What a plugin says about itself.
+
+use post_plugin::OptionSpec;
+use post_plugin::raw::{PostDialect, PostModel};
+
+/// The functions of a plugin. Every pointer in them was found not to be null.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Table {
+    Dialect(&'static PostDialect),
+    Model(&'static PostModel),
+}
+
+/// What a plugin says about itself, once it was found to hold together.
+pub(crate) struct Described {
+    pub(crate) name: String,
+    pub(crate) version: String,
+    pub(crate) about: String,
+    pub(crate) table: Table,
+    pub(crate) options: &'static [OptionSpec],
+}
+
+/// `name` can be part of a symbol, and of a file name without leaving its folder.
+pub(crate) fn is_name(name: &str) -> bool {
+    let known = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+    !name.is_empty() && name.bytes().all(known)
+}

@@ -18,7 +18,7 @@ fn main() {
     files::delete_on_signals();
     let _watch = post_host::watch_for_exit(ended_by_a_plugin);
     let done = CommandLine::try_parse()
-        .map_err(Failure::Usage)
+        .map_err(|fault| Failure::Usage(verbs::misspelt().unwrap_or(fault)))
         .and_then(CommandLine::run)
         .and_then(|()| terminal::all_printed());
     let code = done.as_ref().map_or_else(Failure::exit_code, |()| 0);

@@ -66,6 +66,8 @@ pub enum FileFault {
         /// What that file is, with its name.
         read: String,
     },
+    /// What is printed would be added to a file that the run reads.
+    PrintedOverRead(String),
     /// A text would replace the file that the shell adds standard output to.
     OverAppended {
         /// What the text is.
@@ -142,6 +144,7 @@ impl FileFault {
             Self::OverRead { role, .. }
             | Self::OverAppended { role, .. }
             | Self::OverWritten { role, .. } => Some(role.remedy.to_owned()),
+            Self::PrintedOverRead(_) => Some("let standard output go elsewhere".to_owned()),
             Self::NotKept { role, .. } => Some(format!("delete it first, or {}", role.remedy)),
             Self::NoWaiting { .. } => {
                 Some("the environment variable TMPDIR names another folder".to_owned())
@@ -183,6 +186,12 @@ impl fmt::Display for FileFault {
                     return Ok(());
                 }
                 write!(formatter, ", which {name} is")
+            }
+            Self::PrintedOverRead(read) => {
+                write!(
+                    formatter,
+                    "standard output goes to {read}, which the run reads"
+                )
             }
             Self::OverAppended { role, name } => write!(
                 formatter,

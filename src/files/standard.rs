@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use super::file_id::FileId;
+use super::read_files;
 
 /// Standard output as it was, once what libraries print is kept out of it.
 static RESULTS: OnceLock<Option<File>> = OnceLock::new();
@@ -45,6 +46,11 @@ pub fn id() -> Option<FileId> {
         Some(file) => FileId::of_stream(file),
         None => FileId::of_stream(io::stdout()),
     }
+}
+
+/// What it is of what the run reads, which would be spoilt by what is printed: `the CL file part.cls`.
+pub fn is_read() -> Option<String> {
+    id().as_ref().and_then(read_files::what)
 }
 
 /// Somebody reads it on a screen.

@@ -77,6 +77,11 @@ impl Target {
 
 /// Refuses targets that are files which the run reads, or one another.
 pub fn refuse_losses(targets: &[&Target]) -> Result<(), FileFault> {
+    if let Some(read) = standard::is_read()
+        && targets.iter().all(|target| target.place != Place::Standard)
+    {
+        return Err(FileFault::PrintedOverRead(read));
+    }
     for (index, target) in targets.iter().enumerate() {
         let id = target.id();
         if let Some(read) = id.as_ref().and_then(read_files::what) {

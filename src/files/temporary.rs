@@ -122,12 +122,14 @@ pub fn delete_temporary_files() {
     std::mem::forget(live);
 }
 
-/// From here on a signal that ends the command (SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU) has the temporary files deleted
+/// From here on a signal that asks the command to end (SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU) has the temporary files deleted
 /// first; the exit code is that of shells: 128 and the signal's number. A file that outgrows the limit of the shell is a
 /// fault of writing and no signal.
 #[cfg(unix)]
 pub fn delete_on_signals() {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGXFSZ};
+    use signal_hook::consts::{
+        SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGXFSZ,
+    };
     use signal_hook::flag;
     use signal_hook::iterator::Signals;
 
@@ -135,7 +137,9 @@ pub fn delete_on_signals() {
     let _ = flag::register(SIGXFSZ, Arc::default());
     // A command that shall outlast its terminal (`nohup`) stays deaf to what it was told to ignore.
     let ignored = ignored();
-    let ending = [SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU];
+    let ending = [
+        SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU,
+    ];
     let heard = ending
         .iter()
         .filter(|signal| ignored >> (**signal - 1) & 1 == 0);

@@ -5,6 +5,7 @@ pub mod machine_files;
 pub mod other_dialect;
 pub mod plugin_finder;
 mod plugin_folders;
+pub mod unused_options;
 
 use std::env;
 use std::path::PathBuf;
@@ -30,8 +31,9 @@ pub fn machine(arguments: &JobArguments, more: &[Setting]) -> Result<Machine, Fa
     machine_files::load(arguments.machine(), &arguments.machines, &settings)
 }
 
-/// Says once what `--dialect` leaves behind.
-pub fn say_what_is_left(arguments: &JobArguments) {
+/// Says once what of the machine file has no effect: what `--dialect` leaves behind, and options that no plugin takes.
+pub fn say_what_is_left(arguments: &JobArguments, machine: &Machine) {
+    unused_options::warn(machine, &arguments.plugins);
     other_dialect::say_what_is_left(
         arguments.dialect.as_deref(),
         arguments.machine(),

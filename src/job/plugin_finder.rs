@@ -9,7 +9,7 @@ use post_host::{
 };
 use post_machine::axis_words;
 use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
-use post_machine::diagnostic::{Diagnostic, Place, nearest};
+use post_machine::diagnostic::{self, Diagnostic, Place, nearest};
 use post_plugin::{Accuracy, Tolerance, Units};
 use post_posting::report::PluginUse;
 
@@ -165,6 +165,26 @@ fn used(plugin: &Plugin) -> PluginUse {
         path: plugin.path().map(|path| path.display().to_string()),
         hash: plugin.hash().map(str::to_owned),
     }
+}
+
+/// A warning that a dialect is no part of the command, with the one that was perhaps meant.
+pub fn not_built_in(dialect: &str) -> Option<Diagnostic> {
+    let stock = post_stock::plugins().iter();
+    let stock = stock.filter(|plugin| !plugin.is_model());
+    let names: Vec<&str> = stock.map(|plugin| plugin.name()).collect();
+    if names.contains(&dialect) {
+        return None;
+    }
+    let message = format!(
+        "the dialect {dialect} is not built in: name the folder of its plugin with --plugins"
+    );
+    Some(
+        Diagnostic::warning("plugin", message).help(diagnostic::meant(
+            dialect,
+            "built in are",
+            &names,
+        )),
+    )
 }
 
 /// A plugin's fault at the line of the machine file that asked for it.

@@ -29,6 +29,10 @@ static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
 /// Prints a result to standard output. A reader that has seen enough closes the pipe; any other fault is told by
 /// [`all_printed`] at the end.
 pub fn print(text: &str) {
+    // Whoever writes a file has been refused before that.
+    if standard::is_read().is_some() {
+        return;
+    }
     let printed = standard::open().and_then(|mut out| {
         out.write_all(printable(text).as_bytes())?;
         out.flush()
@@ -46,6 +50,9 @@ pub fn print(text: &str) {
 
 /// All results were printed.
 pub fn all_printed() -> Result<(), Failure> {
+    if let Some(read) = standard::is_read() {
+        return Err(FileFault::PrintedOverRead(read).into());
+    }
     let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
     match unprinted.take() {
         Some(error) => Err(FileFault::write_named("standard output", error).into()),

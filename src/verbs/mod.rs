@@ -11,7 +11,11 @@ mod post;
 mod print_schema;
 mod study;
 
-use clap::{Parser, Subcommand};
+use std::path::Path;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser, Subcommand};
+use post_machine::diagnostic::nearest;
 
 use crate::failure::Failure;
 use check::CheckArguments;
@@ -88,12 +92,29 @@ impl CommandLine {
     }
 }
 
+/// What is wrong with a command line that begins with a misspelt verb: clap takes it for a CL file, and complains of what
+/// follows.
+pub fn misspelt() -> Option<clap::Error> {
+    let first = std::env::args().nth(1)?;
+    let mut command = CommandLine::command();
+    let verbs: Vec<String> = command
+        .get_subcommands()
+        .map(|verb| verb.get_name().to_owned())
+        .collect();
+    if verbs.contains(&first) || Path::new(&first).exists() {
+        return None;
+    }
+    let meant = nearest(&first, verbs.iter().map(String::as_str))?;
+    let message = format!(
+        "there is no verb '{first}', and no file\n\n  tip: a similar verb exists: '{meant}'"
+    );
+    Some(command.error(ErrorKind::InvalidSubcommand, message))
+}
+
 #[cfg(test)]
 mod tests {
     use std::fs;
-    use std::path::{Path, PathBuf};
-
-    use clap::CommandFactory;
+    use std::path::PathBuf;
 
     use super::*;
 

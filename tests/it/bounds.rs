@@ -205,6 +205,14 @@ fn words_and_findings_are_counted_to_an_end() {
     let run = bounded(&["words", "-"], file(&words).as_bytes());
     refused(&run, &["more than 1000 different words"]);
 
+    // A point that is searched for takes long where there is none.
+    let mut far = String::new();
+    for number in 0..5_000 {
+        let _ = writeln!(far, "GOTO/{},9000,0", number % 1000);
+    }
+    let run = posted("tests/chains/scara.toml", &file(&far));
+    refused(&run, &["no axis values of SCARA", "reading stopped there"]);
+
     // Sentences that differ in more than a number.
     let mut warnings = String::new();
     for number in 0..20_000 {

@@ -159,6 +159,37 @@ fn what_a_shell_reads_or_writes_is_known_too() {
     let done = post.stdin(Stdio::null()).output().unwrap();
     assert_eq!(done.status.code(), Some(1));
     assert_eq!(fs::read_to_string(&cl).unwrap(), GOOD);
+    // `post part.cls >> part.cls`: what is printed for people would spoil it as well.
+    for (arguments, read) in [
+        (
+            &["-m", "ours.toml", "part.cls", "-o", "x.nc"][..],
+            "part.cls",
+        ),
+        (JOB, "ours.toml"),
+        (&["check", "ours.toml"], "parent.toml"),
+        (&["words", "part.cls"], "part.cls"),
+        (
+            &["machines", "--print", "ours", "--machines", "."],
+            "ours.toml",
+        ),
+        (&["place", "-m", "ours.toml", "part.cls"], "part.cls"),
+    ] {
+        let before = contents(folder.path());
+        let mut appended = fs::OpenOptions::new();
+        let appended = appended.append(true).open(folder.path().join(read));
+        let mut post = command();
+        post.current_dir(folder.path())
+            .args(arguments)
+            .stdout(appended.unwrap());
+        let done = post.stdin(Stdio::null()).output().unwrap();
+        let err = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(1), "{arguments:?}: {err}");
+        assert_contains(
+            &err,
+            &["standard output goes to the ", "which the run reads"],
+        );
+        assert_eq!(contents(folder.path()), before, "{arguments:?}");
+    }
     // `post part.cls -o out.nc > out.nc`: a file that was replaced would not be the one that the shell opened.
     for option in ["out.nc", "/dev/stdout"] {
         let out = fs::File::create(folder.path().join("out.nc")).unwrap();

@@ -196,3 +196,87 @@ fn the_file_of_a_machine_is_printed_and_posts_under_another_name() {
     let slip = run(command().args(["machines", "--print", "ac-trunion"]), b"");
     refused(&slip, &["did you mean ac-trunnion?"]);
 }
+
+#[test]
+fn a_misspelt_verb_is_told_and_no_file_is_looked_for() {
+    for (slip, meant) in [
+        ("chek", "check"),
+        ("plases", "place"),
+        ("machnes", "machines"),
+    ] {
+        let done = run(command().args([slip, "vmc"]), b"");
+        assert_eq!(done.code, 2, "{}", done.err);
+        let told = format!("a similar verb exists: '{meant}'");
+        assert!(done.err.contains(&told), "{}", done.err);
+    }
+}
+
+#[test]
+fn a_dialect_that_is_not_built_in_is_told_as_a_machine_file_is_begun() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut new = command();
+    new.current_dir(&folder);
+    let flags = ["new", "mine", "--class", "three-axis", "--dialect", "fanuk"];
+    let done = run(new.args(flags), b"");
+    assert_eq!(done.code, 0, "{}", done.err);
+    let told = "the dialect fanuk is not built in";
+    assert!(done.err.contains(told), "{}", done.err);
+    assert!(done.err.contains("did you mean `fanuc`?"), "{}", done.err);
+}
+
+#[test]
+fn a_known_word_with_an_unknown_one_behind_it_is_not_taken_for_a_slip_of_itself() {
+    let done = posted(&["-m", "vmc"], "COOLNT/FLOD\n");
+    assert!(done.err.contains("COOLNT is not supported"), "{}", done.err);
+    assert!(!done.err.contains("did you mean"), "{}", done.err);
+}
+
+#[test]
+fn a_refused_tool_is_not_missed_too() {
+    let done = posted(&["-m", "vmc", "--tool-from-cutter"], "");
+    refused(&done, &["leave --tool-from-cutter out", "1 error;"]);
+    let far = "UNITS/MM\nLOADTL/3,LENGTH,1e300\nSPINDL/RPM,3000,CLW\nFEDRAT/100,MMPM\nGOTO/0,0,10\nFINI\n";
+    let done = run(
+        command().args(["-q", "-m", "vmc", "-o", "-", "-"]),
+        far.as_bytes(),
+    );
+    refused(&done, &["a tool of 1e300 mm", "1 error;"]);
+}
+
+/// Nothing else would judge them: no plugin is opened for them.
+#[test]
+fn options_of_plugins_that_are_not_used_are_looked_at_too() {
+    let sets = [
+        "control.fanucc.decimals=4",
+        "control.heidenhain.perset=3",
+        "accuracy.harmonic.ordre=3",
+    ];
+    let sets = sets.iter().flat_map(|set| ["--set", set]);
+    let all: Vec<&str> = ["-m", "vmc"].into_iter().chain(sets).collect();
+    let done = posted(&all, "");
+    assert_eq!(done.code, 0, "{}", done.err);
+    for part in [
+        "[control.fanucc] has options for a dialect that is not here",
+        "did you mean `fanuc`?",
+        "heidenhain has no option `perset`",
+        "did you mean `preset`?",
+        "harmonic has no option `ordre`",
+        "did you mean `order`?",
+    ] {
+        assert!(done.err.contains(part), "`{part}` is not in:\n{}", done.err);
+    }
+    let fine = ["-m", "vmc", "--set", "control.heidenhain.preset=3"];
+    let fine = posted(&fine, "");
+    assert!(!fine.err.contains("warning[plugin]"), "{}", fine.err);
+}
+
+/// A chain that is searched is not searched with a number that has no value.
+#[test]
+fn a_slip_in_a_formula_of_a_searched_chain_is_told_at_once() {
+    for set in ["tool.gauge=[0, 0, \"q\"]", "axis.A.point=[\"q\", 0, 900]"] {
+        let done = posted(&["-m", "vertical-lathe", "--set", set], "");
+        refused(&done, &["`q` is not known", "1 error;"]);
+        let check = ["check", "vertical-lathe", "--set", set];
+        refused(&run(command().args(check), b""), &["`q` is not known"]);
+    }
+}

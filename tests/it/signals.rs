@@ -56,7 +56,13 @@ fn interrupted(
 
 #[test]
 fn an_interrupted_command_leaves_no_temporary_file() {
-    for (signal, code) in [("-INT", 130), ("-QUIT", 131), ("-TERM", 143)] {
+    for (signal, code) in [
+        ("-INT", 130),
+        ("-QUIT", 131),
+        ("-USR1", 138),
+        ("-ALRM", 142),
+        ("-TERM", 143),
+    ] {
         let folder = tempfile::tempdir().unwrap();
         let to_file = &[
             "-m",

@@ -9,5 +9,6 @@ pub mod axis_words;
 pub mod check;
 pub mod description;
 pub mod diagnostic;
+mod halton;
 pub mod kinematics;
 pub mod place;

@@ -17,6 +17,12 @@ pub const MOST_FAULTS: usize = 20;
 /// Warnings of one run that are told; of the others how many there are.
 pub const MOST_WARNINGS: usize = 100;
 
+/// Points at which one limit is passed before reading stops: the farthest of so many is as good as any.
+const MOST_BEYOND: u64 = 100_000;
+
+/// Faults of one kind without such a limit before reading stops: each may have taken a search.
+const MOST_ALIKE: u64 = 200;
+
 /// The findings of one run. Every stage may add to them.
 #[derive(Debug)]
 pub(crate) struct Findings {
@@ -35,6 +41,8 @@ struct Inner {
     faults: usize,
     /// Warnings beyond those that are told.
     untold: u64,
+    /// Some fault was found so often that reading stops.
+    enough: bool,
 }
 
 /// How often something was found.
@@ -57,6 +65,16 @@ struct Kind {
     key: Option<u64>,
     /// Of all others: the sentence, each number in it as one sign.
     sentence: String,
+}
+
+impl Repeat {
+    /// So often it may be found.
+    fn most(&self) -> u64 {
+        match self.extreme {
+            Some(_) => MOST_BEYOND,
+            None => MOST_ALIKE,
+        }
+    }
 }
 
 impl Kind {
@@ -171,7 +189,8 @@ impl Findings {
     /// So many faults that reading on would only repeat them.
     #[inline]
     pub(crate) fn too_many(&self) -> bool {
-        self.inner.borrow().faults >= MOST_FAULTS
+        let inner = self.inner.borrow();
+        inner.faults >= MOST_FAULTS || inner.enough
     }
 
     /// The warnings as sentences, in the order of the lines.
@@ -212,6 +231,7 @@ impl Inner {
         let line = finding.place.as_ref().map_or(0, |place| place.line);
         repeat.count += 1;
         repeat.last = repeat.last.max(line);
+        self.enough |= finding.severity == Severity::Error && repeat.count >= repeat.most();
         if let (Some(extreme), Some((farthest, at))) = (&finding.extreme, &mut repeat.extreme)
             && extreme.by > farthest.by
         {
@@ -246,6 +266,9 @@ impl Inner {
                 (None, more) => format!("; {more} more like it"),
             };
             finding.message.push_str(&more);
+            if finding.severity == Severity::Error && repeat.count >= repeat.most() {
+                finding.message.push_str("; reading stopped there");
+            }
             finding
         };
         let mut all: Vec<Diagnostic> = self.found.iter().zip(&self.repeats).map(told).collect();

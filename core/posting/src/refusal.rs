@@ -8,7 +8,7 @@ use post_machine::description::{Axis, Machine, Positions, Tcp};
 use post_machine::diagnostic::{Diagnostic, Extreme, Short};
 use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::travel::passed;
-use post_machine::kinematics::{Joints, Unreachable};
+use post_machine::kinematics::{Joints, Second, Unreachable};
 use post_plugin::Format;
 
 /// Where the words are axis positions, the control adds the tool's length to those of the depth axis: away from the part
@@ -81,7 +81,7 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
                 machine.name
             ),
         )
-        .help("this machine is solved numerically, from the point before: a point between may help"),
+        .help("this machine is solved numerically, from the point before: where the part sits (--mount), or a point between may help"),
         Refused::OverTravel { over, .. } if no_position(machine, over) => {
             let axis = &machine.axes[over.joint];
             Diagnostic::error(
@@ -131,7 +131,7 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
 
 /// What to do about a linear axis that leaves its travel.
 pub(crate) const FINDS_A_MOUNT: &str =
-    "`post place CL-FILE --machine MACHINE` finds the --mount that fits, or says that none does";
+    "`post place CL-FILE --machine MACHINE` finds the --mount that fits, or says why there is none";
 
 /// `312.400 mm, its limit is 300.000 mm, passed by 12.400 mm`.
 pub(crate) fn beyond(machine: &Machine, over: &OverTravel) -> String {
@@ -177,7 +177,13 @@ fn by(axis: &Axis, over: &OverTravel) -> f64 {
 fn mount_inside(machine: &Machine, over: &OverTravel) -> Option<String> {
     let axis = &machine.axes[over.joint];
     let mut between = machine.axes[..over.joint].iter();
-    if axis.joint.rotary || axis.second.is_some() || between.any(|axis| axis.joint.rotary) {
+    // Of two axes that go the same way the machine settles which goes how far.
+    let with = |other: &Axis| match other.second {
+        Some(Second::Share { of, .. } | Second::Reserve { of }) => of == over.joint,
+        None => false,
+    };
+    let shared = axis.second.is_some() || machine.axes.iter().any(with);
+    if axis.joint.rotary || shared || between.any(|axis| axis.joint.rotary) {
         return None;
     }
     // A little farther than the limit, so that no rounding passes it.

@@ -193,6 +193,7 @@ fn solutions(text: &mut String, found: &Solutions) {
                 "{}: {}",
                 readings(&way.readings),
                 match way.turns {
+                    _ if !way.has_positions => "no position of an index axis".to_owned(),
                     0 => "out of travel".to_owned(),
                     1 => "inside travel".to_owned(),
                     turns => format!("{turns} full turns inside travel"),
@@ -283,6 +284,8 @@ fn pole(pole: &Pole) -> String {
     };
     let state = if pole.missed_by_deg > 0.0 {
         format!("out of reach by {}°", number(pole.missed_by_deg, 4))
+    } else if !pole.has_positions {
+        "no position of an index axis".to_owned()
     } else if pole.inside {
         "inside travel".to_owned()
     } else {

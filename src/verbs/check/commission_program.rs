@@ -109,14 +109,17 @@ impl Writer<'_> {
         self.say("Before the start bring the axes to these machine positions, and see that nothing is in the way:");
         let at = self.told(&self.start, false);
         self.say(&at);
-        let mut set = format!(
-            "There set the work offset of this program so that {} show 0",
-            names(&linear)
-        );
-        if !rotary.is_empty() {
-            set.push_str(&format!("; the offset of {} is 0", names(&rotary)));
+        let mut set = Vec::new();
+        if !linear.is_empty() {
+            let shown = names(&linear);
+            set.push(format!(
+                "There set the work offset of this program so that {shown} show 0"
+            ));
         }
-        self.say(&set);
+        if !rotary.is_empty() {
+            set.push(format!("the offset of {} is 0", names(&rotary)));
+        }
+        self.say(&set.join("; "));
         self.say("If anything else is seen than the remark before a move says, press feed hold: the machine file has that sign or direction wrong");
         let shown = self.told(&self.start, true);
         self.say(&format!("Now the display shows {shown}; else do not go on"));

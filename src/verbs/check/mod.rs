@@ -14,7 +14,7 @@ use post_machine::diagnostic::Diagnostic;
 use crate::arguments::flag_values;
 use crate::failure::Failure;
 use crate::files::{self, PathArg, Role};
-use crate::job::{self, machine_files, other_dialect};
+use crate::job::{self, machine_files, other_dialect, unused_options};
 use crate::terminal::{self, print};
 
 const PICTURE: Role = Role {
@@ -157,6 +157,7 @@ fn machine(arguments: &CheckArguments) -> Result<Machine, Failure> {
     let machine = machine_files::load(&arguments.machine, &arguments.machines, &settings)?;
     let dialect = arguments.dialect.as_deref();
     other_dialect::say_what_is_left(dialect, &arguments.machine, &arguments.machines, &settings);
+    unused_options::warn(&machine, &arguments.plugins);
     match &arguments.head {
         Some(name) => with_head(machine, name),
         None => Ok(machine),

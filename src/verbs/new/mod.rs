@@ -13,7 +13,8 @@ use post_machine::diagnostic::Diagnostic;
 use crate::arguments::flag_values::{self, TcpWord, UnitsWord, finite, word};
 use crate::failure::Failure;
 use crate::files::{self, Role};
-use crate::{job, terminal};
+use crate::job::{self, plugin_finder};
+use crate::terminal;
 use template::Class;
 
 const MACHINE: Role = Role {
@@ -153,6 +154,7 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
     refuse_existing(arguments, &path)?;
     files::write(&[(MACHINE, &path.clone().into(), &text)])?;
     terminal::findings(&checked.findings());
+    terminal::findings(plugin_finder::not_built_in(&machine.control.dialect).as_slice());
     terminal::print(&format!(
         "{}: {}\nMeasure what its remarks ask for, then: post check {}\n",
         path.display(),

@@ -11,6 +11,7 @@ use crate::arguments::JobArguments;
 use crate::arguments::flag_values::{not_negative, positive};
 use crate::failure::Failure;
 use crate::files::{self, PathArg, Role};
+use crate::job;
 use crate::terminal;
 use search::Search;
 use trial::Trials;
@@ -79,6 +80,7 @@ fn step(text: &str) -> Result<f64, String> {
 /// Places as the arguments say.
 pub fn run(arguments: &PlaceArguments) -> Result<(), Failure> {
     let mut trials = Trials::new(arguments)?;
+    job::say_what_is_left(&arguments.job, &trials.machine()?);
     let found = Search::new(arguments, &mut trials)?.run()?;
     let mut taken = false;
     if let Some(target) = &arguments.svg {

@@ -41,13 +41,19 @@ pub fn text(arguments: &PlaceArguments, found: &Found) -> String {
             best.report.machine, best.report.tcp
         ),
     );
-    row("seat", seat_text(best));
+    row("seat", seat_text(arguments, found, best));
     row("why", why(arguments, found));
     let before = found
         .present
         .as_ref()
         .filter(|present| present.seat != best.seat)
-        .map(|present| format!("; {} with {}", cost(arguments, present), seat_text(present)));
+        .map(|present| {
+            format!(
+                "; {} with {}",
+                cost(arguments, present),
+                seat_text(arguments, found, present)
+            )
+        });
     row(
         match arguments.least {
             Least::Time => "time",
@@ -57,16 +63,22 @@ pub fn text(arguments: &PlaceArguments, found: &Found) -> String {
     );
     text.push('\n');
     text.push_str(&table(&best.report.axes));
-    let _ = writeln!(text, "\n{}", command(best, std::env::args_os()));
+    let _ = writeln!(
+        text,
+        "\n{}",
+        command(&seat_text(arguments, found, best), std::env::args_os())
+    );
     text
 }
 
-/// `--mount X,Y,Z --turn DEG`; without a turn that is none.
-fn seat_text(trial: &Trial) -> String {
+/// `--mount X,Y,Z --turn DEG`; without a turn only where nobody has spoken of one.
+fn seat_text(arguments: &PlaceArguments, found: &Found, trial: &Trial) -> String {
     let mount = format!("--mount {}", mount_text(&trial.seat.mount));
-    match trial.seat.turn {
-        0.0 => mount,
-        turn => format!("{mount} --turn {turn}"),
+    let turn = trial.seat.turn;
+    if turn == 0.0 && found.machine.turn == 0.0 && arguments.job.turn.is_none() {
+        mount
+    } else {
+        format!("{mount} --turn {turn}")
     }
 }
 
@@ -134,13 +146,19 @@ fn table(axes: &[AxisRange]) -> String {
 }
 
 /// The command that posts the file there: that of this run without what is this verb's own.
-fn command(best: &Trial, arguments: impl Iterator<Item = OsString>) -> String {
+fn command(seat: &str, arguments: impl Iterator<Item = OsString>) -> String {
     let mut words: Vec<String> = Vec::new();
+    // What stands behind `--` is a file, whatever it begins with.
+    let mut files: Vec<String> = Vec::new();
     let mut skip = false;
     let mut verb = false;
     for word in arguments.skip(1) {
         let word = word.to_string_lossy().into_owned();
         if std::mem::take(&mut skip) {
+            continue;
+        }
+        if word == "--" || !files.is_empty() {
+            files.push(quoted(&word));
             continue;
         }
         if !verb && word == "place" {
@@ -153,7 +171,9 @@ fn command(best: &Trial, arguments: impl Iterator<Item = OsString>) -> String {
             None => words.push(quoted(&word)),
         }
     }
-    format!("post {} {}", words.join(" "), seat_text(best))
+    words.push(seat.to_owned());
+    words.append(&mut files);
+    format!("post {}", words.join(" "))
 }
 
 /// A word as a shell takes it.

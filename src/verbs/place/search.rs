@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Side};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::place::{descend, most_room, nearest, rounded, shuffled};
+use post_machine::place::{HalfSpace, descend, most_room, nearest, rounded, shuffled, spread};
 
 use super::trial::{Bound, Seat, Trial, Trials, bodies};
 use super::{Least, PlaceArguments};
@@ -17,6 +17,9 @@ const A_LOOK: u32 = 2;
 
 /// Steps of the search for a mount that costs less, mm.
 const STEPS: [f64; 5] = [100.0, 40.0, 15.0, 5.0, 1.0];
+
+/// Places all over the room from the best of which that search begins too.
+const PLACES: usize = 24;
 
 /// A seat must cost less by this share to be taken for the present one.
 const WORTH: f64 = 1e-3;
@@ -46,6 +49,8 @@ enum Nothing {
     Short(Diagnostic),
     /// With its linear travel opened the machine cannot make it either: no mount helps.
     Anywhere(Vec<Diagnostic>),
+    /// Rotary axes place the tip too: no mount follows from travel.
+    Unbound,
     /// Posting refuses what travel would allow.
     Refused(Vec<Diagnostic>),
 }
@@ -55,7 +60,7 @@ impl Nothing {
     fn may_be_the_route(&self) -> bool {
         match self {
             Self::Short(_) => true,
-            Self::Anywhere(_) => false,
+            Self::Anywhere(_) | Self::Unbound => false,
             Self::Refused(findings) => out_of_travel(findings),
         }
     }
@@ -186,9 +191,6 @@ impl<'s, 'a> Search<'s, 'a> {
         let mut refused = Vec::new();
         for _ in 0..ROUNDS {
             let opened = self.trials.opened(&seat, prefer)?;
-            if out_of_travel(&opened.faults) {
-                return Ok(Err(Nothing::Anywhere(opened.faults)));
-            }
             bounds.extend(opened.bounds);
             bounds = shuffled(bounds);
             let seated = |trial: Trial, bounds: Vec<Bound>| Seated {
@@ -202,8 +204,10 @@ impl<'s, 'a> Search<'s, 'a> {
                 return Ok(Ok(seated(known.clone(), bounds)));
             }
             if !opened.bound {
-                refused = opened.faults;
-                break;
+                return Ok(Err(Nothing::Unbound));
+            }
+            if out_of_travel(&opened.faults) {
+                return Ok(Err(Nothing::Anywhere(opened.faults)));
             }
             let bodies = bodies(&bounds);
             let Some(point) = nearest(&bodies, &wished, self.margin() + ROUNDING) else {
@@ -264,36 +268,60 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(())
     }
 
-    /// Moves a seat to where the program costs less.
+    /// Moves a seat to where the program costs less: by steps from where it is, and from the best of the places that lie
+    /// all over the room. Each way alone may end where only another one leads on.
     fn settle(&mut self, trial: &mut Trial, bounds: &[Bound]) -> Result<(), Failure> {
         let bodies = bodies(bounds);
-        let margin = self.margin();
-        let (turn, start) = (trial.seat.turn, (trial.seat.mount, trial.cost));
-        let mut fault = None;
-        let mut least = trial.clone();
-        descend(start, &STEPS, |mount: Vector3<f64>| {
-            let inside = bodies.iter().all(|body| body.room(&mount) >= margin);
-            if !inside || fault.is_some() || self.trials.left() == 0 {
-                return None;
+        let start = (trial.seat.mount, trial.cost);
+        let places = spread(&bodies, &start.0, self.margin() + ROUNDING, PLACES);
+        let mut other: Option<(Vector3<f64>, f64)> = None;
+        for mount in places {
+            let cost = self.cost_at(trial, mount, &bodies)?;
+            if let Some(cost) = cost.filter(|cost| other.is_none_or(|(_, least)| *cost < least)) {
+                other = Some((mount, cost));
             }
-            let mount = tidy(&mount);
-            match self.trials.post(Seat { mount, turn }) {
-                Ok(Ok(trial)) if self.holds(&trial) => {
-                    let cost = trial.cost;
-                    if cost < least.cost {
-                        least = trial;
-                    }
-                    Some(cost)
+        }
+        for start in [Some(start), other].into_iter().flatten() {
+            let mut fault = None;
+            descend(start, &STEPS, |mount| {
+                if fault.is_some() {
+                    return None;
                 }
-                Ok(_) => None,
-                Err(failure) => {
-                    fault = Some(failure);
-                    None
-                }
-            }
-        });
-        *trial = least;
-        fault.map_or(Ok(()), Err)
+                self.cost_at(trial, mount, &bodies)
+                    .unwrap_or_else(|failure| {
+                        fault = Some(failure);
+                        None
+                    })
+            });
+            fault.map_or(Ok(()), Err)?;
+        }
+        Ok(())
+    }
+
+    /// What the program costs with the part there, if it can sit there; the least of all is kept in `least`.
+    fn cost_at(
+        &mut self,
+        least: &mut Trial,
+        mount: Vector3<f64>,
+        bodies: &[HalfSpace],
+    ) -> Result<Option<f64>, Failure> {
+        let inside = bodies.iter().all(|body| body.room(&mount) >= self.margin());
+        if !inside || self.trials.left() == 0 {
+            return Ok(None);
+        }
+        let seat = Seat {
+            mount: tidy(&mount),
+            turn: least.seat.turn,
+        };
+        let trial = match self.trials.post(seat)? {
+            Ok(trial) if self.holds(&trial) => trial,
+            _ => return Ok(None),
+        };
+        let cost = trial.cost;
+        if cost < least.cost {
+            *least = trial;
+        }
+        Ok(Some(cost))
     }
 
     /// Travel is short: by how much, of which axes, at which lines.
@@ -369,10 +397,27 @@ impl<'s, 'a> Search<'s, 'a> {
         match nothing {
             Some(Nothing::Short(finding)) => finding.into(),
             Some(Nothing::Anywhere(mut findings)) => {
-                let message = "no mount helps: a rotary axis cannot point the tool as the file asks, wherever the part sits";
+                let name = &self.machine.name;
+                let message = format!(
+                    "no mount helps: {name} cannot point the tool as the file asks, wherever the part sits"
+                );
+                let other = "another set-up or machine";
+                let rotary = self.machine.axes.iter().any(|axis| axis.joint.rotary);
+                findings.push(Diagnostic::error("place", message).help(match rotary {
+                    true => self.else_turned(other),
+                    false => other.to_owned(),
+                }));
+                findings.into()
+            }
+            Some(Nothing::Unbound) => {
+                let mut findings = present.unwrap_or_default();
+                let message = format!(
+                    "no mount is searched for {}: its rotary axes place the tip too, so that none follows from travel",
+                    self.machine.name
+                );
                 findings.push(
                     Diagnostic::error("place", message)
-                        .help(self.else_turned("another set-up or machine")),
+                        .help("try --mount X,Y,Z: `post check` tells where the tip can go"),
                 );
                 findings.into()
             }

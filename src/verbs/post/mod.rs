@@ -45,7 +45,7 @@ pub struct PostArguments {
 pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let source = arguments.job.input();
     let machine = job::machine(&arguments.job, &[])?;
-    job::say_what_is_left(&arguments.job);
+    job::say_what_is_left(&arguments.job, &machine);
     let finder = plugin_finder::finder(&arguments.job.plugins)?;
     let program = job::program_name(source, arguments.output.as_ref());
     let (mut dialect, dialect_use) =

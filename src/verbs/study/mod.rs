@@ -131,7 +131,7 @@ pub struct Models {
 pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
     let dry_run = DryRun::new("study", &arguments.job, arguments.exact)?;
     let machine = self::machine(&dry_run, &[])?;
-    job::say_what_is_left(&arguments.job);
+    job::say_what_is_left(&arguments.job, &machine);
     let folder = folder(arguments);
     refuse_strangers(&folder)?;
     let (names, mut models) = models(&dry_run, &machine)?;

@@ -7,7 +7,6 @@
 
 mod class;
 mod commission;
-mod halton;
 mod nominal;
 mod pointing;
 mod probe;

@@ -18,7 +18,7 @@ pub struct Solutions {
     pub azimuth_deg: f64,
     /// Ways, full turns left aside.
     pub ways: Vec<WayOfPointing>,
-    /// Solutions inside travel, full turns counted.
+    /// Solutions inside travel and at positions of index axes, full turns counted.
     pub inside: usize,
     /// They were searched: there may be more.
     pub at_least: bool,
@@ -34,6 +34,8 @@ pub struct WayOfPointing {
     pub readings: Vec<Reading>,
     /// How many full turns of it lie inside travel; 0: it is out of travel.
     pub turns: usize,
+    /// Index axes have positions there.
+    pub has_positions: bool,
 }
 
 /// What the control shows of an axis.
@@ -74,13 +76,18 @@ pub(super) fn typical(probe: &Probe<'_>) -> Option<Solutions> {
         .map(|joints| WayOfPointing {
             readings: readings(probe, &probe.inside(joints).unwrap_or(*joints)),
             turns: probe.turns(joints),
+            has_positions: probe.has_positions(&probe.free(), joints),
         })
         .collect();
     Some(Solutions {
         axis: axis.into(),
         tilt_deg: angle(axis, Vector3::z()).to_degrees(),
         azimuth_deg: libm::atan2(axis.y, axis.x).to_degrees(),
-        inside: ways.iter().map(|way| way.turns).sum(),
+        inside: ways
+            .iter()
+            .filter(|way| way.has_positions)
+            .map(|way| way.turns)
+            .sum(),
         ways,
         at_least,
     })
@@ -124,6 +131,8 @@ pub struct Pole {
     pub free: String,
     /// Inside the travel of the rotary axes.
     pub inside: bool,
+    /// The other index axes have positions there.
+    pub has_positions: bool,
     /// The directions that miss it by so much are the nearest that can be made, degrees; 0 if it can be met.
     pub missed_by_deg: f64,
     /// What the control shows of the others there, nearest to rest.
@@ -191,6 +200,7 @@ fn pole(probe: &Probe<'_>, axis: Vector3<f64>, free: &[usize]) -> Pole {
         axis: axis.into(),
         free: name,
         inside: inside.is_some(),
+        has_positions: shown.is_none_or(|joints| probe.has_positions(&free[1..], &joints)),
         missed_by_deg: miss.to_degrees(),
         others,
     }

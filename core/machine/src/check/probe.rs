@@ -5,8 +5,9 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
-use super::{halton, settings};
+use super::settings;
 use crate::description::{Machine, Pole, Positions, SHARE_AT_POLES};
+use crate::halton;
 use crate::kinematics::orientation::angle;
 use crate::kinematics::travel::passed;
 use crate::kinematics::{Chain, Joint, Joints, MAX_AXES, NoClosedForm, Pose, Solver, Unreachable};
@@ -212,31 +213,41 @@ impl<'a> Probe<'a> {
     fn at_positions(&self, solver: &Solver, joints: &Joints, tolerance: f64) -> Option<Joints> {
         let mut at = *joints;
         for place in self.free() {
-            let axis = &self.machine.axes[place];
-            let Some(indexed) = &axis.indexed else {
-                continue;
-            };
-            // Full turns make other positions of a list: the nearest of all.
-            let value = joints[place];
-            let nearest = [0.0, TAU, -TAU]
-                .map(|turn| {
-                    indexed
-                        .positions
-                        .nearest(value + turn, axis.travel.is_none())
-                        - turn
-                })
-                .into_iter()
-                .min_by(|a, b| libm::fabs(a - value).total_cmp(&libm::fabs(b - value)))?;
-            if libm::fabs(nearest - value) > tolerance {
+            at[place] = self.position(place, joints[place]);
+            if libm::fabs(at[place] - joints[place]) > tolerance {
                 return None;
             }
-            at[place] = nearest;
         }
         if at != *joints {
             let turns = solver.chain().turns(&at);
             solver.place(Vector3::zeros(), &mut at, &turns).ok()?;
         }
         Some(at)
+    }
+
+    /// The position next to `value` of an axis that stands at some alone; of any other `value` itself.
+    fn position(&self, place: usize, value: f64) -> f64 {
+        let axis = &self.machine.axes[place];
+        let Some(indexed) = &axis.indexed else {
+            return value;
+        };
+        // Full turns make other positions of a list: the nearest of all.
+        let endless = axis.travel.is_none();
+        let positions =
+            [0.0, TAU, -TAU].map(|turn| indexed.positions.nearest(value + turn, endless) - turn);
+        let away = |position: &f64| libm::fabs(position - value);
+        let nearest = positions
+            .into_iter()
+            .min_by(|a, b| away(a).total_cmp(&away(b)));
+        nearest.unwrap_or(value)
+    }
+
+    /// Every index axis of `places` has a position where `joints` has it, within the machine's `axis_tolerance`.
+    pub fn has_positions(&self, places: &[usize], joints: &Joints) -> bool {
+        places.iter().all(|place| {
+            let away = self.position(*place, joints[*place]) - joints[*place];
+            libm::fabs(away) <= self.machine.accuracy.axis_tolerance
+        })
     }
 
     /// Close to a pole an axis that would tilt beyond its end stays there, if the tool axis keeps its tolerance.

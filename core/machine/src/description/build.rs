@@ -1,6 +1,7 @@
 //! From what a machine file says to what it means, with every refusal.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -10,10 +11,12 @@ use toml::de::{DeTable, DeValue};
 use super::file::{MachineFile, Quantity, Rapid, Tcp};
 use super::keys::typed;
 use super::layers::{Source, Sources, overlay};
-use super::limits::{MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_PARAMETERS};
+use super::limits::{
+    MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_PARAMETERS, MOST_TURNS,
+};
 use super::options::take_options;
 use super::setting::Setting;
-use super::{Axis, Control, Frame, GivenOption, Head, Machine};
+use super::{Axis, Control, Frame, GivenOption, Head, Machine, UnusedOptions};
 use crate::diagnostic::{Diagnostic, Place, Short};
 
 /// Loads a machine: `source`, what it extends (found by `find`), and `settings`, the last of
@@ -236,7 +239,7 @@ impl Builder<'_> {
         }
         let dialect = control.dialect.get_ref().clone();
         let options = control_options.remove(&dialect).unwrap_or_default();
-        for (other, given) in control_options {
+        for (other, given) in &control_options {
             // A machine may carry the options of several dialects; an empty name is a slip.
             if other.is_empty() || other.contains(char::is_whitespace) {
                 let span = file.control.span();
@@ -252,7 +255,19 @@ impl Builder<'_> {
             self.check_tip_words(&axes, file.chain.span());
         }
         self.check_rapid(&axes, file);
+        self.check_turns(&axes, file.chain.span());
         let accuracy = self.accuracy(&file.accuracy, &mut model_options);
+        let unused = |section: &'static str, tables: BTreeMap<String, Vec<GivenOption>>| {
+            let tables = tables.into_iter();
+            tables.map(move |(plugin, options)| UnusedOptions {
+                section,
+                plugin,
+                options,
+            })
+        };
+        let unused_options = unused("control", control_options)
+            .chain(unused("accuracy", model_options))
+            .collect();
         let control_point = self.control_point(&file.tool.control_point);
         let spindle = self.spindle(&file.spindle);
         let word_rules = self.word_rules(&file.cl);
@@ -294,6 +309,7 @@ impl Builder<'_> {
             rewind,
             frame: Frame::default(),
             heads: Vec::new(),
+            unused_options,
         };
         self.frame(control, &mut machine);
         if let (Some(edge), false) = (&file.tool.edge, machine.pointing().len() == 3) {
@@ -305,7 +321,10 @@ impl Builder<'_> {
                 "leave the edge out, or give the machine the axis that turns it",
             );
         }
-        self.check_chain(&machine, file.chain.span());
+        // With a number that has none, or a direction that is none, its solver would search without end.
+        if self.faults.is_empty() {
+            self.check_chain(&machine, file.chain.span());
+        }
         Some(machine)
     }
 
@@ -334,6 +353,27 @@ impl Builder<'_> {
             let message = format!("{what} has {count} entries; at most {most} are possible");
             let first = spans.next().unwrap_or_default();
             self.fault("machine-size", first, message, "is this a machine file?");
+        }
+    }
+
+    /// All full turns of the rotary axes are weighed, with one another.
+    fn check_turns(&mut self, axes: &[Axis], span: Range<usize>) {
+        let rotary = axes.iter().filter(|axis| axis.joint.rotary);
+        let turns = rotary.filter_map(|axis| {
+            let [least, most] = axis.travel?;
+            Some(libm::ceil((most - least) / TAU).max(1.0))
+        });
+        let turns: f64 = turns.product();
+        if turns > MOST_TURNS {
+            self.fault(
+                "machine-travel",
+                span,
+                format!(
+                    "the travels of the rotary axes hold {} ways to set them on other full turns; {MOST_TURNS} are possible",
+                    Short(turns)
+                ),
+                "an axis that turns without end says cyclic = true; of the others less travel is rarely missed",
+            );
         }
     }
 

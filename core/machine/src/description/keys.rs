@@ -59,7 +59,11 @@ fn explained(message: &str) -> (String, Option<String>) {
             continue;
         };
         // Of `one of `a`, `b`` every second piece is a name.
-        let names: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
+        let mut names: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
+        if names.contains(&"chain") {
+            // These are taken out before the rest is read.
+            names.extend(["extends", "head"]);
+        }
         return (
             format!("{says} `{word}` here"),
             Some(meant(word, "known are", &names)).filter(|_| !names.is_empty()),

@@ -24,5 +24,9 @@ pub(super) const MOST_OPTIONS: usize = 200;
 /// Groups of axes that exclude one another.
 pub(super) const MOST_GROUPS: usize = 32;
 
+/// Ways to set all rotary axes on other full turns inside their travels: each is weighed at each point. An axis that is wound
+/// up over a cut takes one for each turn.
+pub(super) const MOST_TURNS: f64 = 1_000.0;
+
 /// Faults of a file that are told.
 pub(super) const MOST_FAULTS: usize = 50;

@@ -82,6 +82,19 @@ pub struct Machine {
     pub indexes: bool,
     /// Heads that a word of the program (`HEAD/name`) swaps in.
     pub heads: Vec<Head>,
+    /// Options for plugins that it does not use.
+    pub unused_options: Vec<UnusedOptions>,
+}
+
+/// A table of options for a plugin that the machine does not use: a machine may carry those of several dialects.
+#[derive(Clone, Debug)]
+pub struct UnusedOptions {
+    /// The table that it stands in: `control` for a dialect, `accuracy` for an error model.
+    pub section: &'static str,
+    /// The plugin's name.
+    pub plugin: String,
+    /// The options.
+    pub options: Vec<GivenOption>,
 }
 
 /// A head that the program can swap in.

@@ -66,7 +66,10 @@ impl Builder<'_> {
     /// The expression has no value.
     fn without_value(&mut self, quantity: &Quantity, message: String) {
         let known: Vec<&str> = self.parameters.keys().map(String::as_str).collect();
-        let help = meant(&unknown(quantity, &known), "the parameters are", &known);
+        let help = match known.as_slice() {
+            [] => "the file has no [parameters]".to_owned(),
+            known => meant(&unknown(quantity, known), "the parameters are", known),
+        };
         self.fault("machine-expression", quantity.span(), message, &help);
     }
 

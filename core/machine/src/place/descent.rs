@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::half_space::HalfSpace;
+use super::half_space::{HalfSpace, most_room, nearest};
+use crate::halton;
 
 /// A decrease that is worth another mount, as a share of the cost.
 const WORTH: f64 = 1e-4;
@@ -25,6 +26,50 @@ pub fn rounded(bodies: &[HalfSpace], point: &Vector3<f64>, room: f64) -> Option<
         let holds = |corner: &Vector3<f64>| bodies.iter().all(|body| body.room(corner) >= room);
         corners.into_iter().find(holds)
     })
+}
+
+/// How far the ends of the room are looked for, mm.
+const FAR: f64 = 1e4;
+
+/// At most `count` points with `room` to every end, whole mm, spread over all there are: first those at its ends and the
+/// one with most room, then places all over the box about them.
+pub fn spread(
+    bodies: &[HalfSpace],
+    about: &Vector3<f64>,
+    room: f64,
+    count: usize,
+) -> Vec<Vector3<f64>> {
+    let toward = (0..6).filter_map(|way| {
+        let mut far = *about;
+        far[way / 2] += if way % 2 == 0 { FAR } else { -FAR };
+        nearest(bodies, &far, room)
+    });
+    let ends: Vec<Vector3<f64>> = toward.collect();
+    let Some(first) = ends.first() else {
+        return Vec::new();
+    };
+    let (least, most) = ends.iter().fold((*first, *first), |(least, most), end| {
+        (least.inf(end), most.sup(end))
+    });
+    let middle = most_room(bodies, about).map(|tight| tight.point);
+    let tries = u32::try_from(count * 16).unwrap_or(u32::MAX);
+    let inside = (1..=tries).map(|number| {
+        let share = Vector3::from_iterator(halton::place(number));
+        least + (most - least).component_mul(&share)
+    });
+    let holds = |point: &Vector3<f64>| bodies.iter().all(|body| body.room(point) >= room);
+    let mut found: Vec<Vector3<f64>> = Vec::new();
+    for point in middle.into_iter().chain(ends).chain(inside) {
+        if found.len() == count {
+            break;
+        }
+        if let Some(point) = Some(point.map(libm::rint)).filter(holds)
+            && !found.contains(&point)
+        {
+            found.push(point);
+        }
+    }
+    found
 }
 
 /// Goes from `start`, which costs `cost`, by steps along the axes to where none of them costs less; `cost_at` gives none

@@ -11,6 +11,6 @@ mod descent;
 mod half_space;
 mod room;
 
-pub use descent::{descend, rounded};
+pub use descent::{descend, rounded, spread};
 pub use half_space::{HalfSpace, Tight, most_room, nearest, shuffled};
 pub use room::{End, Room, Side, opened};

@@ -183,6 +183,13 @@ const SLIPS: &[Slip] = &[
         false,
     ),
     (
+        "travel = [-120, 30]",
+        "travel = [-360000, 360000]",
+        "2 \"[w C' A' b Y X Z (S) t]\"",
+        "hold 2000 ways to set them on other full turns; 1000 are possible",
+        true,
+    ),
+    (
         "tcp = \"post\"",
         "tcp = \"posts\"",
         "43 \"posts\"",

@@ -149,6 +149,10 @@ impl WordCensus {
 
 /// The word of CL files that `word` was most likely meant to be.
 fn known(word: &str) -> Option<&'static str> {
+    // Of one that is known another word of the record is not.
+    if MajorWord::find(word).is_some() {
+        return None;
+    }
     nearest(
         word,
         MajorWord::all()

@@ -100,8 +100,8 @@ impl Interpreter {
             ToolLength::Cl => self.cutter_length,
             ToolLength::Assembly => None,
         };
-        let length = tool.length.map(|length| length * self.scale).or(cutter);
-        if let Some(length) = length.filter(|length| libm::fabs(*length) > MOST_COORDINATE) {
+        let mut length = tool.length.map(|length| length * self.scale).or(cutter);
+        if let Some(length) = length.take_if(|length| libm::fabs(*length) > MOST_COORDINATE) {
             self.fault(
                 record,
                 "tool",
@@ -111,7 +111,6 @@ impl Interpreter {
                 ),
                 "is a decimal point missing, or are the units wrong (--units)?",
             );
-            return;
         }
         // NX repeats LOAD in every operation; the same tool stays in the spindle.
         let loaded = Some((tool.number, register, tool.length));
@@ -181,7 +180,6 @@ impl Interpreter {
                 "the file loads its tools itself: their numbers are not those of --tool-from-cutter".to_owned(),
                 "leave --tool-from-cutter out",
             );
-            return;
         }
         if let Some(told) = self.reading.tool.take().filter(|told| *told != tool.number) {
             self.fault(

@@ -6,7 +6,7 @@ use crate::kinematics::MAX_AXES;
 const PRIMES: [u32; MAX_AXES] = [2, 3, 5, 7, 11, 13, 17, 19];
 
 /// The `number`th place, counted from 1: for each axis a share of its travel.
-pub(super) fn place(number: u32) -> [f64; MAX_AXES] {
+pub(crate) fn place(number: u32) -> [f64; MAX_AXES] {
     PRIMES.map(|base| share(number, base))
 }
 

@@ -1,0 +1,73 @@
+//! Tables of options for plugins that a run does not open: no plugin judges them, so that a slip would be lost.
+
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::path::PathBuf;
+
+use post_machine::description::{Machine, UnusedOptions};
+use post_machine::diagnostic::{Diagnostic, meant};
+use post_stock::{plugin, plugins};
+
+use super::folders;
+use crate::terminal;
+
+/// Warns of tables whose plugin is not there, and of options that a plugin of the command does not have.
+pub fn warn(machine: &Machine, named: &[PathBuf]) {
+    let folders = folders(named, "POST_PLUGINS");
+    let mut warnings = Vec::new();
+    for table in &machine.unused_options {
+        let file = format!("{DLL_PREFIX}post_{}{DLL_SUFFIX}", table.plugin);
+        let there = folders.iter().any(|folder| folder.join(&file).exists());
+        let is_model = table.section == "accuracy";
+        match plugin(&table.plugin).filter(|plugin| plugin.is_model() == is_model) {
+            Some(plugin) => {
+                let keys: Vec<&str> = plugin.options().iter().map(|option| option.key).collect();
+                warnings.extend(unknown(table, &keys));
+            }
+            None if there => {}
+            None => warnings.push(no_plugin(table, is_model)),
+        }
+    }
+    terminal::findings(&warnings);
+}
+
+/// The options that a plugin does not have.
+fn unknown(table: &UnusedOptions, keys: &[&str]) -> Vec<Diagnostic> {
+    let options = table.options.iter();
+    let unknown = options.filter(|option| !keys.contains(&option.key.as_str()));
+    unknown
+        .map(|option| {
+            let UnusedOptions {
+                section, plugin, ..
+            } = table;
+            let message = format!(
+                "[{section}.{plugin}]: {plugin} has no option `{}`",
+                option.key
+            );
+            Diagnostic::warning("plugin", message)
+                .at(option.place.clone())
+                .help(meant(&option.key, "it has", keys))
+        })
+        .collect()
+}
+
+/// The plugin of a table is not there.
+fn no_plugin(table: &UnusedOptions, is_model: bool) -> Diagnostic {
+    let UnusedOptions {
+        section, plugin, ..
+    } = table;
+    let of_kind = plugins()
+        .iter()
+        .filter(|plugin| plugin.is_model() == is_model);
+    let names: Vec<&str> = of_kind.map(|plugin| plugin.name()).collect();
+    let what = if is_model {
+        "an error model"
+    } else {
+        "a dialect"
+    };
+    let message =
+        format!("[{section}.{plugin}] has options for {what} that is not here: they do nothing");
+    let first = table.options.first();
+    Diagnostic::warning("plugin", message)
+        .at(first.and_then(|option| option.place.clone()))
+        .help(meant(plugin, "built in are", &names))
+}

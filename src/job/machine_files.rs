@@ -73,11 +73,15 @@ impl From<Missing> for Diagnostic {
     }
 }
 
+/// A name with an ending or a folder is that of a file.
+fn is_file(name: &str) -> bool {
+    let path = Path::new(name);
+    path.extension().is_some_and(|ending| ending == "toml") || path.components().count() > 1
+}
+
 fn find(name: &str, folders: &[PathBuf]) -> Result<Source, Missing> {
     let path = Path::new(name);
-    let file =
-        path.extension().is_some_and(|ending| ending == "toml") || path.components().count() > 1;
-    if file {
+    if is_file(name) {
         // A file that is extended is named as seen from the one that extends it.
         let beside = folders.iter().map(|folder| folder.join(path));
         let found = std::iter::once(path.to_owned())
@@ -183,11 +187,15 @@ pub fn list(named: &[PathBuf]) -> Result<Vec<Listed>, Failure> {
     Ok(listed.collect())
 }
 
-/// The text of the machine `name`, as its file has it.
+/// The text of the machine that the bare name `name` finds, as its file has it.
 ///
 /// # Errors
 /// There is no such machine.
 pub fn text(name: &str, named: &[PathBuf]) -> Result<String, Failure> {
+    if is_file(name) {
+        let message = format!("{name} names a file, and a machine is printed by its bare name");
+        return Err(Diagnostic::error("machine", message).into());
+    }
     Ok(find(name, &folders(named)?).map_err(Diagnostic::from)?.text)
 }
 

@@ -195,6 +195,9 @@ fn the_file_of_a_machine_is_printed_and_posts_under_another_name() {
     assert_eq!(mine.out, posted(&["-m", "ac-trunnion"], "").out);
     let slip = run(command().args(["machines", "--print", "ac-trunion"]), b"");
     refused(&slip, &["did you mean ac-trunnion?"]);
+    // No other file is shown.
+    let file = run(command().args(["machines", "--print", "/etc/passwd"]), b"");
+    refused(&file, &["/etc/passwd names a file"]);
 }
 
 #[test]

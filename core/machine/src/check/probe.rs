@@ -20,7 +20,7 @@ const STEPS: usize = 1200;
 const GRACE: f64 = 1e-9;
 
 /// A direction that is missed by no more than this is made, where borders are looked for: radians.
-const EXACT: f64 = 1e-7;
+pub(super) const EXACT: f64 = 1e-7;
 
 /// Where in their travel the axes stand for a look at what moves: shares of it.
 const SETTINGS: [f64; 4] = [0.31, 0.47, 0.62, 0.83];

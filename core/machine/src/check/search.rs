@@ -7,16 +7,13 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 
 use super::pointing::direction;
-use super::probe::{Probe, STARTS};
+use super::probe::{EXACT, Probe, STARTS};
 use crate::kinematics::orientation::angle;
 use crate::kinematics::{Joints, Pose};
 
 /// Steps of all searches for the map together, and of the one from a neighbour: from so near it takes a handful.
 const MAP_STEPS: usize = 200_000;
 const NEIGHBOUR: usize = 25;
-
-/// A direction that is missed by no more than this is made, radians.
-const EXACT: f64 = 1e-7;
 
 /// Times that the way over the border of what is made is halved.
 const HALVINGS: usize = 16;

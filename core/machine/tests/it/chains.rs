@@ -483,7 +483,7 @@ fn random(rng: &mut Rng) -> Result<Machine, Vec<Diagnostic>> {
         }
         axes.push_str(match (rotary, rng.pick(5)) {
             (true, 0) => "cyclic = true\n",
-            (true, 1) => "travel = [-35999, 35999]\n",
+            (true, 1) => "travel = [-3599, 3599]\n",
             (true, 2) => "travel = [-0.001, 0.002]\n",
             (true, _) => "travel = [-120, 30]\n",
             (false, 0) => "travel = [-1e-3, 1e-3]\n",

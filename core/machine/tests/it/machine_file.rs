@@ -183,13 +183,6 @@ const SLIPS: &[Slip] = &[
         false,
     ),
     (
-        "travel = [-120, 30]",
-        "travel = [-360000, 360000]",
-        "2 \"[w C' A' b Y X Z (S) t]\"",
-        "hold 2000 ways to set them on other full turns; 1000 are possible",
-        true,
-    ),
-    (
         "tcp = \"post\"",
         "tcp = \"posts\"",
         "43 \"posts\"",
@@ -402,6 +395,21 @@ const SLIPS: &[Slip] = &[
         false,
     ),
 ];
+
+/// All full turns of all rotary axes are weighed with one another, so that there must not be too many.
+#[test]
+fn rotary_axes_that_wind_up_together_are_refused() {
+    let wide = [
+        "axis.A.travel=[-18000, 18000]",
+        "axis.C.travel=[-18000, 18000]",
+    ];
+    let wide = [wide[0], wide[1], "axis.C.cyclic=false"];
+    let found = try_load(GOOD, &wide).unwrap_err();
+    let said = "hold 10000 ways to set them on other full turns; 1000 are possible";
+    assert!(found[0].message.contains(said), "{found:?}");
+    // One alone may.
+    assert!(try_load(GOOD, &wide[..1]).is_ok());
+}
 
 #[test]
 fn every_slip_is_refused_where_it_stands() {

@@ -2,6 +2,7 @@
 
 use crate::Event;
 use crate::field::{MAX_TEXTS, Reader};
+use crate::flat::Flat;
 
 /// Events in order, each with the line of the CL file it comes from.
 #[derive(Debug, Default)]
@@ -17,27 +18,6 @@ pub(crate) struct Stored {
     pub(crate) kind: u32,
     numbers_end: u32,
     texts_end: u32,
-}
-
-/// Numbers and texts of all events, one behind the other.
-#[derive(Debug, Default)]
-pub(crate) struct Flat {
-    numbers: Vec<f64>,
-    /// Where each text ends in `text`.
-    texts: Vec<u32>,
-    text: String,
-}
-
-impl Flat {
-    #[inline]
-    pub(crate) fn numbers(&mut self, numbers: &[f64]) {
-        self.numbers.extend_from_slice(numbers);
-    }
-
-    pub(crate) fn text(&mut self, text: &str) {
-        self.text.push_str(text);
-        self.texts.push(self.text.len() as u32);
-    }
 }
 
 impl Batch {

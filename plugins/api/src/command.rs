@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use crate::batch::Flat;
 use crate::field::{Codes, Field, NotKnown, Promise, Reader, Shape, codes};
+use crate::flat::Flat;
 use crate::setup::Units;
 
 /// Feed of a cut; already rounded down to the decimals of the dialect's format.

@@ -3,9 +3,9 @@
 //! The table below is the only description of the events: the Rust enum, the raw form, the flat batch, the C
 //! header and the host's checks follow from it.
 
-use crate::batch::Flat;
 use crate::command::{Compensation, Coolant, Cycle, Feed, Spindle, SpindleSense};
 use crate::field::{Field, List, NotKnown, Promise, Reader, Shape, ToolPose};
+use crate::flat::Flat;
 use crate::setup::Units;
 
 /// A kind of event as the contract has it.

@@ -3,7 +3,7 @@
 //! An event crosses the border as one array of numbers and one of texts, field after field in the order of the
 //! table in `event.rs`. What is missing at the end of either has its default, so an event can grow.
 
-use crate::batch::Flat;
+use crate::flat::Flat;
 
 /// Most texts that an event has.
 pub(crate) const MAX_TEXTS: usize = 2;
@@ -379,7 +379,7 @@ macro_rules! codes {
             const SHAPE: crate::field::Shape = crate::field::Shape::Numbers(1);
             const SAMPLE: Self = [$($name::$variant),*][0];
 
-            fn put(self, to: &mut crate::batch::Flat) {
+            fn put(self, to: &mut crate::flat::Flat) {
                 self.code().put(to);
             }
 

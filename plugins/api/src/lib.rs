@@ -14,6 +14,7 @@ mod event;
 #[doc(hidden)]
 pub mod export;
 mod field;
+mod flat;
 mod model;
 mod number;
 pub mod raw;

@@ -122,8 +122,8 @@ pub fn delete_temporary_files() {
     std::mem::forget(live);
 }
 
-/// From here on a signal that asks the command to end (SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU) has the temporary files deleted
-/// first; the exit code is that of shells: 128 and the signal's number. A file that outgrows the limit of the shell is a
+/// From here on a signal that asks the command to end (SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2,
+/// SIGXCPU) has the temporary files deleted first; the exit code is that of shells: 128 and the signal's number. A file that outgrows the limit of the shell is a
 /// fault of writing and no signal.
 #[cfg(unix)]
 pub fn delete_on_signals() {

@@ -1,6 +1,7 @@
 //! Where machines come from: a file, a machine folder, or built in.
 
 use std::collections::BTreeSet;
+use std::env;
 use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
@@ -42,7 +43,10 @@ pub fn load(name: &str, named: &[PathBuf], settings: &[Setting]) -> Result<Machi
 /// # Errors
 /// Each folder that the user names and that is not there: a slip would take another machine in silence.
 fn folders(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    let mut folders = super::folders(named, "POST_MACHINES");
+    let mut folders = named.to_owned();
+    if let Some(more) = env::var_os("POST_MACHINES") {
+        folders.extend(env::split_paths(&more).filter(|path| !path.as_os_str().is_empty()));
+    }
     let missing: Vec<Diagnostic> = folders
         .iter()
         .filter(|folder| !folder.is_dir())
@@ -79,16 +83,17 @@ fn is_file(name: &str) -> bool {
     path.extension().is_some_and(|ending| ending == "toml") || path.components().count() > 1
 }
 
+/// The regular file `name`: as seen from here, or, as a file that is extended is named, from the one that extends it.
+fn located(name: &str, folders: &[PathBuf]) -> Option<PathBuf> {
+    let beside = folders.iter().map(|folder| folder.join(name));
+    std::iter::once(name.into())
+        .chain(beside)
+        .find(|path| path.is_file())
+}
+
 fn find(name: &str, folders: &[PathBuf]) -> Result<Source, Missing> {
-    let path = Path::new(name);
     if is_file(name) {
-        // A file that is extended is named as seen from the one that extends it.
-        let beside = folders.iter().map(|folder| folder.join(path));
-        let found = std::iter::once(path.to_owned())
-            .chain(beside)
-            .find(|path| path.is_file())
-            .unwrap_or_else(|| path.to_owned());
-        return read(&found);
+        return read(&located(name, folders).unwrap_or_else(|| name.into()));
     }
     for folder in folders {
         let path = folder.join(format!("{name}.toml"));
@@ -117,19 +122,16 @@ fn find(name: &str, folders: &[PathBuf]) -> Result<Source, Missing> {
 /// regular file that ends in `.toml`. (A pipe could keep the command waiting, a device has no end.)
 fn check_extended(name: &str, folders: &[PathBuf]) -> Result<(), String> {
     let path = Path::new(name);
-    let toml = path.extension().is_some_and(|ending| ending == "toml");
-    if !toml && path.components().count() < 2 {
+    if !is_file(name) {
         return Ok(());
     }
-    if !toml {
+    if path.extension().is_none_or(|ending| ending != "toml") {
         return Err(format!(
             "extends names a machine or a file that ends in .toml, and {name} is neither"
         ));
     }
-    let beside = folders.iter().map(|folder| folder.join(path));
-    let mut places = std::iter::once(path.to_owned()).chain(beside);
-    match places.any(|place| place.is_file()) {
-        false if path.exists() => Err(format!("{name} is no regular file")),
+    match located(name, folders) {
+        None if path.exists() => Err(format!("{name} is no regular file")),
         _ => Ok(()),
     }
 }

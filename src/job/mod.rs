@@ -7,11 +7,11 @@ pub mod plugin_finder;
 mod plugin_folders;
 pub mod unused_options;
 
-use std::env;
-use std::path::PathBuf;
+use std::path::Path;
 
 use post_grammar::text::as_remark;
 use post_grammar::{ReadError, Reader};
+use post_host::Finder;
 use post_machine::check::Check;
 use post_machine::description::{Machine, Setting};
 use post_posting::program::Reading;
@@ -32,14 +32,19 @@ pub fn machine(arguments: &JobArguments, more: &[Setting]) -> Result<Machine, Fa
 }
 
 /// Says once what of the machine file has no effect: what `--dialect` leaves behind, and options that no plugin takes.
-pub fn say_what_is_left(arguments: &JobArguments, machine: &Machine) {
-    unused_options::warn(machine, &arguments.plugins);
+pub fn say_what_is_left(arguments: &JobArguments, machine: &Machine, finder: &Finder) {
+    unused_options::warn(machine, finder);
     other_dialect::say_what_is_left(
         arguments.dialect.as_deref(),
         arguments.machine(),
         &arguments.machines,
         &arguments.settings(),
     );
+}
+
+/// Where a machine or a plugin comes from: its file, or the command itself.
+pub fn origin(path: Option<&Path>) -> String {
+    path.map_or_else(|| "built in".to_owned(), |path| path.display().to_string())
 }
 
 /// What can be derived from a machine with a tool of `length` mm. A chain that cannot be solved is mostly refused as
@@ -50,11 +55,10 @@ pub fn derive(machine: &Machine, length: f64) -> Result<Check, Failure> {
 
 /// Refuses a machine that posting would refuse before its first record: plugins that cannot be opened, options that they
 /// do not take, and what machine and dialect cannot do together.
-pub fn try_opening(machine: &Machine, plugins: &[PathBuf], length: f64) -> Result<(), Failure> {
-    let finder = plugin_finder::finder(plugins)?;
+pub fn try_opening(machine: &Machine, finder: &Finder, length: f64) -> Result<(), Failure> {
     let (mut dialect, mut model) = match (
-        plugin_finder::dialect(&finder, machine, "CHECK", None),
-        plugin_finder::model(&finder, machine),
+        plugin_finder::dialect(finder, machine, "CHECK", None),
+        plugin_finder::model(finder, machine),
     ) {
         (Ok((dialect, _)), Ok((model, _))) => (dialect, model),
         (dialect, model) => {
@@ -128,13 +132,4 @@ pub fn read(input: ClInput, post: &mut Post<'_>) -> Result<(), FileFault> {
     }
     progress.finish();
     Ok(())
-}
-
-/// Folders that the user names: on the command line, then in an environment variable.
-fn folders(named: &[PathBuf], variable: &str) -> Vec<PathBuf> {
-    let mut folders = named.to_owned();
-    if let Some(more) = env::var_os(variable) {
-        folders.extend(env::split_paths(&more).filter(|path| !path.as_os_str().is_empty()));
-    }
-    folders
 }

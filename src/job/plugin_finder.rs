@@ -167,24 +167,24 @@ fn used(plugin: &Plugin) -> PluginUse {
     }
 }
 
+/// Names of the error models, or of the dialects, that are part of the command.
+pub fn built_in(models: bool) -> Vec<&'static str> {
+    let stock = post_stock::plugins().iter();
+    let of_kind = stock.filter(|plugin| plugin.is_model() == models);
+    of_kind.map(|plugin| plugin.name()).collect()
+}
+
 /// A warning that a dialect is no part of the command, with the one that was perhaps meant.
 pub fn not_built_in(dialect: &str) -> Option<Diagnostic> {
-    let stock = post_stock::plugins().iter();
-    let stock = stock.filter(|plugin| !plugin.is_model());
-    let names: Vec<&str> = stock.map(|plugin| plugin.name()).collect();
+    let names = built_in(false);
     if names.contains(&dialect) {
         return None;
     }
     let message = format!(
         "the dialect {dialect} is not built in: name the folder of its plugin with --plugins"
     );
-    Some(
-        Diagnostic::warning("plugin", message).help(diagnostic::meant(
-            dialect,
-            "built in are",
-            &names,
-        )),
-    )
+    let help = diagnostic::meant(dialect, "built in are", &names);
+    Some(Diagnostic::warning("plugin", message).help(help))
 }
 
 /// A plugin's fault at the line of the machine file that asked for it.

@@ -1,29 +1,24 @@
 //! Tables of options for plugins that a run does not open: no plugin judges them, so that a slip would be lost.
 
-use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
-use std::path::PathBuf;
-
+use post_host::Finder;
 use post_machine::description::{Machine, UnusedOptions};
 use post_machine::diagnostic::{Diagnostic, meant};
-use post_stock::{plugin, plugins};
+use post_stock::plugin;
 
-use super::folders;
+use super::plugin_finder::built_in;
 use crate::terminal;
 
 /// Warns of tables whose plugin is not there, and of options that a plugin of the command does not have.
-pub fn warn(machine: &Machine, named: &[PathBuf]) {
-    let folders = folders(named, "POST_PLUGINS");
+pub fn warn(machine: &Machine, finder: &Finder) {
     let mut warnings = Vec::new();
     for table in &machine.unused_options {
-        let file = format!("{DLL_PREFIX}post_{}{DLL_SUFFIX}", table.plugin);
-        let there = folders.iter().any(|folder| folder.join(&file).exists());
         let is_model = table.section == "accuracy";
         match plugin(&table.plugin).filter(|plugin| plugin.is_model() == is_model) {
             Some(plugin) => {
                 let keys: Vec<&str> = plugin.options().iter().map(|option| option.key).collect();
                 warnings.extend(unknown(table, &keys));
             }
-            None if there => {}
+            None if finder.has_library(&table.plugin) => {}
             None => warnings.push(no_plugin(table, is_model)),
         }
     }
@@ -55,10 +50,6 @@ fn no_plugin(table: &UnusedOptions, is_model: bool) -> Diagnostic {
     let UnusedOptions {
         section, plugin, ..
     } = table;
-    let of_kind = plugins()
-        .iter()
-        .filter(|plugin| plugin.is_model() == is_model);
-    let names: Vec<&str> = of_kind.map(|plugin| plugin.name()).collect();
     let what = if is_model {
         "an error model"
     } else {
@@ -69,5 +60,5 @@ fn no_plugin(table: &UnusedOptions, is_model: bool) -> Diagnostic {
     let first = table.options.first();
     Diagnostic::warning("plugin", message)
         .at(first.and_then(|option| option.place.clone()))
-        .help(meant(plugin, "built in are", &names))
+        .help(meant(plugin, "built in are", &built_in(is_model)))
 }

@@ -19,27 +19,22 @@ pub fn findings(findings: &[Diagnostic]) {
     } else {
         Renderer::plain()
     };
-    let mut sorted: Vec<&Diagnostic> = findings.iter().collect();
-    sorted.sort_by_key(|finding| finding.severity);
+    let of = |severity| {
+        findings
+            .iter()
+            .filter(move |finding| finding.severity == severity)
+    };
     for severity in [Severity::Warning, Severity::Error] {
-        let of_it = |finding: &&&Diagnostic| finding.severity == severity;
-        for finding in sorted.iter().filter(of_it).take(MOST_TOLD) {
+        for finding in of(severity).take(MOST_TOLD) {
             // A closed standard error leaves nobody to tell.
             let _ = writeln!(stderr, "{}\n", render(finding, &renderer));
         }
-        let more = sorted
-            .iter()
-            .filter(of_it)
-            .count()
-            .saturating_sub(MOST_TOLD);
+        let more = of(severity).count().saturating_sub(MOST_TOLD);
         if more > 0 {
             let _ = writeln!(stderr, "… and {more} more\n");
         }
     }
-    let errors = sorted
-        .iter()
-        .filter(|finding| finding.severity == Severity::Error)
-        .count();
+    let errors = of(Severity::Error).count();
     if errors > 0 {
         let plural = if errors == 1 { "" } else { "s" };
         let more = if errors >= post_posting::MOST_FAULTS {

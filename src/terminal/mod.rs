@@ -3,6 +3,7 @@
 mod findings;
 mod progress;
 mod quantity;
+mod table;
 
 use std::borrow::Cow;
 use std::io::{self, Write as _};
@@ -13,6 +14,7 @@ use post_grammar::text::escaped;
 pub use findings::findings;
 pub use progress::Progress;
 pub use quantity::{clock, number};
+pub use table::table;
 
 use crate::failure::Failure;
 use crate::files::{FileFault, outcome, standard};

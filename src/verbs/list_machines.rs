@@ -1,6 +1,5 @@
 //! `post machines`: the machines that a bare name finds, and the file of one.
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -8,6 +7,7 @@ use post_machine::check::Class;
 use post_machine::description::Machine;
 
 use crate::failure::Failure;
+use crate::job;
 use crate::job::machine_files::{self, Listed};
 use crate::terminal;
 
@@ -34,37 +34,19 @@ pub fn run(arguments: &MachinesArguments) -> Result<(), Failure> {
         terminal::print(&text.replace("\r\n", "\n"));
         return Ok(());
     }
-    let rows: Vec<[String; 5]> = machine_files::list(&arguments.machines)?
-        .into_iter()
-        .map(row)
-        .collect();
-    let head = ["name", "axes", "dialect", "from", "class"].map(str::to_owned);
-    let widths: [usize; 5] = std::array::from_fn(|column| {
-        let cells = rows.iter().chain([&head]);
-        cells
-            .map(|row| row[column].chars().count())
-            .max()
-            .unwrap_or_default()
-    });
-    let mut text = String::new();
-    for row in [&head].into_iter().chain(&rows) {
-        let mut line = String::new();
-        for (cell, width) in row.iter().zip(widths) {
-            // Writing to a String cannot fail.
-            let _ = write!(line, "{cell:<width$}  ");
-        }
-        let _ = writeln!(text, "{}", line.trim_end());
-    }
-    terminal::print(&text);
+    let mut rows = vec![["name", "axes", "dialect", "from", "class"].map(str::to_owned)];
+    rows.extend(
+        machine_files::list(&arguments.machines)?
+            .into_iter()
+            .map(row),
+    );
+    terminal::print(&terminal::table(&rows, rows[0].len()));
     Ok(())
 }
 
 /// Name, axes, dialect, file and class.
 fn row(listed: Listed) -> [String; 5] {
-    let from = match &listed.path {
-        Some(path) => path.display().to_string(),
-        None => "built in".to_owned(),
-    };
+    let from = job::origin(listed.path.as_deref());
     match listed.machine {
         Ok(machine) => [
             listed.name,

@@ -95,16 +95,17 @@ impl CommandLine {
 /// What is wrong with a command line that begins with a misspelt verb: clap takes it for a CL file, and complains of what
 /// follows.
 pub fn misspelt() -> Option<clap::Error> {
-    let first = std::env::args().nth(1)?;
+    let first = std::env::args_os().nth(1)?;
+    let first = first.to_str()?;
     let mut command = CommandLine::command();
     let verbs: Vec<String> = command
         .get_subcommands()
         .map(|verb| verb.get_name().to_owned())
         .collect();
-    if verbs.contains(&first) || Path::new(&first).exists() {
+    if verbs.iter().any(|verb| verb == first) || Path::new(first).exists() {
         return None;
     }
-    let meant = nearest(&first, verbs.iter().map(String::as_str))?;
+    let meant = nearest(first, verbs.iter().map(String::as_str))?;
     let message = format!(
         "there is no verb '{first}', and no file\n\n  tip: a similar verb exists: '{meant}'"
     );

@@ -283,3 +283,14 @@ fn a_slip_in_a_formula_of_a_searched_chain_is_told_at_once() {
         refused(&run(command().args(check), b""), &["`q` is not known"]);
     }
 }
+
+/// A name that is no Unicode is no verb, and nothing to stumble over.
+#[cfg(unix)]
+#[test]
+fn a_first_word_that_is_no_unicode_is_a_wrong_command_line() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+    let done = run(command().arg(OsStr::from_bytes(b"\xFF.cls")), b"");
+    assert_eq!(done.code, 2, "{}", done.err);
+    assert!(done.err.contains("--machine"), "{}", done.err);
+}

@@ -78,6 +78,14 @@ impl Finder {
         })
     }
 
+    /// A folder holds what should be the library of the plugin `name`; nothing of it is opened.
+    pub fn has_library(&self, name: &str) -> bool {
+        let file = file_name(&name.replace('-', "_"));
+        self.folders
+            .iter()
+            .any(|folder| folder.join(&file).exists())
+    }
+
     /// All plugins, by the names of their files alone: none is opened. In the order in which they are looked for.
     ///
     /// # Errors

@@ -8,6 +8,7 @@
 
 use std::path::PathBuf;
 
+use post_host::Finder;
 use post_machine::axis_words;
 use post_machine::check::{Commission, Probe, Sign, Trial, number};
 use post_machine::description::{Axis, Machine, OutputUnits, Tcp};
@@ -25,7 +26,11 @@ use crate::terminal::print;
 const REMARK: usize = 58;
 
 /// Writes the program.
-pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
+pub fn write(
+    arguments: &CheckArguments,
+    machine: &Machine,
+    finder: &Finder,
+) -> Result<(), Failure> {
     let mut plain = machine.clone();
     plain.control.tcp = Tcp::Post;
     let probe =
@@ -33,10 +38,9 @@ pub fn write(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failur
     let order = axis_words::order(&plain);
     let plan = Commission::of(&probe, &order);
     let beside = PathArg::from(PathBuf::from("commission"));
-    let finder = plugin_finder::finder(&arguments.plugins)?;
     let name = arguments.output.as_ref().and_then(PathArg::stem);
     let name = name.unwrap_or_else(|| "COMMISSION".to_owned());
-    let (mut dialect, _) = plugin_finder::dialect(&finder, &plain, &name, None)?;
+    let (mut dialect, _) = plugin_finder::dialect(finder, &plain, &name, None)?;
     let extension = dialect.format().extension.clone();
     let beside = || beside.map(|path| path.with_extension(&extension));
     let target = arguments.output.clone().unwrap_or_else(beside);

@@ -14,7 +14,7 @@ use post_machine::diagnostic::Diagnostic;
 use crate::arguments::flag_values;
 use crate::failure::Failure;
 use crate::files::{self, PathArg, Role};
-use crate::job::{self, machine_files, other_dialect, unused_options};
+use crate::job::{self, machine_files, other_dialect, plugin_finder, unused_options};
 use crate::terminal::{self, print};
 
 const PICTURE: Role = Role {
@@ -100,10 +100,12 @@ pub struct CheckArguments {
 /// Checks as the arguments say.
 pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let machine = machine(arguments)?;
+    let finder = plugin_finder::finder(&arguments.plugins)?;
+    unused_options::warn(&machine, &finder);
     if arguments.commission {
-        return commission_program::write(arguments, &machine);
+        return commission_program::write(arguments, &machine, &finder);
     }
-    job::try_opening(&machine, &arguments.plugins, arguments.tool_length)?;
+    job::try_opening(&machine, &finder, arguments.tool_length)?;
     match &arguments.nominal {
         Some(nominal) => with_nominal(arguments, &machine, nominal),
         None => alone(arguments, &machine),
@@ -157,7 +159,6 @@ fn machine(arguments: &CheckArguments) -> Result<Machine, Failure> {
     let machine = machine_files::load(&arguments.machine, &arguments.machines, &settings)?;
     let dialect = arguments.dialect.as_deref();
     other_dialect::say_what_is_left(dialect, &arguments.machine, &arguments.machines, &settings);
-    unused_options::warn(&machine, &arguments.plugins);
     match &arguments.head {
         Some(name) => with_head(machine, name),
         None => Ok(machine),

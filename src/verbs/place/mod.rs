@@ -80,7 +80,7 @@ fn step(text: &str) -> Result<f64, String> {
 /// Places as the arguments say.
 pub fn run(arguments: &PlaceArguments) -> Result<(), Failure> {
     let mut trials = Trials::new(arguments)?;
-    job::say_what_is_left(&arguments.job, &trials.machine()?);
+    job::say_what_is_left(&arguments.job, &trials.machine()?, trials.finder());
     let found = Search::new(arguments, &mut trials)?.run()?;
     let mut taken = false;
     if let Some(target) = &arguments.svg {

@@ -8,7 +8,7 @@ use post_posting::report::AxisRange;
 use super::search::{Found, mount_text};
 use super::trial::Trial;
 use super::{Least, PlaceArguments};
-use crate::terminal::{clock, number};
+use crate::terminal::{clock, number, table as columns};
 
 /// Flags of this verb, which posting does not take, and those that the answer takes the place of: each with whether its
 /// value may stand in a word of its own.
@@ -132,17 +132,7 @@ fn table(axes: &[AxisRange]) -> String {
             above,
         ]);
     }
-    let mut text = String::new();
-    let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
-    let widths: [usize; 5] = std::array::from_fn(width);
-    for row in &rows {
-        let mut line = format!("{:<1$}", row[0], widths[0]);
-        for (cell, width) in row.iter().zip(widths).skip(1) {
-            let _ = write!(line, "  {cell:>width$}");
-        }
-        let _ = writeln!(text, "{}", line.trim_end());
-    }
-    text
+    columns(&rows, 1)
 }
 
 /// The command that posts the file there: that of this run without what is this verb's own.

@@ -54,11 +54,8 @@ pub fn draw(found: &Found) -> String {
 
 /// mm or degrees.
 fn unit(found: &Found, axis: &AxisRange) -> &'static str {
-    let machine = &found.machine;
-    let heads = machine.heads.iter().map(|head| &head.machine);
-    let mut axes = heads.chain([machine]).flat_map(|machine| &machine.axes);
-    match axes.find(|known| known.name == axis.name) {
-        Some(known) if known.joint.rotary => "°",
+    match found.machine.with_axis(&axis.name) {
+        Some((_, known)) if known.joint.rotary => "°",
         _ => " mm",
     }
 }

@@ -1,6 +1,7 @@
 //! Mounts put to the proof: the whole file posted there, its text thrown away.
 
 use nalgebra::Vector3;
+use post_host::Finder;
 use post_machine::description::{Axis, Machine, Setting, Side};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_machine::kinematics::Second;
@@ -76,6 +77,11 @@ impl<'a> Trials<'a> {
         &self.dry_run.name
     }
 
+    /// Where its plugins come from.
+    pub fn finder(&self) -> &Finder {
+        &self.dry_run.finder
+    }
+
     /// How many dry runs may still be made.
     pub fn left(&self) -> u32 {
         self.most.saturating_sub(self.runs)
@@ -101,21 +107,18 @@ impl<'a> Trials<'a> {
             Err(Failure::Refused(findings)) => return Ok(Err(findings)),
             Err(failure) => return Err(failure),
         };
-        let known = |name: &str| {
-            let heads = machine.heads.iter().map(|head| &head.machine);
-            let machines = [&machine].into_iter().chain(heads);
-            let axes =
-                machines.flat_map(|machine| machine.axes.iter().map(move |axis| (machine, axis)));
-            axes.into_iter().find(|(_, axis)| axis.name == name)
+        let rotary = |name: &str| {
+            machine
+                .with_axis(name)
+                .is_some_and(|(_, axis)| axis.joint.rotary)
         };
-        let rotary = |name: &str| known(name).is_some_and(|(_, axis)| axis.joint.rotary);
         let turning = report.axes.iter().filter(|axis| rotary(&axis.name));
         let cost = match self.least {
             Least::Time => report.time_s,
             Least::Rotary => turning.map(|axis| axis.way).sum(),
         };
         let left = report.axes.iter().filter_map(|range| {
-            let (machine, axis) = known(&range.name)?;
+            let (machine, axis) = machine.with_axis(&range.name)?;
             let [least, most] = range.travel?;
             let left = (range.min - least).min(most - range.max);
             follows_the_part(machine, axis).then_some(left)

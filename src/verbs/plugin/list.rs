@@ -8,6 +8,7 @@ use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::raw::ABI;
 
 use crate::failure::Failure;
+use crate::job::origin;
 use crate::job::plugin_finder::{diagnostic, finder};
 use crate::terminal::{self, print};
 
@@ -64,10 +65,7 @@ pub fn run(arguments: &ListArguments) -> Result<(), Failure> {
 }
 
 fn from(row: &Listed) -> String {
-    match &row.path {
-        Some(path) => path.display().to_string(),
-        None => "built in".to_owned(),
-    }
+    origin(row.path.as_deref())
 }
 
 fn line(name: &str, kind: &str, version: &str, from: &str) -> String {

@@ -45,8 +45,8 @@ pub struct PostArguments {
 pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let source = arguments.job.input();
     let machine = job::machine(&arguments.job, &[])?;
-    job::say_what_is_left(&arguments.job, &machine);
     let finder = plugin_finder::finder(&arguments.job.plugins)?;
+    job::say_what_is_left(&arguments.job, &machine, &finder);
     let program = job::program_name(source, arguments.output.as_ref());
     let (mut dialect, dialect_use) =
         plugin_finder::dialect(&finder, &machine, &program, Some(source))?;

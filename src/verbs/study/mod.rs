@@ -131,7 +131,7 @@ pub struct Models {
 pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
     let dry_run = DryRun::new("study", &arguments.job, arguments.exact)?;
     let machine = self::machine(&dry_run, &[])?;
-    job::say_what_is_left(&arguments.job, &machine);
+    job::say_what_is_left(&arguments.job, &machine, &dry_run.finder);
     let folder = folder(arguments);
     refuse_strangers(&folder)?;
     let (names, mut models) = models(&dry_run, &machine)?;
@@ -193,10 +193,9 @@ fn machine(dry_run: &DryRun<'_>, more: &[Setting]) -> Result<Machine, Failure> {
 fn models(dry_run: &DryRun<'_>, machine: &Machine) -> Result<(Vec<String>, Models), Failure> {
     let own = &machine.accuracy.model;
     // All that are part of the command; the machine's own comes to them.
-    let stock = post_stock::plugins().iter();
-    let mut names: Vec<String> = stock
-        .filter(|plugin| plugin.is_model())
-        .map(|plugin| plugin.name().to_owned())
+    let mut names: Vec<String> = plugin_finder::built_in(true)
+        .into_iter()
+        .map(str::to_owned)
         .collect();
     if !names.contains(own) {
         names.push(own.clone());

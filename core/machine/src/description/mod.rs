@@ -366,6 +366,15 @@ impl Machine {
         self.heads.iter().find(|head| head.name == name)
     }
 
+    /// The axis of that name, and the machine that has it: this one, or with one of its heads.
+    pub fn with_axis(&self, name: &str) -> Option<(&Machine, &Axis)> {
+        let heads = self.heads.iter().map(|head| &head.machine);
+        [self].into_iter().chain(heads).find_map(|machine| {
+            let axis = machine.axes.iter().find(|axis| axis.name == name)?;
+            Some((machine, axis))
+        })
+    }
+
     /// Indexed axes that are not solved for: they stand where the program or the choice has put them.
     pub fn redundant(&self) -> Vec<usize> {
         let pointing = self.pointing();

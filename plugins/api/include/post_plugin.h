@@ -144,7 +144,8 @@ typedef struct {
 /* Comes filled with zeros but for `size`: write no further. Decimals are at most 9; `inverse_time` is -1 if there
  * is no G93; `words_len` is that of the setup; `extension` is padded with zeros; `writes` is the sum of
  * POST_WRITES_ of all that the dialect writes beyond straight moves: 0 to begin with. `most_inverse_time` is the
- * largest F under G93, 0 if it has no end. */
+ * largest F under G93, 0 if it has no end. `plane_angles` is POST_PLANE_: how the control is told a tilted plane,
+ * with `plane_decimals`. */
 typedef struct {
     uint64_t size;
     uint8_t words[32];
@@ -155,6 +156,8 @@ typedef struct {
     uint8_t extension[16];
     uint64_t writes;
     double most_inverse_time;
+    uint32_t plane_angles;
+    uint32_t plane_decimals;
 } PostFormat;
 
 /* tip: mm, part frame, minus the chord. axis: rotation vector in degrees, part frame. */
@@ -286,6 +289,83 @@ typedef struct {
 #define POST_CYCLE_BORE 7u
 #define POST_CYCLE_BORE_FINE 8u
 #define POST_CYCLE_BORE_BACK 9u
+#define POST_PLANE_ROTARY 0u
+#define POST_PLANE_ZXZ 1u
+#define POST_PLANE_XYZ 2u
+#define POST_PLANE_XZY 3u
+#define POST_PLANE_YXZ 4u
+#define POST_PLANE_YZX 5u
+#define POST_PLANE_ZXY 6u
+#define POST_PLANE_ZYX 7u
+#define POST_MEANING_REMARK 1u
+#define POST_MEANING_REMARK_OPEN 2u
+#define POST_MEANING_REMARK_CLOSE 3u
+#define POST_MEANING_BLOCK_NUMBER 4u
+#define POST_MEANING_NOTHING 5u
+#define POST_MEANING_MILLIMETRE 10u
+#define POST_MEANING_INCH 11u
+#define POST_MEANING_ABSOLUTE 12u
+#define POST_MEANING_INCREMENTAL 13u
+#define POST_MEANING_PLANE_XY 14u
+#define POST_MEANING_PLANE_ZX 15u
+#define POST_MEANING_PLANE_YZ 16u
+#define POST_MEANING_RAPID 20u
+#define POST_MEANING_LINEAR 21u
+#define POST_MEANING_ARC_CLOCKWISE 22u
+#define POST_MEANING_ARC_COUNTER_CLOCKWISE 23u
+#define POST_MEANING_CENTRE_X 24u
+#define POST_MEANING_CENTRE_Y 25u
+#define POST_MEANING_CENTRE_Z 26u
+#define POST_MEANING_RADIUS 27u
+#define POST_MEANING_SPLINE 28u
+#define POST_MEANING_MACHINE_COORDINATES 29u
+#define POST_MEANING_FEED 30u
+#define POST_MEANING_FEED_PER_MINUTE 31u
+#define POST_MEANING_INVERSE_TIME 32u
+#define POST_MEANING_FEED_PER_REVOLUTION 33u
+#define POST_MEANING_RAPID_BLOCK 34u
+#define POST_MEANING_LENGTH_ON 40u
+#define POST_MEANING_LENGTH_OFF 41u
+#define POST_MEANING_LENGTH_REGISTER 42u
+#define POST_MEANING_COMPENSATION_OFF 43u
+#define POST_MEANING_COMPENSATION_LEFT 44u
+#define POST_MEANING_COMPENSATION_RIGHT 45u
+#define POST_MEANING_RADIUS_REGISTER 46u
+#define POST_MEANING_TCP_ON 47u
+#define POST_MEANING_TCP_OFF 48u
+#define POST_MEANING_TILTED_PLANE 50u
+#define POST_MEANING_TILTED_PLANE_TURN 51u
+#define POST_MEANING_TILTED_PLANE_OFF 52u
+#define POST_MEANING_WORK_OFFSET 53u
+#define POST_MEANING_SMOOTHING 54u
+#define POST_MEANING_SMOOTHING_OFF 55u
+#define POST_MEANING_TOOL 60u
+#define POST_MEANING_TOOL_CHANGE 61u
+#define POST_MEANING_SPINDLE_SPEED 62u
+#define POST_MEANING_SPINDLE_CLOCKWISE 63u
+#define POST_MEANING_SPINDLE_COUNTER_CLOCKWISE 64u
+#define POST_MEANING_SPINDLE_OFF 65u
+#define POST_MEANING_SPINDLE_ORIENT 66u
+#define POST_MEANING_COOLANT_ON 67u
+#define POST_MEANING_COOLANT_OFF 68u
+#define POST_MEANING_DWELL 70u
+#define POST_MEANING_STOP 71u
+#define POST_MEANING_OPTIONAL_STOP 72u
+#define POST_MEANING_END 73u
+#define POST_MEANING_SUBPROGRAM 74u
+#define POST_MEANING_PROBE 75u
+#define POST_MEANING_CYCLE_DRILL 80u
+#define POST_MEANING_CYCLE_DEEP 81u
+#define POST_MEANING_CYCLE_BREAK_CHIP 82u
+#define POST_MEANING_CYCLE_TAP 83u
+#define POST_MEANING_CYCLE_TAP_LEFT 84u
+#define POST_MEANING_CYCLE_REAM 85u
+#define POST_MEANING_CYCLE_BORE 86u
+#define POST_MEANING_CYCLE_BORE_FINE 87u
+#define POST_MEANING_CYCLE_BORE_BACK 88u
+#define POST_MEANING_CYCLE_OFF 89u
+#define POST_MEANING_RETURN_START 90u
+#define POST_MEANING_RETURN_CLEARANCE 91u
 /* Arc in the plane of X and Y (G17). */
 #define POST_WRITES_ARC_XY 0x0000000000000001u
 /* Arc in the plane of Z and X (G18). */
@@ -360,6 +440,12 @@ typedef struct {
 /* Tool centre point control is switched on in a block that moves nothing, so that a first position can go in the
  * plane and then in depth under it. */
 #define POST_WRITES_TCP_STILL 0x0000000800000000u
+/* Instead. */
+#define POST_WRITES_INSTEAD 0x0000001000000000u
+/* Arc by its radius. */
+#define POST_WRITES_ARC_RADIUS 0x0000002000000000u
+/* Cycles also while tool centre point control is on, the tool upright on the part's X and Y. */
+#define POST_WRITES_CYCLE_TCP 0x0000004000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */
@@ -498,18 +584,24 @@ typedef struct {
 #define POST_EVENT_TCP 27u
 /* On, else off. */
 #define POST_TCP_ON 0u
-/* A tilted plane begins, under PLANE: until Event::PlaneOff linear words are in its frame. The tool was
- * retracted before; the rotary axes turn to words with it. */
+/* A tilted plane begins, under PLANE: until Event::PlaneOff linear words are in its frame, and Event::Position
+ * puts the length in force, no tool centre point control. The tool was retracted before. */
 #define POST_EVENT_PLANE 28u
 /* 3 numbers: Origin of the plane's frame, mm, part frame. */
 #define POST_PLANE_ORIGIN 0u
-/* 3 numbers: Its first direction, unit vector, part frame. */
+/* 3 numbers: Its first direction, unit vector, part frame: that of the machine's X as it runs against the part
+ * at words, laid across z. */
 #define POST_PLANE_X 3u
 /* 3 numbers: Its normal, unit vector, part frame: the tool axis. */
 #define POST_PLANE_Z 6u
-/* how many there are, and behind it as many: Where the axes stand in it: of these the rotary words count. */
-#define POST_PLANE_WORDS 9u
-/* The tilted plane ends. */
+/* 3 numbers: The plane by Format::plane_angles, degrees, rounded to its decimals: x and z follow from these;
+ * zero where the format has none. */
+#define POST_PLANE_ANGLES 9u
+/* how many there are, and behind it as many: Where the axes stand in it: of these the rotary words count. The
+ * axes have been turned there by an Event::Turn, so that a control which looks for its own solution finds the
+ * tool upright already. */
+#define POST_PLANE_WORDS 12u
+/* The tilted plane ends. The tool was retracted before. */
 #define POST_EVENT_PLANE_OFF 29u
 /* The control may leave the path by so much, under SMOOTHING (G187, CYCLE832, CYCL DEF 32, G61.1). */
 #define POST_EVENT_SMOOTHING 30u
@@ -537,8 +629,11 @@ typedef struct {
 #define POST_ARC_NORMAL 11u
 /* Degrees from start to end, counter-clockwise seen against the normal; negative: clockwise. */
 #define POST_ARC_TURN 14u
+/* The radius to be written in the place of the centre, under ARC_RADIUS: negative for an arc of more than half a
+ * turn. None: the centre is written. */
+#define POST_ARC_RADIUS 15u
 /* how many there are, and behind it as many: All axis words at its end; a helix ends off the plane of its start. */
-#define POST_ARC_WORDS 15u
+#define POST_ARC_WORDS 16u
 /* A spline at a feed, under SPLINE. */
 #define POST_EVENT_SPLINE 34u
 /* 2 numbers: Its feed. */
@@ -608,6 +703,10 @@ typedef struct {
 #define POST_PROBE_FEED 6u
 /* how many there are, and behind it as many: All axis words of its end. */
 #define POST_PROBE_WORDS 8u
+/* Lines of the user's own in the place of those that the event behind this one would write, under INSTEAD. What
+ * that event puts in force is in force all the same. */
+#define POST_EVENT_INSTEAD 42u
+/* texts[0], text: One or more lines, each ended by a line feed but the last. */
 POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");
 POST_ASSERT(offsetof(PostText, ptr) == 0, "PostText.ptr");
 POST_ASSERT(offsetof(PostText, len) == 8, "PostText.len");
@@ -688,7 +787,7 @@ POST_ASSERT(offsetof(PostSetup, tools_len) == 136, "PostSetup.tools_len");
 POST_ASSERT(offsetof(PostSetup, least) == 144, "PostSetup.least");
 POST_ASSERT(offsetof(PostSetup, largest) == 168, "PostSetup.largest");
 POST_ASSERT(offsetof(PostSetup, time) == 192, "PostSetup.time");
-POST_ASSERT(sizeof(PostFormat) == 88 && POST_ALIGN(PostFormat) == 8, "PostFormat");
+POST_ASSERT(sizeof(PostFormat) == 96 && POST_ALIGN(PostFormat) == 8, "PostFormat");
 POST_ASSERT(offsetof(PostFormat, size) == 0, "PostFormat.size");
 POST_ASSERT(offsetof(PostFormat, words) == 8, "PostFormat.words");
 POST_ASSERT(offsetof(PostFormat, feed) == 40, "PostFormat.feed");
@@ -698,6 +797,8 @@ POST_ASSERT(offsetof(PostFormat, words_len) == 52, "PostFormat.words_len");
 POST_ASSERT(offsetof(PostFormat, extension) == 56, "PostFormat.extension");
 POST_ASSERT(offsetof(PostFormat, writes) == 72, "PostFormat.writes");
 POST_ASSERT(offsetof(PostFormat, most_inverse_time) == 80, "PostFormat.most_inverse_time");
+POST_ASSERT(offsetof(PostFormat, plane_angles) == 88, "PostFormat.plane_angles");
+POST_ASSERT(offsetof(PostFormat, plane_decimals) == 92, "PostFormat.plane_decimals");
 POST_ASSERT(sizeof(PostPlugin) == 112 && POST_ALIGN(PostPlugin) == 8, "PostPlugin");
 POST_ASSERT(offsetof(PostPlugin, magic) == 0, "PostPlugin.magic");
 POST_ASSERT(offsetof(PostPlugin, abi) == 8, "PostPlugin.abi");

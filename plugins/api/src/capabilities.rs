@@ -114,6 +114,12 @@ capabilities! {
     /// Tool centre point control is switched on in a block that moves nothing, so that a first position can go in
     /// the plane and then in depth under it.
     35 TCP_STILL;
+    /// `Instead`.
+    36 INSTEAD;
+    /// `Arc` by its radius.
+    37 ARC_RADIUS;
+    /// Cycles also while tool centre point control is on, the tool upright on the part's X and Y.
+    38 CYCLE_TCP;
 }
 
 impl Capabilities {

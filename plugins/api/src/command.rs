@@ -4,7 +4,9 @@ use std::fmt;
 
 use crate::field::{Codes, Field, NotKnown, Promise, Reader, Shape, codes};
 use crate::flat::Flat;
+use crate::plane::PlaneAngles;
 use crate::setup::Units;
+use crate::vocabulary::Meaning;
 
 /// Feed of a cut; already rounded down to the decimals of the dialect's format.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -279,4 +281,6 @@ pub const CODES: &[Codes] = &[
     Coolant::CODES,
     Compensation::CODES,
     Cycle::CODES,
+    PlaneAngles::CODES,
+    Meaning::CODES,
 ];

@@ -1,6 +1,6 @@
 //! A dialect: one control's language.
 
-use crate::{Batch, Capabilities, Event, OptionSpec, Setup};
+use crate::{Batch, Capabilities, Event, OptionSpec, PlaneAngles, Setup, VocabularyWord};
 
 /// Writes one control's language. Implemented by the author of a dialect.
 ///
@@ -24,6 +24,12 @@ pub trait Dialect: Sized + Send + 'static {
     /// What it writes beyond straight moves; asked once, after [`Dialect::open`].
     fn capabilities(&self) -> Capabilities {
         Capabilities::NONE
+    }
+
+    /// The words of this control and what they mean, those that the options have changed among them: with these a
+    /// program can be read back. Asked at most once, after [`Dialect::open`].
+    fn vocabulary(&self) -> Vec<VocabularyWord> {
+        Vec::new()
     }
 
     /// Appends the lines that `event` needs to `out`, each ended by `\n`.
@@ -51,6 +57,10 @@ pub struct Format {
     /// The largest F that the control takes under inverse time, 1/min; none if it has no end. A block that would need
     /// more is slowed down.
     pub most_inverse_time: Option<f64>,
+    /// How the control is told a tilted plane.
+    pub plane_angles: PlaneAngles,
+    /// Decimals of those angles, degrees.
+    pub plane_decimals: u8,
 }
 
 /// An opened dialect as the core sees it: batches, whatever stands behind it.

@@ -336,19 +336,24 @@ events! { <'a>
         /// On, else off.
         on: bool,
     };
-    /// A tilted plane begins, under `PLANE`: until [`Event::PlaneOff`] linear words are in its frame. The tool was
-    /// retracted before; the rotary axes turn to `words` with it.
+    /// A tilted plane begins, under `PLANE`: until [`Event::PlaneOff`] linear words are in its frame, and
+    /// [`Event::Position`] puts the length in force, no tool centre point control. The tool was retracted before.
     28 PLANE "a tilted plane" Plane {
         /// Origin of the plane's frame, mm, part frame.
         origin: [f64; 3],
-        /// Its first direction, unit vector, part frame.
+        /// Its first direction, unit vector, part frame: that of the machine's X as it runs against the part at
+        /// `words`, laid across `z`.
         x: [f64; 3],
         /// Its normal, unit vector, part frame: the tool axis.
         z: [f64; 3],
-        /// Where the axes stand in it: of these the rotary words count.
+        /// The plane by [`Format::plane_angles`](crate::Format::plane_angles), degrees, rounded to its decimals: `x`
+        /// and `z` follow from these; zero where the format has none.
+        angles: [f64; 3],
+        /// Where the axes stand in it: of these the rotary words count. The axes have been turned there by an
+        /// [`Event::Turn`], so that a control which looks for its own solution finds the tool upright already.
         words: &'a [f64],
     };
-    /// The tilted plane ends.
+    /// The tilted plane ends. The tool was retracted before.
     29 PLANE_OFF "the end of a tilted plane" PlaneOff;
     /// The control may leave the path by so much, under `SMOOTHING` (G187, CYCLE832, CYCL DEF 32, G61.1).
     30 SMOOTHING "smoothing" Smoothing {
@@ -379,6 +384,9 @@ events! { <'a>
         normal: [f64; 3],
         /// Degrees from start to end, counter-clockwise seen against the normal; negative: clockwise.
         turn: f64,
+        /// The radius to be written in the place of the centre, under `ARC_RADIUS`: negative for an arc of more than
+        /// half a turn. None: the centre is written.
+        radius: Option<f64>,
         /// All axis words at its end; a helix ends off the plane of its start.
         words: &'a [f64],
     };
@@ -459,6 +467,12 @@ events! { <'a>
         feed: Feed,
         /// All axis words of its end.
         words: &'a [f64],
+    };
+    /// Lines of the user's own in the place of those that the event behind this one would write, under `INSTEAD`. What
+    /// that event puts in force is in force all the same.
+    42 INSTEAD "lines in the place of an event's" Instead {
+        /// One or more lines, each ended by a line feed but the last.
+        text: &'a str,
     };
     }
 }

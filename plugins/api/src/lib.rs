@@ -17,9 +17,11 @@ mod field;
 mod flat;
 mod model;
 mod number;
+mod plane;
 pub mod raw;
 mod setup;
 mod text;
+mod vocabulary;
 
 pub use axis_names::AxisNames;
 pub use batch::Batch;
@@ -33,7 +35,9 @@ pub use export::{Linked, LinkedDialect};
 pub use field::{Codes, List, Promise, Shape, ToolPose};
 pub use model::{Curve, Deviation, ErrorModel, ModelSession, Tolerance};
 pub use number::{fixed, quantise};
+pub use plane::PlaneAngles;
 pub use setup::{
     Accuracy, Ahead, AxisWord, Kinematics, OptionKind, OptionSpec, Setup, Tool, Units, Value,
 };
 pub use text::{ascii, remark, wrapped};
+pub use vocabulary::{Meaning, VocabularyWord};

@@ -247,6 +247,10 @@ pub struct PostFormat {
     pub writes: u64,
     /// The largest F under inverse time, 1/min; 0 if it has no end.
     pub most_inverse_time: f64,
+    /// `PLANE_…`: how the control is told a tilted plane.
+    pub plane_angles: u32,
+    /// Decimals of those angles, degrees, at most 9.
+    pub plane_decimals: u32,
 }
 
 /// Host's function that takes a declared option.

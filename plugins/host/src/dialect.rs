@@ -221,6 +221,7 @@ fn check_format(format: &Format, words: usize) -> Result<(), String> {
         Some(format.feed),
         format.inverse_time,
         Some(format.feed_per_revolution),
+        Some(format.plane_decimals),
     ];
     let decimals = format
         .words
@@ -306,6 +307,10 @@ impl Library {
             feed_per_revolution: decimals(raw.feed_per_revolution),
             extension: String::from_utf8_lossy(extension).into_owned(),
             most_inverse_time: Some(raw.most_inverse_time).filter(|most| *most != 0.0),
+            plane_angles: raw
+                .plane()
+                .ok_or("its format has angles of a plane that this version does not know")?,
+            plane_decimals: decimals(raw.plane_decimals),
         };
         Ok((format, Capabilities::from_bits(raw.writes)))
     }

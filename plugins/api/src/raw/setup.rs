@@ -7,7 +7,9 @@ use std::ptr::null;
 use super::{
     MAX_WORDS, PostAxisWord, PostFormat, PostPair, PostSetup, PostText, PostTool, pairs, slice,
 };
-use crate::{Accuracy, Ahead, AxisWord, Capabilities, Format, Setup, Tolerance, Tool, Units};
+use crate::{
+    Accuracy, Ahead, AxisWord, Capabilities, Format, PlaneAngles, Setup, Tolerance, Tool, Units,
+};
 
 /// Hands `setup` to `take` in its raw form.
 pub fn with_setup<R>(setup: &Setup<'_>, take: impl FnOnce(&PostSetup) -> R) -> R {
@@ -174,6 +176,8 @@ impl PostFormat {
         extension: [0; 16],
         writes: 0,
         most_inverse_time: 0.0,
+        plane_angles: 0,
+        plane_decimals: 0,
     };
 
     /// `format` as it crosses the border; none if it has too many words or too long an extension.
@@ -185,6 +189,8 @@ impl PostFormat {
             words_len: format.words.len() as u32,
             writes: capabilities.bits(),
             most_inverse_time: format.most_inverse_time.unwrap_or(0.0),
+            plane_angles: format.plane_angles.code(),
+            plane_decimals: format.plane_decimals.into(),
             ..PostFormat::EMPTY
         };
         raw.words
@@ -194,6 +200,11 @@ impl PostFormat {
             .get_mut(..format.extension.len())?
             .copy_from_slice(format.extension.as_bytes());
         Some(raw)
+    }
+
+    /// How the control is told a tilted plane; none if this version does not know it.
+    pub fn plane(&self) -> Option<PlaneAngles> {
+        PlaneAngles::of(self.plane_angles)
     }
 
     /// Writes it to `to`, as much of it as a host of an earlier version has room for.

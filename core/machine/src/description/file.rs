@@ -499,7 +499,7 @@ pub enum ArcSplit {
     /// Up to a whole turn.
     #[default]
     Full,
-    /// Up to half a turn.
+    /// Up to half a turn, but for the rounding of its ends.
     Half,
     /// To the next quadrant of the plane.
     Quadrant,

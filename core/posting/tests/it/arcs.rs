@@ -5,11 +5,13 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use nalgebra::{Unit, UnitQuaternion, Vector3};
+use post_machine::description::{Setting, Source, load};
 use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Feed};
+use post_posting::program::{Reading, ToldSpindle};
 use post_posting::{Block, Flow, Job, MotionKind, Observer};
 use post_testkit::posted::{Asked, AskedArc, Bench, Recorder, Run, Samples, watched};
-use post_testkit::{Rng, randomised};
+use post_testkit::{Rng, randomised, repository, shared};
 
 type V = Vector3<f64>;
 
@@ -90,7 +92,7 @@ impl Controlled {
             }
         };
         let (arm, last) = (flat(start - centre), flat(end - centre));
-        let mut angle = normal.dot(&arm.cross(&last)).atan2(arm.dot(&last));
+        let mut angle = libm::atan2(normal.dot(&arm.cross(&last)), arm.dot(&last));
         if clockwise && angle >= 0.0 {
             angle -= TAU;
         } else if !clockwise && angle <= 0.0 {
@@ -143,7 +145,7 @@ impl Wanted {
 
     fn sweep(&self) -> f64 {
         let ((from, _), (to, _)) = (self.split(self.start), self.split(self.end));
-        let angle = self.normal.dot(&from.cross(&to)).atan2(from.dot(&to));
+        let angle = libm::atan2(self.normal.dot(&from.cross(&to)), from.dot(&to));
         let first = if (from - to).norm() < 1e-3 {
             TAU
         } else if angle <= 0.0 {
@@ -159,9 +161,7 @@ impl Wanted {
         let normal = Unit::new_normalize(self.normal);
         let turn = UnitQuaternion::from_axis_angle(&normal, self.sweep() * t);
         let radius = from.norm() * (1.0 - t) + to.norm() * t;
-        self.centre
-            + turn * from.normalize() * radius
-            + self.normal * (low * (1.0 - t) + high * t)
+        self.centre + turn * from.normalize() * radius + self.normal * (low * (1.0 - t) + high * t)
     }
 
     /// How far a place is from the arc, close to a share of it.
@@ -187,7 +187,12 @@ impl Wanted {
         };
         let radius = self.split(self.start).0.norm();
         let mut text = "UNITS/MM\nMULTAX/ON\nSPINDL/3000,RPM,CLW\nRAPID\n".to_owned();
-        writeln!(text, "GOTO/{}", six(self.start + self.axis * 10.0, self.axis)).unwrap();
+        writeln!(
+            text,
+            "GOTO/{}",
+            six(self.start + self.axis * 10.0, self.axis)
+        )
+        .unwrap();
         writeln!(text, "FEDRAT/600,MMPM\nGOTO/{}", six(self.start, self.axis)).unwrap();
         write!(text, "CIRCLE/{},{radius:.6}", six(self.centre, self.normal)).unwrap();
         if self.turns > 1 {
@@ -303,7 +308,11 @@ fn printed_arcs_are_as_near_as_certified() {
         let split = ["full", "half", "quadrant"][rng.pick(3)];
         let more = format!("arcs = {{ form = \"{form}\", split = \"{split}\" }}");
         let chain = CHAINS[rng.pick(3)];
-        let bench = Bench::new(&machine(&mut rng, chain, tcp, units, &more), decimals, LENGTH);
+        let bench = Bench::new(
+            &machine(&mut rng, chain, tcp, units, &more),
+            decimals,
+            LENGTH,
+        );
         let wanted = wanted(&mut rng, &bench, tcp);
         let cl = wanted.cl();
         let (run, blocks) = posted(&bench, decimals, ALL, &cl);
@@ -337,8 +346,12 @@ fn printed_arcs_are_as_near_as_certified() {
             let minutes = match to.feed {
                 Some(Feed::PerMinute(feed)) => {
                     let rise = (point(&to.words) - point(&from.words)).dot(&V::from(arc.normal));
-                    let length = (controlled.radii[0] + controlled.radii[1]) / 2.0 * controlled.angle.abs();
-                    assert!((length.hypot(rise) / feed - block.time.minutes).abs() < 1e-5, "{what}");
+                    let length =
+                        (controlled.radii[0] + controlled.radii[1]) / 2.0 * controlled.angle.abs();
+                    assert!(
+                        (libm::hypot(length, rise) / feed - block.time.minutes).abs() < 1e-5,
+                        "{what}"
+                    );
                     // A control may divide F by the way in the plane.
                     length / feed
                 }
@@ -388,6 +401,125 @@ fn printed_arcs_are_as_near_as_certified() {
             assert!(time > 0.0);
         }
     }
-    println!("{kept} of {all} kept, {whole} in one block; bounds at most {:.2} times too large", 1.0 / tightest);
+    println!(
+        "{kept} of {all} kept, {whole} in one block; bounds at most {:.2} times too large",
+        1.0 / tightest
+    );
     assert!(kept * 10 > all * 9, "{kept} of {all}");
+}
+
+/// Blocks of the real files with arcs, as chords and as arcs, on machines that make them.
+#[test]
+fn real_files_have_fewer_blocks() {
+    // File, machine, settings, blocks with chords, with arcs, and those of them that are arcs.
+    let files = [
+        (
+            "nx_HumMan__3_PAZ_125_N2.cls",
+            "head-head",
+            &[][..],
+            [0, 0, 0],
+        ),
+        (
+            "nx_HumMan__10_KONTUR_125_N2_162.cls",
+            "head-head",
+            &[],
+            [0, 0, 0],
+        ),
+        ("nx_HumMan_cutcom.clsf", "vmc", &[], [0, 0, 0]),
+        (
+            "creo3x_MichaHofft_profilfraesen_2.ncl",
+            "head-head",
+            &[],
+            [0, 0, 0],
+        ),
+        (
+            "creo3x_MichaHofft_schruppen_1.ncl",
+            "head-head",
+            &[],
+            [0, 0, 0],
+        ),
+        (
+            "camworks_neMoguta_UniSource.clt",
+            "ac-trunnion",
+            &[],
+            [0, 0, 0],
+        ),
+        (
+            "swcam_aamorim_Interface-glue.clt",
+            "ac-trunnion",
+            &[],
+            [0, 0, 0],
+        ),
+        (
+            "swcam_aamorim_Teste-Metrologia.apt",
+            "ac-trunnion",
+            &[],
+            [0, 0, 0],
+        ),
+        (
+            "swcam_aamorim_basemach.apt",
+            "vmc",
+            &[(-170.0, -75.0, 0.0)],
+            [0, 0, 0],
+        ),
+    ];
+    for (name, machine, mount, expected) in files {
+        let Some(path) = shared("data/cl") else {
+            return;
+        };
+        let text = std::fs::read_to_string(path.join(name)).unwrap();
+        let source = |name: &str| Source {
+            name: format!("{name}.toml"),
+            text: std::fs::read_to_string(repository().join(format!("machines/{name}.toml")))
+                .unwrap(),
+        };
+        let settings: Vec<Setting> = mount
+            .iter()
+            .map(|(x, y, z)| Setting::Mount([*x, *y, *z]))
+            .collect();
+        let machine = load(source(machine), &settings, &mut |name| Ok(source(name))).unwrap();
+        let counts = [Capabilities::NONE, ALL].map(|writes| {
+            let mut dialect = Recorder::new(&machine, 3);
+            dialect.capabilities = writes;
+            let job = Job {
+                tool_length: Some(if name.contains("Teste") { 80.0 } else { 150.0 }),
+                reading: Reading {
+                    spindle: ToldSpindle::On(6000.0),
+                    tool: (!text.contains("LOAD") && !name.ends_with(".clt")).then_some(1),
+                    tool_from_cutter: name.ends_with(".clt"),
+                    ..Reading::default()
+                },
+                ..Job::default()
+            };
+            let run = watched(&machine, dialect, &text, job, &mut Samples, &mut []);
+            let report = run.good(name).report.unwrap();
+            (report.blocks, report.curves, report.tip_deviation_mm.value)
+        });
+        println!("{name}: {counts:?} {expected:?}");
+    }
+}
+
+/// Points on arcs and lines become about as many arcs and lines as they come from.
+#[test]
+fn points_of_arcs_become_arcs_again() {
+    let text = machine(&mut post_testkit::seeded(3), CHAINS[2], "post", "mm", "arcs = { fit = true }");
+    let bench = Bench::new(&text, 3, LENGTH);
+    let mut cl = "UNITS/MM\nSPINDL/3000,RPM,CLW\nRAPID\nGOTO/0,0,10\nFEDRAT/600,MMPM\nGOTO/0,0,0\n".to_owned();
+    // Waves of half circles of radius 20, their points a fiftieth of a millimetre off their chords at most.
+    let mut points = 0;
+    for wave in 0..6 {
+        let centre = 20.0 + 40.0 * f64::from(wave);
+        let side = if wave % 2 == 0 { 1.0 } else { -1.0 };
+        for step in 1..=100 {
+            let (sine, cosine) = libm::sincos(f64::from(step) * TAU / 200.0);
+            let (x, y) = (centre - 20.0 * cosine, side * 20.0 * sine);
+            writeln!(cl, "GOTO/{x:.4},{y:.4},0").unwrap();
+            points += 1;
+        }
+    }
+    cl += "FINI\n";
+    let (run, blocks) = posted(&bench, 3, ALL, &cl);
+    let report = run.good("points").report.unwrap();
+    println!("{points} points: {} blocks, {} of them arcs, {:?}", report.blocks, report.curves, report.tip_deviation_mm);
+    for block in &blocks { println!("{} {:?} {:?} {}", block.line, block.kind, block.tip, block.deviation.tip); }
 }

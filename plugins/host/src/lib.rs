@@ -20,6 +20,7 @@ mod plugin;
 mod results;
 mod shown;
 mod sink;
+mod vocabulary;
 mod working_folder;
 
 pub use dialect::{OpenedDialect, ProgramAhead, ProgramSetup, ProgramTool, ProgramWord};

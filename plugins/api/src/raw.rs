@@ -33,6 +33,9 @@ pub const KIND_DIALECT: u32 = 1;
 /// [`PostPlugin::kind`] of an error model.
 pub const KIND_MODEL: u32 = 2;
 
+/// The contract in C: `post_plugin.h`.
+pub const HEADER: &str = include_str!("../include/post_plugin.h");
+
 /// Most axis words that a program may have.
 pub const MAX_WORDS: usize = 32;
 

@@ -8,6 +8,7 @@ mod call;
 pub mod conformance;
 mod described;
 mod dialect;
+pub mod examples;
 mod fault;
 mod finder;
 mod float_mode;

@@ -72,7 +72,7 @@ static int32_t format(void *ctx, PostFormat *f) {
     f->words_len = (uint32_t)c->words_len;
     f->feed = 1;
     f->inverse_time = -1;
-    memcpy(f->extension, "tap", 3);
+    memcpy(f->extension, "nc", 2);
     return 0;
 }
 

@@ -197,7 +197,7 @@ fn a_dialect_in_c() {
     let mut session = plugin.dialect(&setup).unwrap();
     assert_eq!(session.format().words, [2, 2]);
     assert_eq!(session.format().inverse_time, None);
-    assert_eq!(session.format().extension, "tap");
+    assert_eq!(session.format().extension, "nc");
     let words = session.vocabulary().unwrap();
     assert!(words.contains(&VocabularyWord::new("G53", Meaning::MachineCoordinates)));
     let mut batch = Batch::default();

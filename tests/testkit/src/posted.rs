@@ -26,8 +26,19 @@ pub struct Asked {
     pub feed: Option<Feed>,
     /// Tip (mm) and tool axis of a motion, part frame.
     pub tool: Option<ToolPose>,
+    /// Of an arc, what says how it goes.
+    pub arc: Option<AskedArc>,
     /// Any other number it has: the seconds of a dwell, the number of a tool.
     pub value: f64,
+}
+
+/// How an arc goes that a dialect was asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AskedArc {
+    pub centre: [f64; 3],
+    pub normal: [f64; 3],
+    pub turn: f64,
+    pub radius: Option<f64>,
 }
 
 /// A dialect that writes nothing down but the events themselves. No word may be a negative zero, no number an
@@ -73,12 +84,30 @@ impl DialectSession for Recorder {
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
+            let arc = match event {
+                Event::Arc {
+                    centre,
+                    normal,
+                    turn,
+                    radius,
+                    ..
+                } => Some(AskedArc {
+                    centre,
+                    normal,
+                    turn,
+                    radius,
+                }),
+                _ => None,
+            };
             let (words, tool, feed, value) = match event {
                 Event::Position {
                     words, tool, feed, ..
                 } => (words, tool, feed, 0.0),
                 Event::Rapid { words, tool } => (words, tool, None, 0.0),
                 Event::Linear { words, tool, feed } => (words, tool, Some(feed), 0.0),
+                Event::Arc {
+                    words, tool, feed, ..
+                } => (words, tool, Some(feed), 0.0),
                 Event::Dwell { seconds } => (&[][..], None, None, seconds),
                 Event::ToolChange { number, .. } => (&[][..], None, None, f64::from(number)),
                 _ => (&[][..], None, None, 0.0),
@@ -101,6 +130,7 @@ impl DialectSession for Recorder {
                 words: words.to_vec(),
                 feed,
                 tool,
+                arc,
                 value,
             });
             out.push_str("block\n");

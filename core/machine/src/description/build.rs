@@ -270,6 +270,7 @@ impl Builder<'_> {
             .collect();
         let control_point = self.control_point(&file.tool.control_point);
         let spindle = self.spindle(&file.spindle);
+        let arcs = self.arcs(&control.arcs);
         let word_rules = self.word_rules(&file.cl);
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
@@ -301,6 +302,7 @@ impl Builder<'_> {
                 tool_length: control.tool_length,
                 insert: control.insert,
                 compensation_on_centre: control.compensation_on_centre,
+                arcs,
             },
             spindle,
             word_rules,

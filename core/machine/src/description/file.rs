@@ -439,6 +439,9 @@ pub(crate) struct ControlFile {
     /// What becomes of CUTCOM on points of the tool's centre; refuse if not said.
     #[serde(default)]
     pub compensation_on_centre: CompensationOnCentre,
+    /// Arcs and splines of the CL file that stay what they are, and arcs laid through points.
+    #[serde(default)]
+    pub arcs: ArcsFile,
     /// Where linear axes stand when the tool is retracted, machine coordinates, mm; the end of travel of the depth
     /// axis away from the part if not said.
     #[serde(default)]
@@ -452,6 +455,54 @@ pub(crate) struct ControlFile {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Number>")]
     pub park: Positions,
+}
+
+/// Which curves the program has as curves.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ArcsFile {
+    /// Arcs and splines of the CL file stay arcs and splines where dialect and machine allow; true if not said.
+    pub keep: Option<bool>,
+    /// How an arc is written: its centre (I J K), or its radius (R) where the dialect has that; centre if not said.
+    #[serde(default)]
+    pub form: ArcForm,
+    /// How far one block goes; full if not said.
+    #[serde(default)]
+    pub split: ArcSplit,
+    /// Smallest radius that is written as an arc, mm; 0.01 if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub least_radius: Option<Quantity>,
+    /// Largest radius that is written as an arc, mm; 10000 if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub largest_radius: Option<Quantity>,
+    /// Runs of points become the fewest arcs and lines that stay within the tolerance; false if not said.
+    #[serde(default)]
+    pub fit: bool,
+}
+
+/// How an arc is written.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum ArcForm {
+    /// With its centre.
+    #[default]
+    Centre,
+    /// With its radius; it is cut so that no block turns by more than 160 degrees, since a radius says little of the
+    /// centre near half a turn.
+    Radius,
+}
+
+/// How far one block of an arc goes.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum ArcSplit {
+    /// Up to a whole turn.
+    #[default]
+    Full,
+    /// Up to half a turn, but for the rounding of its ends.
+    Half,
+    /// To the next quadrant of the plane.
+    Quadrant,
 }
 
 /// Positions of axes by their names.

@@ -1,6 +1,7 @@
 //! One machine: what its TOML file says, checked and in the core's own units (mm, radians, minutes).
 
 mod accuracy;
+mod arcs;
 mod axes;
 mod build;
 mod choice;
@@ -21,12 +22,13 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 
 pub use accuracy::{Accuracy, ControlPoint, SHARE_AT_POLES};
+pub use arcs::Arcs;
 pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
-    CompensationOnCentre, EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement,
-    Pole, Rapid, Side, Tcp, ToolLength,
+    ArcForm, ArcSplit, CompensationOnCentre, EdgeSource, FeedLength, FeedMode, Insert, Method,
+    OutputUnits, Placement, Pole, Rapid, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
@@ -246,6 +248,8 @@ pub struct Control {
     pub insert: Insert,
     /// What becomes of `CUTCOM` on points of the tool's centre.
     pub compensation_on_centre: CompensationOnCentre,
+    /// Which curves the program has as curves.
+    pub arcs: Arcs,
 }
 
 /// An option for a plugin.

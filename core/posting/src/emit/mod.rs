@@ -7,9 +7,10 @@ mod writer;
 use post_machine::axis_words::Words;
 use post_machine::description::Machine;
 use post_machine::kinematics::{Chain, Joints};
-use post_plugin::{Capabilities, Coolant, DialectSession, Event, Spindle, ToolPose};
+use post_plugin::{Capabilities, Coolant, DialectSession, Event, List, Spindle, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
+use crate::curve::{CurveWords, PrintedCurve};
 use crate::findings::Findings;
 use crate::observer::Output;
 use crate::program::Command;
@@ -42,6 +43,8 @@ pub(crate) struct Emit<'a> {
     coolant: Option<Coolant>,
     /// Coolant was switched off in between.
     coolant_due: bool,
+    /// What is printed of the next block, if it goes along a curve.
+    curve: Option<Box<PrintedCurve>>,
 }
 
 impl<'a> Emit<'a> {
@@ -67,6 +70,7 @@ impl<'a> Emit<'a> {
             commanded: None,
             coolant: None,
             coolant_due: false,
+            curve: None,
         };
         // Nothing is known of where the tool stands, nor of what is in force.
         emit.retract(0);
@@ -117,6 +121,7 @@ impl<'a> Emit<'a> {
                 self.extremes.go(&self.last, &block.joints);
                 self.position(block, findings);
             }
+            MotionKind::Arc | MotionKind::Spline => self.curve(block),
             MotionKind::Rapid | MotionKind::Linear => {
                 // A block without a changed word moves nothing and is not written.
                 if block.still {
@@ -142,10 +147,66 @@ impl<'a> Emit<'a> {
         self.last = block.joints;
     }
 
+    /// A block along a curve.
+    fn curve(&mut self, block: &Block) {
+        let (Some(curve), Some(feed)) = (self.curve.take(), block.time.feed) else {
+            return;
+        };
+        self.extremes.curves += 1;
+        self.extremes.reach(&block.joints);
+        let mut from = self.last;
+        for place in &curve.between {
+            self.extremes.pass(place);
+            self.extremes.go(&from, place);
+            from = *place;
+        }
+        self.extremes.go(&from, &block.joints);
+        if self.machine.clamps {
+            self.clamp(block);
+        }
+        self.extremes.mark(block, self.writer.next());
+        let event = match &curve.words {
+            CurveWords::Arc {
+                centre,
+                normal,
+                turn,
+                radius,
+            } => Event::Arc {
+                tool: stands(block),
+                feed,
+                centre: *centre,
+                normal: *normal,
+                turn: *turn,
+                radius: *radius,
+                words: &block.words[..self.writer.words()],
+            },
+            CurveWords::Spline {
+                degree,
+                knots,
+                weights,
+                points,
+            } => Event::Spline {
+                feed,
+                degree: *degree,
+                knots: List(knots),
+                weights: List(weights),
+                points: List(points),
+            },
+        };
+        self.writer.push(block.line, event);
+    }
+
     fn command(&mut self, line: u64, command: &Command, findings: &Findings) {
         let event = match command {
-            // These act on the choice of axis values alone.
-            Command::From { .. } | Command::Index { .. } => return,
+            // These act on the choice of axis values alone, or on the blocks.
+            Command::From { .. }
+            | Command::Index { .. }
+            | Command::Along(_)
+            | Command::AlongEnd => return,
+            Command::Curve(curve) => {
+                self.curve = Some(curve.clone());
+                return;
+            }
             Command::Tool(tool) => return self.change(line, tool, findings),
             Command::Head(name) => return self.swap_head(line, name),
             Command::Preselect(number) => Event::Preselect { number: *number },
@@ -179,7 +240,7 @@ impl<'a> Emit<'a> {
         for joint in 0..self.machine.axes.len() {
             if self.last[joint] != block.joints[joint] {
                 self.set_clamp(block.line, joint, false, false);
-            } else if block.kind == MotionKind::Linear {
+            } else if block.kind != MotionKind::Rapid {
                 self.set_clamp(block.line, joint, true, false);
             }
         }

@@ -6,6 +6,7 @@ use post_machine::description::{Retract, Rewind};
 use post_plugin::{Compensation, Coolant, Spindle};
 
 use super::{Arc, DrillCycle, Spline};
+use crate::curve::{Curve, PrintedCurve};
 
 /// One step of the program, with every modal word settled. Curves and cycles keep their shape: whether they are
 /// written as such or as moves is for dialect and machine to say.
@@ -72,6 +73,12 @@ pub enum Command {
     OptionalStop,
     /// The tool is retracted and the axes are parked.
     Home,
+    /// The moves up to the next [`Command::AlongEnd`] go along this curve.
+    Along(Box<Curve>),
+    /// The curve ends.
+    AlongEnd,
+    /// What is printed of the next block, which goes along a curve.
+    Curve(Box<PrintedCurve>),
 }
 
 impl Command {

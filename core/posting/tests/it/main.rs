@@ -5,6 +5,7 @@
 )]
 
 mod accuracy;
+mod arcs;
 mod certificate;
 mod feed;
 mod path;

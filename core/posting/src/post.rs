@@ -156,7 +156,7 @@ impl<'a> Post<'a> {
             return Err(fault.boxed());
         }
         let stages = Stages {
-            expand: Expand::new(machine, job.reading.chord_tolerance),
+            expand: Expand::new(machine, job.reading.chord_tolerance, dialect.capabilities()),
             lines: Vec::new(),
             timing: Timing::new(machine, &format)?,
             configuration: Configuration::new(

@@ -25,8 +25,8 @@ pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
-    CompensationOnCentre, EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement,
-    Pole, Rapid, Side, Tcp, ToolLength,
+    CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits,
+    Placement, Pole, Rapid, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
@@ -242,6 +242,10 @@ pub struct Control {
     pub rapid: Rapid,
     /// Which tool length counts.
     pub tool_length: ToolLength,
+    /// How the holes of drilling cycles are written.
+    pub cycles: Cycles,
+    /// An operation whose tool axis stays is written in a tilted plane of the control's.
+    pub planes: bool,
     /// What becomes of `INSERT`.
     pub insert: Insert,
     /// What becomes of `CUTCOM` on points of the tool's centre.

@@ -81,6 +81,12 @@ impl Extremes {
     #[inline]
     pub(super) fn reach(&mut self, joints: &Joints) {
         self.blocks += 1;
+        self.cover(joints);
+    }
+
+    /// The axes come there, whether a block says it or a cycle.
+    #[inline]
+    pub(super) fn cover(&mut self, joints: &Joints) {
         // All places, used or not, and no question of what is no number: two at a time.
         for (index, value) in joints.iter().enumerate() {
             let (least, most) = (self.least[index], self.most[index]);

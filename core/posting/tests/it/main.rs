@@ -7,6 +7,7 @@
 mod accuracy;
 mod certificate;
 mod feed;
+mod holes;
 mod path;
 mod program;
 mod route;

@@ -300,6 +300,8 @@ impl Builder<'_> {
                 feed_length: control.feed_length,
                 rapid: control.rapid,
                 tool_length: control.tool_length,
+                cycles: control.cycles,
+                planes: control.planes,
                 insert: control.insert,
                 compensation_on_centre: control.compensation_on_centre,
                 arcs,

@@ -398,6 +398,17 @@ pub enum CompensationOnCentre {
     Wear,
 }
 
+/// How the holes of drilling cycles are written.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cycles {
+    /// As cycles of the control where it has them and they do what the CL file asks for, else as moves.
+    #[default]
+    Native,
+    /// As moves.
+    Moves,
+}
+
 /// Units of the NC program.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -433,6 +444,13 @@ pub(crate) struct ControlFile {
     /// Which of the lengths that the CL file knows is the tool length; assembly if not said.
     #[serde(default)]
     pub tool_length: ToolLength,
+    /// How the holes of drilling cycles are written; native if not said.
+    #[serde(default)]
+    pub cycles: Cycles,
+    /// An operation whose tool axis stays is written in the control's own tilted plane, where the dialect has one;
+    /// false if not said.
+    #[serde(default)]
+    pub planes: bool,
     /// What becomes of `INSERT text`; comment if not said.
     #[serde(default)]
     pub insert: Insert,

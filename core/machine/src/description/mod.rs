@@ -27,8 +27,8 @@ pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
-    ArcForm, ArcSplit, CompensationOnCentre, EdgeSource, FeedLength, FeedMode, Insert, Method,
-    OutputUnits, Placement, Pole, Rapid, Side, Tcp, ToolLength,
+    ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
+    Method, OutputUnits, Placement, Pole, Rapid, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
@@ -244,6 +244,10 @@ pub struct Control {
     pub rapid: Rapid,
     /// Which tool length counts.
     pub tool_length: ToolLength,
+    /// How the holes of drilling cycles are written.
+    pub cycles: Cycles,
+    /// An operation whose tool axis stays is written in a tilted plane of the control's.
+    pub planes: bool,
     /// What becomes of `INSERT`.
     pub insert: Insert,
     /// What becomes of `CUTCOM` on points of the tool's centre.

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use post_machine::description::{Retract, Rewind};
 use post_plugin::{Compensation, Coolant, Spindle};
 
-use super::{Arc, DrillCycle, Spline};
+use super::{Arc, DrillCycle, Drilling, Spline};
 use crate::curve::{Curve, PrintedCurve};
 
 /// One step of the program, with every modal word settled. Curves and cycles keep their shape: whether they are
@@ -79,6 +79,24 @@ pub enum Command {
     AlongEnd,
     /// What is printed of the next block, which goes along a curve.
     Curve(Box<PrintedCurve>),
+    /// The moves from here on are those of a hole, which the control may have a cycle for.
+    Hole(HoleMark),
+}
+
+/// Where the moves of a hole stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HoleMark {
+    /// Those to the retract level above the hole follow.
+    Above(Drilling),
+    /// The tool stands there: those into the hole and back to that level follow.
+    Into {
+        /// The point that the heights count from, mm, part frame.
+        point: Vector3<f64>,
+        /// The tool axis, unit vector, part frame.
+        axis: Vector3<f64>,
+    },
+    /// The hole is done.
+    Done,
 }
 
 impl Command {

@@ -159,9 +159,7 @@ impl Wanted {
         let normal = Unit::new_normalize(self.normal);
         let turn = UnitQuaternion::from_axis_angle(&normal, self.sweep() * t);
         let radius = from.norm() * (1.0 - t) + to.norm() * t;
-        self.centre
-            + turn * from.normalize() * radius
-            + self.normal * (low * (1.0 - t) + high * t)
+        self.centre + turn * from.normalize() * radius + self.normal * (low * (1.0 - t) + high * t)
     }
 
     /// How far a place is from the arc, close to a share of it.
@@ -187,7 +185,12 @@ impl Wanted {
         };
         let radius = self.split(self.start).0.norm();
         let mut text = "UNITS/MM\nMULTAX/ON\nSPINDL/3000,RPM,CLW\nRAPID\n".to_owned();
-        writeln!(text, "GOTO/{}", six(self.start + self.axis * 10.0, self.axis)).unwrap();
+        writeln!(
+            text,
+            "GOTO/{}",
+            six(self.start + self.axis * 10.0, self.axis)
+        )
+        .unwrap();
         writeln!(text, "FEDRAT/600,MMPM\nGOTO/{}", six(self.start, self.axis)).unwrap();
         write!(text, "CIRCLE/{},{radius:.6}", six(self.centre, self.normal)).unwrap();
         if self.turns > 1 {
@@ -303,7 +306,11 @@ fn printed_arcs_are_as_near_as_certified() {
         let split = ["full", "half", "quadrant"][rng.pick(3)];
         let more = format!("arcs = {{ form = \"{form}\", split = \"{split}\" }}");
         let chain = CHAINS[rng.pick(3)];
-        let bench = Bench::new(&machine(&mut rng, chain, tcp, units, &more), decimals, LENGTH);
+        let bench = Bench::new(
+            &machine(&mut rng, chain, tcp, units, &more),
+            decimals,
+            LENGTH,
+        );
         let wanted = wanted(&mut rng, &bench, tcp);
         let cl = wanted.cl();
         let (run, blocks) = posted(&bench, decimals, ALL, &cl);
@@ -337,8 +344,12 @@ fn printed_arcs_are_as_near_as_certified() {
             let minutes = match to.feed {
                 Some(Feed::PerMinute(feed)) => {
                     let rise = (point(&to.words) - point(&from.words)).dot(&V::from(arc.normal));
-                    let length = (controlled.radii[0] + controlled.radii[1]) / 2.0 * controlled.angle.abs();
-                    assert!((length.hypot(rise) / feed - block.time.minutes).abs() < 1e-5, "{what}");
+                    let length =
+                        (controlled.radii[0] + controlled.radii[1]) / 2.0 * controlled.angle.abs();
+                    assert!(
+                        (length.hypot(rise) / feed - block.time.minutes).abs() < 1e-5,
+                        "{what}"
+                    );
                     // A control may divide F by the way in the plane.
                     length / feed
                 }
@@ -388,6 +399,9 @@ fn printed_arcs_are_as_near_as_certified() {
             assert!(time > 0.0);
         }
     }
-    println!("{kept} of {all} kept, {whole} in one block; bounds at most {:.2} times too large", 1.0 / tightest);
+    println!(
+        "{kept} of {all} kept, {whole} in one block; bounds at most {:.2} times too large",
+        1.0 / tightest
+    );
     assert!(kept * 10 > all * 9, "{kept} of {all}");
 }

@@ -8,6 +8,7 @@ mod accuracy;
 mod arcs;
 mod certificate;
 mod feed;
+mod holes;
 mod path;
 mod program;
 mod route;

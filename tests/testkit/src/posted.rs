@@ -28,6 +28,8 @@ pub struct Asked {
     pub tool: Option<ToolPose>,
     /// Any other number it has: the seconds of a dwell, the number of a tool.
     pub value: f64,
+    /// An event without words as it prints for debugging, else empty.
+    pub event: String,
 }
 
 /// A dialect that writes nothing down but the events themselves. No word may be a negative zero, no number an
@@ -102,6 +104,10 @@ impl DialectSession for Recorder {
                 feed,
                 tool,
                 value,
+                event: match words {
+                    [] => format!("{event:?}"),
+                    _ => String::new(),
+                },
             });
             out.push_str("block\n");
             ends.push(out.len());

@@ -14,6 +14,7 @@ mod numbers;
 mod options;
 mod schema;
 mod setting;
+mod smoothing;
 mod spindle;
 
 use std::f64::consts::TAU;
@@ -26,13 +27,14 @@ pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
     CompensationOnCentre, EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement,
-    Pole, Rapid, Side, Tcp, ToolLength,
+    Pole, Print, Rapid, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
 pub use limits::MOST_BYTES;
 pub use schema::schema;
 pub use setting::Setting;
+pub use smoothing::{Smoothing, SmoothingRules};
 pub use spindle::SpindleSpeeds;
 
 use crate::diagnostic::{Diagnostic, Place};
@@ -68,6 +70,8 @@ pub struct Machine {
     pub spindle: SpindleSpeeds,
     /// Lines of the program for words of the CL file.
     pub word_rules: Vec<WordRule>,
+    /// By how much its control may leave the path, by operation.
+    pub smoothing: SmoothingRules,
     /// What it must keep.
     pub accuracy: Accuracy,
     /// Which of several solutions is taken.
@@ -244,6 +248,8 @@ pub struct Control {
     pub tool_length: ToolLength,
     /// What becomes of `INSERT`.
     pub insert: Insert,
+    /// What becomes of `PPRINT`.
+    pub print: Print,
     /// What becomes of `CUTCOM` on points of the tool's centre.
     pub compensation_on_centre: CompensationOnCentre,
 }

@@ -6,6 +6,7 @@
 
 mod accuracy;
 mod certificate;
+mod events;
 mod feed;
 mod path;
 mod program;

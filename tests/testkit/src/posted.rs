@@ -34,6 +34,8 @@ pub struct Asked {
     pub cycle: Option<AskedCycle>,
     /// What a tilted plane says, if it is one.
     pub plane: Option<AskedPlane>,
+    /// An event without words as it prints for debugging, else empty.
+    pub event: String,
 }
 
 /// A cycle that a dialect was asked for: see [`Event::Cycle`].
@@ -163,6 +165,10 @@ impl DialectSession for Recorder {
                 value,
                 cycle: cycle(&event),
                 plane: plane(&event),
+                event: match words {
+                    [] => format!("{event:?}"),
+                    _ => String::new(),
+                },
             });
             out.push_str("block\n");
             ends.push(out.len());

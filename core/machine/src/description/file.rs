@@ -11,6 +11,8 @@ use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
+use super::smoothing::SmoothingFile;
+
 /// A number, or an expression of the file's parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Number {
@@ -60,6 +62,9 @@ pub(crate) struct MachineFile {
     /// Words of the CL file that this machine has lines for.
     #[serde(default)]
     pub cl: ClFile,
+    /// Text of the program, and what the control does to it.
+    #[serde(default)]
+    pub program: ProgramFile,
     /// What the program must keep.
     #[serde(default)]
     pub accuracy: AccuracyFile,
@@ -114,6 +119,10 @@ pub(crate) struct SpindleFile {
     /// Largest speed, rpm; a faster one is refused.
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_speed: Option<Quantity>,
+    /// It turns the part, and SFM and SMM are constant cutting speeds that the control keeps (G96); else they are
+    /// those of the cutter's diameter, as revolutions a minute.
+    #[serde(default)]
+    pub surface_speed: bool,
 }
 
 /// Words of the CL file that this machine has lines for.
@@ -387,6 +396,17 @@ pub enum Insert {
     Literal,
 }
 
+/// What becomes of `PPRINT text`.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Print {
+    /// A comment.
+    #[default]
+    Comment,
+    /// A message on the control's screen, where the dialect has any; else a comment.
+    Message,
+}
+
 /// What becomes of `CUTCOM` on points of the tool's centre (`CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER`).
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -418,6 +438,14 @@ pub enum OutputUnits {
     Mm,
     /// inch, inch/min.
     Inch,
+}
+
+/// Text of the program, and what the control does to it.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ProgramFile {
+    /// By how much the control may leave the path; without it it keeps the path as it does by default.
+    pub smoothing: Option<SmoothingFile>,
 }
 
 /// The control and its language; `[control.<dialect>]` holds the dialect's own options.
@@ -454,6 +482,9 @@ pub(crate) struct ControlFile {
     /// What becomes of `INSERT text`; comment if not said.
     #[serde(default)]
     pub insert: Insert,
+    /// What becomes of `PPRINT text`; comment if not said.
+    #[serde(default)]
+    pub print: Print,
     /// What becomes of CUTCOM on points of the tool's centre; refuse if not said.
     #[serde(default)]
     pub compensation_on_centre: CompensationOnCentre,

@@ -1,14 +1,15 @@
 //! Blocks and commands become the events of the dialect: what is in force, tool changes, approach, clamps.
 
+mod control;
 mod cycles;
 mod extremes;
 mod frame;
 mod writer;
 
 use post_machine::axis_words::{self, Words};
-use post_machine::description::Machine;
+use post_machine::description::{Machine, Smoothing};
 use post_machine::kinematics::{Chain, Joints};
-use post_plugin::{Capabilities, Coolant, DialectSession, Event, List, Spindle, ToolPose};
+use post_plugin::{Capabilities, Coolant, DialectSession, Event, List, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
 use crate::curve::{CurveWords, PrintedCurve};
@@ -40,7 +41,9 @@ pub(crate) struct Emit<'a> {
     /// The spindle was switched on since the last tool change.
     turning: bool,
     /// What the CL file last said of it.
-    commanded: Option<Spindle>,
+    commanded: Option<Event<'static>>,
+    /// The tool was changed since.
+    changed: bool,
     /// What the CL file last said of coolant.
     coolant: Option<Coolant>,
     /// Coolant was switched off in between.
@@ -55,6 +58,19 @@ pub(crate) struct Emit<'a> {
     depth_word: Option<usize>,
     /// Places of the words that move the tool across it.
     across: Vec<usize>,
+    /// The tool in the spindle.
+    tool: Option<u32>,
+    /// The work offset that the CL file names; none before it names one.
+    offset: Option<u32>,
+    /// Set once it was told which mount travel was checked with.
+    told_mount: bool,
+    /// Set once it was told that nobody checks what a subprogram does.
+    told_subprogram: bool,
+    /// By how much the control is to leave the path, and what it was told.
+    smoothing: Option<Smoothing>,
+    smoothed: Option<Smoothing>,
+    /// What a dialect was told that switches the keeping of the tip by itself.
+    keeps_tip: Option<bool>,
 }
 
 impl<'a> Emit<'a> {
@@ -85,6 +101,14 @@ impl<'a> Emit<'a> {
             cycle: None,
             depth_word: cycles::depth_word(machine),
             across: across(machine),
+            changed: false,
+            tool: None,
+            offset: None,
+            told_mount: false,
+            told_subprogram: false,
+            smoothing: machine.smoothing.default,
+            smoothed: None,
+            keeps_tip: None,
         };
         // Nothing is known of where the tool stands, nor of what is in force.
         emit.retract(0);
@@ -249,6 +273,19 @@ impl<'a> Emit<'a> {
                 // Nobody knows what it does.
                 self.clear = false;
                 Event::Literal { text }
+            }
+            Command::Message(text) if self.writer.knows(Capabilities::MESSAGE) => {
+                Event::Message { text }
+            }
+            Command::Message(text) => Event::Comment { text },
+            Command::SurfaceSpeed { speed, most, sense } => {
+                return self.surface_speed(line, (*speed, *most), *sense, findings);
+            }
+            Command::WorkOffset(number) => return self.work_offset(line, *number, findings),
+            Command::Subprogram(number) => return self.subprogram(line, *number, findings),
+            Command::Smoothing(wanted) => {
+                self.smoothing = *wanted;
+                return self.leave(line);
             }
             Command::Dwell(seconds) => Event::Dwell { seconds: *seconds },
             Command::Stop => Event::Stop,

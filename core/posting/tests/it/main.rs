@@ -7,6 +7,7 @@
 mod accuracy;
 mod arcs;
 mod certificate;
+mod events;
 mod feed;
 mod holes;
 mod path;

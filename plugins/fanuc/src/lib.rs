@@ -4,7 +4,7 @@
 
 use post_iso::{
     Control, Iso, Offset, Plane, Rigid, Splines, Subprogram, SurfaceSpeed, Table, Tcp,
-    is_offset_beyond_six, offset_beyond_six, options,
+    is_offset_beyond_six, iso_options, offset_beyond_six, options,
 };
 use post_plugin::{OptionSpec, Setup, export_dialect};
 
@@ -58,18 +58,9 @@ impl Control for Fanuc {
     }
 }
 
-const OPTIONS: &[OptionSpec] = &[
+const OPTIONS: &[OptionSpec] = iso_options![
     options::program_number(9999),
-    options::BLOCK_NUMBERS,
-    options::BLOCK_STEP,
     options::SPACES,
-    options::LEADING_ZEROS,
-    options::decimals(3),
-    options::decimals_inch(4),
-    options::rotary_decimals(3),
-    options::WORD_DECIMALS,
-    options::TRAILING_ZEROS,
-    options::feed_decimals(1),
     options::inverse_time_decimals(3),
     options::most_inverse_time(9999.999),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
@@ -78,23 +69,13 @@ const OPTIONS: &[OptionSpec] = &[
         CANCEL,
         "Block at the start that cancels scaling, mirror and rotation; less on a control without one of them.",
     ),
-    options::RETRACT,
-    options::RESTART,
-    options::PARAMETERS,
-    options::LENGTH_REGISTER,
     options::TOOL_VECTOR,
     options::cycles_in_plane(true),
-    options::TAPPING,
+    options::tapping("rigid"),
     options::BORE_SHIFT,
     options::SPLINES,
     options::smoothing(SMOOTHING[0]),
     options::smoothing_off(SMOOTHING[1]),
-    options::CLAMPS,
-    options::COOLANT_OFF,
-    options::COOLANT_THROUGH,
-    options::COOLANT_THROUGH_OFF,
-    options::COOLANT_AIR,
-    options::COOLANT_AIR_OFF,
 ];
 
 /// Numbers of parameters are those of the 30i, 31i, 32i (B-63950EN, B-64490EN).

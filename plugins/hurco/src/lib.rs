@@ -2,7 +2,7 @@
 //!
 //! What it assumes about the control stands in `plugins/README.md`.
 
-use post_iso::{Control, Iso, Leave, Subprogram, Table, Tcp, options};
+use post_iso::{Control, Iso, Leave, Subprogram, Table, Tcp, iso_options, options};
 use post_plugin::{OptionSpec, Setup, export_dialect};
 
 struct Hurco;
@@ -33,25 +33,12 @@ impl Control for Hurco {
     }
 }
 
-const OPTIONS: &[OptionSpec] = &[
+const OPTIONS: &[OptionSpec] = iso_options![
     options::program_number(9999),
-    options::BLOCK_NUMBERS,
-    options::BLOCK_STEP,
     options::SPACES,
-    options::LEADING_ZEROS,
-    options::decimals(3),
-    options::decimals_inch(4),
-    options::rotary_decimals(3),
-    options::WORD_DECIMALS,
-    options::TRAILING_ZEROS,
-    options::feed_decimals(1),
     options::INVERSE_TIME,
     options::inverse_time_decimals(3),
     OptionSpec::text("work_offset", "G54", "G54 to G59."),
-    options::RETRACT,
-    options::RESTART,
-    options::PARAMETERS,
-    options::LENGTH_REGISTER,
     OptionSpec::lines(
         "tcp_on",
         "G69\nM128",
@@ -62,16 +49,9 @@ const OPTIONS: &[OptionSpec] = &[
         "",
         "Block that switches it off; empty: M129 under tcp = \"control\", else nothing is written about it.",
     ),
-    options::TAPPING,
     options::BORE_SHIFT,
     options::smoothing(""),
     options::smoothing_off(""),
-    options::CLAMPS,
-    options::COOLANT_OFF,
-    options::COOLANT_THROUGH,
-    options::COOLANT_THROUGH_OFF,
-    options::COOLANT_AIR,
-    options::COOLANT_AIR_OFF,
 ];
 
 const RELIES: &[&str] = &[

@@ -207,6 +207,12 @@ impl Engine {
             true => "G98",
             false => "G99",
         };
+        let stands = self.motion.stands_on(z).filter(|_| running.first);
+        if let Some(stands) = stands.filter(|z| level == "G98" && (z - top).abs() > 1e-6) {
+            return Err(format!(
+                "a cycle begins at Z {stands}, to where it returns, and is to return to Z {top}"
+            ));
+        }
         let first = std::mem::take(&mut running.first);
         if first {
             self.motion.plane_xy();

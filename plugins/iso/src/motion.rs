@@ -231,11 +231,9 @@ impl Motion {
 
     /// A move until the probe touches.
     pub(crate) fn probe(&mut self, code: &str, words: &[f64], feed: Feed, out: &mut String) {
-        let linear = self.linear.into_iter().flatten();
-        let linear = linear.fold(0, |all, place| all | 1 << place);
         self.feed_mode(feed);
         self.block.word(code);
-        self.axes.forget_some(linear);
+        self.forget_linear();
         self.axes.write(&mut self.block, words);
         self.feed(feed);
         self.block.end(out);
@@ -372,6 +370,25 @@ impl Motion {
         self.at.clear();
     }
 
+    /// The linear words have a frame of their own from here on; the rotary axes stand where they did.
+    pub(crate) fn other_frame(&mut self) {
+        self.forget_linear();
+        self.motion.forget();
+        self.at.clear();
+    }
+
+    /// The next move writes all linear words.
+    pub(crate) fn forget_linear(&mut self) {
+        let linear = self.linear.into_iter().flatten();
+        self.axes
+            .forget_some(linear.fold(0, |all, place| all | 1 << place));
+    }
+
+    /// Where the axis of this word stands, if it is known.
+    pub(crate) fn stands_on(&self, place: usize) -> Option<f64> {
+        self.at.get(place).copied()
+    }
+
     /// A code of the same group as the motion words was written.
     pub(crate) fn forget_motion(&mut self) {
         self.motion.forget();
@@ -480,6 +497,8 @@ impl Motion {
         let word = self.codes.planes[plane];
         if self.plane.set(word) {
             self.block.word(word);
+            // Beside another plane the code is not left to be remembered.
+            self.motion.forget();
         }
         self.other_plane = plane != 0;
         self.feed_mode(feed);
@@ -493,7 +512,9 @@ impl Motion {
                     .number("R", radius, self.places[first], self.style);
             }
             None => {
-                for (part, place) in across.into_iter().zip([first, second]) {
+                let mut parts = [(across[0], first), (across[1], second)];
+                parts.sort_unstable();
+                for (part, place) in parts {
                     let offset = arc.centre[part] - self.at[place];
                     self.block
                         .number(CENTRE[part], offset, self.places[place], self.style);

@@ -2,6 +2,35 @@
 
 use post_plugin::{OptionKind, OptionSpec, Setup, Value};
 
+/// The options that most controls of the family have, behind those of the dialect's own.
+#[macro_export]
+macro_rules! iso_options {
+    ($($own:expr,)*) => {
+        &[
+            $($own,)*
+            $crate::options::BLOCK_NUMBERS,
+            $crate::options::BLOCK_STEP,
+            $crate::options::LEADING_ZEROS,
+            $crate::options::decimals(3),
+            $crate::options::decimals_inch(4),
+            $crate::options::rotary_decimals(3),
+            $crate::options::WORD_DECIMALS,
+            $crate::options::TRAILING_ZEROS,
+            $crate::options::feed_decimals(1),
+            $crate::options::RETRACT,
+            $crate::options::RESTART,
+            $crate::options::PARAMETERS,
+            $crate::options::LENGTH_REGISTER,
+            $crate::options::CLAMPS,
+            $crate::options::COOLANT_OFF,
+            $crate::options::COOLANT_THROUGH,
+            $crate::options::COOLANT_THROUGH_OFF,
+            $crate::options::COOLANT_AIR,
+            $crate::options::COOLANT_AIR_OFF,
+        ]
+    };
+}
+
 /// N numbers.
 pub const BLOCK_NUMBERS: OptionSpec = OptionSpec {
     key: "block_numbers",
@@ -93,12 +122,14 @@ pub const CLAMPS: OptionSpec = OptionSpec::lines(
      axes in the machine file.",
 );
 /// Tapping.
-pub const TAPPING: OptionSpec = OptionSpec {
-    key: "tapping",
-    kind: OptionKind::Choice(&["rigid", "floating"]),
-    default: Value::Text("rigid"),
-    help: "The spindle turns with the feed axis, or the tap is held by a compensating chuck.",
-};
+pub const fn tapping(default: &'static str) -> OptionSpec {
+    OptionSpec {
+        key: "tapping",
+        kind: OptionKind::Choice(&["rigid", "floating"]),
+        default: Value::Text(default),
+        help: "The spindle turns with the feed axis, or the tap is held by a compensating chuck.",
+    }
+}
 /// The shift of fine boring.
 pub const BORE_SHIFT: OptionSpec = OptionSpec::number(
     "bore_shift",

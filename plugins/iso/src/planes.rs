@@ -115,7 +115,7 @@ impl Engine {
         }
         self.plane.on = true;
         // Its words are others from here on.
-        self.motion.moved_by_line();
+        self.motion.other_frame();
         Ok(())
     }
 
@@ -129,7 +129,7 @@ impl Engine {
             }
         }
         self.plane.on = false;
-        self.motion.moved_by_line();
+        self.motion.other_frame();
         Ok(())
     }
 }

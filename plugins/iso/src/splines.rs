@@ -1,6 +1,6 @@
 //! Splines by control points.
 
-use post_plugin::{Feed, Group};
+use post_plugin::{Feed, Group, quantise};
 
 use crate::motion::Motion;
 use crate::table::Splines;
@@ -17,9 +17,6 @@ pub struct Spline<'a> {
     /// All axis words of each control point.
     pub points: &'a [f64],
 }
-
-/// Decimals of knots and weights.
-const DECIMALS: u8 = 6;
 
 impl Motion {
     /// A spline from where the tool stands, its first control point.
@@ -55,6 +52,16 @@ impl Motion {
                         spline.degree
                     ));
                 }
+                let places = self.linear_decimals(0);
+                let numbers = spline.knots.iter().chain(spline.weights);
+                if let Some(number) = numbers
+                    .into_iter()
+                    .find(|number| (quantise(**number, places) - **number).abs() > 1e-9)
+                {
+                    return Err(format!(
+                        "the knot or weight {number} of a spline has more than {places} decimals, as many as this control reads"
+                    ));
+                }
                 self.plane_xy();
                 self.block.end(out);
                 self.line(begin, out);
@@ -62,14 +69,14 @@ impl Motion {
                 self.motion(code);
                 self.block.integer("P", order as u32);
                 for ((point, weight), knot) in points.iter().zip(spline.weights).zip(spline.knots) {
-                    self.block.number("K", *knot, DECIMALS, self.style);
+                    self.block.number("K", *knot, places, self.style);
                     self.write_point(point);
-                    self.block.number("R", *weight, DECIMALS, self.style);
+                    self.block.number("R", *weight, places, self.style);
                     self.feed(feed);
                     self.block.end(out);
                 }
                 for knot in spline.knots.iter().skip(count) {
-                    self.block.number("K", *knot, DECIMALS, self.style);
+                    self.block.number("K", *knot, places, self.style);
                     self.block.end(out);
                 }
                 self.line(end, out);
@@ -99,7 +106,7 @@ impl Motion {
                             );
                         }
                     }
-                    self.block.number("P", *weight, DECIMALS, self.style);
+                    self.block.number("P", *weight, 6, self.style);
                     self.feed(feed);
                     self.block.end(out);
                 }
@@ -107,7 +114,7 @@ impl Motion {
             }
         }
         self.forget_motion();
-        self.axes.forget();
+        self.forget_linear();
         if let Some(last) = points.last() {
             self.stands(last);
         }
@@ -116,7 +123,7 @@ impl Motion {
 
     /// The linear words of a control point, each of them.
     fn write_point(&mut self, point: &[f64]) {
-        self.axes.forget();
+        self.forget_linear();
         for group in [Group::Plane, Group::Depth] {
             self.axes.write_group(&mut self.block, point, group);
         }

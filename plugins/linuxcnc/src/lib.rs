@@ -151,7 +151,7 @@ const OPTIONS: &[OptionSpec] = &[
         "",
         "Remap that switches back; empty: M429 under tcp = \"control\", else nothing is written about it.",
     ),
-    options::TAPPING,
+    options::tapping("rigid"),
     options::SPLINES,
     options::smoothing(SMOOTHING[0]),
     options::smoothing_off(SMOOTHING[1]),

@@ -3,8 +3,8 @@
 //! What it assumes about the control stands in `plugins/README.md`.
 
 use post_iso::{
-    Control, Iso, Offset, Plane, Subprogram, Table, Tcp, is_offset_beyond_six, offset_beyond_six,
-    options,
+    Control, Iso, Offset, Plane, Rigid, Subprogram, Table, Tcp, is_offset_beyond_six, iso_options,
+    offset_beyond_six, options,
 };
 use post_plugin::{OptionSpec, Setup, export_dialect};
 
@@ -32,6 +32,7 @@ impl Control for Mazak {
             turn: "G53.1",
             off: "G69",
         },
+        rigid: Rigid::Codes(["G84.2", "G84.3"]),
         smoothing: SMOOTHING,
         smoothing_anywhere: true,
         probe: "G31",
@@ -48,19 +49,10 @@ impl Control for Mazak {
     }
 }
 
-const OPTIONS: &[OptionSpec] = &[
+const OPTIONS: &[OptionSpec] = iso_options![
     options::program_number(99_999_999),
     OptionSpec::flag("percent", false, "% before and after the program."),
-    options::BLOCK_NUMBERS,
-    options::BLOCK_STEP,
     options::SPACES,
-    options::LEADING_ZEROS,
-    options::decimals(3),
-    options::decimals_inch(4),
-    options::rotary_decimals(3),
-    options::WORD_DECIMALS,
-    options::TRAILING_ZEROS,
-    options::feed_decimals(1),
     options::INVERSE_TIME,
     options::inverse_time_decimals(3),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
@@ -69,22 +61,12 @@ const OPTIONS: &[OptionSpec] = &[
         CANCEL,
         "Block at the start that cancels a tilted plane; empty on a control without them.",
     ),
-    options::RETRACT,
-    options::RESTART,
-    options::PARAMETERS,
-    options::LENGTH_REGISTER,
     options::TOOL_VECTOR,
     options::cycles_in_plane(false),
-    options::TAPPING,
+    options::tapping("floating"),
     options::BORE_SHIFT,
     options::smoothing(SMOOTHING[0]),
     options::smoothing_off(SMOOTHING[1]),
-    options::CLAMPS,
-    options::COOLANT_OFF,
-    options::COOLANT_THROUGH,
-    options::COOLANT_THROUGH_OFF,
-    options::COOLANT_AIR,
-    options::COOLANT_AIR_OFF,
 ];
 
 const RELIES: &[&str] = &[

@@ -4,7 +4,7 @@
 
 use post_iso::{
     Control, Iso, Offset, Plane, Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six,
-    offset_beyond_six, options,
+    iso_options, offset_beyond_six, options,
 };
 use post_plugin::{OptionSpec, Setup, export_dialect};
 
@@ -47,18 +47,9 @@ impl Control for Mitsubishi {
     }
 }
 
-const OPTIONS: &[OptionSpec] = &[
+const OPTIONS: &[OptionSpec] = iso_options![
     options::program_number(99_999_999),
-    options::BLOCK_NUMBERS,
-    options::BLOCK_STEP,
     options::SPACES,
-    options::LEADING_ZEROS,
-    options::decimals(3),
-    options::decimals_inch(4),
-    options::rotary_decimals(3),
-    options::WORD_DECIMALS,
-    options::TRAILING_ZEROS,
-    options::feed_decimals(1),
     options::INVERSE_TIME,
     options::inverse_time_decimals(3),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
@@ -67,22 +58,11 @@ const OPTIONS: &[OptionSpec] = &[
         CANCEL,
         "Block at the start that cancels an inclined surface; empty on a control without them.",
     ),
-    options::RETRACT,
-    options::RESTART,
-    options::PARAMETERS,
-    options::LENGTH_REGISTER,
     options::TOOL_VECTOR,
     options::cycles_in_plane(false),
-    options::TAPPING,
     options::BORE_SHIFT,
     options::smoothing(""),
     options::smoothing_off(""),
-    options::CLAMPS,
-    options::COOLANT_OFF,
-    options::COOLANT_THROUGH,
-    options::COOLANT_THROUGH_OFF,
-    options::COOLANT_AIR,
-    options::COOLANT_AIR_OFF,
 ];
 
 const RELIES: &[&str] = &[

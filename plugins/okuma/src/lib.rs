@@ -3,7 +3,7 @@
 //! What it assumes about the control stands in `plugins/README.md`.
 
 use post_iso::{
-    Codes, Control, Dwell, Iso, Leave, Length, Offset, Subprogram, Table, Tcp, options,
+    Codes, Control, Dwell, Iso, Leave, Length, Offset, Subprogram, Table, Tcp, iso_options, options,
 };
 use post_plugin::{OptionKind, OptionSpec, Setup, Value, export_dialect};
 
@@ -78,7 +78,7 @@ fn number(text: &str) -> Option<u32> {
     text.strip_prefix("G15 H")?.parse().ok()
 }
 
-const OPTIONS: &[OptionSpec] = &[
+const OPTIONS: &[OptionSpec] = iso_options![
     OptionSpec {
         key: "unit_system",
         kind: OptionKind::Choice(&["", "1 mm", "10 um", "1 um"]),
@@ -86,20 +86,7 @@ const OPTIONS: &[OptionSpec] = &[
         help: "The unit system of the control's parameters; it must be named, and be 1 mm (or 1 inch).",
     },
     options::program_number(9999),
-    options::BLOCK_NUMBERS,
-    options::BLOCK_STEP,
-    options::LEADING_ZEROS,
-    options::decimals(3),
-    options::decimals_inch(4),
-    options::rotary_decimals(3),
-    options::WORD_DECIMALS,
-    options::TRAILING_ZEROS,
-    options::feed_decimals(1),
     OptionSpec::text("work_offset", "G15 H1", "G15 H1 to H200."),
-    options::RETRACT,
-    options::RESTART,
-    options::PARAMETERS,
-    options::LENGTH_REGISTER,
     OptionSpec::lines(
         "tcp_on",
         "",
@@ -108,12 +95,6 @@ const OPTIONS: &[OptionSpec] = &[
     OptionSpec::lines("tcp_off", "", "Block that switches it off: `G170`."),
     options::smoothing(""),
     options::smoothing_off(""),
-    options::CLAMPS,
-    options::COOLANT_OFF,
-    options::COOLANT_THROUGH,
-    options::COOLANT_THROUGH_OFF,
-    options::COOLANT_AIR,
-    options::COOLANT_AIR_OFF,
 ];
 
 const RELIES: &[&str] = &[

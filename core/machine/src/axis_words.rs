@@ -216,6 +216,13 @@ impl Words {
         }
     }
 
+    /// The number nearest to `value` that has the decimals of the word at `place`; none if there is no such word.
+    pub fn printed(&self, place: usize, value: f64) -> Option<f64> {
+        let mut words = self.rotary.iter().chain(&self.linear);
+        let word = words.find(|word| word.place == place)?;
+        Some(word.printed(value))
+    }
+
     /// What is printed for a joint at `value` in machine coordinates, as near to it as its `travel` allows, in program
     /// units, and its place among the words.
     pub fn machine_word(

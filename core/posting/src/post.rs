@@ -148,10 +148,14 @@ impl<'a> Post<'a> {
         job.reading.tool_length = machine.control.tool_length;
         job.reading.rules.clone_from(&machine.word_rules);
         job.reading.knife = machine.edge.is_some();
+        job.reading.print = machine.control.print;
+        job.reading.surface_speed = machine.spindle.surface_speed;
+        job.reading.smoothing.clone_from(&machine.smoothing);
         let format = dialect.format().clone();
         let fault = refusal::too_fine(machine, &format)
             .or_else(|| refusal::depth_counts_down(machine))
-            .or_else(|| refusal::no_way_off(machine));
+            .or_else(|| refusal::no_way_off(machine))
+            .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()));
         if let Some(fault) = fault {
             return Err(fault.boxed());
         }

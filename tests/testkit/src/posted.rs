@@ -6,8 +6,8 @@ use post_machine::description::{Machine, Source, Tcp, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{
-    Batch, Capabilities, Curve, Deviation, DialectSession, Event, Feed, Format, ModelSession,
-    Tolerance, ToolPose, WriteFault,
+    Batch, Capabilities, Curve, Cycle, Deviation, DialectSession, Event, Feed, Format,
+    ModelSession, Tolerance, ToolPose, WriteFault,
 };
 use post_posting::program::ToldSpindle;
 use post_posting::report::Report;
@@ -30,6 +30,36 @@ pub struct Asked {
     pub arc: Option<AskedArc>,
     /// Any other number it has: the seconds of a dwell, the number of a tool.
     pub value: f64,
+    /// What a cycle says, if it is one.
+    pub cycle: Option<AskedCycle>,
+    /// What a tilted plane says, if it is one.
+    pub plane: Option<AskedPlane>,
+    /// An event without words as it prints for debugging, else empty.
+    pub event: String,
+}
+
+/// A cycle that a dialect was asked for: see [`Event::Cycle`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AskedCycle {
+    pub kind: Cycle,
+    pub feed: Feed,
+    pub depth: f64,
+    pub clearance: f64,
+    pub retract: f64,
+    pub step: Option<f64>,
+    pub dwell: Option<f64>,
+    pub pitch: Option<f64>,
+}
+
+/// A tilted plane that a dialect was asked for: see [`Event::Plane`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct AskedPlane {
+    pub origin: Vector3<f64>,
+    pub x: Vector3<f64>,
+    pub z: Vector3<f64>,
+    pub angles: [f64; 3],
+    /// All axis words: the rotary ones count.
+    pub words: Vec<f64>,
 }
 
 /// How an arc goes that a dialect was asked for.
@@ -108,6 +138,7 @@ impl DialectSession for Recorder {
                 Event::Arc {
                     words, tool, feed, ..
                 } => (words, tool, Some(feed), 0.0),
+                Event::CyclePoint { words, tool } => (words, tool, None, 0.0),
                 Event::Dwell { seconds } => (&[][..], None, None, seconds),
                 Event::ToolChange { number, .. } => (&[][..], None, None, f64::from(number)),
                 _ => (&[][..], None, None, 0.0),
@@ -132,12 +163,64 @@ impl DialectSession for Recorder {
                 tool,
                 arc,
                 value,
+                cycle: cycle(&event),
+                plane: plane(&event),
+                event: match words {
+                    [] => format!("{event:?}"),
+                    _ => String::new(),
+                },
             });
             out.push_str("block\n");
             ends.push(out.len());
         }
         Ok(())
     }
+}
+
+fn cycle(event: &Event<'_>) -> Option<AskedCycle> {
+    let Event::Cycle {
+        cycle,
+        feed,
+        depth,
+        clearance,
+        retract,
+        step,
+        dwell,
+        pitch,
+    } = *event
+    else {
+        return None;
+    };
+    Some(AskedCycle {
+        kind: cycle,
+        feed,
+        depth,
+        clearance,
+        retract,
+        step,
+        dwell,
+        pitch,
+    })
+}
+
+fn plane(event: &Event<'_>) -> Option<AskedPlane> {
+    let Event::Plane {
+        origin,
+        x,
+        z,
+        angles,
+        words,
+    } = event
+    else {
+        return None;
+    };
+    Some(AskedPlane {
+        origin: Vector3::from(*origin),
+        x: Vector3::from(*x),
+        z: Vector3::from(*z),
+        angles: *angles,
+        words: words.to_vec(),
+    })
 }
 
 /// An error model that looks at 33 places and has no opinion.

@@ -282,7 +282,14 @@ impl<'a> Blocks<'a> {
     fn command(&mut self, line: u64, command: &Command, to: &mut Surroundings<'_, '_>) {
         self.end_run(to);
         match command {
-            Command::Tool(_) | Command::Home => self.depart(line, to),
+            Command::Tool(_) | Command::Home | Command::WorkOffset(_) | Command::Smoothing(_) => {
+                self.depart(line, to)
+            }
+            // Nobody knows where the tool stands behind it.
+            Command::Subprogram(_) => {
+                self.last = None;
+                self.on_part = false;
+            }
             Command::Head(name) => {
                 self.depart(line, to);
                 if let Some(head) = self.base.head(name) {

@@ -84,12 +84,12 @@ impl Extremes {
     #[inline]
     pub(super) fn reach(&mut self, joints: &Joints) {
         self.blocks += 1;
-        self.pass(joints);
+        self.cover(joints);
     }
 
-    /// The axes come by `joints`.
+    /// The axes come there, whether a block says it or a cycle.
     #[inline]
-    pub(super) fn pass(&mut self, joints: &Joints) {
+    pub(super) fn cover(&mut self, joints: &Joints) {
         // All places, used or not, and no question of what is no number: two at a time.
         for (index, value) in joints.iter().enumerate() {
             let (least, most) = (self.least[index], self.most[index]);

@@ -7,7 +7,9 @@
 mod accuracy;
 mod arcs;
 mod certificate;
+mod events;
 mod feed;
+mod holes;
 mod path;
 mod program;
 mod route;

@@ -8,6 +8,7 @@ mod writer;
 use post_machine::axis_words::{self, Words};
 use post_machine::description::Machine;
 use post_machine::kinematics::{Chain, Joints};
+use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, DialectSession, Event, Spindle, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
@@ -44,11 +45,16 @@ pub(crate) struct Emit<'a> {
     coolant: Option<Coolant>,
     /// Coolant was switched off in between.
     coolant_due: bool,
+    /// The tilted plane of the words.
+    plane: Option<Box<TiltedPlane>>,
+    /// The control was told it.
+    plane_on: bool,
     /// The hole whose moves are coming.
     hole: Option<Box<Hole>>,
     /// The cycle in force.
     cycle: Option<InForce>,
-    /// Place of the word that cycles drill along.
+    /// Place of the word that cycles drill along, and the same where it is that of the axis along the tool.
+    z_word: Option<usize>,
     depth_word: Option<usize>,
     /// Places of the words that move the tool across it.
     across: Vec<usize>,
@@ -77,8 +83,11 @@ impl<'a> Emit<'a> {
             commanded: None,
             coolant: None,
             coolant_due: false,
+            plane: None,
+            plane_on: false,
             hole: None,
             cycle: None,
+            z_word: cycles::z_word(machine),
             depth_word: cycles::depth_word(machine),
             across: across(machine),
         };
@@ -167,7 +176,10 @@ impl<'a> Emit<'a> {
     fn command(&mut self, line: u64, command: &Command, findings: &Findings) {
         let event = match command {
             // These act on the choice of axis values alone.
-            Command::From { .. } | Command::Index { .. } | Command::Hole(_) => return,
+            Command::From { .. } | Command::Index { .. } | Command::Hole(_) | Command::Still(_) => {
+                return;
+            }
+            Command::Plane(plane) => return self.set_plane(line, plane.clone()),
             Command::Tool(tool) => return self.change(line, tool, findings),
             Command::Head(name) => return self.swap_head(line, name),
             Command::Preselect(number) => Event::Preselect { number: *number },
@@ -221,9 +233,9 @@ impl<'a> Emit<'a> {
     }
 }
 
-/// Places of the words of the linear axes that move in cuts, but for that of the depth.
+/// Places of the words of the linear axes that move in cuts, but for Z.
 fn across(machine: &Machine) -> Vec<usize> {
-    let depth = cycles::depth_word(machine);
+    let depth = cycles::z_word(machine);
     let order = axis_words::order(machine).into_iter().enumerate();
     order
         .filter(|(place, joint)| {

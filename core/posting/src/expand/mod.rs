@@ -4,17 +4,22 @@
 //! only if the stages behind can carry it there, and as yet they carry straight moves alone: everything leaves here
 //! as moves and commands.
 
+mod planes;
 mod tangential;
+
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::description::{Cycles, Machine};
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_plugin::{Capabilities, Cycle};
 
+use crate::ahead::Ahead;
 use crate::findings::Findings;
 use crate::program::limits::MOST_CHORDS;
 use crate::program::{ArcStep, Command, CycleStep, HoleMark, Leg, Motion, Pace, SplineStep, Step};
 use crate::stream::{Flow, Outlet};
+use planes::Planes;
 use tangential::Tangential;
 
 /// A straight move of the path, from its line of the CL file.
@@ -37,6 +42,8 @@ pub(crate) struct Expand {
     tangential: Option<Tangential>,
     /// The cycles that the dialect has words for, as far as the machine file wants them.
     cycles: Capabilities,
+    /// Where the tool axis stays, if the control is to be told planes.
+    planes: Option<Planes>,
 }
 
 /// The moves and commands of `steps`, each with its line, chords straying by no more than `chord_tolerance` mm; and
@@ -48,6 +55,7 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
         tip: None,
         tangential: None,
         cycles: Capabilities::NONE,
+        planes: None,
     };
     let mut all = Vec::new();
     let mut next = |batch: &mut Vec<Flow<Line>>| all.append(batch);
@@ -62,8 +70,14 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
 type Out<'o> = Outlet<'o, Flow<Line>>;
 
 impl Expand {
-    pub(crate) fn new(machine: &Machine, chord_tolerance: f64, writes: Capabilities) -> Self {
+    pub(crate) fn new(
+        machine: &Machine,
+        chord_tolerance: f64,
+        writes: Capabilities,
+        ahead: Option<Arc<Ahead>>,
+    ) -> Self {
         Self {
+            planes: ahead.map(Planes::new),
             cycles: match machine.control.cycles {
                 Cycles::Native => writes,
                 Cycles::Moves => Capabilities::NONE,
@@ -88,6 +102,13 @@ impl Expand {
     pub(crate) fn take(&mut self, steps: &[(u64, Step)], out: &mut Out<'_>, findings: &Findings) {
         for (line, step) in steps {
             let line = *line;
+            let change = self
+                .planes
+                .as_mut()
+                .and_then(|planes| planes.change(line, step));
+            if let Some(still) = change {
+                self.command(line, Command::Still(still), out, findings);
+            }
             match step {
                 Step::Move(motion) => self.go(line, *motion, out, findings),
                 Step::Arc(arc) => self.arc(line, arc, out, findings),

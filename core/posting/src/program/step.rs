@@ -3,6 +3,7 @@
 
 use nalgebra::Vector3;
 use post_machine::description::{Retract, Rewind};
+use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Compensation, Coolant, Spindle};
 
 use super::{Arc, DrillCycle, Drilling, Spline};
@@ -72,6 +73,11 @@ pub enum Command {
     OptionalStop,
     /// The tool is retracted and the axes are parked.
     Home,
+    /// The tool axis stays from here on until the next of these, and the control is to be told a tilted plane for it,
+    /// with this origin (mm, part frame); none: no plane.
+    Still(Option<Vector3<f64>>),
+    /// The words behind it are those of this tilted plane, the tool having left the part; none: of no plane.
+    Plane(Option<Box<TiltedPlane>>),
     /// The moves from here on are those of a hole, which the control may have a cycle for.
     Hole(HoleMark),
 }
@@ -97,7 +103,12 @@ impl Command {
     pub(crate) fn leaves(&self) -> bool {
         matches!(
             self,
-            Self::Tool(_) | Self::Home | Self::From { .. } | Self::Index { .. } | Self::Head(_)
+            Self::Tool(_)
+                | Self::Home
+                | Self::From { .. }
+                | Self::Index { .. }
+                | Self::Head(_)
+                | Self::Still(_)
         )
     }
 }

@@ -8,7 +8,7 @@ use post_posting::program::{Reading, ToldSpindle};
 use post_testkit::posted::{Asked, Recorder, Run, Samples, watched};
 use post_testkit::{Rng, randomised};
 
-const LINEAR: &str = "
+pub(crate) const LINEAR: &str = "
 [axis.X]
 linear = [1, 0, 0]
 travel = [-5000, 5000]
@@ -27,7 +27,7 @@ axis_tolerance = 0.05
 rapid_tolerance = 0.5
 ";
 
-const TABLE: &str = "
+pub(crate) const TABLE: &str = "
 [axis.C]
 rotary = [0, 0, 1]
 point = [0, 0, 0]
@@ -40,7 +40,7 @@ travel = [-100, 100]
 max_feed = 9000
 ";
 
-fn machine(chain: &str, axes: &str, control: &str) -> Machine {
+pub(crate) fn machine(chain: &str, axes: &str, control: &str) -> Machine {
     let text = format!(
         "name = \"test\"\nchain = \"{chain}\"\n[workpiece]\nmount = [3, 5, 60]\n[tool]\ngauge = [0, 0, 400]\naxis = [0, 0, 1]\n\
          [control]\ndialect = \"none\"\n{control}\n{axes}{LINEAR}"
@@ -638,7 +638,7 @@ fn a_thread_is_cut_by_a_cycle_that_fits_it_or_not_at_all() {
     let cl = "UNITS/MM\nMULTAX/ON\nRAPID\nGOTO/0,0,100,0,0.6,0.8\nCYCLE/TAP,DEPTH,10,CLEAR,3,PITCH,1.5\nGOTO/1,2,0\n";
     let refused = run(&trunnion("control"), CYCLES, cl);
     assert!(
-        refused.told().contains("planes = true"),
+        refused.told().contains("must be the control's own"),
         "{}",
         refused.told()
     );

@@ -9,5 +9,6 @@ mod certificate;
 mod feed;
 mod holes;
 mod path;
+mod planes;
 mod program;
 mod route;

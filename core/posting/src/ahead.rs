@@ -200,7 +200,7 @@ mod tests {
             ("rcRC", vec![(1, 2), (3, 4)]),
             ("rcRCrc", vec![(1, 2), (3, 4), (5, 6)]),
             // Turned in the cut, and all of that operation with it; not the one before.
-            ("rc|RCcR|RC", vec![(1, 2), (8, 9)]),
+            ("rc|RCcR|RC", vec![(1, 2), (9, 10)]),
             // Nothing is cut on the way to the first side.
             ("rRC", vec![(2, 3)]),
             ("|r|", vec![]),

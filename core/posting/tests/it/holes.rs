@@ -77,6 +77,7 @@ fn run(machine: &Machine, capabilities: Capabilities, cl: &str) -> Run {
     let job = Job {
         reading: Reading {
             spindle: ToldSpindle::On(500.0),
+            tool_from_cutter: true,
             ..Reading::default()
         },
         tool_length: Some(50.0),
@@ -642,4 +643,44 @@ fn a_thread_is_cut_by_a_cycle_that_fits_it_or_not_at_all() {
         "{}",
         refused.told()
     );
+}
+
+/// Blocks of the real files with holes, as moves and as cycles.
+#[test]
+fn real_files_need_fewer_blocks_with_cycles() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/cl");
+    for (file, least) in [
+        ("nx_HumMan_standart_drill.clsf", 1),
+        ("nx_HumMan_deep_drill.clsf", 1),
+        ("creo3x_MichaHofft_bohren_1.ncl", 1),
+        ("swcam_aamorim_basemach.apt", 1),
+        ("swcam_aamorim_Interface-glue.clt", 0),
+        ("camworks_neMoguta_UniSource.clt", 2),
+    ] {
+        let Ok(cl) = std::fs::read(format!("{folder}/{file}")) else {
+            println!("{file} is not here");
+            continue;
+        };
+        let cl = String::from_utf8_lossy(&cl);
+        let machine = trunnion("post");
+        let moves = run(&machine, Capabilities::NONE, &cl).good(file);
+        let native = run(&machine, CYCLES, &cl).good(file);
+        let count = |kind| {
+            native
+                .asked
+                .iter()
+                .filter(|asked| asked.kind == kind)
+                .count()
+        };
+        println!(
+            "{file}: {} blocks as moves, {} with {} cycles at {} points",
+            moves.motions().len(),
+            native.motions().len(),
+            count("Cycle"),
+            count("CyclePoint")
+        );
+        assert!(count("CyclePoint") >= least, "{file}");
+        let (moved, drilled) = (swept(&acts(&moves.asked)), swept(&acts(&native.asked)));
+        assert!(alike(&moved, &drilled), "{file}");
+    }
 }

@@ -250,7 +250,7 @@ impl Engine {
                 register,
                 name,
                 ..
-            } => self.change(number, register, name, out),
+            } => self.change(number, &format!("T{number}"), register, name, out),
             Event::Preselect { number } => self.line(&format!("T{number}"), out),
             Event::Spindle(spindle) => self.turn(spindle, out)?,
             Event::Coolant(coolant) => self.cool(coolant, out)?,
@@ -278,12 +278,20 @@ impl Engine {
         Ok(())
     }
 
-    fn change(&mut self, number: u32, register: u32, name: &str, out: &mut String) {
+    /// Changes to a tool that is called by `call` (`T1`).
+    pub fn change(
+        &mut self,
+        number: u32,
+        call: &str,
+        register: u32,
+        name: &str,
+        out: &mut String,
+    ) {
         self.motion.settle(out);
         if !name.is_empty() {
             self.remark(&format!("T{number} {name}"), out);
         }
-        let change = format!("T{number} {}", self.table.change);
+        let change = format!("{call} {}", self.table.change);
         self.line(change.trim_end(), out);
         // The changer may have moved any axis.
         self.motion.moved_by_line();

@@ -10,7 +10,7 @@ mod motion;
 pub mod options;
 mod table;
 
-use post_plugin::{Capabilities, Dialect, Event, Format, OptionSpec, Setup};
+use post_plugin::{Capabilities, Dialect, Event, Format, OptionSpec, Setup, VocabularyWord};
 
 pub use engine::Engine;
 pub use motion::{FeedDecimals, Motion};
@@ -55,6 +55,16 @@ pub trait Control: Sized + Send + 'static {
     fn capabilities(&self) -> Capabilities {
         Capabilities::NONE
     }
+
+    /// How it writes numbers, where that is not what the engine does.
+    fn format(&self, engine: Format) -> Format {
+        engine
+    }
+
+    /// Its words and what they mean.
+    fn vocabulary(&self) -> Vec<VocabularyWord> {
+        Vec::new()
+    }
 }
 
 /// A dialect of the family.
@@ -76,7 +86,11 @@ impl<C: Control> Dialect for Iso<C> {
     }
 
     fn format(&self) -> Format {
-        self.engine.format()
+        self.control.format(self.engine.format())
+    }
+
+    fn vocabulary(&self) -> Vec<VocabularyWord> {
+        self.control.vocabulary()
     }
 
     fn capabilities(&self) -> Capabilities {

@@ -199,13 +199,15 @@ impl Motion {
         }
     }
 
-    fn motion(&mut self, word: &'static str) {
+    /// Adds the word of a kind of motion, unless it is in force.
+    pub fn motion(&mut self, word: &'static str) {
         if self.motion.set(word) {
             self.block.word(word);
         }
     }
 
-    fn feed_mode(&mut self, feed: Feed) {
+    /// Adds the word of the feed's kind, unless it is in force.
+    pub fn feed_mode(&mut self, feed: Feed) {
         let word = self.feed_word(feed);
         if self.feed_mode.set(word) {
             self.block.word(word);
@@ -213,7 +215,8 @@ impl Motion {
         }
     }
 
-    fn feed(&mut self, feed: Feed) {
+    /// Adds the feed's number, unless it is in force. Its kind comes before it.
+    pub fn feed(&mut self, feed: Feed) {
         let (value, decimals) = match feed {
             Feed::PerMinute(value) => (value, self.decimals.per_minute),
             Feed::InverseTime(value) => (value, self.decimals.inverse_time),
@@ -225,7 +228,8 @@ impl Motion {
         }
     }
 
-    fn write_pending(&mut self) {
+    /// Adds cutter compensation that waits for a move.
+    pub fn write_pending(&mut self) {
         let [off, left, right] = self.codes.compensation;
         let (word, register) = match self.pending.take() {
             None => return,
@@ -234,7 +238,8 @@ impl Motion {
             Some(Compensation::Right { register }) => (right, Some(register)),
         };
         self.block.word(word);
-        if let Some(register) = register {
+        // Without an address the control knows the radius by itself.
+        if let Some(register) = register.filter(|_| !self.codes.radius.is_empty()) {
             self.block.integer(self.codes.radius, register);
         }
     }

@@ -1,0 +1,421 @@
+//! Siemens SINUMERIK 840D sl: G-code with its own words for tools, arcs, cycles, planes and transformations.
+//!
+//! What it assumes about the control stands in `plugins/README.md`.
+
+mod cycles;
+mod motion;
+mod options;
+mod swivel;
+mod words;
+
+use post_iso::{Codes, Control, Dwell, Engine, Iso, Leave, Length, Offset, Table, Tcp};
+use post_plugin::{
+    AxisNames, Capabilities, Event, Feed, Format, Modal, NumberStyle, Setup, Spindle, Units,
+    VocabularyWord, ascii, export_dialect,
+};
+
+use crate::cycles::{Cycles, Drilling, Turning};
+use crate::options::{CANCEL, OPTIONS};
+use crate::swivel::{Smoothing, Swivel};
+
+struct Siemens {
+    cycles: Cycles,
+    swivel: Swivel,
+    smoothing: Smoothing,
+    transfer_header: bool,
+    edge: i64,
+    tool_names: bool,
+    /// Names of the program's tools by their numbers, as far as they are known ahead.
+    names: Vec<(u32, String)>,
+    tcp: bool,
+    rotary: bool,
+    tcp_on: String,
+    tcp_off: String,
+    vectors: bool,
+    arcs_off_xy: bool,
+    swivels: bool,
+    messages: bool,
+    /// Places of X, Y and Z among the words, if the machine has them and the spindle is along Z.
+    linear: Option<[usize; 3]>,
+    decimals: u8,
+    style: NumberStyle,
+    /// Where the last move ended.
+    at: Vec<f64>,
+    plane: Modal<&'static str>,
+    tcp_active: Modal<bool>,
+    /// In a tilted plane there is no transformation.
+    tilted: bool,
+    /// Of the tool, in units of its last decimal.
+    vector: Modal<[f64; 3]>,
+    turning: Option<Turning>,
+    /// The speed is one of cutting.
+    surface: bool,
+    drilling: Option<Drilling>,
+    /// The modal call in force.
+    called: Option<String>,
+}
+
+impl Control for Siemens {
+    const TABLE: &'static Table = &Table {
+        options: OPTIONS,
+        axes: AxisNames {
+            numbered: true,
+            ..AxisNames::ISO
+        },
+        extension: "mpf",
+        percent: false,
+        remark: |text| format!("; {}", ascii(text).trim()).trim_end().to_owned(),
+        line_length: Some(512),
+        largest_number: 999_999_999,
+        codes: Codes {
+            // G71 and G70 leave feeds in the units of the control.
+            units: ["G710", "G700"],
+            radius: "",
+            ..Codes::ISO
+        },
+        safe: "G17 G40 G64 G90 G94",
+        relies: RELIES,
+        cancel: CANCEL,
+        offset: Offset {
+            known: is_work_offset,
+            range: "G54 to G57 or G505 to G599",
+            at_start: false,
+        },
+        length: Length {
+            on: "",
+            register: "D",
+            by_itself: true,
+            off: "",
+        },
+        tcp: Tcp::Blocks {
+            on: "TRAORI",
+            off: "TRAFOOF",
+            length_first: true,
+        },
+        // SUPA leaves the length in force (MD $MN_G53_TOOLCORR = 0), so D0 goes with it.
+        machine: "G0 SUPA D0",
+        leave: &[Leave::Retract],
+        dwell: Dwell::Seconds("F", 3),
+        ..Table::ISO
+    };
+
+    fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        let place = |name| setup.words.iter().position(|word| word.name == name);
+        let linear = match [place("X"), place("Y"), place("Z")] {
+            [Some(x), Some(y), Some(z)] if setup.words[z].depth => Some([x, y, z]),
+            _ => None,
+        };
+        let vectors = setup.flag("tool_vectors");
+        let tools = setup.ahead.map_or(&[][..], |ahead| ahead.tools);
+        Ok(Siemens {
+            cycles: Cycles::new(setup),
+            swivel: Swivel::new(setup)?,
+            smoothing: Smoothing::new(setup),
+            transfer_header: setup.flag("transfer_header"),
+            edge: setup.integer("edge"),
+            tool_names: setup.flag("tool_names"),
+            names: tools
+                .iter()
+                .map(|tool| (tool.number, tool.name.to_owned()))
+                .collect(),
+            tcp: setup.tcp,
+            rotary: setup.words.iter().any(|word| word.rotary),
+            tcp_on: match setup.text("tcp_on") {
+                "" if vectors => "TRAORI\nORIWKS ORIAXES",
+                "" => "TRAORI\nORIMKS ORIAXES",
+                own => own,
+            }
+            .to_owned(),
+            tcp_off: setup.text("tcp_off").to_owned(),
+            vectors,
+            arcs_off_xy: setup.flag("arcs_off_xy"),
+            swivels: setup.flag("swivel"),
+            messages: setup.flag("messages"),
+            linear,
+            decimals: setup.integer(match setup.units {
+                Units::Millimetre => "decimals",
+                Units::Inch => "decimals_inch",
+            }) as u8,
+            style: NumberStyle {
+                point: true,
+                trim: !setup.flag("trailing_zeros"),
+                plus: false,
+            },
+            at: Vec::new(),
+            plane: Modal::default(),
+            tcp_active: Modal::default(),
+            tilted: false,
+            vector: Modal::default(),
+            turning: None,
+            surface: false,
+            drilling: None,
+            called: None,
+        })
+    }
+
+    fn format(&self, engine: Format) -> Format {
+        Format {
+            plane_angles: self.swivel.angles,
+            plane_decimals: 5,
+            ..engine
+        }
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        use Capabilities as C;
+        let always = [
+            C::TCP_STILL,
+            C::TOOL_TABLE,
+            C::OPERATION,
+            C::MESSAGE,
+            C::WORK_OFFSET,
+        ];
+        let always = always
+            .into_iter()
+            .chain([C::SURFACE_SPEED, C::SUBPROGRAM, C::PROBE]);
+        let linear = [
+            C::ARC_XY,
+            C::HELIX,
+            C::ARC_RADIUS,
+            C::CYCLE_IN_PLANE,
+            C::CYCLE_DRILL,
+        ];
+        let linear = linear
+            .into_iter()
+            .chain([C::CYCLE_DEEP, C::CYCLE_BREAK_CHIP, C::CYCLE_REAM]);
+        let some = |yes: bool, set: Capabilities| if yes { set } else { C::NONE };
+        let linear = linear.chain([
+            C::CYCLE_BORE,
+            some(self.cycles.fine(), C::CYCLE_BORE_FINE),
+            some(self.cycles.taps(), C::CYCLE_TAP.and(C::CYCLE_TAP_LEFT)),
+            some(self.arcs_off_xy, C::ARC_ZX.and(C::ARC_YZ)),
+        ]);
+        let all = always
+            .chain(linear.filter(|_| self.linear.is_some()))
+            .chain([
+                some(self.swivels, C::PLANE),
+                some(self.smoothing.known(), C::SMOOTHING),
+                some(self.vectors, C::TOOL_VECTOR),
+            ]);
+        all.fold(C::NONE, |all, one| all | one)
+    }
+
+    fn vocabulary(&self) -> Vec<VocabularyWord> {
+        words::vocabulary(&self.tcp_on, &self.tcp_off)
+    }
+
+    fn title(&self, program: &str) -> String {
+        let allowed = |letter: char| {
+            if letter.is_ascii_alphanumeric() {
+                letter
+            } else {
+                '_'
+            }
+        };
+        let name: String = program.chars().map(allowed).collect();
+        match self.transfer_header {
+            true => format!("%_N_{}_MPF", name.to_uppercase()),
+            false => (Self::TABLE.remark)(program),
+        }
+    }
+
+    fn begin(&self, engine: &mut Engine, out: &mut String) {
+        if self.swivels {
+            engine.line("CYCLE800()", out);
+        }
+    }
+
+    fn write(
+        &mut self,
+        event: &Event<'_>,
+        engine: &mut Engine,
+        out: &mut String,
+    ) -> Result<bool, String> {
+        if !matches!(event, Event::CyclePoint { .. } | Event::Comment { .. }) {
+            self.end_call(engine, out);
+        }
+        match *event {
+            Event::Start => {
+                engine.motion.axes.shorter_way("=DC(", ")");
+                self.plane.set("G17");
+                self.tcp_active.set(false);
+                return Ok(false);
+            }
+            Event::Linear { feed, .. } if self.surface && !matches!(feed, Feed::PerMinute(_)) => {
+                return Err(format!(
+                    "a feed of {feed} would end the constant cutting speed (G961)"
+                ));
+            }
+            Event::Rapid { words, tool } if self.by_vector() => {
+                self.go(words, tool, None, engine, out)
+            }
+            Event::Linear { words, tool, feed } if self.by_vector() => {
+                self.go(words, tool, Some(feed), engine, out);
+            }
+            Event::Rapid { words, .. } | Event::Linear { words, .. } => {
+                self.stand(words);
+                return Ok(false);
+            }
+            Event::Position {
+                words,
+                feed,
+                plane_first,
+                ..
+            } => {
+                self.position(words, feed, plane_first, engine, out)?;
+            }
+            Event::Retract { .. } => {
+                engine.motion.settle(out);
+                if self.rotary && self.tcp_active.set(false) {
+                    engine.line(&self.tcp_off, out);
+                }
+                return Ok(false);
+            }
+            Event::ToolChange {
+                number,
+                register,
+                name,
+                ..
+            } if self.tool_names && !name.is_empty() => {
+                engine.change(number, &called(name), register, name, out);
+            }
+            Event::Preselect { number } => {
+                let name = self
+                    .names
+                    .iter()
+                    .find(|(known, name)| *known == number && !name.is_empty());
+                match name {
+                    Some((_, name)) if self.tool_names => engine.line(&called(name), out),
+                    _ => return Ok(false),
+                }
+            }
+            Event::Spindle(spindle) => {
+                if std::mem::take(&mut self.surface) && matches!(spindle, Spindle::On { .. }) {
+                    engine.line("G971", out);
+                }
+                self.turning = match spindle {
+                    Spindle::On { rpm, sense } => Some((rpm, sense)),
+                    Spindle::Off | Spindle::Orient => None,
+                };
+                return Ok(false);
+            }
+            Event::SurfaceSpeed { speed, most, sense } => {
+                self.surface_speed(speed, most, sense, engine, out)
+            }
+            Event::Arc { .. } => self.arc(event, engine, out)?,
+            Event::Cycle { .. } => self.drilling = Drilling::of(event),
+            Event::CyclePoint { words, .. } => self.drill(words, engine, out)?,
+            Event::CycleOff => self.drilling = None,
+            Event::Plane {
+                origin,
+                angles,
+                words,
+                ..
+            } => {
+                engine.line(&self.swivel.plane(origin, angles, words), out);
+                self.tilted = true;
+            }
+            Event::PlaneOff => {
+                engine.line("CYCLE800()", out);
+                self.tilted = false;
+            }
+            Event::Smoothing {
+                tolerance,
+                axis_tolerance,
+            } => {
+                engine.line(&self.smoothing.on(tolerance, axis_tolerance), out);
+            }
+            Event::SmoothingOff => engine.line(self.smoothing.off(), out),
+            Event::Operation { name } => {
+                if !name.is_empty() {
+                    engine.remark(name, out);
+                }
+                if self.messages {
+                    engine.line(&message(name), out);
+                }
+            }
+            Event::OperationEnd => {}
+            Event::Message { text } => engine.line(&message(text), out),
+            Event::WorkOffset { number, .. } => {
+                let offset = match number {
+                    1..=4 => format!("G{}", 53 + number),
+                    5..=99 => format!("G5{number:02}"),
+                    _ => {
+                        return Err(format!(
+                            "work offset {number} is none of G54 to G57 and G505 to G599"
+                        ));
+                    }
+                };
+                // As a line of the user's own: the engine puts no other in force from here on.
+                engine.write(&Event::Literal { text: &offset }, out)?;
+            }
+            Event::Subprogram {
+                number,
+                times,
+                name,
+            } => self.subprogram(number, times, name, engine, out)?,
+            Event::Probe { words, feed, .. } => {
+                engine.motion.block.word("MEAS=1");
+                engine.motion.arrive(words, Some(feed), "", out);
+                engine.motion.moved_by_line();
+            }
+            Event::Literal { .. } => {
+                self.tcp_active.forget();
+                self.plane.forget();
+                self.vector.forget();
+                return Ok(false);
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+}
+
+/// The parameters and setting data that the program relies on.
+const RELIES: &[&str] = &[
+    "MD 10760 G53_TOOLCORR: either; SUPA comes with D0",
+    "MD 21104 ORI_IPO_WITH_G_CODE: either with ORIMKS ORIAXES; 1 with ORIWKS ORIAXES",
+    "SD 42940 TOOL_LENGTH_CONST = 17 where arcs are written in G18 or G19",
+    "SUPA counts from the machine's zero",
+];
+
+fn is_work_offset(text: &str) -> bool {
+    let number = text
+        .strip_prefix('G')
+        .and_then(|digits| digits.parse().ok());
+    matches!(number, Some(54..=57 | 505..=599))
+}
+
+/// A tool by its name.
+fn called(name: &str) -> String {
+    format!("T=\"{}\"", ascii(name).replace('"', ""))
+}
+
+/// A message on the screen; an empty one clears it.
+fn message(text: &str) -> String {
+    match ascii(text).replace('"', "'").trim() {
+        "" => "MSG()".to_owned(),
+        text => format!("MSG(\"{text}\")"),
+    }
+}
+
+/// A call with its arguments; those left out at the end are not written.
+fn call(name: &str, arguments: &[String]) -> String {
+    format!("{name}({})", arguments.join(",").trim_end_matches(','))
+}
+
+/// A number as an argument: at most five decimals, none that is zero at the end.
+fn trimmed(value: f64) -> String {
+    let mut text = String::new();
+    let trim = NumberStyle {
+        trim: true,
+        ..NumberStyle::default()
+    };
+    trim.write(&mut text, value, 5);
+    text
+}
+
+export_dialect!(siemens, Iso<Siemens>);
+
+#[cfg(test)]
+mod tests;

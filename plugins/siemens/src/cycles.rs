@@ -2,7 +2,7 @@
 
 use post_plugin::{Cycle, Event, Feed, Setup, SpindleSense, Units};
 
-use crate::{call, trimmed};
+use crate::text::{call, trimmed};
 
 /// A cycle as its event tells it.
 #[derive(Clone, Copy)]
@@ -128,6 +128,11 @@ impl Cycles {
 }
 
 impl Drilling {
+    /// Its pitch is its feed.
+    pub(crate) fn is_thread(&self) -> bool {
+        matches!(self.cycle, Cycle::Tap | Cycle::TapLeft)
+    }
+
     /// None of another event.
     pub(crate) fn of(event: &Event<'_>) -> Option<Self> {
         match *event {

@@ -2,21 +2,27 @@
 //!
 //! What it assumes about the control stands in `plugins/README.md`.
 
+mod capabilities;
+mod commands;
 mod cycles;
 mod motion;
 mod options;
 mod swivel;
+mod table;
+mod text;
 mod words;
 
-use post_iso::{Codes, Control, Dwell, Engine, Iso, Leave, Length, Offset, Table, Tcp};
+use post_iso::{Control, Engine, Iso, Table};
 use post_plugin::{
-    AxisNames, Capabilities, Event, Feed, Format, Modal, NumberStyle, Setup, Spindle, Units,
-    VocabularyWord, ascii, export_dialect,
+    Capabilities, Event, Feed, Format, Modal, NumberStyle, Setup, Spindle, SpindleSense, Units,
+    VocabularyWord, export_dialect,
 };
 
+use crate::commands::turns;
 use crate::cycles::{Cycles, Drilling, Turning};
-use crate::options::{CANCEL, OPTIONS};
 use crate::swivel::{Smoothing, Swivel};
+use crate::table::is_work_offset;
+use crate::text::{called, message};
 
 struct Siemens {
     cycles: Cycles,
@@ -24,6 +30,8 @@ struct Siemens {
     smoothing: Smoothing,
     transfer_header: bool,
     edge: i64,
+    /// The work offset in force; none where a line of the user's own may have named another.
+    offset: Option<String>,
     tool_names: bool,
     /// Names of the program's tools by their numbers, as far as they are known ahead.
     names: Vec<(u32, String)>,
@@ -48,56 +56,17 @@ struct Siemens {
     /// Of the tool, in units of its last decimal.
     vector: Modal<[f64; 3]>,
     turning: Option<Turning>,
-    /// The speed is one of cutting.
-    surface: bool,
+    /// The speed is one of cutting, in this sense.
+    surface: Option<SpindleSense>,
+    /// D0 is not in force.
+    length: Modal<bool>,
     drilling: Option<Drilling>,
     /// The modal call in force.
     called: Option<String>,
 }
 
 impl Control for Siemens {
-    const TABLE: &'static Table = &Table {
-        options: OPTIONS,
-        axes: AxisNames {
-            numbered: true,
-            ..AxisNames::ISO
-        },
-        extension: "mpf",
-        percent: false,
-        remark: |text| format!("; {}", ascii(text).trim()).trim_end().to_owned(),
-        line_length: Some(512),
-        largest_number: 999_999_999,
-        codes: Codes {
-            // G71 and G70 leave feeds in the units of the control.
-            units: ["G710", "G700"],
-            radius: "",
-            ..Codes::ISO
-        },
-        safe: "G17 G40 G64 G90 G94",
-        relies: RELIES,
-        cancel: CANCEL,
-        offset: Offset {
-            known: is_work_offset,
-            range: "G54 to G57 or G505 to G599",
-            at_start: false,
-        },
-        length: Length {
-            on: "",
-            register: "D",
-            by_itself: true,
-            off: "",
-        },
-        tcp: Tcp::Blocks {
-            on: "TRAORI",
-            off: "TRAFOOF",
-            length_first: true,
-        },
-        // SUPA leaves the length in force (MD $MN_G53_TOOLCORR = 0), so D0 goes with it.
-        machine: "G0 SUPA D0",
-        leave: &[Leave::Retract],
-        dwell: Dwell::Seconds("F", 3),
-        ..Table::ISO
-    };
+    const TABLE: &'static Table = &table::TABLE;
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
         let place = |name| setup.words.iter().position(|word| word.name == name);
@@ -113,6 +82,7 @@ impl Control for Siemens {
             smoothing: Smoothing::new(setup),
             transfer_header: setup.flag("transfer_header"),
             edge: setup.integer("edge"),
+            offset: Some(setup.text("work_offset").to_owned()),
             tool_names: setup.flag("tool_names"),
             names: tools
                 .iter()
@@ -147,7 +117,8 @@ impl Control for Siemens {
             tilted: false,
             vector: Modal::default(),
             turning: None,
-            surface: false,
+            surface: None,
+            length: Modal::default(),
             drilling: None,
             called: None,
         })
@@ -162,42 +133,7 @@ impl Control for Siemens {
     }
 
     fn capabilities(&self) -> Capabilities {
-        use Capabilities as C;
-        let always = [
-            C::TCP_STILL,
-            C::TOOL_TABLE,
-            C::OPERATION,
-            C::MESSAGE,
-            C::WORK_OFFSET,
-        ];
-        let always = always
-            .into_iter()
-            .chain([C::SURFACE_SPEED, C::SUBPROGRAM, C::PROBE]);
-        let linear = [
-            C::ARC_XY,
-            C::HELIX,
-            C::ARC_RADIUS,
-            C::CYCLE_IN_PLANE,
-            C::CYCLE_DRILL,
-        ];
-        let linear = linear
-            .into_iter()
-            .chain([C::CYCLE_DEEP, C::CYCLE_BREAK_CHIP, C::CYCLE_REAM]);
-        let some = |yes: bool, set: Capabilities| if yes { set } else { C::NONE };
-        let linear = linear.chain([
-            C::CYCLE_BORE,
-            some(self.cycles.fine(), C::CYCLE_BORE_FINE),
-            some(self.cycles.taps(), C::CYCLE_TAP.and(C::CYCLE_TAP_LEFT)),
-            some(self.arcs_off_xy, C::ARC_ZX.and(C::ARC_YZ)),
-        ]);
-        let all = always
-            .chain(linear.filter(|_| self.linear.is_some()))
-            .chain([
-                some(self.swivels, C::PLANE),
-                some(self.smoothing.known(), C::SMOOTHING),
-                some(self.vectors, C::TOOL_VECTOR),
-            ]);
-        all.fold(C::NONE, |all, one| all | one)
+        self.declared()
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
@@ -214,7 +150,7 @@ impl Control for Siemens {
         };
         let name: String = program.chars().map(allowed).collect();
         match self.transfer_header {
-            true => format!("%_N_{}_MPF", name.to_uppercase()),
+            true => format!("%_N_{:.24}_MPF", name.to_uppercase()),
             false => (Self::TABLE.remark)(program),
         }
     }
@@ -241,7 +177,9 @@ impl Control for Siemens {
                 self.tcp_active.set(false);
                 return Ok(false);
             }
-            Event::Linear { feed, .. } if self.surface && !matches!(feed, Feed::PerMinute(_)) => {
+            Event::Linear { feed, .. }
+                if self.surface.is_some() && !matches!(feed, Feed::PerMinute(_)) =>
+            {
                 return Err(format!(
                     "a feed of {feed} would end the constant cutting speed (G961)"
                 ));
@@ -264,7 +202,12 @@ impl Control for Siemens {
             } => {
                 self.position(words, feed, plane_first, engine, out)?;
             }
+            Event::Park { .. } => {
+                self.length.set(false);
+                return Ok(false);
+            }
             Event::Retract { .. } => {
+                self.length.set(false);
                 engine.motion.settle(out);
                 if self.rotary && self.tcp_active.set(false) {
                     engine.line(&self.tcp_off, out);
@@ -277,7 +220,12 @@ impl Control for Siemens {
                 name,
                 ..
             } if self.tool_names && !name.is_empty() => {
-                engine.change(number, &called(name), register, name, out);
+                self.length.forget();
+                engine.change(number, &called(name)?, register, name, out);
+            }
+            Event::ToolChange { .. } => {
+                self.length.forget();
+                return Ok(false);
             }
             Event::Preselect { number } => {
                 let name = self
@@ -285,12 +233,12 @@ impl Control for Siemens {
                     .iter()
                     .find(|(known, name)| *known == number && !name.is_empty());
                 match name {
-                    Some((_, name)) if self.tool_names => engine.line(&called(name), out),
+                    Some((_, name)) if self.tool_names => engine.line(&called(name)?, out),
                     _ => return Ok(false),
                 }
             }
             Event::Spindle(spindle) => {
-                if std::mem::take(&mut self.surface) && matches!(spindle, Spindle::On { .. }) {
+                if self.surface.take().is_some() && matches!(spindle, Spindle::On { .. }) {
                     engine.line("G971", out);
                 }
                 self.turning = match spindle {
@@ -302,6 +250,12 @@ impl Control for Siemens {
             Event::SurfaceSpeed { speed, most, sense } => {
                 self.surface_speed(speed, most, sense, engine, out)
             }
+            Event::Stop | Event::OptionalStop => {
+                engine.write(event, out)?;
+                if let Some(sense) = self.surface {
+                    engine.line(turns(sense), out);
+                }
+            }
             Event::Arc { .. } => self.arc(event, engine, out)?,
             Event::Cycle { .. } => self.drilling = Drilling::of(event),
             Event::CyclePoint { words, .. } => self.drill(words, engine, out)?,
@@ -312,6 +266,8 @@ impl Control for Siemens {
                 words,
                 ..
             } => {
+                // The cycle asks for a tool with its length.
+                self.length_on(engine, out);
                 engine.line(&self.swivel.plane(origin, angles, words), out);
                 self.tilted = true;
             }
@@ -348,6 +304,7 @@ impl Control for Siemens {
                 };
                 // As a line of the user's own: the engine puts no other in force from here on.
                 engine.write(&Event::Literal { text: &offset }, out)?;
+                self.offset = Some(offset);
             }
             Event::Subprogram {
                 number,
@@ -359,60 +316,17 @@ impl Control for Siemens {
                 engine.motion.arrive(words, Some(feed), "", out);
                 engine.motion.moved_by_line();
             }
-            Event::Literal { .. } => {
-                self.tcp_active.forget();
-                self.plane.forget();
-                self.vector.forget();
+            Event::Literal { text } => {
+                if text.split_whitespace().any(is_work_offset) {
+                    self.offset = None;
+                }
+                self.forget();
                 return Ok(false);
             }
             _ => return Ok(false),
         }
         Ok(true)
     }
-}
-
-/// The parameters and setting data that the program relies on.
-const RELIES: &[&str] = &[
-    "MD 10760 G53_TOOLCORR: either; SUPA comes with D0",
-    "MD 21104 ORI_IPO_WITH_G_CODE: either with ORIMKS ORIAXES; 1 with ORIWKS ORIAXES",
-    "SD 42940 TOOL_LENGTH_CONST = 17 where arcs are written in G18 or G19",
-    "SUPA counts from the machine's zero",
-];
-
-fn is_work_offset(text: &str) -> bool {
-    let number = text
-        .strip_prefix('G')
-        .and_then(|digits| digits.parse().ok());
-    matches!(number, Some(54..=57 | 505..=599))
-}
-
-/// A tool by its name.
-fn called(name: &str) -> String {
-    format!("T=\"{}\"", ascii(name).replace('"', ""))
-}
-
-/// A message on the screen; an empty one clears it.
-fn message(text: &str) -> String {
-    match ascii(text).replace('"', "'").trim() {
-        "" => "MSG()".to_owned(),
-        text => format!("MSG(\"{text}\")"),
-    }
-}
-
-/// A call with its arguments; those left out at the end are not written.
-fn call(name: &str, arguments: &[String]) -> String {
-    format!("{name}({})", arguments.join(",").trim_end_matches(','))
-}
-
-/// A number as an argument: at most five decimals, none that is zero at the end.
-fn trimmed(value: f64) -> String {
-    let mut text = String::new();
-    let trim = NumberStyle {
-        trim: true,
-        ..NumberStyle::default()
-    };
-    trim.write(&mut text, value, 5);
-    text
 }
 
 export_dialect!(siemens, Iso<Siemens>);

@@ -1,7 +1,7 @@
-//! Moves that need more than axis words: first positions, tool vectors, arcs, holes, calls.
+//! Moves that need more than axis words: first positions, tool vectors, arcs, holes.
 
 use post_iso::Engine;
-use post_plugin::{Event, Feed, Group, NumberStyle, SpindleSense, ToolPose};
+use post_plugin::{Event, Feed, Group, NumberStyle, ToolPose};
 
 use crate::Siemens;
 
@@ -24,6 +24,21 @@ impl Siemens {
         }
     }
 
+    /// The edge of the tool, unless it is in force.
+    pub(crate) fn length_on(&mut self, engine: &mut Engine, out: &mut String) {
+        if self.length.set(true) {
+            engine.line(&format!("D{}", self.edge), out);
+        }
+    }
+
+    /// After a line of the user's own.
+    pub(crate) fn forget(&mut self) {
+        self.tcp_active.forget();
+        self.plane.forget();
+        self.vector.forget();
+        self.length.forget();
+    }
+
     /// Offset and rotary axes first, then the length, the transformation, the plane and last the depth.
     pub(crate) fn position(
         &mut self,
@@ -35,9 +50,13 @@ impl Siemens {
     ) -> Result<(), String> {
         engine.write(&Event::Turn { words }, out)?;
         self.upright(engine, out);
-        engine.line(&format!("D{}", self.edge), out);
+        self.length_on(engine, out);
         if self.tcp && !self.tilted && self.tcp_active.set(true) {
             engine.line(&self.tcp_on, out);
+            // Whether a transformation that begins keeps the frames is a machine datum.
+            if let Some(offset) = &self.offset {
+                engine.line(offset, out);
+            }
             self.vector.forget();
         }
         if plane_first {
@@ -92,6 +111,8 @@ impl Siemens {
             }
             (None, feed) => {
                 self.vector.forget();
+                // Where the vectors have brought the rotary axes is not known.
+                motion.axes.forget();
                 match feed {
                     Some(feed) => motion.cut(words, feed, out),
                     None => motion.rapid(words, out),
@@ -136,7 +157,14 @@ impl Siemens {
         let counter = (turn > 0.0) == (normal[across] > 0.0);
         motion.motion(if counter { "G3" } else { "G2" });
         motion.write_pending();
-        motion.axes.write(&mut motion.block, words);
+        if self.vectors && self.tcp_active.is(true) {
+            // The rotary axes stand still, where the control has brought them.
+            for group in [Group::Plane, Group::Depth] {
+                motion.axes.write_group(&mut motion.block, words, group);
+            }
+        } else {
+            motion.axes.write(&mut motion.block, words);
+        }
         match radius {
             Some(radius) => {
                 motion
@@ -181,9 +209,11 @@ impl Siemens {
         if self.called.as_ref() != Some(&call) {
             self.end_call(engine, out);
             self.upright(engine, out);
-            engine.motion.feed_mode(drilling.feed);
-            engine.motion.feed(drilling.feed);
-            engine.motion.block.end(out);
+            if !drilling.is_thread() {
+                engine.motion.feed_mode(drilling.feed);
+                engine.motion.feed(drilling.feed);
+                engine.motion.block.end(out);
+            }
             engine.line(&call, out);
             self.called = Some(call);
         }
@@ -202,73 +232,5 @@ impl Siemens {
         if self.called.take().is_some() {
             engine.line("MCALL", out);
         }
-    }
-
-    /// G961 leaves the feed a minute.
-    pub(crate) fn surface_speed(
-        &mut self,
-        speed: f64,
-        most: Option<f64>,
-        sense: SpindleSense,
-        engine: &mut Engine,
-        out: &mut String,
-    ) {
-        let block = &mut engine.motion.block;
-        if let Some(most) = most {
-            block
-                .number("LIMS=", most, 0, NumberStyle::default())
-                .end(out);
-        }
-        block.word("G961").number(
-            "S",
-            speed,
-            1,
-            NumberStyle {
-                trim: true,
-                ..self.style
-            },
-        );
-        block.word(match sense {
-            SpindleSense::Clockwise => "M3",
-            SpindleSense::CounterClockwise => "M4",
-        });
-        block.end(out);
-        engine.motion.forget_feed();
-        engine.motion.feeds_per_minute();
-        self.surface = true;
-        self.turning = None;
-    }
-
-    /// L and a number, or a name that the control can call by itself.
-    pub(crate) fn subprogram(
-        &mut self,
-        number: Option<u32>,
-        times: u32,
-        name: &str,
-        engine: &mut Engine,
-        out: &mut String,
-    ) -> Result<(), String> {
-        let known = |letter: u8| letter.is_ascii_alphanumeric() || letter == b'_';
-        let first = name
-            .bytes()
-            .take(2)
-            .filter(|letter| !letter.is_ascii_digit());
-        let mut call = match number {
-            Some(number) => format!("L{number}"),
-            None if name.len() <= 24 && name.bytes().all(known) && first.count() == 2 => {
-                name.to_owned()
-            }
-            None => {
-                return Err(format!(
-                    "the subprogram's name `{name}` must be up to 24 letters, digits and _, two letters first"
-                ));
-            }
-        };
-        if times > 1 {
-            call.push_str(&format!(" P{times}"));
-        }
-        self.tcp_active.forget();
-        self.plane.forget();
-        engine.write(&Event::Literal { text: &call }, out)
     }
 }

@@ -3,7 +3,7 @@
 
 use post_plugin::{PlaneAngles, Setup, Units};
 
-use crate::{call, trimmed};
+use crate::text::{call, trimmed};
 
 /// CYCLE800 of one control.
 pub(crate) struct Swivel {

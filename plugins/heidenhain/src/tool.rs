@@ -1,16 +1,16 @@
 //! Tool calls and the spindle, whose speed belongs to them.
 
-use post_plugin::{NumberStyle, Spindle, SpindleSense};
+use post_plugin::{NumberStyle, Spindle, SpindleSense, ascii};
 
 use crate::{Heidenhain, Held};
 
 impl Heidenhain {
     /// The tool call that waits, with its speed if one is known, and what waited for it.
     pub(crate) fn call_tool(&mut self, speed: Option<f64>, out: &mut String) -> Result<(), String> {
-        let Some(number) = self.tool.take() else {
+        let Some(tool) = self.tool.take() else {
             return Ok(());
         };
-        self.block.word("TOOL CALL").integer("", number);
+        self.block.word("TOOL CALL").word(&tool);
         self.block.word(self.axes.depth());
         if let Some(speed) = speed {
             self.block.number("S", speed, 0, NumberStyle::default());
@@ -19,13 +19,22 @@ impl Heidenhain {
         self.speed.forget();
         self.spindle_on.forget();
         self.sense = None;
+        self.rpm = None;
         self.axes.forget();
         for held in std::mem::take(&mut self.held) {
             match held {
-                Held::Preselect(number) => self.block.line(&format!("TOOL DEF {number}"), out),
+                Held::Preselect(number) => self.preselect(number, out)?,
                 Held::Coolant(coolant) => self.cool(coolant, out)?,
             }
         }
+        Ok(())
+    }
+
+    pub(crate) fn preselect(&mut self, number: u32, out: &mut String) -> Result<(), String> {
+        let known = self.names.iter().find(|(known, _)| *known == number);
+        let name = known.map_or("", |(_, name)| name);
+        let tool = tool_call(number, name, self.tool_names)?;
+        self.block.line(&format!("TOOL DEF {tool}"), out);
         Ok(())
     }
 
@@ -36,6 +45,7 @@ impl Heidenhain {
                 self.block.line("M5", out);
                 self.spindle_on.set(false);
                 self.sense = None;
+                self.rpm = None;
                 return Ok(());
             }
             Spindle::Orient => {
@@ -62,6 +72,7 @@ impl Heidenhain {
         self.block.line(turns(sense), out);
         self.spindle_on.set(true);
         self.sense = Some(sense);
+        self.rpm = Some(rpm);
         Ok(())
     }
 
@@ -92,4 +103,23 @@ pub(crate) fn turns(sense: SpindleSense) -> &'static str {
         SpindleSense::Clockwise => "M3",
         SpindleSense::CounterClockwise => "M4",
     }
+}
+
+/// A tool as a call has it: its number, or with `names` its name, if it has one.
+///
+/// # Errors
+/// If the control has no such names.
+pub(crate) fn tool_call(number: u32, name: &str, names: bool) -> Result<String, String> {
+    if !names || name.is_empty() {
+        return Ok(number.to_string());
+    }
+    let plain = ascii(name).to_ascii_uppercase();
+    let known = |letter: char| letter.is_ascii_alphanumeric() || "#$%&.,-_".contains(letter);
+    if plain.len() > 32 || !plain.chars().all(known) {
+        return Err(format!(
+            "`{name}` is no name of a tool of this control (32 letters, digits and #$%&.,-_): rename it, or leave out \
+             tool_names"
+        ));
+    }
+    Ok(format!("\"{plain}\""))
 }

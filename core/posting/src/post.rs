@@ -148,15 +148,19 @@ impl<'a> Post<'a> {
         job.reading.tool_length = machine.control.tool_length;
         job.reading.rules.clone_from(&machine.word_rules);
         job.reading.knife = machine.edge.is_some();
+        job.reading.print = machine.control.print;
+        job.reading.surface_speed = machine.spindle.surface_speed;
+        job.reading.smoothing.clone_from(&machine.smoothing);
         let format = dialect.format().clone();
         let fault = refusal::too_fine(machine, &format)
             .or_else(|| refusal::depth_counts_down(machine))
-            .or_else(|| refusal::no_way_off(machine));
+            .or_else(|| refusal::no_way_off(machine))
+            .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()));
         if let Some(fault) = fault {
             return Err(fault.boxed());
         }
         let stages = Stages {
-            expand: Expand::new(machine, job.reading.chord_tolerance),
+            expand: Expand::new(machine, job.reading.chord_tolerance, dialect.capabilities()),
             lines: Vec::new(),
             timing: Timing::new(machine, &format)?,
             configuration: Configuration::new(
@@ -308,6 +312,7 @@ impl<'a> Post<'a> {
             records: self.records,
             moves: stages.configuration.moves(),
             blocks: extremes.blocks,
+            curves: extremes.curves,
             nc_lines: stages.emit.lines(),
             points_added: counts.points_added,
             points_dropped: counts.points_dropped,

@@ -112,6 +112,15 @@ pub enum Statement {
         /// Tool axis, if given.
         axis: Option<Direction>,
     },
+    /// `SET/OFSETL,n`, `OFSETL/n`: the work offset of that number holds from here on.
+    WorkOffset {
+        /// From 1.
+        number: u32,
+        /// It stands behind `SET`.
+        set: bool,
+    },
+    /// `CALSUB/n`: a subprogram of the control runs.
+    Subprogram(u32),
     /// `CYCLE/`.
     Cycle(Cycle),
     /// `CUTCOM/`.
@@ -185,6 +194,9 @@ impl Statement {
             Self::Nurbs => "NURBS",
             Self::Knot(_) => "KNOT",
             Self::Control { .. } => "CNTRL",
+            Self::WorkOffset { set: true, .. } => "SET",
+            Self::WorkOffset { .. } => "OFSETL",
+            Self::Subprogram(_) => "CALSUB",
             Self::Cycle(_) => "CYCLE",
             Self::Cutcom(_) => "CUTCOM",
             Self::CutcomOnCentre(_) => "CUTCOM_GEOMETRY_TYPE",
@@ -264,6 +276,8 @@ pub enum Spindle {
         unit: SpindleUnit,
         /// Sense of turning, seen from the spindle to the part.
         sense: Option<Sense>,
+        /// The speed that it must not exceed at a surface speed (`MAXRPM,n`), revolutions a minute.
+        most: Option<f64>,
     },
     /// `SPINDL/OFF`.
     Off,
@@ -385,6 +399,18 @@ pub struct CycleDefinition {
     pub step: Option<f64>,
     /// The pecks that follow the first, if they are others.
     pub later_step: Option<f64>,
+    /// A thread's way a turn, in the file's units; negative for a left-hand thread (`PITCH`).
+    pub pitch: Option<f64>,
+    /// A thread's turns an inch (`TPI`).
+    pub turns_per_inch: Option<f64>,
+    /// So much deeper, out on the other side of the part (a number behind the option `THRU`).
+    pub break_through: Option<f64>,
+    /// Of a countersink at the point's height, in the place of a depth (`DIAMET`).
+    pub diameter: Option<f64>,
+    /// Between the cutter's sides, degrees (`ANGLE`, `TLANGL`).
+    pub angle: Option<f64>,
+    /// A fine boring tool's way off the wall before it goes out (a number behind `NODRAG`, `ORIENT`).
+    pub shift: Option<f64>,
     /// Words and numbers that have no field.
     pub rest: Vec<Argument>,
 }

@@ -3,7 +3,6 @@
 //! What it assumes about the control stands in `plugins/README.md`.
 
 mod capabilities;
-mod commands;
 mod cycles;
 mod motion;
 mod options;
@@ -14,21 +13,21 @@ mod words;
 
 use post_iso::{Control, Engine, Iso, Table};
 use post_plugin::{
-    Capabilities, Event, Feed, Format, Modal, NumberStyle, Setup, Spindle, SpindleSense, Units,
-    VocabularyWord, export_dialect,
+    Capabilities, Event, Feed, Format, Modal, NumberStyle, Setup, Spindle, Units, VocabularyWord,
+    export_dialect,
 };
 
-use crate::commands::turns;
 use crate::cycles::{Cycles, Drilling, Turning};
 use crate::swivel::{Smoothing, Swivel};
 use crate::table::is_work_offset;
-use crate::text::{called, message};
+use crate::text::{callable, called, message, transfer_header};
 
 struct Siemens {
     cycles: Cycles,
     swivel: Swivel,
     smoothing: Smoothing,
-    transfer_header: bool,
+    /// Ahead of a program that is transferred by cable; empty: none.
+    header: String,
     edge: i64,
     /// The work offset in force; none where a line of the user's own may have named another.
     offset: Option<String>,
@@ -56,8 +55,8 @@ struct Siemens {
     /// Of the tool, in units of its last decimal.
     vector: Modal<[f64; 3]>,
     turning: Option<Turning>,
-    /// The speed is one of cutting, in this sense.
-    surface: Option<SpindleSense>,
+    /// The speed is one of cutting.
+    surface: bool,
     /// D0 is not in force.
     length: Modal<bool>,
     drilling: Option<Drilling>,
@@ -80,7 +79,10 @@ impl Control for Siemens {
             cycles: Cycles::new(setup),
             swivel: Swivel::new(setup)?,
             smoothing: Smoothing::new(setup),
-            transfer_header: setup.flag("transfer_header"),
+            header: match setup.flag("transfer_header") {
+                true => transfer_header(setup.program),
+                false => String::new(),
+            },
             edge: setup.integer("edge"),
             offset: Some(setup.text("work_offset").to_owned()),
             tool_names: setup.flag("tool_names"),
@@ -117,7 +119,7 @@ impl Control for Siemens {
             tilted: false,
             vector: Modal::default(),
             turning: None,
-            surface: None,
+            surface: false,
             length: Modal::default(),
             drilling: None,
             called: None,
@@ -136,23 +138,8 @@ impl Control for Siemens {
         self.declared()
     }
 
-    fn vocabulary(&self) -> Vec<VocabularyWord> {
+    fn vocabulary(&self, _: Vec<VocabularyWord>) -> Vec<VocabularyWord> {
         words::vocabulary(&self.tcp_on, &self.tcp_off)
-    }
-
-    fn title(&self, program: &str) -> String {
-        let allowed = |letter: char| {
-            if letter.is_ascii_alphanumeric() {
-                letter
-            } else {
-                '_'
-            }
-        };
-        let name: String = program.chars().map(allowed).collect();
-        match self.transfer_header {
-            true => format!("%_N_{:.24}_MPF", name.to_uppercase()),
-            false => (Self::TABLE.remark)(program),
-        }
     }
 
     fn begin(&self, engine: &mut Engine, out: &mut String) {
@@ -173,13 +160,14 @@ impl Control for Siemens {
         match *event {
             Event::Start => {
                 engine.motion.axes.shorter_way("=DC(", ")");
+                if !self.header.is_empty() {
+                    engine.bare(&self.header, out);
+                }
                 self.plane.set("G17");
                 self.tcp_active.set(false);
                 return Ok(false);
             }
-            Event::Linear { feed, .. }
-                if self.surface.is_some() && !matches!(feed, Feed::PerMinute(_)) =>
-            {
+            Event::Linear { feed, .. } if self.surface && !matches!(feed, Feed::PerMinute(_)) => {
                 return Err(format!(
                     "a feed of {feed} would end the constant cutting speed (G961)"
                 ));
@@ -238,23 +226,20 @@ impl Control for Siemens {
                 }
             }
             Event::Spindle(spindle) => {
-                if self.surface.take().is_some() && matches!(spindle, Spindle::On { .. }) {
-                    engine.line("G971", out);
-                }
+                self.surface = false;
                 self.turning = match spindle {
                     Spindle::On { rpm, sense } => Some((rpm, sense)),
                     Spindle::Off | Spindle::Orient => None,
                 };
                 return Ok(false);
             }
-            Event::SurfaceSpeed { speed, most, sense } => {
-                self.surface_speed(speed, most, sense, engine, out)
-            }
-            Event::Stop | Event::OptionalStop => {
+            Event::SurfaceSpeed { .. } => {
                 engine.write(event, out)?;
-                if let Some(sense) = self.surface {
-                    engine.line(turns(sense), out);
-                }
+                // G961 leaves the feed a minute.
+                engine.motion.forget_feed();
+                engine.motion.feeds_per_minute();
+                self.surface = true;
+                self.turning = None;
             }
             Event::Arc { .. } => self.arc(event, engine, out)?,
             Event::Cycle { .. } => self.drilling = Drilling::of(event),
@@ -293,27 +278,25 @@ impl Control for Siemens {
             Event::OperationEnd => {}
             Event::Message { text } => engine.line(&message(text), out),
             Event::WorkOffset { number, .. } => {
-                let offset = match number {
-                    1..=4 => format!("G{}", 53 + number),
-                    5..=99 => format!("G5{number:02}"),
-                    _ => {
-                        return Err(format!(
-                            "work offset {number} is none of G54 to G57 and G505 to G599"
-                        ));
-                    }
-                };
-                // As a line of the user's own: the engine puts no other in force from here on.
-                engine.write(&Event::Literal { text: &offset }, out)?;
-                self.offset = Some(offset);
+                self.offset = (Self::TABLE.offset.word)(number);
+                return Ok(false);
             }
-            Event::Subprogram {
-                number,
-                times,
-                name,
-            } => self.subprogram(number, times, name, engine, out)?,
+            Event::Tcp { on } => {
+                let line = if on { &self.tcp_on } else { &self.tcp_off };
+                engine.line(line, out);
+                self.tcp_active.set(on);
+                engine.motion.axes.forget();
+            }
+            Event::Subprogram { number, name, .. } => {
+                if number.is_none() {
+                    callable(name)?;
+                }
+                self.forget();
+                return Ok(false);
+            }
             Event::Probe { words, feed, .. } => {
                 engine.motion.block.word("MEAS=1");
-                engine.motion.arrive(words, Some(feed), "", out);
+                engine.motion.arrive(words, None, Some(feed), "", out);
                 engine.motion.moved_by_line();
             }
             Event::Literal { text } => {

@@ -62,7 +62,7 @@ impl Siemens {
         if plane_first {
             engine.motion.plane(words, out);
         }
-        engine.motion.arrive(words, feed, "", out);
+        engine.motion.arrive(words, None, feed, "", out);
         self.stand(words);
         Ok(())
     }

@@ -32,7 +32,12 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         false,
         "%_N_NAME_MPF in front of the program, for a transfer by cable.",
     ),
-    OptionSpec::flag("block_numbers", true, "N in front of every block."),
+    choice(
+        "block_numbers",
+        &["none", "all", "tools"],
+        "all",
+        "N in front of every block, of those that change the tool, or of none.",
+    ),
     options::BLOCK_STEP,
     options::decimals(3),
     options::decimals_inch(4),
@@ -106,7 +111,7 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         "Rotary axes 1 and 2 of the record, `A C`: swivel_mode = \"direct\" needs them.",
     ),
     choice(
-        "smoothing",
+        "smoothing_by",
         &["CYCLE832", "COMPCAD", "COMPSURF", "COMPCURV"],
         "CYCLE832",
         "What smoothing is written with; a compressor comes with CTOL= and OTOL=.",

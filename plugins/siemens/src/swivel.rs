@@ -114,7 +114,7 @@ impl Smoothing {
     pub(crate) fn new(setup: &Setup<'_>) -> Self {
         let old = setup.text("software") != "4";
         Smoothing {
-            compressor: setup.text("smoothing").replace("CYCLE832", ""),
+            compressor: setup.text("smoothing_by").replace("CYCLE832", ""),
             mode: setup.text("smoothing_mode").to_owned(),
             packed: old.then(|| setup.integer("smoothing_code")),
             scale: scale(setup),

@@ -1,6 +1,6 @@
 //! How the control differs from the rest of the family.
 
-use post_iso::{Codes, Dwell, Leave, Length, Offset, Table, Tcp};
+use post_iso::{Codes, Dwell, Leave, Length, Offset, Subprogram, SurfaceSpeed, Table, Tcp};
 use post_plugin::{AxisNames, ascii};
 
 use crate::options::{CANCEL, OPTIONS};
@@ -20,6 +20,8 @@ pub(crate) const TABLE: Table = Table {
         // G71 and G70 leave feeds in the units of the control.
         units: ["G710", "G700"],
         radius: "",
+        // Those of the dialect's own, with their words for radius and turns.
+        arc: ["", ""],
         ..Codes::ISO
     },
     safe: "G17 G40 G64 G90 G94",
@@ -28,6 +30,11 @@ pub(crate) const TABLE: Table = Table {
     offset: Offset {
         known: is_work_offset,
         range: "G54 to G57 or G505 to G599",
+        word: |number| match number {
+            1..=4 => Some(format!("G{}", 53 + number)),
+            5..=99 => Some(format!("G5{number:02}")),
+            _ => None,
+        },
         at_start: false,
     },
     length: Length {
@@ -44,6 +51,17 @@ pub(crate) const TABLE: Table = Table {
     // SUPA leaves the length in force (MD $MN_G53_TOOLCORR = 0), so D0 goes with it.
     machine: "G0 SUPA D0",
     leave: &[Leave::Retract],
+    cycles: &[],
+    surface: Some(SurfaceSpeed {
+        // With the feed a minute, which G96 and G97 leave.
+        codes: ["G961", "G971"],
+        most: "LIMS=",
+    }),
+    subprogram: Subprogram {
+        number: "L{}",
+        name: "{}",
+        times: " P",
+    },
     dwell: Dwell::Seconds("F", 3),
     ..Table::ISO
 };

@@ -414,7 +414,7 @@ fn smoothing_as_the_software_has_it() {
             Event::SmoothingOff,
         ];
         bench
-            .with("block_numbers", Value::Flag(false))
+            .with("block_numbers", Value::Text("none"))
             .write(&events)
             .unwrap()
     };
@@ -430,7 +430,7 @@ fn smoothing_as_the_software_has_it() {
         smooth(bench().inch(), 0.0254, None),
         "CYCLE832(0.001,2,1)\nCYCLE832()\n"
     );
-    let compressor = bench().with("smoothing", Value::Text("COMPCAD"));
+    let compressor = bench().with("smoothing_by", Value::Text("COMPCAD"));
     assert_eq!(
         smooth(compressor, 0.01, Some(0.1)),
         "COMPCAD CTOL=0.01 OTOL=0.1\nCOMPOF CTOL=-1 OTOL=-1\n"

@@ -40,3 +40,31 @@ pub(crate) fn trimmed(value: f64) -> String {
     trim.write(&mut text, value, 5);
     text
 }
+
+/// The first line of a program that is transferred by cable.
+pub(crate) fn transfer_header(program: &str) -> String {
+    let known = |letter: char| match letter.is_ascii_alphanumeric() {
+        true => letter.to_ascii_uppercase(),
+        false => '_',
+    };
+    let name: String = program.chars().take(24).map(known).collect();
+    format!("%_N_{name}_MPF")
+}
+
+/// A subprogram that the control can call by its name.
+///
+/// # Errors
+/// If it cannot.
+pub(crate) fn callable(name: &str) -> Result<(), String> {
+    let known = |letter: u8| letter.is_ascii_alphanumeric() || letter == b'_';
+    let first = name
+        .bytes()
+        .take(2)
+        .filter(|letter| !letter.is_ascii_digit());
+    match name.len() <= 24 && name.bytes().all(known) && first.count() == 2 {
+        true => Ok(()),
+        false => Err(format!(
+            "the subprogram's name `{name}` must be up to 24 letters, digits and _, two letters first"
+        )),
+    }
+}

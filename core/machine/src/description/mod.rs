@@ -1,6 +1,7 @@
 //! One machine: what its TOML file says, checked and in the core's own units (mm, radians, minutes).
 
 mod accuracy;
+mod arcs;
 mod axes;
 mod build;
 mod choice;
@@ -14,6 +15,7 @@ mod numbers;
 mod options;
 mod schema;
 mod setting;
+mod smoothing;
 mod spindle;
 
 use std::f64::consts::TAU;
@@ -21,18 +23,20 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 
 pub use accuracy::{Accuracy, ControlPoint, SHARE_AT_POLES};
+pub use arcs::Arcs;
 pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
-    CompensationOnCentre, EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement,
-    Pole, Rapid, Side, Tcp, ToolLength,
+    ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
+    Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
 pub use limits::MOST_BYTES;
 pub use schema::schema;
 pub use setting::Setting;
+pub use smoothing::{Smoothing, SmoothingRules};
 pub use spindle::SpindleSpeeds;
 
 use crate::diagnostic::{Diagnostic, Place};
@@ -68,6 +72,8 @@ pub struct Machine {
     pub spindle: SpindleSpeeds,
     /// Lines of the program for words of the CL file.
     pub word_rules: Vec<WordRule>,
+    /// By how much its control may leave the path, by operation.
+    pub smoothing: SmoothingRules,
     /// What it must keep.
     pub accuracy: Accuracy,
     /// Which of several solutions is taken.
@@ -242,10 +248,18 @@ pub struct Control {
     pub rapid: Rapid,
     /// Which tool length counts.
     pub tool_length: ToolLength,
+    /// How the holes of drilling cycles are written.
+    pub cycles: Cycles,
+    /// An operation whose tool axis stays is written in a tilted plane of the control's.
+    pub planes: bool,
     /// What becomes of `INSERT`.
     pub insert: Insert,
+    /// What becomes of `PPRINT`.
+    pub print: Print,
     /// What becomes of `CUTCOM` on points of the tool's centre.
     pub compensation_on_centre: CompensationOnCentre,
+    /// Which curves the program has as curves.
+    pub arcs: Arcs,
 }
 
 /// An option for a plugin.

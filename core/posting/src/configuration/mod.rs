@@ -311,6 +311,16 @@ impl<'a> Configuration<'a> {
                 self.check_speed(line, findings);
             }
             Command::Home => self.park(&self.machine.frame.park),
+            Command::WorkOffset(_) | Command::Subprogram(_) | Command::Smoothing(_) => {
+                self.park(&[]);
+            }
+            Command::SurfaceSpeed { most, .. } => {
+                self.speed = None;
+                match self.machine.spindle.limit(*most) {
+                    Ok(limit) => *most = Some(limit),
+                    Err(finding) => findings.at(line, *finding),
+                }
+            }
             Command::Spindle(Spindle::On { rpm, .. }) => {
                 self.speed = Some(*rpm);
                 self.check_speed(line, findings);

@@ -1,19 +1,6 @@
 //! Drilling cycles of the 200 series: a definition of numbered parameters, called at each point.
 
-use post_plugin::{Cycle, Event, Feed, NumberStyle, Setup, Units};
-
-/// A cycle as its event tells it.
-#[derive(Clone, Copy)]
-pub(crate) struct Drilling {
-    cycle: Cycle,
-    feed: Feed,
-    depth: f64,
-    clearance: f64,
-    retract: f64,
-    step: f64,
-    dwell: f64,
-    pitch: Option<f64>,
-}
+use post_plugin::{Cycle, Drilling, NumberStyle, Setup, Units};
 
 /// What the options say of cycles.
 pub(crate) struct Cycles {
@@ -65,7 +52,7 @@ impl Cycles {
         let Drilling {
             dwell, clearance, ..
         } = *drilling;
-        let down = || drilling.feed_per_minute(rpm);
+        let down = || drilling.feed_per_minute(rpm).ok_or(NO_SPEED);
         let cycle = drilling.cycle;
         let depth = if matches!(cycle, Cycle::Tap | Cycle::TapLeft) {
             (201, -drilling.depth, "DEPTH OF THREAD")
@@ -119,12 +106,12 @@ impl Cycles {
             }
             Cycle::Tap | Cycle::TapLeft if self.floating => {
                 let speed = rpm.ok_or(NO_SPEED)?;
-                let feed = plunge(drilling.thread(rpm)? * speed);
+                let feed = plunge(drilling.thread(rpm).ok_or(NO_SPEED)? * speed);
                 let parameters = vec![clear, depth, feed, wait, surface, away];
                 ((206, "TAPPING", "GEWINDEBOHREN"), parameters)
             }
             Cycle::Tap | Cycle::TapLeft => {
-                let pitch = drilling.thread(rpm)?;
+                let pitch = drilling.thread(rpm).ok_or(NO_SPEED)?;
                 let pitch = if cycle == Cycle::Tap { pitch } else { -pitch };
                 let pitch = (239, pitch, "THREAD PITCH");
                 (
@@ -159,47 +146,3 @@ pub(crate) fn block(header: &str, parameters: &[(u32, f64, &str)]) -> String {
 }
 
 const NO_SPEED: &str = "this cycle is told by the spindle's speed, and no spindle turns: switch it on before the cycle";
-
-impl Drilling {
-    /// None of another event.
-    pub(crate) fn of(event: &Event<'_>) -> Option<Self> {
-        match *event {
-            Event::Cycle {
-                cycle,
-                feed,
-                depth,
-                clearance,
-                retract,
-                step,
-                dwell,
-                pitch,
-            } => Some(Drilling {
-                cycle,
-                feed,
-                depth,
-                clearance,
-                retract,
-                step: step.unwrap_or(depth),
-                dwell: dwell.unwrap_or(0.0),
-                pitch,
-            }),
-            _ => None,
-        }
-    }
-
-    fn feed_per_minute(&self, rpm: Option<f64>) -> Result<f64, String> {
-        match self.feed {
-            Feed::PerMinute(feed) => Ok(feed),
-            Feed::PerRevolution(feed) => Ok(feed * rpm.ok_or(NO_SPEED)?),
-            Feed::InverseTime(_) => Err(format!("no cycle has a feed of {}", self.feed)),
-        }
-    }
-
-    /// A thread's way a turn.
-    fn thread(&self, rpm: Option<f64>) -> Result<f64, String> {
-        match self.pitch {
-            Some(pitch) => Ok(pitch),
-            None => Ok(self.feed_per_minute(rpm)? / rpm.ok_or(NO_SPEED)?),
-        }
-    }
-}

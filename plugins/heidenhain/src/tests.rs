@@ -1,8 +1,8 @@
 use post_host::{Plugin, conformance};
-use post_kit::{Bench, P1, P2, P3, P4, TOOL, TOP, at, cut, rapid, timed, turn, turning};
+use post_kit::{Bench, P1, P2, P3, P4, TOOL, TOP, at, cut, jobs, rapid, timed, turn, turning};
 use post_plugin::{
-    Ahead, AxisWord, Batch, Coolant, Cycle, Event, Feed, Promise, Setup, Spindle, SpindleSense,
-    Tool, ToolPose, Units, Value,
+    Ahead, AxisWord, Batch, Coolant, Cycle, Event, Feed, PlaneAngles, Promise, Setup, Spindle,
+    SpindleSense, Tool, ToolPose, Units, Value,
 };
 
 fn bench() -> Bench {
@@ -246,36 +246,17 @@ fn a_tilted_plane_and_other_datums() {
 /// SPA, then SPB, then SPC about the fixed axes X, Y, Z: the frame is that of the turns about the moving Z, Y, X.
 #[test]
 fn spatial_angles_lead_back_to_the_plane() {
-    type Frame = [[f64; 3]; 3];
-    // Columns are the frame's axes.
-    let about = |axis: usize, degrees: f64| -> Frame {
-        let (sine, cosine) = libm::sincos(degrees.to_radians());
-        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
-        let mut turn = [[0.0; 3]; 3];
-        turn[axis][axis] = 1.0;
-        turn[next][next] = cosine;
-        turn[next][last] = sine;
-        turn[last][next] = -sine;
-        turn[last][last] = cosine;
-        turn
-    };
-    let times = |a: Frame, b: Frame| -> Frame {
-        b.map(|column| {
-            std::array::from_fn(|row| (0..3).map(|part| a[part][row] * column[part]).sum())
-        })
-    };
     for angles in [
         [12.5, 33.25, -140.125],
         [0.0, 90.0, 45.0],
         [179.5, -90.0, 0.0],
         [-90.0, 0.0, 30.0],
     ] {
-        let wanted = [2, 1, 0].into_iter().zip(angles);
-        let wanted = wanted.map(|(axis, angle)| about(axis, angle)).reduce(times);
+        let wanted = jobs::frame(PlaneAngles::Zyx, angles);
         let plane = Event::Plane {
             origin: [0.0; 3],
-            x: [1.0, 0.0, 0.0],
-            z: [0.0, 0.0, 1.0],
+            x: wanted[0],
+            z: wanted[2],
             angles,
             words: P1,
         };
@@ -286,22 +267,32 @@ fn spatial_angles_lead_back_to_the_plane() {
                 .filter_map(|found| found.strip_prefix(word));
             found.find_map(|angle| angle.parse().ok()).unwrap()
         };
-        // Each turn about a fixed axis stands in front of those before it.
-        let fixed = [
-            about(0, angle("SPA")),
-            about(1, angle("SPB")),
-            about(2, angle("SPC")),
-        ];
-        let found = fixed.into_iter().reduce(|before, turn| times(turn, before));
-        let pairs = found
-            .iter()
-            .flatten()
-            .flatten()
-            .zip(wanted.iter().flatten().flatten());
-        for (found, wanted) in pairs {
-            assert!((found - wanted).abs() < 1e-9, "{angles:?}\n{text}");
+        let printed = ["SPA", "SPB", "SPC"].map(angle);
+        for (axis, wanted) in wanted.iter().enumerate() {
+            let mut found: [f64; 3] = std::array::from_fn(|part| f64::from(u8::from(part == axis)));
+            for (about, degrees) in printed.into_iter().enumerate() {
+                let (sine, cosine) = libm::sincos(degrees.to_radians());
+                let (next, last) = ((about + 1) % 3, (about + 2) % 3);
+                let before = found;
+                found[next] = cosine * before[next] - sine * before[last];
+                found[last] = sine * before[next] + cosine * before[last];
+            }
+            for (found, wanted) in found.iter().zip(wanted) {
+                assert!((found - wanted).abs() < 1e-9, "{angles:?}\n{text}");
+            }
         }
     }
+}
+
+#[test]
+fn the_jobs_of_every_dialect() {
+    let bench = bench();
+    insta::assert_snapshot!(
+        "three_axes",
+        bench.write_declared(&jobs::three_axes()).unwrap()
+    );
+    insta::assert_snapshot!("tilted", bench.write_declared(&jobs::tilted()).unwrap());
+    insta::assert_snapshot!("tools", bench.write_declared(&jobs::tools()).unwrap());
 }
 
 #[test]

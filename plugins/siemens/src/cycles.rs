@@ -1,21 +1,8 @@
 //! Drilling cycles: modal by `MCALL`, with planes that are absolute.
 
-use post_plugin::{Cycle, Event, Feed, Setup, SpindleSense, Units};
+use post_plugin::{Cycle, Drilling, Feed, Setup, SpindleSense, Units};
 
 use crate::text::{call, trimmed};
-
-/// A cycle as its event tells it.
-#[derive(Clone, Copy)]
-pub(crate) struct Drilling {
-    cycle: Cycle,
-    pub(crate) feed: Feed,
-    depth: f64,
-    clearance: f64,
-    retract: f64,
-    step: f64,
-    dwell: f64,
-    pitch: Option<f64>,
-}
 
 /// The spindle as it turns: revolutions a minute, and its sense.
 pub(crate) type Turning = (f64, SpindleSense);
@@ -58,7 +45,8 @@ impl Cycles {
             cycle, feed, dwell, ..
         } = *drilling;
         let planes = [
-            top + drilling.retract,
+            // Never below where the feed begins.
+            top + drilling.retract.max(drilling.clearance),
             top,
             drilling.clearance,
             top - drilling.depth,
@@ -101,13 +89,8 @@ impl Cycles {
             }
             Cycle::Tap | Cycle::TapLeft => {
                 let (rpm, sense) = turning(spindle)?;
-                let pitch = match (drilling.pitch, feed) {
-                    (Some(pitch), _) | (None, Feed::PerRevolution(pitch)) => pitch,
-                    (None, Feed::PerMinute(feed)) => feed / rpm,
-                    (None, Feed::InverseTime(_)) => {
-                        return Err(format!("no thread has a feed of {feed}"));
-                    }
-                };
+                let pitch = drilling.thread(Some(rpm));
+                let pitch = pitch.ok_or_else(|| format!("no thread has a feed of {feed}"))?;
                 let pitch = if cycle == Cycle::Tap { pitch } else { -pitch };
                 if self.floating {
                     // Out by itself, with an encoder, no size of a thread but its pitch.
@@ -124,39 +107,6 @@ impl Cycles {
             Cycle::BoreBack => return Err("this control has no cycle from below".to_owned()),
         };
         Ok(format!("MCALL {}", call(name, &arguments)))
-    }
-}
-
-impl Drilling {
-    /// Its pitch is its feed.
-    pub(crate) fn is_thread(&self) -> bool {
-        matches!(self.cycle, Cycle::Tap | Cycle::TapLeft)
-    }
-
-    /// None of another event.
-    pub(crate) fn of(event: &Event<'_>) -> Option<Self> {
-        match *event {
-            Event::Cycle {
-                cycle,
-                feed,
-                depth,
-                clearance,
-                retract,
-                step,
-                dwell,
-                pitch,
-            } => Some(Drilling {
-                cycle,
-                feed,
-                depth,
-                clearance,
-                retract,
-                step: step.unwrap_or(depth),
-                dwell: dwell.unwrap_or(0.0),
-                pitch,
-            }),
-            _ => None,
-        }
     }
 }
 

@@ -18,7 +18,7 @@ impl Siemens {
     }
 
     /// The plane of arcs and compensation, and of the tool's length.
-    fn upright(&mut self, engine: &mut Engine, out: &mut String) {
+    pub(crate) fn upright(&mut self, engine: &mut Engine, out: &mut String) {
         if self.plane.set("G17") {
             engine.line("G17", out);
         }

@@ -1,8 +1,8 @@
 use post_host::{Plugin, conformance};
-use post_kit::{Bench, P1, P2, P3, P4, TOOL, TOP, at, cut, rapid, turn, turning};
+use post_kit::{Bench, P1, P2, P3, P4, TOOL, TOP, at, cut, jobs, rapid, turn, turning};
 use post_plugin::{
-    AxisWord, Batch, Cycle, Event, Feed, Promise, Setup, Spindle, SpindleSense, ToolPose, Units,
-    Value,
+    AxisWord, Batch, Cycle, Event, Feed, PlaneAngles, Promise, Setup, Spindle, SpindleSense,
+    ToolPose, Units, Value,
 };
 
 fn bench() -> Bench {
@@ -232,24 +232,6 @@ fn a_tilted_plane() {
 /// two up), lead back to the plane that they came from, in every mode.
 #[test]
 fn angles_of_every_mode_lead_back_to_the_plane() {
-    type Frame = [[f64; 3]; 3];
-    // Columns are the frame's axes.
-    let about = |axis: usize, degrees: f64| -> Frame {
-        let (sine, cosine) = libm::sincos(degrees.to_radians());
-        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
-        let mut turn = [[0.0; 3]; 3];
-        turn[axis][axis] = 1.0;
-        turn[next][next] = cosine;
-        turn[next][last] = sine;
-        turn[last][next] = -sine;
-        turn[last][last] = cosine;
-        turn
-    };
-    let times = |a: Frame, b: Frame| -> Frame {
-        b.map(|column| {
-            std::array::from_fn(|row| (0..3).map(|part| a[part][row] * column[part]).sum())
-        })
-    };
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     let mut random = move || {
         state ^= state << 13;
@@ -257,13 +239,13 @@ fn angles_of_every_mode_lead_back_to_the_plane() {
         state ^= state << 17;
         (state % 100_000) as f64 / 100_000.0
     };
-    for (name, order) in [
-        ("XYZ", [0, 1, 2]),
-        ("XZY", [0, 2, 1]),
-        ("YXZ", [1, 0, 2]),
-        ("YZX", [1, 2, 0]),
-        ("ZXY", [2, 0, 1]),
-        ("ZYX", [2, 1, 0]),
+    for (name, angles_of) in [
+        ("XYZ", PlaneAngles::Xyz),
+        ("XZY", PlaneAngles::Xzy),
+        ("YXZ", PlaneAngles::Yxz),
+        ("YZX", PlaneAngles::Yzx),
+        ("ZXY", PlaneAngles::Zxy),
+        ("ZYX", PlaneAngles::Zyx),
     ] {
         let bench = bench()
             .with("swivel", Value::Flag(true))
@@ -277,11 +259,7 @@ fn angles_of_every_mode_lead_back_to_the_plane() {
             };
             let rounded = |angle: f64| (angle * 1e5).round() / 1e5;
             let angles = [360.0 * random() - 180.0, middle, 360.0 * random() - 180.0].map(rounded);
-            let turns = order.into_iter().zip(angles);
-            let wanted = turns
-                .map(|(axis, angle)| about(axis, angle))
-                .reduce(times)
-                .unwrap();
+            let wanted = jobs::frame(angles_of, angles);
             let text = bench
                 .write(&[Event::Plane {
                     origin: [0.0; 3],
@@ -295,16 +273,42 @@ fn angles_of_every_mode_lead_back_to_the_plane() {
             let arguments: Vec<&str> = inside.split(',').collect();
             assert_eq!(arguments.len(), 16);
             let mode: usize = arguments[3].parse().unwrap();
-            let printed = (0..3).map(|turn| {
-                let axis = (mode >> (2 * turn) & 3) - 1;
-                about(axis, arguments[7 + turn].parse().unwrap())
-            });
-            let found = printed.reduce(times).unwrap();
-            for (found, wanted) in found.iter().flatten().zip(wanted.iter().flatten()) {
-                assert!((found - wanted).abs() < 1e-9, "{name} {angles:?} {text}");
+            for (axis, wanted) in wanted.iter().enumerate() {
+                let mut found = std::array::from_fn(|part| if part == axis { 1.0 } else { 0.0 });
+                // The last turn is about the frame's own axis: it comes first on a vector of the frame.
+                for turn in [2, 1, 0] {
+                    let about = (mode >> (2 * turn) & 3) - 1;
+                    found = turned(found, about, arguments[7 + turn].parse().unwrap());
+                }
+                for (found, wanted) in found.iter().zip(wanted) {
+                    assert!((found - wanted).abs() < 1e-9, "{name} {angles:?} {text}");
+                }
             }
         }
     }
+}
+
+/// A vector turned about a fixed axis, degrees.
+fn turned(vector: [f64; 3], about: usize, degrees: f64) -> [f64; 3] {
+    let (sine, cosine) = libm::sincos(degrees.to_radians());
+    let (next, last) = ((about + 1) % 3, (about + 2) % 3);
+    let mut turned = vector;
+    turned[next] = cosine * vector[next] - sine * vector[last];
+    turned[last] = sine * vector[next] + cosine * vector[last];
+    turned
+}
+
+#[test]
+fn the_jobs_of_every_dialect() {
+    let bench = bench()
+        .with("swivel", Value::Flag(true))
+        .with("arcs_off_xy", Value::Flag(true));
+    insta::assert_snapshot!(
+        "three_axes",
+        bench.write_declared(&jobs::three_axes()).unwrap()
+    );
+    insta::assert_snapshot!("tilted", bench.write_declared(&jobs::tilted()).unwrap());
+    insta::assert_snapshot!("tools", bench.write_declared(&jobs::tools()).unwrap());
 }
 
 #[test]

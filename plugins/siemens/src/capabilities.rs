@@ -20,6 +20,8 @@ impl Siemens {
             .chain([C::SURFACE_SPEED, C::SUBPROGRAM, C::PROBE]);
         let linear = [
             C::ARC_XY,
+            // Under TRAORI there are G2 and G3 too (6FC5398-2BP20, 06/2009, p. 361).
+            C::ARC_TCP,
             C::HELIX,
             C::ARC_RADIUS,
             C::CYCLE_IN_PLANE,

@@ -115,14 +115,20 @@ impl Keeps {
             && self.writes.has(Capabilities::ARC_RADIUS)
     }
 
-    /// Some arc of the CL file may be kept.
-    pub(crate) fn arcs(&self) -> bool {
-        self.arcs.keep && (0..3).any(|axis| self.about(axis, false))
+    /// Some arc may be written.
+    fn writes(&self) -> bool {
+        (0..3).any(|axis| self.about(axis, false))
+    }
+
+    /// Runs of points become arcs and lines.
+    pub(crate) fn fits(&self) -> bool {
+        self.arcs.fit && self.writes()
     }
 
     /// An arc of the CL file may be kept that would be so many chords.
     pub(crate) fn arc(&self, arc: &Arc, end: &Motion, chords: u64) -> bool {
-        self.arcs()
+        self.arcs.keep
+            && self.writes()
             && end.pace != Pace::Rapid
             && self.radius(arc.radius())
             && (2..=MOST_CHORDS).contains(&chords)

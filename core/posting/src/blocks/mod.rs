@@ -5,6 +5,7 @@ mod audience;
 mod between_words;
 mod block;
 mod cutter;
+mod fitted;
 mod gathered;
 mod nominal;
 mod off_part;

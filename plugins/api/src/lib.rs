@@ -10,6 +10,7 @@ mod capabilities;
 mod command;
 mod deviation;
 mod dialect;
+mod drilling;
 mod event;
 #[doc(hidden)]
 pub mod export;
@@ -30,6 +31,7 @@ pub use capabilities::{CAPABILITIES, Capabilities, CapabilitySpec};
 pub use command::{CODES, Compensation, Coolant, Cycle, Feed, Spindle, SpindleSense};
 pub use deviation::{ask, length};
 pub use dialect::{Dialect, DialectSession, Format, WriteFault};
+pub use drilling::Drilling;
 pub use event::{EVENTS, Event, EventSpec, FieldSpec};
 pub use export::{Linked, LinkedDialect};
 pub use field::{Codes, List, Promise, Shape, ToolPose};

@@ -1,4 +1,4 @@
-//! A bench for the tests of a dialect: a machine with five axes, and jobs to write.
+//! A bench for the tests of a dialect: a machine with five axes, jobs to write, and the order in which events come.
 //!
 //! ```ignore
 //! let bench = Bench::of(crate::plugin());
@@ -8,6 +8,10 @@
 //!
 //! It writes the way the host does with a dialect that is linked in. What it leaves to `post plugin test` is whether
 //! the text is the same in every cut of the batches, and through the C contract.
+
+mod order;
+
+pub use order::{ORDER, Order};
 
 use post_plugin::{
     AxisWord, Batch, Capabilities, Compensation, Coolant, Event, Feed, Linked, LinkedDialect,

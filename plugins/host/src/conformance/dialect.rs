@@ -6,7 +6,7 @@ use post_plugin::{Batch, Coolant, DialectSession, Event, Feed, Format, Spindle, 
 
 use super::Case;
 use super::commands::commands;
-use super::declared::{declared, sent_under};
+use super::declared::declared;
 use super::options::options_of;
 use super::pen::{Pen, TURNING};
 use super::print::{edges, moves};
@@ -214,7 +214,7 @@ fn every_event(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFaul
             Err((_, fault)) if fault.contains("the plugin panicked") => case.wrong(fault),
             Err(_) => {}
             Ok(text)
-                if declares.bits() & sent_under(&event).bits() == 0
+                if declares.bits() & event.sent_under().bits() == 0
                     && event.kind() > LAST
                     && text.len() == start =>
             {

@@ -12,3 +12,4 @@ pub mod diagnostic;
 mod halton;
 pub mod kinematics;
 pub mod place;
+pub mod program_text;

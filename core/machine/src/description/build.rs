@@ -271,6 +271,7 @@ impl Builder<'_> {
         let control_point = self.control_point(&file.tool.control_point);
         let spindle = self.spindle(&file.spindle);
         let word_rules = self.word_rules(&file.cl);
+        let program = self.program(&file.program);
         let smoothing = file.program.smoothing.as_ref();
         let smoothing = smoothing
             .map(|file| self.smoothing(file))
@@ -310,6 +311,7 @@ impl Builder<'_> {
             spindle,
             word_rules,
             smoothing,
+            program,
             accuracy,
             solution,
             rewind,

@@ -1,5 +1,7 @@
 //! From axis values to the words of the program and back: work offset, units, decimals, order.
 
+mod coordinates;
+
 use nalgebra::Vector3;
 use post_plugin::Format;
 
@@ -19,6 +21,8 @@ pub struct Words {
     linear: Vec<Word>,
     /// Axis values with the tip on the part origin and every rotary axis at zero.
     zero: Joints,
+    /// The linear words are X, Y and Z, one each.
+    cartesian: bool,
 }
 
 /// One word.
@@ -136,9 +140,12 @@ impl Words {
                     per_scale: 1.0 / scale,
                 }
             });
-        let (rotary, linear) = words.partition(|word| machine.axes[word.joint].joint.rotary);
+        let (rotary, linear): (Vec<Word>, Vec<Word>) =
+            words.partition(|word| machine.axes[word.joint].joint.rotary);
+        let name = |word: &Word| machine.axes[word.joint].name.as_str();
         Self {
             tcp: machine.control.tcp,
+            cartesian: linear.iter().map(name).eq(["X", "Y", "Z"]),
             rotary,
             linear,
             zero: [0.0; MAX_AXES],
@@ -207,6 +214,13 @@ impl Words {
             values[word.place] = value;
             joints[word.joint] = value * word.unit + zero;
         }
+    }
+
+    /// The number nearest to `value` that has the decimals of the word at `place`; none if there is no such word.
+    pub fn printed(&self, place: usize, value: f64) -> Option<f64> {
+        let mut words = self.rotary.iter().chain(&self.linear);
+        let word = words.find(|word| word.place == place)?;
+        Some(word.printed(value))
     }
 
     /// What is printed for a joint at `value` in machine coordinates, as near to it as its `travel` allows, in program

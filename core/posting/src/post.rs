@@ -160,7 +160,7 @@ impl<'a> Post<'a> {
             return Err(fault.boxed());
         }
         let stages = Stages {
-            expand: Expand::new(machine, job.reading.chord_tolerance),
+            expand: Expand::new(machine, job.reading.chord_tolerance, dialect.capabilities()),
             lines: Vec::new(),
             timing: Timing::new(machine, &format)?,
             configuration: Configuration::new(
@@ -312,6 +312,7 @@ impl<'a> Post<'a> {
             records: self.records,
             moves: stages.configuration.moves(),
             blocks: extremes.blocks,
+            curves: extremes.curves,
             nc_lines: stages.emit.lines(),
             points_added: counts.points_added,
             points_dropped: counts.points_dropped,

@@ -23,6 +23,20 @@ pub enum Flow<P> {
     },
 }
 
+impl<P> Flow<P> {
+    /// It says where the moves of a hole stand.
+    #[inline]
+    pub(crate) fn marks_hole(&self) -> bool {
+        matches!(
+            self,
+            Self::Command {
+                command: Command::Hole(_),
+                ..
+            }
+        )
+    }
+}
+
 /// Where a stage puts what it hands on; a batch that is full goes to the next stage at once, so that one arc of a
 /// million chords needs no more memory than another.
 pub(crate) struct Outlet<'o, T> {

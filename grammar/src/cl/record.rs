@@ -399,6 +399,18 @@ pub struct CycleDefinition {
     pub step: Option<f64>,
     /// The pecks that follow the first, if they are others.
     pub later_step: Option<f64>,
+    /// A thread's way a turn, in the file's units; negative for a left-hand thread (`PITCH`).
+    pub pitch: Option<f64>,
+    /// A thread's turns an inch (`TPI`).
+    pub turns_per_inch: Option<f64>,
+    /// So much deeper, out on the other side of the part (a number behind the option `THRU`).
+    pub break_through: Option<f64>,
+    /// Of a countersink at the point's height, in the place of a depth (`DIAMET`).
+    pub diameter: Option<f64>,
+    /// Between the cutter's sides, degrees (`ANGLE`, `TLANGL`).
+    pub angle: Option<f64>,
+    /// A fine boring tool's way off the wall before it goes out (a number behind `NODRAG`, `ORIENT`).
+    pub shift: Option<f64>,
     /// Words and numbers that have no field.
     pub rest: Vec<Argument>,
 }

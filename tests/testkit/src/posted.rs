@@ -6,8 +6,8 @@ use post_machine::description::{Machine, Source, Tcp, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{
-    Batch, Capabilities, Curve, Deviation, DialectSession, Event, Feed, Format, ModelSession,
-    Tolerance, ToolPose, WriteFault,
+    Batch, Capabilities, Curve, Cycle, Deviation, DialectSession, Event, Feed, Format,
+    ModelSession, Tolerance, ToolPose, WriteFault,
 };
 use post_posting::program::ToldSpindle;
 use post_posting::report::Report;
@@ -26,10 +26,49 @@ pub struct Asked {
     pub feed: Option<Feed>,
     /// Tip (mm) and tool axis of a motion, part frame.
     pub tool: Option<ToolPose>,
+    /// Of an arc, what says how it goes.
+    pub arc: Option<AskedArc>,
     /// Any other number it has: the seconds of a dwell, the number of a tool.
     pub value: f64,
     /// An event without words as it prints for debugging, else empty.
     pub event: String,
+    /// What a cycle says, if it is one.
+    pub cycle: Option<AskedCycle>,
+    /// What a tilted plane says, if it is one.
+    pub plane: Option<AskedPlane>,
+}
+
+/// A cycle that a dialect was asked for: see [`Event::Cycle`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AskedCycle {
+    pub kind: Cycle,
+    pub feed: Feed,
+    pub depth: f64,
+    pub clearance: f64,
+    pub retract: f64,
+    pub step: Option<f64>,
+    pub dwell: Option<f64>,
+    pub pitch: Option<f64>,
+}
+
+/// A tilted plane that a dialect was asked for: see [`Event::Plane`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct AskedPlane {
+    pub origin: Vector3<f64>,
+    pub x: Vector3<f64>,
+    pub z: Vector3<f64>,
+    pub angles: [f64; 3],
+    /// All axis words: the rotary ones count.
+    pub words: Vec<f64>,
+}
+
+/// How an arc goes that a dialect was asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AskedArc {
+    pub centre: [f64; 3],
+    pub normal: [f64; 3],
+    pub turn: f64,
+    pub radius: Option<f64>,
 }
 
 /// A dialect that writes nothing down but the events themselves. No word may be a negative zero, no number an
@@ -75,12 +114,31 @@ impl DialectSession for Recorder {
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
+            let arc = match event {
+                Event::Arc {
+                    centre,
+                    normal,
+                    turn,
+                    radius,
+                    ..
+                } => Some(AskedArc {
+                    centre,
+                    normal,
+                    turn,
+                    radius,
+                }),
+                _ => None,
+            };
             let (words, tool, feed, value) = match event {
                 Event::Position {
                     words, tool, feed, ..
                 } => (words, tool, feed, 0.0),
                 Event::Rapid { words, tool } => (words, tool, None, 0.0),
                 Event::Linear { words, tool, feed } => (words, tool, Some(feed), 0.0),
+                Event::Arc {
+                    words, tool, feed, ..
+                } => (words, tool, Some(feed), 0.0),
+                Event::CyclePoint { words, tool } => (words, tool, None, 0.0),
                 Event::Dwell { seconds } => (&[][..], None, None, seconds),
                 Event::ToolChange { number, .. } => (&[][..], None, None, f64::from(number)),
                 _ => (&[][..], None, None, 0.0),
@@ -103,17 +161,66 @@ impl DialectSession for Recorder {
                 words: words.to_vec(),
                 feed,
                 tool,
+                arc,
                 value,
                 event: match words {
                     [] => format!("{event:?}"),
                     _ => String::new(),
                 },
+                cycle: cycle(&event),
+                plane: plane(&event),
             });
             out.push_str("block\n");
             ends.push(out.len());
         }
         Ok(())
     }
+}
+
+fn cycle(event: &Event<'_>) -> Option<AskedCycle> {
+    let Event::Cycle {
+        cycle,
+        feed,
+        depth,
+        clearance,
+        retract,
+        step,
+        dwell,
+        pitch,
+    } = *event
+    else {
+        return None;
+    };
+    Some(AskedCycle {
+        kind: cycle,
+        feed,
+        depth,
+        clearance,
+        retract,
+        step,
+        dwell,
+        pitch,
+    })
+}
+
+fn plane(event: &Event<'_>) -> Option<AskedPlane> {
+    let Event::Plane {
+        origin,
+        x,
+        z,
+        angles,
+        words,
+    } = event
+    else {
+        return None;
+    };
+    Some(AskedPlane {
+        origin: Vector3::from(*origin),
+        x: Vector3::from(*x),
+        z: Vector3::from(*z),
+        angles: *angles,
+        words: words.to_vec(),
+    })
 }
 
 /// An error model that looks at 33 places and has no opinion.

@@ -270,6 +270,7 @@ impl Builder<'_> {
             .collect();
         let control_point = self.control_point(&file.tool.control_point);
         let spindle = self.spindle(&file.spindle);
+        let arcs = self.arcs(&control.arcs);
         let word_rules = self.word_rules(&file.cl);
         let program = self.program(&file.program);
         let smoothing = file.program.smoothing.as_ref();
@@ -304,9 +305,12 @@ impl Builder<'_> {
                 feed_length: control.feed_length,
                 rapid: control.rapid,
                 tool_length: control.tool_length,
+                cycles: control.cycles,
+                planes: control.planes,
                 insert: control.insert,
                 print: control.print,
                 compensation_on_centre: control.compensation_on_centre,
+                arcs,
             },
             spindle,
             word_rules,

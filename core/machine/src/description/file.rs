@@ -418,6 +418,17 @@ pub enum CompensationOnCentre {
     Wear,
 }
 
+/// How the holes of drilling cycles are written.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cycles {
+    /// As cycles of the control where it has them and they do what the CL file asks for, else as moves.
+    #[default]
+    Native,
+    /// As moves.
+    Moves,
+}
+
 /// Units of the NC program.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -453,6 +464,13 @@ pub(crate) struct ControlFile {
     /// Which of the lengths that the CL file knows is the tool length; assembly if not said.
     #[serde(default)]
     pub tool_length: ToolLength,
+    /// How the holes of drilling cycles are written; native if not said.
+    #[serde(default)]
+    pub cycles: Cycles,
+    /// An operation whose tool axis stays is written in the control's own tilted plane, where the dialect has one;
+    /// false if not said.
+    #[serde(default)]
+    pub planes: bool,
     /// What becomes of `INSERT text`; comment if not said.
     #[serde(default)]
     pub insert: Insert,
@@ -462,6 +480,9 @@ pub(crate) struct ControlFile {
     /// What becomes of CUTCOM on points of the tool's centre; refuse if not said.
     #[serde(default)]
     pub compensation_on_centre: CompensationOnCentre,
+    /// Arcs and splines of the CL file that stay what they are, and arcs laid through points.
+    #[serde(default)]
+    pub arcs: ArcsFile,
     /// Where linear axes stand when the tool is retracted, machine coordinates, mm; the end of travel of the depth
     /// axis away from the part if not said.
     #[serde(default)]
@@ -475,6 +496,54 @@ pub(crate) struct ControlFile {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Number>")]
     pub park: Positions,
+}
+
+/// Which curves the program has as curves.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ArcsFile {
+    /// Arcs and splines of the CL file stay arcs and splines where dialect and machine allow; true if not said.
+    pub keep: Option<bool>,
+    /// How an arc is written: its centre (I J K), or its radius (R) where the dialect has that; centre if not said.
+    #[serde(default)]
+    pub form: ArcForm,
+    /// How far one block goes; full if not said.
+    #[serde(default)]
+    pub split: ArcSplit,
+    /// Smallest radius that is written as an arc, mm; 0.01 if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub least_radius: Option<Quantity>,
+    /// Largest radius that is written as an arc, mm; 10000 if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub largest_radius: Option<Quantity>,
+    /// Runs of points become the fewest arcs and lines that stay within the tolerance; false if not said.
+    #[serde(default)]
+    pub fit: bool,
+}
+
+/// How an arc is written.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum ArcForm {
+    /// With its centre.
+    #[default]
+    Centre,
+    /// With its radius; it is cut so that no block turns by more than 160 degrees, since a radius says little of the
+    /// centre near half a turn.
+    Radius,
+}
+
+/// How far one block of an arc goes.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum ArcSplit {
+    /// Up to a whole turn.
+    #[default]
+    Full,
+    /// Up to half a turn, but for the rounding of its ends.
+    Half,
+    /// To the next quadrant of the plane.
+    Quadrant,
 }
 
 /// Positions of axes by their names.

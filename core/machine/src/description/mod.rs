@@ -1,6 +1,7 @@
 //! One machine: what its TOML file says, checked and in the core's own units (mm, radians, minutes).
 
 mod accuracy;
+mod arcs;
 mod axes;
 mod build;
 mod choice;
@@ -23,12 +24,13 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 
 pub use accuracy::{Accuracy, ControlPoint, SHARE_AT_POLES};
+pub use arcs::Arcs;
 pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
-    CompensationOnCentre, EdgeSource, FeedLength, FeedMode, Insert, Method, OutputUnits, Placement,
-    Pole, Print, Rapid, Side, Tcp, ToolLength,
+    ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
+    Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
@@ -250,12 +252,18 @@ pub struct Control {
     pub rapid: Rapid,
     /// Which tool length counts.
     pub tool_length: ToolLength,
+    /// How the holes of drilling cycles are written.
+    pub cycles: Cycles,
+    /// An operation whose tool axis stays is written in a tilted plane of the control's.
+    pub planes: bool,
     /// What becomes of `INSERT`.
     pub insert: Insert,
     /// What becomes of `PPRINT`.
     pub print: Print,
     /// What becomes of `CUTCOM` on points of the tool's centre.
     pub compensation_on_centre: CompensationOnCentre,
+    /// Which curves the program has as curves.
+    pub arcs: Arcs,
 }
 
 /// An option for a plugin.

@@ -1,5 +1,6 @@
 //! Points whose axis values are chosen become blocks: points put in or left out, every block certified.
 
+mod along;
 mod audience;
 mod between_words;
 mod block;
@@ -17,10 +18,12 @@ use post_plugin::{Capabilities, ModelSession};
 
 use crate::accuracy::{Bound, Linearise, Move, Node, PlacedBatch, Placer, Run};
 use crate::configuration::{Chosen, Configured, pose};
+use crate::curve::Keeps;
 use crate::findings::Findings;
 use crate::program::{Command, Motion, Pace};
 use crate::refusal;
 use crate::stream::{Flow, Outlet};
+use along::Following;
 pub(crate) use audience::Audience;
 pub(crate) use between_words::BetweenWords;
 pub use between_words::Follow;
@@ -114,6 +117,10 @@ pub(crate) struct Blocks<'a> {
     between: BetweenWords,
     /// CL points that wait for those behind them.
     gathered: Gathered,
+    /// Which curves are kept.
+    keeps: Keeps,
+    /// A curve whose end has not come yet.
+    following: Option<Following>,
     /// What each leg of the run in hand is due.
     nominal: Vec<Nominal>,
     /// Where the tool stands; none before the first position.
@@ -128,6 +135,8 @@ pub(crate) struct Blocks<'a> {
     compensates: bool,
     /// Cutter radius compensation is in force.
     compensating: bool,
+    /// It was switched on or off, and no block has moved since: that is no block along a curve.
+    compensation_due: bool,
     /// Set once the fault that compensation cannot be was given.
     told_compensation: bool,
     /// The largest deviations so far.
@@ -152,6 +161,8 @@ impl<'a> Blocks<'a> {
             kinds: Kinds::new(machine),
             between: BetweenWords::new(machine),
             gathered: Gathered::default(),
+            keeps: Keeps::new(machine, writes),
+            following: None,
             nominal: Vec::new(),
             last: None,
             spare: None,
@@ -159,6 +170,7 @@ impl<'a> Blocks<'a> {
             on_part: false,
             compensates: !tcp || writes.has(Capabilities::COMPENSATE_TCP),
             compensating: false,
+            compensation_due: false,
             told_compensation: false,
             largest: Largest::default(),
             counts: Counts::default(),
@@ -182,7 +194,8 @@ impl<'a> Blocks<'a> {
 
     /// Line of the first point that waits for those behind it.
     pub(crate) fn first_line(&self) -> Option<u64> {
-        self.gathered.first_line()
+        let following = self.following.as_ref().map(Following::line);
+        self.gathered.first_line().or(following)
     }
 
     /// Takes a batch.
@@ -212,7 +225,9 @@ impl<'a> Blocks<'a> {
         };
         let count = points().take(PlacedBatch::MOST).count();
         match &self.placer {
-            Some(placer) if count >= LEAST_TOGETHER => placed.settle(placer, points()),
+            Some(placer) if count >= LEAST_TOGETHER && self.following.is_none() => {
+                placed.settle(placer, points())
+            }
             _ => placed.forget(),
         }
         count.max(1)
@@ -227,6 +242,17 @@ impl<'a> Blocks<'a> {
         placed: &mut PlacedBatch,
         to: &mut Surroundings<'_, '_>,
     ) {
+        if let Some(following) = &mut self.following {
+            match next {
+                Flow::Point(Configured::Point(chosen)) => return following.push(chosen),
+                Flow::Command {
+                    command: Command::AlongEnd,
+                    ..
+                } => return self.go_along(true, placed, to),
+                // Something has come between: by its moves.
+                _ => self.go_along(false, placed, to),
+            }
+        }
         match next {
             Flow::Point(Configured::Point(chosen)) => self.point(chosen, lane, placed, to),
             Flow::Point(Configured::Placer(placer)) => {
@@ -245,6 +271,9 @@ impl<'a> Blocks<'a> {
 
     /// The file ends: what waits is carried out.
     pub(crate) fn finish(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
+        let mut placed = self.placed.take().unwrap_or_default();
+        placed.forget();
+        self.go_along(false, &mut placed, to);
         self.end_run(to);
         self.depart(line, to);
     }
@@ -271,7 +300,13 @@ impl<'a> Blocks<'a> {
             }
             Command::Compensate(compensation) => {
                 self.compensate(line, *compensation, to.findings);
+                self.compensation_due = true;
             }
+            Command::Along(curve) => {
+                self.following = Some(Following::new(line, curve));
+                return;
+            }
+            Command::AlongEnd => return,
             _ => {}
         }
         to.out.command(line, command.clone());
@@ -545,6 +580,7 @@ impl<'a> Blocks<'a> {
         to: &mut Surroundings<'_, '_>,
     ) {
         self.largest.keep(leg, bound);
+        self.compensation_due = false;
         let mut block = Block {
             still: from.words == node.words,
             way: self.way(from, node),

@@ -17,6 +17,8 @@ const RAPID: usize = 2;
 pub(crate) struct Extremes {
     /// Blocks with a motion.
     pub blocks: u64,
+    /// Those of them that go along a curve.
+    pub curves: u64,
     /// Cuts: tip (mm), tool axis (radians); rapids: tip (mm).
     pub deviations: [Deviation; 3],
     /// Least axis values.
@@ -33,6 +35,7 @@ impl Extremes {
     pub(super) fn new() -> Self {
         Self {
             blocks: 0,
+            curves: 0,
             deviations: [Deviation::default(); 3],
             least: [f64::INFINITY; MAX_AXES],
             most: [f64::NEG_INFINITY; MAX_AXES],
@@ -81,6 +84,12 @@ impl Extremes {
     #[inline]
     pub(super) fn reach(&mut self, joints: &Joints) {
         self.blocks += 1;
+        self.cover(joints);
+    }
+
+    /// The axes come there, whether a block says it or a cycle.
+    #[inline]
+    pub(super) fn cover(&mut self, joints: &Joints) {
         // All places, used or not, and no question of what is no number: two at a time.
         for (index, value) in joints.iter().enumerate() {
             let (least, most) = (self.least[index], self.most[index]);

@@ -6,7 +6,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
-use super::{Emit, chain, stands};
+use super::{Emit, across, chain, cycles, stands};
 use crate::blocks::Block;
 use crate::findings::Findings;
 use crate::program::Tool;
@@ -222,6 +222,8 @@ impl Emit<'_> {
         self.machine = &head.machine;
         self.words = Words::new(self.machine, self.writer.format());
         self.chain = chain(self.machine);
+        self.depth_word = cycles::depth_word(self.machine);
+        self.across = across(self.machine);
         match &head.word {
             Some(word) => self.writer.push(line, Event::Word { text: word }),
             None => {

@@ -1,20 +1,23 @@
 //! Blocks and commands become the events of the dialect: what is in force, tool changes, approach, clamps.
 
 mod control;
+mod cycles;
 mod extremes;
 mod frame;
 mod writer;
 
-use post_machine::axis_words::Words;
+use post_machine::axis_words::{self, Words};
 use post_machine::description::{Machine, Smoothing};
 use post_machine::kinematics::{Chain, Joints};
-use post_plugin::{Capabilities, Coolant, DialectSession, Event, ToolPose};
+use post_plugin::{Capabilities, Coolant, DialectSession, Event, List, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
+use crate::curve::{CurveWords, PrintedCurve};
 use crate::findings::Findings;
 use crate::observer::Output;
 use crate::program::Command;
 use crate::stream::Flow;
+use cycles::{Hole, InForce};
 pub(crate) use extremes::Extremes;
 use writer::Writer;
 
@@ -58,6 +61,16 @@ pub(crate) struct Emit<'a> {
     smoothed: Option<Smoothing>,
     /// What a dialect was told that switches the keeping of the tip by itself.
     keeps_tip: Option<bool>,
+    /// What is printed of the next block, if it goes along a curve.
+    curve: Option<Box<PrintedCurve>>,
+    /// The hole whose moves are coming.
+    hole: Option<Box<Hole>>,
+    /// The cycle in force.
+    cycle: Option<InForce>,
+    /// Place of the word that cycles drill along.
+    depth_word: Option<usize>,
+    /// Places of the words that move the tool across it.
+    across: Vec<usize>,
 }
 
 impl<'a> Emit<'a> {
@@ -91,6 +104,11 @@ impl<'a> Emit<'a> {
             smoothing: machine.smoothing.default,
             smoothed: None,
             keeps_tip: None,
+            curve: None,
+            hole: None,
+            cycle: None,
+            depth_word: cycles::depth_word(machine),
+            across: across(machine),
         };
         // Nothing is known of where the tool stands, nor of what is in force.
         emit.retract(0);
@@ -111,8 +129,15 @@ impl<'a> Emit<'a> {
     pub(crate) fn take(&mut self, batch: &[Flow<Block>], findings: &Findings) {
         for next in batch {
             match next {
-                Flow::Point(block) => self.block(block, findings),
-                Flow::Command { line, command } => self.command(*line, command, findings),
+                _ if self.hole.is_some() || next.marks_hole() => self.drill(next, findings),
+                Flow::Point(block) => {
+                    self.end_cycle(block.line);
+                    self.block(block, findings);
+                }
+                Flow::Command { line, command } => {
+                    self.end_cycle(*line);
+                    self.command(*line, command, findings);
+                }
             }
             if self.writer.is_full() {
                 self.flush(findings);
@@ -123,6 +148,7 @@ impl<'a> Emit<'a> {
 
     /// The last events; `line` is the last of the CL file.
     pub(crate) fn finish(&mut self, line: u64, findings: &Findings) {
+        self.end_cycle(line);
         self.end(line, findings);
         self.flush(findings);
     }
@@ -141,6 +167,7 @@ impl<'a> Emit<'a> {
                 self.extremes.go(&self.last, &block.joints);
                 self.position(block, findings);
             }
+            MotionKind::Arc | MotionKind::Spline => self.curve(block),
             MotionKind::Rapid | MotionKind::Linear => {
                 // A block without a changed word moves nothing and is not written.
                 if block.still {
@@ -166,10 +193,67 @@ impl<'a> Emit<'a> {
         self.last = block.joints;
     }
 
+    /// A block along a curve.
+    fn curve(&mut self, block: &Block) {
+        let (Some(curve), Some(feed)) = (self.curve.take(), block.time.feed) else {
+            return;
+        };
+        self.extremes.curves += 1;
+        self.extremes.reach(&block.joints);
+        let mut from = self.last;
+        for place in &curve.between {
+            self.extremes.cover(place);
+            self.extremes.go(&from, place);
+            from = *place;
+        }
+        self.extremes.go(&from, &block.joints);
+        if self.machine.clamps {
+            self.clamp(block);
+        }
+        self.extremes.mark(block, self.writer.next());
+        let event = match &curve.words {
+            CurveWords::Arc {
+                centre,
+                normal,
+                turn,
+                radius,
+            } => Event::Arc {
+                tool: stands(block),
+                feed,
+                centre: *centre,
+                normal: *normal,
+                turn: *turn,
+                radius: *radius,
+                words: &block.words[..self.writer.words()],
+            },
+            CurveWords::Spline {
+                degree,
+                knots,
+                weights,
+                points,
+            } => Event::Spline {
+                feed,
+                degree: *degree,
+                knots: List(knots),
+                weights: List(weights),
+                points: List(points),
+            },
+        };
+        self.writer.push(block.line, event);
+    }
+
     fn command(&mut self, line: u64, command: &Command, findings: &Findings) {
         let event = match command {
-            // These act on the choice of axis values alone.
-            Command::From { .. } | Command::Index { .. } => return,
+            // These act on the choice of axis values alone, or on the blocks.
+            Command::From { .. }
+            | Command::Index { .. }
+            | Command::Along(_)
+            | Command::AlongEnd
+            | Command::Hole(_) => return,
+            Command::Curve(curve) => {
+                self.curve = Some(curve.clone());
+                return;
+            }
             Command::Tool(tool) => return self.change(line, tool, findings),
             Command::Head(name) => return self.swap_head(line, name),
             Command::Preselect(number) => Event::Preselect { number: *number },
@@ -216,7 +300,7 @@ impl<'a> Emit<'a> {
         for joint in 0..self.machine.axes.len() {
             if self.last[joint] != block.joints[joint] {
                 self.set_clamp(block.line, joint, false, false);
-            } else if block.kind == MotionKind::Linear {
+            } else if block.kind != MotionKind::Rapid {
                 self.set_clamp(block.line, joint, true, false);
             }
         }
@@ -234,6 +318,19 @@ impl<'a> Emit<'a> {
             self.writer.push(line, Event::Word { text });
         }
     }
+}
+
+/// Places of the words of the linear axes that move in cuts, but for that of the depth.
+fn across(machine: &Machine) -> Vec<usize> {
+    let depth = cycles::depth_word(machine);
+    let order = axis_words::order(machine).into_iter().enumerate();
+    order
+        .filter(|(place, joint)| {
+            let axis = &machine.axes[*joint];
+            !axis.joint.rotary && axis.indexed.is_none() && depth != Some(*place)
+        })
+        .map(|(place, _)| place)
+        .collect()
 }
 
 /// The chain, if the machine can be solved.

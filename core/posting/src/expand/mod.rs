@@ -1,18 +1,22 @@
 //! Arcs, splines, cycles and planes become moves.
 //!
-//! What a dialect writes itself it declares at open ([`post_plugin::Capabilities`]). A step goes on in its own shape
-//! only if the stages behind can carry it there, and as yet they carry straight moves alone: everything leaves here
-//! as moves and commands.
+//! What a dialect writes itself it declares at open ([`post_plugin::Capabilities`]). Everything leaves here as moves and
+//! commands; the moves of a curve that the dialect may write stand between two commands, the first of which has the
+//! curve (see [`crate::curve`]).
 
 mod tangential;
 
-use nalgebra::Vector3;
-use post_machine::description::Machine;
-use post_machine::diagnostic::{Diagnostic, Short};
+use std::f64::consts::TAU;
 
+use nalgebra::Vector3;
+use post_machine::description::{Cycles, Machine};
+use post_machine::diagnostic::{Diagnostic, Short};
+use post_plugin::{Capabilities, Cycle};
+
+use crate::curve::{Course, Curve, Keeps};
 use crate::findings::Findings;
 use crate::program::limits::MOST_CHORDS;
-use crate::program::{ArcStep, Command, CycleStep, Leg, Motion, Pace, SplineStep, Step};
+use crate::program::{ArcStep, Command, CycleStep, HoleMark, Leg, Motion, Pace, SplineStep, Step};
 use crate::stream::{Flow, Outlet};
 use tangential::Tangential;
 
@@ -34,6 +38,10 @@ pub(crate) struct Expand {
     tip: Option<Vector3<f64>>,
     /// For a tool with a leading edge.
     tangential: Option<Tangential>,
+    /// Which curves may stay curves; none if none may.
+    keeps: Option<Keeps>,
+    /// The cycles that the dialect has words for, as far as the machine file wants them.
+    cycles: Capabilities,
 }
 
 /// The moves and commands of `steps`, each with its line, chords straying by no more than `chord_tolerance` mm; and
@@ -44,6 +52,8 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
         chord_tolerance,
         tip: None,
         tangential: None,
+        keeps: None,
+        cycles: Capabilities::NONE,
     };
     let mut all = Vec::new();
     let mut next = |batch: &mut Vec<Flow<Line>>| all.append(batch);
@@ -58,11 +68,20 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
 type Out<'o> = Outlet<'o, Flow<Line>>;
 
 impl Expand {
-    pub(crate) fn new(machine: &Machine, chord_tolerance: f64) -> Self {
+    /// For a machine and a dialect that declares what it `writes`.
+    pub(crate) fn new(machine: &Machine, chord_tolerance: f64, writes: Capabilities) -> Self {
+        let tangential = Tangential::new(machine);
+        let keeps = Keeps::new(machine, writes);
         Self {
+            cycles: match machine.control.cycles {
+                Cycles::Native => writes,
+                Cycles::Moves => Capabilities::NONE,
+            },
             chord_tolerance,
             tip: None,
-            tangential: Tangential::new(machine),
+            // An edge turns with the path.
+            keeps: tangential.is_none().then_some(keeps),
+            tangential,
         }
     }
 
@@ -121,8 +140,43 @@ impl Expand {
         }
     }
 
-    /// Chords, the tool axis turning evenly from start to end.
+    /// An arc. One that may stay an arc goes turn by turn, its moves between the commands that say so.
     fn arc(&mut self, line: u64, step: &ArcStep, out: &mut Out<'_>, findings: &Findings) {
+        let ArcStep { arc, end, .. } = step;
+        let turns = libm::ceil(arc.sweep / TAU - 1e-9).max(1.0);
+        let turn = arc.piece(0.0, 1.0 / turns);
+        let (count, _) = turn.chords(self.chord_tolerance);
+        let keeps = |keeps: &Keeps| keeps.arc(arc, end, count);
+        if step.start_axis != end.axis
+            || count.saturating_mul(turns as u64) > MOST_CHORDS
+            || !self.keeps.as_ref().is_some_and(keeps)
+        {
+            return self.chords(line, step, out, findings);
+        }
+        for place in 1..=turns as u32 {
+            let [from, to] = [place - 1, place].map(|place| f64::from(place) / turns);
+            let arc = if turns == 1.0 {
+                *arc
+            } else {
+                arc.piece(from, to)
+            };
+            let pace = match end.pace {
+                Pace::InverseTime(feed) => Pace::InverseTime(feed * turns),
+                pace => pace,
+            };
+            let tip = if to == 1.0 { end.tip } else { arc.at(1.0) };
+            let end = Motion { tip, pace, ..*end };
+            let course = Course::Arc(arc);
+            let curve = Box::new(Curve { course, end });
+            self.command(line, Command::Along(curve), out, findings);
+            let step = ArcStep { arc, end, ..*step };
+            self.chords(line, &step, out, findings);
+            self.command(line, Command::AlongEnd, out, findings);
+        }
+    }
+
+    /// Chords, the tool axis turning evenly from start to end.
+    fn chords(&mut self, line: u64, step: &ArcStep, out: &mut Out<'_>, findings: &Findings) {
         let ArcStep {
             arc,
             end,
@@ -184,14 +238,24 @@ impl Expand {
         });
     }
 
-    /// Approach, pecks, dwell and retract at one point.
+    /// Approach, pecks, dwell and retract at one point; where the control has the cycle, marked for what writes it.
     fn cycle(&mut self, line: u64, step: &CycleStep, out: &mut Out<'_>, findings: &Findings) {
         let CycleStep { cycle, point } = *step;
+        let native = cycle.native();
+        let known = native.filter(|native| self.cycles.has(capability(native.kind)));
+        if native.is_some_and(|native| native.alone) && known.is_none() {
+            findings.at(line, no_moves());
+            return;
+        }
         let rapid = |tip| Motion {
             tip,
             pace: Pace::Rapid,
             ..point
         };
+        if let Some(drilling) = known {
+            let mark = Command::Hole(HoleMark::Above(drilling));
+            self.command(line, mark, out, findings);
+        }
         // Between holes the tool goes up before it goes aside, and aside before it goes down.
         if let Some(tip) = self.tip {
             let height = point.axis.dot(&(tip - point.tip));
@@ -206,6 +270,10 @@ impl Expand {
                 }
             }
         }
+        let mut into = known.is_some().then_some(HoleMark::Into {
+            point: point.tip,
+            axis: point.axis,
+        });
         cycle.legs(&mut |leg| {
             let at = |height: f64| point.tip + point.axis * height;
             match leg {
@@ -221,6 +289,38 @@ impl Expand {
                     self.command(line, Command::Dwell(seconds), out, findings);
                 }
             }
+            // The first leg ends on the retract level.
+            if let Some(into) = into.take() {
+                self.command(line, Command::Hole(into), out, findings);
+            }
         });
+        if known.is_some() {
+            self.command(line, Command::Hole(HoleMark::Done), out, findings);
+        }
     }
+}
+
+/// What a dialect declares that has words for a cycle.
+fn capability(kind: Cycle) -> Capabilities {
+    match kind {
+        Cycle::Drill => Capabilities::CYCLE_DRILL,
+        Cycle::Deep => Capabilities::CYCLE_DEEP,
+        Cycle::BreakChip => Capabilities::CYCLE_BREAK_CHIP,
+        Cycle::Tap => Capabilities::CYCLE_TAP,
+        Cycle::TapLeft => Capabilities::CYCLE_TAP_LEFT,
+        Cycle::Ream => Capabilities::CYCLE_REAM,
+        Cycle::Bore => Capabilities::CYCLE_BORE,
+        Cycle::BoreFine => Capabilities::CYCLE_BORE_FINE,
+        Cycle::BoreBack => Capabilities::CYCLE_BORE_BACK,
+    }
+}
+
+/// A cycle that no moves can do, and the control is not told.
+fn no_moves() -> Diagnostic {
+    Diagnostic::error(
+        "cycle",
+        "this cycle ties the feed to the spindle's turns, or stops the spindle in the hole, which moves cannot do, \
+         and this dialect has no words for it or [control] cycles = \"moves\" leaves them out",
+    )
+    .help("cycles = \"native\" and a control that has it, or thread milling in the CAM system")
 }

@@ -1,14 +1,17 @@
-//! Cycles become moves: approach, peck, dwell, retract, along the tool axis.
+//! Cycles: what is done at a hole, as the control's own cycle and as moves that do the same (approach, peck, dwell,
+//! retract, along the tool axis).
 
 use post_grammar::{Argument, CycleDefinition};
-
 use post_machine::diagnostic::Short;
+use post_plugin::Cycle;
 
 use super::limits::{LONGEST_DWELL, MOST_COORDINATE, MOST_PECKS};
 
 /// How a cycle drills, lengths in mm along the tool axis from the programmed point, plus is away from the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrillCycle {
+    /// The control's cycle for it; of a thread the right-hand one.
+    kind: Cycle,
     /// Where the feed begins.
     clearance: f64,
     /// The bottom, not above zero.
@@ -19,8 +22,10 @@ pub struct DrillCycle {
     peck: Option<Peck>,
     /// At the bottom, s.
     dwell: f64,
-    /// The tool leaves the hole at feed.
-    feed_out: bool,
+    /// A thread's way a turn, negative for a left-hand thread.
+    pitch: Option<f64>,
+    /// Off the wall before the tool goes out (fine boring).
+    shift: Option<f64>,
 }
 
 /// One peck after the other.
@@ -31,6 +36,27 @@ struct Peck {
     later: f64,
     /// Out of the hole after each (`DEEP`), or back by a little to break the chip (`BRKCHP`, `CHIP`).
     full: bool,
+}
+
+/// A cycle at one hole as a control is told it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drilling {
+    /// The control's cycle.
+    pub kind: Cycle,
+    /// From the point down to the bottom, mm.
+    pub depth: f64,
+    /// From the point up to where the feed begins, mm.
+    pub clearance: f64,
+    /// From the point up to where the tool goes between the holes, mm.
+    pub retract: f64,
+    /// Into the part in one go, mm; of fine boring the way off the wall.
+    pub step: Option<f64>,
+    /// At the bottom, s.
+    pub dwell: Option<f64>,
+    /// A thread's way a turn, mm, above zero.
+    pub pitch: Option<f64>,
+    /// No moves do the same: the control's cycle or nothing.
+    pub alone: bool,
 }
 
 /// One leg of a cycle.
@@ -44,10 +70,32 @@ pub enum Leg {
     Dwell(f64),
 }
 
-/// Kinds that rapid, feed, dwell and feed or rapid back make.
-const KINDS: [&str; 15] = [
-    "DRILL", "DEEP", "DEEP2", "DEEPHL", "BRKCHP", "CHIP", "BORE", "REAM", "FACE", "CSINK", "CBORE",
-    "CDRILL", "SPOT", "THRU", "PECKING",
+/// Words of kinds, and the control's cycle that does it. Of several words the last row that holds one of them says.
+const KINDS: [(&str, Cycle); 22] = [
+    ("DRILL", Cycle::Drill),
+    ("FACE", Cycle::Drill),
+    ("CSINK", Cycle::Drill),
+    ("CBORE", Cycle::Drill),
+    ("CDRILL", Cycle::Drill),
+    ("SPOT", Cycle::Drill),
+    ("THRU", Cycle::Drill),
+    ("DEEP", Cycle::Deep),
+    ("DEEP2", Cycle::Deep),
+    ("DEEPHL", Cycle::Deep),
+    ("PECKING", Cycle::Deep),
+    ("BRKCHP", Cycle::BreakChip),
+    ("CHIP", Cycle::BreakChip),
+    ("TAP", Cycle::Tap),
+    ("RTAP", Cycle::Tap),
+    ("TAPPING", Cycle::Tap),
+    ("THREAD", Cycle::Tap),
+    ("REAM", Cycle::Ream),
+    // As NX and Creo mean it: out at feed, the spindle turning.
+    ("BORE", Cycle::Ream),
+    // Out at rapid, the spindle stopped: it drags along the wall.
+    ("DRAG", Cycle::Bore),
+    ("NODRAG", Cycle::BoreFine),
+    ("ORIENT", Cycle::BoreFine),
 ];
 
 /// Kinds that go in pecks.
@@ -62,23 +110,8 @@ impl DrillCycle {
     /// # Errors
     /// What cannot be made as moves, as a sentence.
     pub fn new(cycle: &CycleDefinition, scale: f64) -> Result<Self, String> {
-        let is = |kind: &str| cycle.kinds.iter().any(|word| word == kind);
-        for kind in &cycle.kinds {
-            match kind.as_str() {
-                "TAP" | "THREAD" | "RTAP" | "TAPPING" => {
-                    return Err(format!(
-                        "CYCLE/{kind} ties the feed to the spindle's turns, which moves cannot do"
-                    ));
-                }
-                kind if KINDS.contains(&kind) => {}
-                kind => {
-                    return Err(format!(
-                        "CYCLE/{kind} is not a cycle that post can make as moves"
-                    ));
-                }
-            }
-        }
-        let depth = cycle.depth.ok_or("the cycle has no depth")?;
+        let kind = kind(cycle)?;
+        let depth = depth(cycle, scale)?;
         let clearance = cycle
             .clearance
             .ok_or("the cycle has no clearance (RAPTO, CLEAR): the rapid would end on the part")?
@@ -89,14 +122,16 @@ impl DrillCycle {
                 Short(clearance)
             ));
         }
-        for height in [
-            Some(depth),
+        let lengths = [
             cycle.clearance,
             cycle.retract,
             cycle.step,
             cycle.later_step,
-        ] {
-            let height = height.unwrap_or(0.0) * scale;
+            cycle.pitch,
+            cycle.shift,
+        ]
+        .map(|length| length.unwrap_or(0.0) * scale);
+        for height in lengths.into_iter().chain([depth]) {
             if libm::fabs(height) > MOST_COORDINATE {
                 return Err(format!(
                     "a height of {} mm: none is larger than {MOST_COORDINATE:e} mm",
@@ -111,7 +146,7 @@ impl DrillCycle {
                 Short(dwell)
             ));
         }
-        let bottom = -libm::fabs(depth) * scale;
+        let bottom = -depth;
         let retract = cycle
             .retract
             .map_or(clearance, |level| level * scale)
@@ -123,8 +158,19 @@ impl DrillCycle {
         let peck = length(cycle.step).map(|step| Peck {
             step,
             later: length(cycle.later_step).unwrap_or(step),
-            full: !is("BRKCHP") && !is("CHIP"),
+            full: kind != Cycle::BreakChip,
         });
+        if kind == Cycle::Tap && peck.is_some() {
+            return Err("a thread in pecks has no moves, and no words for it are known".to_owned());
+        }
+        let shift = length(cycle.shift);
+        if kind == Cycle::BoreFine && shift.is_none() {
+            return Err(
+                "CYCLE/BORE,NODRAG needs the way off the wall, a number behind NODRAG or ORIENT: the control \
+                 would take the one that it used last"
+                    .to_owned(),
+            );
+        }
         if let Some(peck) = peck
             && let least = peck.step.min(peck.later)
             && (clearance - bottom) / least > MOST_PECKS
@@ -135,14 +181,73 @@ impl DrillCycle {
                 Short(-bottom)
             ));
         }
+        let kind = match (kind, peck) {
+            // The step makes the pecks, whatever the kind is called; without it there are none.
+            (Cycle::Drill | Cycle::Deep, Some(_)) => Cycle::Deep,
+            (Cycle::Deep | Cycle::BreakChip, None) => Cycle::Drill,
+            (kind, _) => kind,
+        };
         Ok(Self {
+            kind,
             clearance,
             bottom,
             retract,
             peck,
             dwell,
-            feed_out: is("BORE") || is("REAM"),
+            pitch: pitch(cycle, scale)?,
+            shift,
         })
+    }
+
+    /// It cuts a thread: the feed follows from the spindle.
+    pub(crate) fn taps(&self) -> bool {
+        self.kind == Cycle::Tap
+    }
+
+    /// A thread's way a turn, mm, negative for a left-hand thread, if the cycle's words say it.
+    pub(crate) fn pitch(&self) -> Option<f64> {
+        self.pitch
+    }
+
+    /// The cycle with a thread of this pitch, mm, cut by a spindle that turns left if `left`.
+    pub(crate) fn threaded(self, pitch: f64, left: bool) -> Self {
+        Self {
+            kind: if left { Cycle::TapLeft } else { Cycle::Tap },
+            pitch: Some(libm::fabs(pitch)),
+            ..self
+        }
+    }
+
+    /// As a control is told it; none if it has no words for it: pecks of two depths, or a first peck that differs.
+    pub fn native(&self) -> Option<Drilling> {
+        let step = match self.peck {
+            // In one go all the same.
+            Some(peck) if peck.step >= -self.bottom => None,
+            Some(peck) if peck.step != peck.later => return None,
+            Some(peck) => Some(peck.step),
+            None => self.shift,
+        };
+        Some(Drilling {
+            kind: match self.kind {
+                Cycle::Deep | Cycle::BreakChip if step.is_none() => Cycle::Drill,
+                kind => kind,
+            },
+            depth: -self.bottom,
+            clearance: self.clearance,
+            retract: self.retract,
+            step,
+            dwell: (self.dwell > 0.0).then_some(self.dwell),
+            pitch: self.pitch.filter(|_| !self.expands()),
+            alone: !self.expands(),
+        })
+    }
+
+    /// Moves do the same.
+    fn expands(&self) -> bool {
+        matches!(
+            self.kind,
+            Cycle::Drill | Cycle::Deep | Cycle::BreakChip | Cycle::Ream
+        )
     }
 
     /// Level between the holes.
@@ -158,8 +263,12 @@ impl DrillCycle {
                 .iter()
                 .any(|kind| PECKED.contains(&kind.as_str()));
         let pecks = pecks.then(|| "the pecks, since there is no STEP".to_owned());
+        let is = |kind: &str| cycle.kinds.iter().any(|word| word == kind);
+        let angles = (cycle.diameter.or(cycle.angle).is_some() && !is("CSINK"))
+            .then(|| "the diameter and the angle, which are those of CSINK".to_owned());
         pecks
             .into_iter()
+            .chain(angles)
             .chain(cycle.rest.iter().filter_map(|argument| match argument {
                 // CAMWorks states the level twice.
                 Argument::Word(word) if word == "G98" => None,
@@ -189,11 +298,73 @@ impl DrillCycle {
         if self.dwell > 0.0 {
             emit(Leg::Dwell(self.dwell));
         }
-        if self.feed_out {
+        if matches!(self.kind, Cycle::Ream | Cycle::Tap | Cycle::TapLeft) {
             emit(Leg::Feed(self.clearance));
         }
         emit(Leg::Rapid(self.retract));
     }
+}
+
+/// The control's cycle of a definition.
+fn kind(cycle: &CycleDefinition) -> Result<Cycle, String> {
+    let mut last = 0;
+    for word in &cycle.kinds {
+        let Some(row) = KINDS.iter().position(|(kind, _)| kind == word) else {
+            return Err(format!(
+                "CYCLE/{word} is not a cycle that post can make as moves or has words for"
+            ));
+        };
+        last = last.max(row);
+    }
+    let kind = KINDS[last].1;
+    let bores = cycle.kinds.iter().any(|word| word == "BORE");
+    if matches!(kind, Cycle::Bore | Cycle::BoreFine) && !bores {
+        return Err(format!("{} belongs to CYCLE/BORE", KINDS[last].0));
+    }
+    Ok(kind)
+}
+
+/// How deep below the point, mm.
+fn depth(cycle: &CycleDefinition, scale: f64) -> Result<f64, String> {
+    let through = libm::fabs(cycle.break_through.unwrap_or(0.0));
+    let sinks = cycle.kinds.iter().any(|word| word == "CSINK");
+    let depth = match (cycle.depth, cycle.diameter.filter(|_| sinks), cycle.angle) {
+        (Some(depth), ..) => libm::fabs(depth),
+        (None, Some(diameter), Some(angle)) if (1.0..179.0).contains(&angle) => {
+            let half = libm::tan((angle / 2.0).to_radians());
+            libm::fabs(diameter) / 2.0 / half
+        }
+        (None, Some(_), angle) => {
+            return Err(match angle {
+                None => "the diameter of a countersink says how deep only with the cutter's angle (ANGLE)".to_owned(),
+                Some(angle) => format!(
+                    "a countersink with an angle of {}°: from 1° to 179° is possible",
+                    Short(angle)
+                ),
+            });
+        }
+        (None, None, _) => return Err("the cycle has no depth".to_owned()),
+    };
+    Ok((depth + through) * scale)
+}
+
+/// A thread's way a turn, mm.
+fn pitch(cycle: &CycleDefinition, scale: f64) -> Result<Option<f64>, String> {
+    let pitch = match (cycle.pitch, cycle.turns_per_inch) {
+        (Some(pitch), _) => pitch * scale,
+        (None, Some(turns)) => 25.4 / turns,
+        (None, None) => return Ok(None),
+    };
+    let [least, most] = super::limits::FEEDS_A_TURN;
+    if (least..=most).contains(&libm::fabs(pitch)) {
+        return Ok(Some(pitch));
+    }
+    Err(format!(
+        "a pitch of {} mm: from {} to {} mm is possible",
+        Short(pitch),
+        Short(least),
+        Short(most)
+    ))
 }
 
 #[cfg(test)]
@@ -271,12 +442,19 @@ mod tests {
     }
 
     #[test]
-    fn tapping_is_refused() {
+    fn a_countersink_goes_as_deep_as_its_diameter_asks() {
         let definition = CycleDefinition {
-            kinds: vec!["TAP".to_owned()],
-            depth: Some(10.0),
+            kinds: vec!["CSINK".to_owned()],
+            diameter: Some(8.0),
+            angle: Some(90.0),
+            clearance: Some(1.0),
             ..CycleDefinition::default()
         };
-        assert!(DrillCycle::new(&definition, 1.0).is_err());
+        let sunk = legs(&definition, 1.0);
+        let Some(Leg::Feed(bottom)) = sunk.iter().find(|leg| matches!(leg, Leg::Feed(_))) else {
+            panic!("{sunk:?}");
+        };
+        // With 90° as deep as half the diameter.
+        assert!((bottom + 4.0).abs() < 1e-12, "{sunk:?}");
     }
 }

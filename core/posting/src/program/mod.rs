@@ -10,8 +10,10 @@ mod step;
 mod word_census;
 
 pub use arc::Arc;
-pub use cycle::{DrillCycle, Leg};
+pub use cycle::{DrillCycle, Drilling, Leg};
 pub use interpret::{Interpreter, Reading, ToldSpindle};
 pub use spline::Spline;
-pub use step::{ArcStep, Command, CycleStep, Motion, Pace, PlaneStep, SplineStep, Step, Tool};
+pub use step::{
+    ArcStep, Command, CycleStep, HoleMark, Motion, Pace, PlaneStep, SplineStep, Step, Tool,
+};
 pub use word_census::Unknown;

@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 use post_machine::description::{Retract, Rewind, Smoothing};
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
-use super::{Arc, DrillCycle, Spline};
+use super::{Arc, DrillCycle, Drilling, Spline};
+use crate::curve::{Curve, PrintedCurve};
 
 /// One step of the program, with every modal word settled. Curves and cycles keep their shape: whether they are
 /// written as such or as moves is for dialect and machine to say.
@@ -90,6 +91,30 @@ pub enum Command {
     OptionalStop,
     /// The tool is retracted and the axes are parked.
     Home,
+    /// The moves up to the next [`Command::AlongEnd`] go along this curve.
+    Along(Box<Curve>),
+    /// The curve ends.
+    AlongEnd,
+    /// What is printed of the next block, which goes along a curve.
+    Curve(Box<PrintedCurve>),
+    /// The moves from here on are those of a hole, which the control may have a cycle for.
+    Hole(HoleMark),
+}
+
+/// Where the moves of a hole stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HoleMark {
+    /// Those to the retract level above the hole follow.
+    Above(Drilling),
+    /// The tool stands there: those into the hole and back to that level follow.
+    Into {
+        /// The point that the heights count from, mm, part frame.
+        point: Vector3<f64>,
+        /// The tool axis, unit vector, part frame.
+        axis: Vector3<f64>,
+    },
+    /// The hole is done.
+    Done,
 }
 
 impl Command {

@@ -5,9 +5,11 @@
 )]
 
 mod accuracy;
+mod arcs;
 mod certificate;
 mod events;
 mod feed;
+mod holes;
 mod path;
 mod program;
 mod route;

@@ -32,6 +32,19 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
                 cycle.step = Some(items.number(&name, FORM)?);
                 cycle.later_step = items.take_number();
             }
+            "PITCH" => cycle.pitch = Some(items.number(&name, FORM)?),
+            "TPI" => cycle.turns_per_inch = Some(items.number(&name, FORM)?),
+            "DIAMET" | "DIAMTR" | "DIA" => cycle.diameter = Some(items.number(&name, FORM)?),
+            "ANGLE" | "TLANGL" => cycle.angle = Some(items.number(&name, FORM)?),
+            // A kind of its own where it stands first; behind that the number is what it adds to the depth.
+            "THRU" if !cycle.kinds.is_empty() => match items.take_number() {
+                Some(value) => cycle.break_through = Some(value),
+                None => cycle.kinds.push(name.to_string()),
+            },
+            "NODRAG" | "ORIENT" => {
+                cycle.shift = items.take_number();
+                cycle.kinds.push(name.to_string());
+            }
             "RTRCTO" | "RETURN" | "DWELL" => match (items.take_number(), name.as_ref()) {
                 (Some(value), "DWELL") => cycle.dwell = Some(value),
                 (Some(value), _) => cycle.retract = Some(value),

@@ -3,25 +3,82 @@
 use nalgebra::Vector3;
 use post_grammar::text::excerpt;
 use post_grammar::{Cycle, CycleDefinition, Record};
+use post_machine::diagnostic::Short;
+use post_plugin::SpindleSense;
 
 use super::{FeedWord, Interpreter, SHOWN_NAME};
 use crate::program::{CycleStep, DrillCycle, Pace, Step};
 
+/// Pitch and feed a turn agree but for so much: a feed a minute is written without decimals.
+const SAME_PITCH: f64 = 0.01;
+
 impl Interpreter {
+    /// The cycle in force at a point; nothing if its thread cannot be.
     pub(super) fn drill(
         &mut self,
+        record: &Record<'_>,
         drill: DrillCycle,
         feed: Pace,
         point: Vector3<f64>,
         emit: &mut impl FnMut(Step),
     ) {
         self.rapid = false;
+        let Some(drill) = (match drill.taps() {
+            true => self.thread(record, drill, feed),
+            false => Some(drill),
+        }) else {
+            return;
+        };
         // Behind it the tool stands at the level between the holes.
         self.arrive(point + self.axis * drill.retract());
         emit(Step::Cycle(Box::new(CycleStep {
             cycle: drill,
             point: self.motion(point, feed),
         })));
+    }
+
+    /// A thread with its pitch, which is what the tool goes in one turn of the spindle.
+    fn thread(&mut self, record: &Record<'_>, drill: DrillCycle, feed: Pace) -> Option<DrillCycle> {
+        let (Pace::PerMinute(feed), Some(rpm)) = (feed, self.rpm.filter(|rpm| *rpm > 0.0)) else {
+            self.fault(
+                record,
+                "cycle",
+                "a thread needs a spindle that turns, and a feed a minute or a turn".to_owned(),
+                "put a SPINDL before it",
+            );
+            return None;
+        };
+        let turned = feed / rpm;
+        let pitch = drill.pitch().unwrap_or(turned);
+        if libm::fabs(libm::fabs(pitch) - turned) > SAME_PITCH * turned {
+            self.fault(
+                record,
+                "cycle",
+                format!(
+                    "a thread of {} mm a turn, at {} turns a minute, needs a feed of {} mm/min, and it has {}",
+                    Short(libm::fabs(pitch)),
+                    Short(rpm),
+                    Short(libm::fabs(pitch) * rpm),
+                    Short(feed)
+                ),
+                "the pitch, the speed of the spindle or the feed is wrong",
+            );
+            return None;
+        }
+        let left = self.sense == SpindleSense::CounterClockwise;
+        if pitch < 0.0 && !left {
+            self.fault(
+                record,
+                "cycle",
+                format!(
+                    "a left-hand thread ({} mm a turn), and the spindle turns right",
+                    Short(pitch)
+                ),
+                "SPINDL/…,CCLW turns it left",
+            );
+            return None;
+        }
+        Some(drill.threaded(pitch, left))
     }
 
     /// A point of a cycle that was refused: the tool is taken to stand there, so that nothing is said of its moves.
@@ -75,6 +132,10 @@ impl Interpreter {
             }
         };
         let feed = match definition.feed {
+            // A thread's feed follows from its pitch where nobody gives one.
+            None if drill.taps() && drill.pitch().is_some() => drill
+                .pitch()
+                .map(|pitch| FeedWord::PerRevolution(libm::fabs(pitch))),
             Some(feed) => self.feed_word(record, feed),
             None => self.feed.or_else(|| self.told_feed()),
         };

@@ -69,7 +69,7 @@ impl Interpreter {
         } else if let Some((drill, feed)) = self.cycle
             && let Some(pace) = self.resolved(record, feed)
         {
-            self.drill(drill, pace, tip, emit);
+            self.drill(record, drill, pace, tip, emit);
         }
     }
 

@@ -1,0 +1,423 @@
+//! Holes: the control's own cycle in the place of the moves, where it does the same.
+//!
+//! The moves of a hole come through every stage before this one, so that travel, speed, time and certificate are those
+//! of what the cycle does; here they wait until the hole is done. They are written as a cycle if the rotary axes stand,
+//! and below the retract level nothing but the depth word moves, toward minus (or along any axis, if the control has
+//! that where it keeps the tip); else as they are.
+
+use post_machine::axis_words::{self, WordValues, unit_length};
+use post_machine::description::{Machine, Tcp};
+use post_machine::diagnostic::{Diagnostic, Short};
+use post_plugin::{Capabilities, Cycle, Event, Feed, ToolPose};
+
+use super::Emit;
+use crate::blocks::{Block, MotionKind};
+use crate::findings::Findings;
+use crate::program::{Command, Drilling, HoleMark, Pace};
+use crate::stream::Flow;
+
+/// A feed that differs by less is the same.
+const SAME_FEED: f64 = 1e-6;
+
+/// What of a hole has come so far.
+#[derive(Debug)]
+pub(super) struct Hole {
+    line: u64,
+    drilling: Drilling,
+    /// The point that its heights count from, and the tool axis, part frame; none before the tool stands above it.
+    at: Option<ToolPose>,
+    /// To the retract level above it.
+    above: Vec<Flow<Block>>,
+    /// Into it and back to that level.
+    into: Vec<Flow<Block>>,
+}
+
+impl Hole {
+    /// Where the moves go that come now.
+    fn part(&mut self) -> &mut Vec<Flow<Block>> {
+        match self.at {
+            None => &mut self.above,
+            Some(_) => &mut self.into,
+        }
+    }
+}
+
+/// The cycle in force: what [`Event::Cycle`] said, and where its points have their retract level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct InForce {
+    kind: Cycle,
+    feed: Feed,
+    depth: f64,
+    clearance: f64,
+    retract: f64,
+    step: Option<f64>,
+    dwell: Option<f64>,
+    pitch: Option<f64>,
+    /// The words of the point, but for those across the tool that differ from hole to hole.
+    level: WordValues,
+}
+
+/// A hole as a cycle.
+struct Native {
+    cycle: InForce,
+    /// All axis words with the tip on the point.
+    words: WordValues,
+    /// So much farther off the CL path than the moves are, mm.
+    drift: f64,
+}
+
+/// The place of the word along which the cycles of a control drill: the linear axis Z, if the tool stands along it with
+/// every rotary axis at zero, or the control keeps the tip.
+pub(super) fn depth_word(machine: &Machine) -> Option<usize> {
+    let order = axis_words::order(machine);
+    let place = order
+        .iter()
+        .position(|joint| machine.axes[*joint].name == "Z")?;
+    let along = axis_words::depth(machine) == Some(order[place]);
+    (along || machine.control.tcp == Tcp::Control).then_some(place)
+}
+
+impl Emit<'_> {
+    /// Takes a mark of a hole, or what comes while one is open.
+    pub(super) fn drill(&mut self, next: &Flow<Block>, findings: &Findings) {
+        let (line, mark) = match (next, &mut self.hole) {
+            (
+                Flow::Command {
+                    line,
+                    command: Command::Hole(mark),
+                },
+                _,
+            ) => (*line, mark),
+            (next, Some(hole)) => return hole.part().push(next.clone()),
+            _ => return,
+        };
+        match mark {
+            HoleMark::Above(drilling) => {
+                self.hole = Some(Box::new(Hole {
+                    line,
+                    drilling: *drilling,
+                    at: None,
+                    above: Vec::new(),
+                    into: Vec::new(),
+                }));
+            }
+            HoleMark::Into { point, axis } => {
+                if let Some(hole) = &mut self.hole {
+                    hole.at = Some(ToolPose {
+                        tip: (*point).into(),
+                        axis: (*axis).into(),
+                    });
+                }
+            }
+            HoleMark::Done => {
+                if let Some(hole) = self.hole.take() {
+                    self.hole_done(&hole, findings);
+                }
+            }
+        }
+    }
+
+    /// The cycle in force ends.
+    #[inline]
+    pub(super) fn end_cycle(&mut self, line: u64) {
+        if self.cycle.take().is_some() {
+            self.writer.push(line, Event::CycleOff);
+        }
+    }
+
+    fn hole_done(&mut self, hole: &Hole, findings: &Findings) {
+        let native = self.native(hole, findings);
+        if native.is_none() && hole.drilling.alone {
+            findings.at(hole.line, not_here());
+            return;
+        }
+        // The control itself goes from hole to hole, if nothing else is on the way.
+        let goes_on = native.as_ref().is_some_and(|native| {
+            self.cycle == Some(native.cycle) && self.stays_level(&hole.above, &native.cycle.level)
+        });
+        if goes_on {
+            self.pass(&hole.above);
+        } else {
+            self.end_cycle(hole.line);
+            self.replay(&hole.above, findings);
+        }
+        match native {
+            None => self.replay(&hole.into, findings),
+            Some(native) => self.point(hole, &native, goes_on),
+        }
+    }
+
+    /// As moves.
+    fn replay(&mut self, stream: &[Flow<Block>], findings: &Findings) {
+        for next in stream {
+            match next {
+                Flow::Point(block) => self.block(block, findings),
+                Flow::Command { line, command } => self.command(*line, command, findings),
+            }
+            if self.writer.is_full() {
+                self.flush(findings);
+            }
+        }
+    }
+
+    /// Blocks that the control makes itself.
+    fn pass(&mut self, stream: &[Flow<Block>]) {
+        for block in points(stream).filter(|block| !block.still) {
+            self.extremes.cover(&block.joints);
+            self.extremes.go(&self.last, &block.joints);
+            self.extremes.mark(block, self.writer.next());
+            self.last = block.joints;
+        }
+    }
+
+    /// The cycle, unless it is in force, and its point.
+    fn point(&mut self, hole: &Hole, native: &Native, in_force: bool) {
+        if self.machine.clamps
+            && let Some(block) = points(&hole.into).find(|block| block.kind == MotionKind::Linear)
+        {
+            self.clamp(block);
+        }
+        let cycle = native.cycle;
+        if !in_force {
+            self.cycle = Some(cycle);
+            self.writer.push(
+                hole.line,
+                Event::Cycle {
+                    cycle: cycle.kind,
+                    feed: cycle.feed,
+                    depth: cycle.depth,
+                    clearance: cycle.clearance,
+                    retract: cycle.retract,
+                    step: cycle.step,
+                    dwell: cycle.dwell,
+                    pitch: cycle.pitch,
+                },
+            );
+        }
+        for next in &hole.into {
+            if let Flow::Point(block) = next {
+                let mut drifted = *block;
+                drifted.deviation.tip += native.drift;
+                self.pass(&[Flow::Point(drifted)]);
+            }
+        }
+        self.extremes.blocks += 1;
+        let words = &native.words[..self.writer.words()];
+        self.writer.push(
+            hole.line,
+            Event::CyclePoint {
+                tool: hole.at,
+                words,
+            },
+        );
+    }
+
+    /// Every block of the way to the next hole keeps to the level of the last one.
+    fn stays_level(&self, above: &[Flow<Block>], level: &WordValues) -> bool {
+        points(above)
+            .all(|block| block.kind == MotionKind::Rapid && self.across_alone(&block.words, level))
+            && above.len() == points(above).count()
+    }
+
+    /// Two sets of words differ in those across the tool alone.
+    fn across_alone(&self, words: &WordValues, level: &WordValues) -> bool {
+        (0..self.writer.words())
+            .all(|place| self.across.contains(&place) || words[place] == level[place])
+    }
+
+    /// The hole as a cycle; none if it is not the same.
+    fn native(&self, hole: &Hole, findings: &Findings) -> Option<Native> {
+        let machine = self.machine;
+        let (point, drilling) = (hole.at?, &hole.drilling);
+        let place = self.depth_word?;
+        // Where the control keeps the tip, and where the plane is tilted, it must have said so.
+        if machine.control.tcp == Tcp::Control && !self.writer.knows(Capabilities::CYCLE_TCP) {
+            return None;
+        }
+        let level = points(&hole.above).last()?;
+        let moves = points(&hole.into).all(|block| {
+            matches!(block.kind, MotionKind::Rapid | MotionKind::Linear)
+                && self.rotary_stand(&block.words, &level.words)
+        });
+        if !moves {
+            return None;
+        }
+        let feed = self.cycle_feed(hole, findings)?;
+        let unit = unit_length(machine.control.units);
+        let printed = |value: f64| self.words.printed(place, value);
+        let lengths = [drilling.depth, drilling.clearance, drilling.retract].map(|way| way / unit);
+        let mut words = level.words;
+        let mut drift = 0.0;
+        let [depth, clearance, retract] = if self.upright(hole, level, place) {
+            drift = self.drift(hole, level, place)? * unit;
+            let bottom = points(&hole.into).map(|block| block.words[place]);
+            let bottom = bottom.fold(f64::INFINITY, f64::min);
+            let start = points(&hole.into).next()?.words[place];
+            words[place] = printed(level.words[place] - lengths[2])?;
+            let point = words[place];
+            // What the control makes of them are the printed heights of the moves.
+            [
+                printed(point - bottom)?,
+                printed(start - point)?,
+                printed(level.words[place] - point)?,
+            ]
+        } else {
+            let any = machine.control.tcp == Tcp::Control
+                && self.writer.knows(Capabilities::CYCLE_ANY_AXIS);
+            if !any {
+                return None;
+            }
+            self.words.print_tip(point.tip.into(), &mut words)?;
+            [
+                printed(lengths[0])?,
+                printed(lengths[1])?,
+                printed(lengths[2])?,
+            ]
+        };
+        // The words across the tool differ from hole to hole.
+        let mut stands = level.words;
+        for place in &self.across {
+            stands[*place] = 0.0;
+        }
+        let in_units = |way: Option<f64>| way.map(|way| way / unit);
+        Some(Native {
+            cycle: InForce {
+                kind: drilling.kind,
+                feed,
+                depth,
+                clearance,
+                retract,
+                step: in_units(drilling.step),
+                dwell: drilling.dwell,
+                pitch: in_units(drilling.pitch),
+                level: stands,
+            },
+            words,
+            drift,
+        })
+    }
+
+    /// The rotary words, and those of linear axes that stand between cuts, are the same.
+    fn rotary_stand(&self, words: &WordValues, level: &WordValues) -> bool {
+        (0..self.writer.words()).all(|place| {
+            self.across.contains(&place)
+                || Some(place) == self.depth_word
+                || words[place] == level[place]
+        })
+    }
+
+    /// The words of the way into the hole go down the depth word.
+    fn upright(&self, hole: &Hole, level: &Block, place: usize) -> bool {
+        let bottom = points(&hole.into).map(|block| block.words[place]);
+        let bottom = bottom.fold(f64::INFINITY, f64::min);
+        let unit = unit_length(self.machine.control.units);
+        let way = (hole.drilling.retract + hole.drilling.depth) / unit;
+        // A tool that leans by more than rounding comes less far down, or goes aside.
+        libm::fabs(level.words[place] - bottom - way) <= 1e-6 * way + self.rounding()
+    }
+
+    /// Four halves of a last decimal of the linear words: two heights, each rounded, and where the tool axis leans by what
+    /// rounds off the rotary words.
+    fn rounding(&self) -> f64 {
+        let [linear, _] = self.words.half_decimal();
+        4.0 * linear / unit_length(self.machine.control.units)
+    }
+
+    /// How far the moves leave the straight way down through the level's words, in program units; none if that is more than
+    /// the tolerance leaves.
+    fn drift(&self, hole: &Hole, level: &Block, place: usize) -> Option<f64> {
+        let unit = unit_length(self.machine.control.units);
+        let (mut drift, mut deviation) = (0.0_f64, 0.0_f64);
+        for block in points(&hole.into) {
+            let square: f64 = (0..self.writer.words())
+                .filter(|other| *other != place)
+                .map(|other| block.words[other] - level.words[other])
+                .map(|way| way * way)
+                .sum();
+            drift = drift.max(square.sqrt());
+            deviation = deviation.max(block.deviation.tip);
+        }
+        let within = drift * unit + deviation <= self.machine.accuracy.tolerance;
+        within.then_some(drift)
+    }
+
+    /// The feed of the cycle, per minute, as it is printed: that of its slowest block.
+    fn cycle_feed(&self, hole: &Hole, findings: &Findings) -> Option<Feed> {
+        let unit = unit_length(self.machine.control.units);
+        let mut slowest = f64::INFINITY;
+        let mut asked = f64::INFINITY;
+        for block in points(&hole.into) {
+            if block.kind != MotionKind::Linear || block.still {
+                continue;
+            }
+            let feed = match block.time.feed {
+                Some(Feed::PerMinute(feed)) => feed,
+                _ => block.way / unit / block.time.minutes,
+            };
+            slowest = slowest.min(feed);
+            if let Pace::PerMinute(feed) = block.pace {
+                asked = asked.min(feed / unit);
+            }
+        }
+        let scale = (0..self.writer.format().feed).fold(1.0, |scale, _| scale * 10.0);
+        let feed = libm::floor(slowest * scale * (1.0 + 1e-12)) / scale;
+        if !(feed.is_finite() && feed > 0.0) {
+            return None;
+        }
+        if let Some(pitch) = hole.drilling.pitch {
+            if slowest * (1.0 + SAME_FEED) + 1.0 / scale < asked {
+                findings.at(hole.line, thread_too_fast(asked, slowest));
+            }
+            // What F is short of, the thread is short of over its depth.
+            let short = (1.0 - feed / asked) * (hole.drilling.depth + hole.drilling.clearance);
+            if short > self.machine.accuracy.tolerance {
+                findings.at(hole.line, thread_rounded(pitch, asked, feed, short));
+            }
+        }
+        Some(Feed::PerMinute(feed))
+    }
+}
+
+fn points(stream: &[Flow<Block>]) -> impl Iterator<Item = &Block> {
+    stream.iter().filter_map(|next| match next {
+        Flow::Point(block) => Some(block),
+        Flow::Command { .. } => None,
+    })
+}
+
+/// A cycle that no moves can do, where the control has it in another place alone.
+fn not_here() -> Diagnostic {
+    Diagnostic::error(
+        "cycle",
+        "this cycle must be the control's own (moves cannot tie the feed to the spindle's turns, or stop the spindle \
+         in the hole), and here the control has none: the tool does not stand along Z, or tool centre point control \
+         is on",
+    )
+    .help("[control] planes = true where the control has tilted planes; or tcp = \"post\"; or thread milling")
+}
+
+fn thread_too_fast(asked: f64, possible: f64) -> Diagnostic {
+    Diagnostic::error(
+        "cycle",
+        format!(
+            "this thread needs F{}, and with the max_feed of the axes F{} is possible",
+            Short(asked),
+            Short(possible)
+        ),
+    )
+    .help("a lower speed of the spindle")
+}
+
+fn thread_rounded(pitch: f64, asked: f64, feed: f64, short: f64) -> Diagnostic {
+    Diagnostic::warning(
+        "cycle",
+        format!(
+            "a thread of {} mm a turn needs F{}, and F{} is printed: over its depth the tap lags by {} mm",
+            Short(pitch),
+            Short(asked),
+            Short(feed),
+            Short(short)
+        ),
+    )
+    .help("a speed of the spindle at which the feed has no more decimals; a dialect that writes the pitch prints no F")
+}

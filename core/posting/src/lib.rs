@@ -23,6 +23,7 @@ pub mod curve;
 mod emit;
 pub mod expand;
 mod findings;
+mod job_facts;
 mod mount_bounds;
 mod observer;
 mod post;
@@ -35,6 +36,7 @@ mod timing;
 
 pub use blocks::{Block, MotionKind, Nominal, Reason, Time};
 pub use findings::MOST_FAULTS;
+pub use job_facts::{JobFacts, LookedAhead, OperationAhead};
 pub use mount_bounds::MountBounds;
 pub use observer::{Observer, Output};
 pub use post::{Job, Post};

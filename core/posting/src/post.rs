@@ -11,6 +11,7 @@ use crate::configuration::{Configuration, Configured};
 use crate::emit::Emit;
 use crate::expand::{Expand, Line};
 use crate::findings::Findings;
+use crate::job_facts::JobFacts;
 use crate::observer::{Observer, Observers, Output};
 use crate::program::{Interpreter, Reading, Step};
 use crate::refusal;
@@ -27,6 +28,8 @@ pub struct Job {
     pub tool_length: Option<f64>,
     /// Take the model's word over the certificate's.
     pub trust_model: bool,
+    /// What texts of the program can speak of.
+    pub facts: JobFacts,
 }
 
 /// Posts one CL file, record by record: the stages, and what lies between them.
@@ -155,7 +158,8 @@ impl<'a> Post<'a> {
         let fault = refusal::too_fine(machine, &format)
             .or_else(|| refusal::depth_counts_down(machine))
             .or_else(|| refusal::no_way_off(machine))
-            .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()));
+            .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()))
+            .or_else(|| refusal::no_instead(machine, dialect.capabilities()));
         if let Some(fault) = fault {
             return Err(fault.boxed());
         }
@@ -173,7 +177,7 @@ impl<'a> Post<'a> {
             blocks: Blocks::new(machine, dialect.capabilities(), model, job.trust_model),
             made: Vec::new(),
             observers: Observers::default(),
-            emit: Emit::new(machine, dialect, output),
+            emit: Emit::new(machine, &job.facts, dialect, output),
         };
         Ok(Self {
             machine,

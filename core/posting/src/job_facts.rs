@@ -1,7 +1,5 @@
 //! What is known of a job before its first record: names, and what a first pass over the CL file found.
 
-use std::ops::Range;
-
 use crate::blocks::Block;
 use crate::observer::Observer;
 use crate::program::{Command, Tool};
@@ -27,17 +25,15 @@ pub struct LookedAhead {
     pub extents: Option<[[f64; 3]; 2]>,
     /// Without tool changes, s; none if nobody filled it in.
     pub time_s: Option<f64>,
-    /// Operations, and where each lies in the CL file.
-    pub operations: Vec<OperationAhead>,
-}
-
-/// An operation of the CL file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OperationAhead {
-    /// Its name.
-    pub name: String,
-    /// Its lines: from that of its start to that before its end.
-    pub lines: Range<u64>,
+    /// Lines of the CL file on which an operation begins.
+    pub operations: Vec<u64>,
+    /// Lines on which the part of the file begins that a further tool works: that of its operation, if one begins
+    /// between the last move before it and the change.
+    pub parts: Vec<u64>,
+    /// Where the last operation began since the last move.
+    pending: Option<u64>,
+    /// Some move was made since the last tool change.
+    moved: bool,
 }
 
 impl LookedAhead {
@@ -58,6 +54,8 @@ impl Observer for LookedAhead {
         for next in blocks {
             match next {
                 Flow::Point(block) => {
+                    self.pending = None;
+                    self.moved = true;
                     let tip: [f64; 3] = block.tip.into();
                     let [least, most] = self.extents.get_or_insert([tip, tip]);
                     for axis in 0..3 {
@@ -74,15 +72,15 @@ impl Observer for LookedAhead {
 impl LookedAhead {
     fn command(&mut self, line: u64, command: &Command) {
         match command {
-            Command::Tool(tool) => self.changes.push(tool.clone()),
-            Command::Operation(name) => self.operations.push(OperationAhead {
-                name: name.clone(),
-                lines: line..u64::MAX,
-            }),
-            Command::OperationEnd => {
-                if let Some(open) = self.operations.last_mut() {
-                    open.lines.end = line;
+            Command::Tool(tool) => {
+                if std::mem::take(&mut self.moved) {
+                    self.parts.push(self.pending.unwrap_or(line));
                 }
+                self.changes.push(tool.clone());
+            }
+            Command::Operation(_) => {
+                self.pending = Some(line);
+                self.operations.push(line);
             }
             _ => {}
         }

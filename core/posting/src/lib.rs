@@ -33,10 +33,11 @@ pub mod report;
 mod source_buffer;
 mod stream;
 mod timing;
+mod window;
 
 pub use blocks::{Block, MotionKind, Nominal, Reason, Time};
 pub use findings::MOST_FAULTS;
-pub use job_facts::{JobFacts, LookedAhead, OperationAhead};
+pub use job_facts::{JobFacts, LookedAhead};
 pub use mount_bounds::MountBounds;
 pub use observer::{Observer, Output};
 pub use post::{Job, Post};

@@ -1,5 +1,7 @@
 //! One run: records in, text and a report out.
 
+use std::ops::Range;
+
 use post_grammar::{Record, SyntaxFault};
 use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
@@ -18,6 +20,7 @@ use crate::refusal;
 use crate::report::{AxisRange, Deviation, Report};
 use crate::stream::{BATCH, Flow, Outlet};
 use crate::timing::Timing;
+use crate::window::Window;
 
 /// How one CL file is to be posted.
 #[derive(Clone, Debug, Default)]
@@ -30,12 +33,15 @@ pub struct Job {
     pub trust_model: bool,
     /// What texts of the program can speak of.
     pub facts: JobFacts,
+    /// Lines of the CL file that become the program, if not all: those before them set the state that it begins in.
+    pub lines: Option<Range<u64>>,
 }
 
 /// Posts one CL file, record by record: the stages, and what lies between them.
 pub struct Post<'a> {
     machine: &'a Machine,
     interpreter: Interpreter,
+    window: Option<Window>,
     /// Steps that the stages have not seen yet, each with its line.
     steps: Vec<(u64, Step)>,
     stages: Stages<'a>,
@@ -183,6 +189,7 @@ impl<'a> Post<'a> {
             machine,
             findings: Findings::new(&job.reading.file),
             interpreter: Interpreter::new(job.reading),
+            window: job.lines.map(Window::new),
             steps: Vec::with_capacity(BATCH),
             stages,
             records: 0,
@@ -205,8 +212,14 @@ impl<'a> Post<'a> {
         self.findings.read(record, || {
             [waiting, stages.settled_line()].into_iter().flatten().min()
         });
-        self.interpreter
-            .record(record, &mut |step| steps.push((record.line, step)));
+        match &mut self.window {
+            None => self
+                .interpreter
+                .record(record, &mut |step| steps.push((record.line, step))),
+            Some(window) => self.interpreter.record(record, &mut |step| {
+                window.step(record.line, step, steps);
+            }),
+        }
         if self.interpreter.has_findings() {
             // What the stages find in the lines before comes before it.
             self.run();

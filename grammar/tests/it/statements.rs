@@ -398,6 +398,7 @@ fn cycles() {
             step: Some(5.0),
             later_step: Some(2.0),
             rest: vec![word("G98"), number(46.927686)],
+            ..CycleDefinition::default()
         }),
         &[
             "CYCLE/ DRILL,G98,12.373300,PECKING,5.000000,2.000000,MMPM,187.165839,3.000000,46.927686 46.927686 DWELL,0.000000 ",

@@ -1,6 +1,7 @@
 //! A job as the flags mean it: a CL file, a machine with its settings, and the plugins that the machine asks for.
 
 mod dry_run;
+mod look_ahead;
 pub mod machine_files;
 pub mod other_dialect;
 pub mod plugin_finder;
@@ -23,6 +24,7 @@ use crate::failure::Failure;
 use crate::files::{ClInput, FileFault, NullSink, PathArg};
 use crate::terminal::Progress;
 pub use dry_run::DryRun;
+pub use look_ahead::look_ahead;
 
 /// The machine with all settings of the command line, and `more` after them.
 pub fn machine(arguments: &JobArguments, more: &[Setting]) -> Result<Machine, Failure> {
@@ -97,7 +99,7 @@ pub fn posting(arguments: &JobArguments, file: &str) -> Job {
             ..Reading::default()
         },
         tool_length: arguments.tool_length,
-        trust_model: false,
+        ..Job::default()
     }
 }
 

@@ -30,10 +30,10 @@ pub struct LookedAhead {
     /// Lines on which the part of the file begins that a further tool works: that of its operation, if one begins
     /// between the last move before it and the change.
     pub parts: Vec<u64>,
-    /// Where the last operation began since the last move.
-    pending: Option<u64>,
+    /// Where an operation began since the last move.
+    pub pending: Option<u64>,
     /// Some move was made since the last tool change.
-    moved: bool,
+    pub moved: bool,
 }
 
 impl LookedAhead {

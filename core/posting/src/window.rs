@@ -34,9 +34,19 @@ impl Window {
         if line >= self.lines.end {
             return;
         }
-        if !std::mem::replace(&mut self.entered, true) {
-            let state = std::mem::take(&mut self.state).into_iter();
-            to.extend(state.map(|command| (line, Step::Command(command))));
+        if !self.entered {
+            match step {
+                // What is said anew before the first move takes the place of what held before.
+                Step::Command(command) if kind(&command).is_some() => return self.keep(command),
+                Step::Command(
+                    Command::Operation(_) | Command::Comment(_) | Command::Message(_),
+                ) => {}
+                _ => {
+                    self.entered = true;
+                    let state = std::mem::take(&mut self.state).into_iter();
+                    to.extend(state.map(|command| (line, Step::Command(command))));
+                }
+            }
         }
         to.push((line, step));
     }
@@ -91,7 +101,9 @@ mod tests {
             (3, Command::Spindle(Spindle::Off)),
             (4, tool(2)),
             (5, Command::Stop),
-            (10, Command::OptionalStop),
+            (10, Command::Comment("A".to_owned())),
+            (11, Command::Coolant(Coolant::Flood)),
+            (12, Command::OptionalStop),
             (19, Command::Home),
             (20, Command::Stop),
         ] {
@@ -101,10 +113,11 @@ mod tests {
         assert_eq!(
             steps,
             [
-                command(10, tool(2)),
-                command(10, Command::Spindle(Spindle::Off)),
-                command(10, Command::Coolant(Coolant::Mist)),
-                command(10, Command::OptionalStop),
+                command(10, Command::Comment("A".to_owned())),
+                command(12, tool(2)),
+                command(12, Command::Spindle(Spindle::Off)),
+                command(12, Command::Coolant(Coolant::Flood)),
+                command(12, Command::OptionalStop),
                 command(19, Command::Home),
             ]
         );

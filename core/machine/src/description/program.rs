@@ -9,8 +9,9 @@ use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
+use super::Machine;
 use super::build::Builder;
-use super::smoothing::SmoothingFile;
+use super::smoothing::{SmoothingFile, SmoothingRules};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::program_text::{
     Extents, Facts, OperationFacts, ProgramFacts, TemplateFault, TextTemplate, ToolFacts,
@@ -254,6 +255,19 @@ const AHEAD: [&str; 4] = [
     "program.time",
     "next_tool",
 ];
+
+impl Machine {
+    /// The machine without text of its own: for a pass whose program nobody reads, and in which not all is known that a
+    /// template asks for.
+    pub fn without_text(&self) -> Self {
+        let mut plain = self.clone();
+        if self.program.text(TextPlace::SmoothingOn).is_some() {
+            plain.smoothing = SmoothingRules::default();
+        }
+        plain.program = ProgramRules::default();
+        plain
+    }
+}
 
 impl Builder<'_> {
     pub(super) fn program(&mut self, file: &ProgramFile) -> ProgramRules {

@@ -33,12 +33,12 @@ pub struct Asked {
     pub arc: Option<AskedArc>,
     /// Any other number it has: the seconds of a dwell, the number of a tool.
     pub value: f64,
+    /// An event without words as it prints for debugging, else empty.
+    pub event: String,
     /// What a cycle says, if it is one.
     pub cycle: Option<AskedCycle>,
     /// What a tilted plane says, if it is one.
     pub plane: Option<AskedPlane>,
-    /// An event without words as it prints for debugging, else empty.
-    pub event: String,
 }
 
 /// A cycle that a dialect was asked for: see [`Event::Cycle`].
@@ -177,12 +177,12 @@ impl DialectSession for Recorder {
                 tool,
                 arc,
                 value,
-                cycle: cycle(&event),
-                plane: plane(&event),
                 event: match words {
                     [] => format!("{event:?}"),
                     _ => String::new(),
                 },
+                cycle: cycle(&event),
+                plane: plane(&event),
             });
             out.push_str("block\n");
             ends.push(out.len());

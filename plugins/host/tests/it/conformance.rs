@@ -9,6 +9,7 @@ use post_host::conformance::{self, Report, Verdict};
 use post_host::{GivenValue, Kind, Plugin};
 use post_plugin::Linked;
 
+use crate::common::needed;
 use crate::{boastful, sloppy};
 
 /// A plugin that is part of the product.
@@ -39,7 +40,10 @@ fn example(name: &str) -> Plugin {
 #[test]
 fn the_stock_plugins_are_good() {
     let number = GivenValue::Integer;
-    let plain = post_stock::plugins().iter().map(|plugin| run(*plugin, &[]));
+    let plain = post_stock::plugins().iter().map(|plugin| {
+        let needed = needed(plugin.name());
+        conformance::test(&Plugin::linked(*plugin).unwrap(), &needed).unwrap()
+    });
     let with_options = [
         run(stock("harmonic"), &[("order", number(2))]),
         run(stock("harmonic"), &[("order", number(3))]),

@@ -24,6 +24,7 @@ mod names;
 mod new;
 mod place;
 mod plugins;
+mod program_text;
 mod readiness;
 mod real_files;
 #[cfg(unix)]

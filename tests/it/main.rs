@@ -25,6 +25,7 @@ mod new;
 mod order;
 mod place;
 mod plugins;
+mod program_text;
 mod readiness;
 mod real_files;
 #[cfg(unix)]

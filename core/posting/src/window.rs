@@ -11,6 +11,8 @@ pub(crate) struct Window {
     lines: Range<u64>,
     /// What was said last before the range, of each kind.
     state: Vec<Command>,
+    /// The plane that points lie in, if the file names one.
+    plane: Option<Step>,
     entered: bool,
 }
 
@@ -19,6 +21,7 @@ impl Window {
         Self {
             lines,
             state: Vec::new(),
+            plane: None,
             entered: false,
         }
     }
@@ -26,8 +29,10 @@ impl Window {
     /// Takes a step and gives what of it, and of the state before it, is part of the program.
     pub(crate) fn step(&mut self, line: u64, step: Step, to: &mut Vec<(u64, Step)>) {
         if line < self.lines.start {
-            if let Step::Command(command) = step {
-                self.keep(command);
+            match step {
+                Step::Command(command) => self.keep(command),
+                Step::Plane(_) => self.plane = Some(step),
+                _ => {}
             }
             return;
         }
@@ -36,6 +41,10 @@ impl Window {
         }
         if !self.entered {
             match step {
+                Step::Plane(_) => {
+                    self.plane = Some(step);
+                    return;
+                }
                 // What is said anew before the first move takes the place of what held before.
                 Step::Command(command) if kind(&command).is_some() => return self.keep(command),
                 Step::Command(
@@ -45,6 +54,7 @@ impl Window {
                     self.entered = true;
                     let state = std::mem::take(&mut self.state).into_iter();
                     to.extend(state.map(|command| (line, Step::Command(command))));
+                    to.extend(self.plane.take().map(|plane| (line, plane)));
                 }
             }
         }

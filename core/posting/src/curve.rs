@@ -115,6 +115,14 @@ impl Keeps {
             && self.writes.has(Capabilities::ARC_RADIUS)
     }
 
+    /// A spline of the CL file may be kept that would be so many chords.
+    pub(crate) fn spline(&self, end: &Motion, chords: u64) -> bool {
+        self.arcs.keep
+            && self.writes.has(Capabilities::SPLINE | self.needs)
+            && end.pace != Pace::Rapid
+            && (2..=MOST_CHORDS).contains(&chords)
+    }
+
     /// Some arc may be written.
     fn writes(&self) -> bool {
         (0..3).any(|axis| self.about(axis, false))

@@ -9,6 +9,7 @@ mod fitted;
 mod gathered;
 mod nominal;
 mod off_part;
+mod splined;
 mod staged;
 
 use std::rc::Rc;

@@ -8,12 +8,16 @@ mod plugin_folders;
 pub mod unused_options;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use post_grammar::text::as_remark;
 use post_grammar::{ReadError, Reader};
 use post_host::Finder;
 use post_machine::check::Check;
 use post_machine::description::{Machine, Setting};
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{Capabilities, DialectSession};
+use post_posting::ahead::{Ahead, AheadPass};
 use post_posting::program::Reading;
 use post_posting::{Job, Post};
 
@@ -98,6 +102,49 @@ pub fn posting(arguments: &JobArguments, file: &str) -> Job {
         },
         tool_length: arguments.tool_length,
         trust_model: false,
+        ahead: None,
+    }
+}
+
+/// What a first pass over the CL file finds out, where the program depends on it: `[control] planes`, and a dialect that
+/// writes them.
+pub fn ahead(
+    source: &PathArg,
+    machine: &Machine,
+    dialect: &impl DialectSession,
+    posting: &Job,
+) -> Result<Option<Arc<Ahead>>, Failure> {
+    if !machine.control.planes || !dialect.capabilities().has(Capabilities::PLANE) {
+        return Ok(None);
+    }
+    let input = ClInput::open(source)?;
+    if input.length.is_none() {
+        return Err(Diagnostic::error(
+            "planes",
+            format!(
+                "[control] planes reads the CL file twice, and {} can be read once",
+                input.name
+            ),
+        )
+        .help("name a file, or planes = false")
+        .into());
+    }
+    let mut pass = AheadPass::new(machine, posting.reading.clone());
+    let mut reader = Reader::new(input.bytes);
+    loop {
+        match reader.next_record() {
+            Ok(Some(record)) => pass.record(&record),
+            Ok(None) => return Ok(Some(Arc::new(pass.finish()))),
+            // The program is not made then, and says why.
+            Err(ReadError::Syntax(_)) => {}
+            Err(ReadError::Io(error)) => {
+                return Err(FileFault::Read {
+                    name: input.name,
+                    error,
+                }
+                .into());
+            }
+        }
     }
 }
 

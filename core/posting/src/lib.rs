@@ -17,6 +17,7 @@
 //! that grows with the file.
 
 pub mod accuracy;
+pub mod ahead;
 mod blocks;
 mod configuration;
 pub mod curve;

@@ -408,7 +408,7 @@ impl Engine {
                 ..
             } => {
                 self.plane.must_be_off("a tool change")?;
-                self.change(number, register, name, out);
+                self.change(number, &format!("T{number}"), register, name, out);
             }
             Event::Preselect { number } => self.line(&format!("T{number}"), out),
             Event::Spindle(spindle) => self.turn(spindle, out)?,
@@ -478,7 +478,8 @@ impl Engine {
         Ok(())
     }
 
-    fn change(&mut self, number: u32, register: u32, name: &str, out: &mut String) {
+    /// Changes to a tool that is called by `call` (`T1`).
+    pub fn change(&mut self, number: u32, call: &str, register: u32, name: &str, out: &mut String) {
         self.motion.settle(out);
         if !name.is_empty() {
             self.remark(&format!("T{number} {name}"), out);
@@ -487,7 +488,7 @@ impl Engine {
             self.motion.block.integer("N", *number);
             *number += *step;
         }
-        let change = format!("T{number} {}", self.change);
+        let change = format!("{call} {}", self.change);
         self.line(change.trim_end(), out);
         // The changer may have moved any axis.
         self.motion.moved_by_line();

@@ -112,7 +112,7 @@ pub struct Codes {
     pub feed: [&'static str; 3],
     /// Compensation off, left, right; the last two empty where the control has none.
     pub compensation: [&'static str; 3],
-    /// Address of the compensation's register.
+    /// Address of the compensation's register; empty where the control knows the radius by itself.
     pub radius: &'static str,
     /// Unconditional and optional stop.
     pub stop: [&'static str; 2],

@@ -58,9 +58,11 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     // Both are opened before the work begins: a program without its summary would be half a result.
     let mut files = AtomicFile::create(&targets)?;
     let name = input.name.clone();
+    let posting = job::posting(&arguments.job, &name);
     let job = Job {
         trust_model: arguments.trust_model,
-        ..job::posting(&arguments.job, &name)
+        ahead: job::ahead(source, &machine, &dialect, &posting)?,
+        ..posting
     };
     let mut post = Post::new(&machine, job, &mut dialect, &mut model, &mut files[0])
         .map_err(|finding| *finding)?;

@@ -1,5 +1,7 @@
 //! Whole runs, from CL text to the events a dialect is asked to write, and the way back from their words.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 use post_grammar::{ReadError, Reader};
 use post_machine::description::{Machine, Source, Tcp, load};
@@ -7,8 +9,9 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{
     Batch, Capabilities, Curve, Cycle, Deviation, DialectSession, Event, Feed, Format,
-    ModelSession, Tolerance, ToolPose, WriteFault,
+    ModelSession, PlaneAngles, Tolerance, ToolPose, WriteFault,
 };
+use post_posting::ahead::AheadPass;
 use post_posting::program::ToldSpindle;
 use post_posting::report::Report;
 use post_posting::{Job, Observer, Output, Post};
@@ -104,6 +107,17 @@ impl Recorder {
             capabilities: Capabilities::NONE,
             asked: Vec::new(),
         }
+    }
+}
+
+impl Recorder {
+    /// Told tilted planes by these angles, with so many decimals.
+    #[must_use]
+    pub fn with_planes(mut self, angles: PlaneAngles, decimals: u8) -> Self {
+        self.format.plane_angles = angles;
+        self.format.plane_decimals = decimals;
+        self.capabilities |= Capabilities::PLANE;
+        self
     }
 }
 
@@ -355,6 +369,14 @@ pub fn watched(
     // could not make.
     let mut machine = machine.clone();
     machine.frame.retract.clear();
+    if machine.control.planes {
+        let mut pass = AheadPass::new(&machine, job.reading.clone());
+        let mut reader = Reader::new(cl.as_bytes());
+        while let Ok(Some(record)) = reader.next_record() {
+            pass.record(&record);
+        }
+        job.ahead = Some(Arc::new(pass.finish()));
+    }
     let mut post = Post::new(&machine, job, &mut dialect, model, &mut output)
         .expect("machine and dialect agree");
     for observer in observers {

@@ -210,6 +210,10 @@ pub(crate) struct AxisFile {
     /// Largest feed, mm/min or degrees a minute; no block asks for more.
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_feed: Option<Quantity>,
+    /// A feed a minute counts the way of this rotary axis along a circle of this diameter, mm, where the control does not
+    /// keep the tip; in degrees if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub feed_diameter: Option<Quantity>,
     /// Largest acceleration, mm/s² or degrees/s².
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_accel: Option<Quantity>,
@@ -348,6 +352,17 @@ pub enum FeedMode {
     InverseTime,
 }
 
+/// What F means under inverse time.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum InverseTime {
+    /// One over the time of the block in minutes.
+    #[default]
+    Minutes,
+    /// One over the time of the block in seconds.
+    Seconds,
+}
+
 /// The length that a control's feed a minute is meant along when it does not keep the tip.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -463,6 +478,9 @@ pub(crate) struct ControlFile {
     /// How a cutting feed is written; auto if not said.
     #[serde(default)]
     pub feed: FeedMode,
+    /// What F means under inverse time; minutes if not said.
+    #[serde(default)]
+    pub inverse_time: InverseTime,
     /// The length that the control divides by F when it does not keep the tip; linear if not said.
     #[serde(default)]
     pub feed_length: FeedLength,

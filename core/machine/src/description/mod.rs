@@ -29,7 +29,7 @@ pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
     ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
-    Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, ToolLength,
+    InverseTime, Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
@@ -140,6 +140,8 @@ pub struct Axis {
     pub clamp: Option<Clamp>,
     /// Largest feed, mm/min or rad/min; infinite if the file does not say.
     pub max_feed: f64,
+    /// A feed a minute counts the way of a rotary axis along a circle of this diameter, mm; none: in degrees.
+    pub feed_diameter: Option<f64>,
     /// Largest acceleration, mm/s² or rad/s²; infinite if the file does not say.
     pub max_accel: f64,
     /// Largest jerk, mm/s³ or rad/s³; infinite if the file does not say.
@@ -244,6 +246,8 @@ pub struct Control {
     pub feed: FeedMode,
     /// What a feed a minute is meant along.
     pub feed_length: FeedLength,
+    /// What F means under inverse time.
+    pub inverse_time: InverseTime,
     /// How a rapid is written in which a rotary axis turns, or an axis would pass its largest feed.
     pub rapid: Rapid,
     /// Which tool length counts.

@@ -87,7 +87,8 @@ impl Blocks<'_> {
         end: &Motion,
     ) -> Option<SplineBlock> {
         let last = self.last.as_deref()?;
-        if self.compensating {
+        // No dialect declares splines inside a tilted plane.
+        if self.compensating || self.keeps.tilted {
             return None;
         }
         let node = placer.settled(pose(end), 1.0, &last.trace.joints).ok()?;

@@ -9,6 +9,7 @@ mod writer;
 use post_machine::axis_words::{self, Words};
 use post_machine::description::{Machine, Smoothing};
 use post_machine::kinematics::{Chain, Joints};
+use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, DialectSession, Event, List, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
@@ -50,11 +51,16 @@ pub(crate) struct Emit<'a> {
     coolant_due: bool,
     /// What is printed of the next block, if it goes along a curve.
     curve: Option<Box<PrintedCurve>>,
+    /// The tilted plane of the words.
+    plane: Option<Box<TiltedPlane>>,
+    /// The control was told it.
+    plane_on: bool,
     /// The hole whose moves are coming.
     hole: Option<Box<Hole>>,
     /// The cycle in force.
     cycle: Option<InForce>,
-    /// Place of the word that cycles drill along.
+    /// Place of the word that cycles drill along, and the same where it is that of the axis along the tool.
+    z_word: Option<usize>,
     depth_word: Option<usize>,
     /// Places of the words that move the tool across it.
     across: Vec<usize>,
@@ -97,8 +103,11 @@ impl<'a> Emit<'a> {
             coolant: None,
             coolant_due: false,
             curve: None,
+            plane: None,
+            plane_on: false,
             hole: None,
             cycle: None,
+            z_word: cycles::z_word(machine),
             depth_word: cycles::depth_word(machine),
             across: across(machine),
             changed: false,
@@ -249,7 +258,9 @@ impl<'a> Emit<'a> {
             | Command::Index { .. }
             | Command::Along(_)
             | Command::AlongEnd
-            | Command::Hole(_) => return,
+            | Command::Hole(_)
+            | Command::Still(_) => return,
+            Command::Plane(plane) => return self.set_plane(line, plane.clone()),
             Command::Curve(curve) => {
                 self.curve = Some(curve.clone());
                 return;
@@ -320,9 +331,9 @@ impl<'a> Emit<'a> {
     }
 }
 
-/// Places of the words of the linear axes that move in cuts, but for that of the depth.
+/// Places of the words of the linear axes that move in cuts, but for Z.
 fn across(machine: &Machine) -> Vec<usize> {
-    let depth = cycles::depth_word(machine);
+    let depth = cycles::z_word(machine);
     let order = axis_words::order(machine).into_iter().enumerate();
     order
         .filter(|(place, joint)| {

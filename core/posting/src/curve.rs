@@ -120,6 +120,18 @@ impl Keeps {
             && self.writes.has(Capabilities::ARC_RADIUS)
     }
 
+    /// A spline of the CL file may be kept that would be so many chords.
+    pub(crate) fn spline(&self, end: &Motion, chords: u64) -> bool {
+        let needs = match self.tcp {
+            true => Capabilities::SPLINE | Capabilities::ARC_TCP,
+            false => Capabilities::SPLINE,
+        };
+        self.arcs.keep
+            && self.writes.has(needs)
+            && end.pace != Pace::Rapid
+            && (2..=MOST_CHORDS).contains(&chords)
+    }
+
     /// Some arc may be written, in a tilted plane or not.
     fn writes(&self) -> bool {
         [false, true].iter().any(|tilted| {

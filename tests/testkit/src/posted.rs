@@ -31,6 +31,8 @@ pub struct Asked {
     pub tool: Option<ToolPose>,
     /// Of an arc, what says how it goes.
     pub arc: Option<AskedArc>,
+    /// Of a spline, its knots and control points.
+    pub spline: Option<AskedSpline>,
     /// Any other number it has: the seconds of a dwell, the number of a tool.
     pub value: f64,
     /// An event without words as it prints for debugging, else empty.
@@ -72,6 +74,13 @@ pub struct AskedArc {
     pub normal: [f64; 3],
     pub turn: f64,
     pub radius: Option<f64>,
+}
+
+/// The spline that a dialect was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AskedSpline {
+    pub knots: Vec<f64>,
+    pub points: Vec<f64>,
 }
 
 /// A dialect that writes nothing down but the events themselves. No word may be a negative zero, no number an
@@ -128,6 +137,13 @@ impl DialectSession for Recorder {
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
+            let spline = match event {
+                Event::Spline { knots, points, .. } => Some(AskedSpline {
+                    knots: knots.0.to_vec(),
+                    points: points.0.to_vec(),
+                }),
+                _ => None,
+            };
             let arc = match event {
                 Event::Arc {
                     centre,
@@ -176,6 +192,7 @@ impl DialectSession for Recorder {
                 feed,
                 tool,
                 arc,
+                spline,
                 value,
                 event: match words {
                     [] => format!("{event:?}"),

@@ -45,6 +45,13 @@ impl Words {
         Some((printed, mm))
     }
 
+    /// The number nearest to `number` that has no more decimals than any linear word.
+    pub fn printed_number(&self, number: f64) -> Option<f64> {
+        let words = self.cartesian()?.iter();
+        let coarsest = words.min_by(|a, b| a.scale.total_cmp(&b.scale))?;
+        Some(coarsest.printed(number))
+    }
+
     /// The words of `values` with their linear ones as in `point`, program units.
     pub fn with_point(&self, values: &WordValues, point: [f64; 3]) -> WordValues {
         let mut values = *values;

@@ -28,9 +28,9 @@ const AT_ITS_END: f64 = 1e-6;
 /// A curve that is on its way, and the moves that it would be otherwise.
 #[derive(Debug)]
 pub(super) struct Following {
-    line: u64,
-    curve: Box<Curve>,
-    moves: Vec<Chosen>,
+    pub(super) line: u64,
+    pub(super) curve: Box<Curve>,
+    pub(super) moves: Vec<Chosen>,
 }
 
 /// A block along an arc.
@@ -125,7 +125,10 @@ impl Blocks<'_> {
                 };
                 self.push_arc(&placer, following.line, &whole, blocks, to);
             }
-            Course::Spline(_) => return false,
+            Course::Spline(spline) => {
+                let lifted = spline.clone().placed(|point| point + lift);
+                return self.keep_spline(&placer, &frame, following, &lifted, to);
+            }
         }
         true
     }

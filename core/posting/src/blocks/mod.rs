@@ -10,6 +10,7 @@ mod gathered;
 mod nominal;
 mod off_part;
 mod plane;
+mod splined;
 mod staged;
 
 use std::rc::Rc;

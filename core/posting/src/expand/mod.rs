@@ -245,17 +245,30 @@ impl Expand {
 
     fn spline(&mut self, line: u64, step: &SplineStep, out: &mut Out<'_>, findings: &Findings) {
         let SplineStep { spline, end } = step;
-        match spline.chords(self.chord_tolerance) {
-            Some(count) if count <= MOST_CHORDS => {}
+        let keeps = |count| {
+            self.keeps
+                .as_ref()
+                .is_some_and(|keeps| keeps.spline(end, count))
+        };
+        let along = match spline.chords(self.chord_tolerance) {
+            Some(count) if count <= MOST_CHORDS => keeps(count),
             count => {
                 let count = count.map_or("countless".to_owned(), |count| count.to_string());
                 findings.at(line, self.too_many_chords("spline", &count));
                 return;
             }
+        };
+        if along {
+            let course = Course::Spline(spline.clone());
+            let curve = Box::new(Curve { course, end: *end });
+            self.command(line, Command::Along(curve), out, findings);
         }
         spline.flatten(self.chord_tolerance, &mut |tip, chord| {
             self.go(line, Motion { tip, chord, ..*end }, out, findings);
         });
+        if along {
+            self.command(line, Command::AlongEnd, out, findings);
+        }
     }
 
     /// Approach, pecks, dwell and retract at one point; where the control has the cycle, marked for what writes it.

@@ -744,3 +744,91 @@ fn points_of_arcs_become_arcs_again() {
         .unwrap();
     assert_eq!((report.blocks, report.curves), (602, 0));
 }
+
+/// The places of a cubic B-spline by the recursion of Cox and de Boor.
+fn spline_at(knots: &[f64], points: &[V], u: f64) -> V {
+    fn basis(knots: &[f64], index: usize, degree: usize, u: f64) -> f64 {
+        if degree == 0 {
+            return f64::from(u8::from(knots[index] <= u && u < knots[index + 1]));
+        }
+        let share = |from: f64, to: f64, over: f64| match to > from {
+            true => over / (to - from),
+            false => 0.0,
+        };
+        let (low, high) = (knots[index], knots[index + degree + 1]);
+        share(low, knots[index + degree], u - low) * basis(knots, index, degree - 1, u)
+            + share(knots[index + 1], high, high - u) * basis(knots, index + 1, degree - 1, u)
+    }
+    let terms = points.iter().enumerate();
+    terms.fold(V::zeros(), |sum, (index, point)| {
+        sum + point * basis(knots, index, 3, u)
+    })
+}
+
+/// Splines of a real file stay splines: as the printed control points and knots have them, they are as near to those of
+/// the file as certified.
+#[test]
+fn splines_stay_splines() {
+    let mut rng = post_testkit::seeded(5);
+    let text = machine(&mut rng, CHAINS[0], "post", "mm", "");
+    let bench = Bench::new(&text, 3, LENGTH);
+    let knots = [
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.123_456_7,
+        0.4,
+        0.4,
+        0.777_777_7,
+        1.0,
+        1.0,
+        1.0,
+        1.0,
+    ];
+    let points: Vec<V> = (0..8)
+        .map(|index| {
+            V::new(
+                f64::from(index) * 7.0,
+                rng.range(-9.0, 9.0),
+                rng.range(-2.0, 2.0),
+            )
+        })
+        .map(|point| point.map(|x| libm::rint(x * 1e5) / 1e5))
+        .collect();
+    let first = points[0];
+    let mut cl = format!(
+        "UNITS/MM\nSPINDL/3000,RPM,CLW\nRAPID\nGOTO/{},{},50\nFEDRAT/600,MMPM\nGOTO/{},{},{}\nNURBS/\n",
+        first.x, first.y, first.x, first.y, first.z
+    );
+    cl += "KNOT/0.1234567,0.4,0.4,0.7777777,1.0\n";
+    for point in &points[1..] {
+        writeln!(cl, "CNTRL/{},{},{}", point.x, point.y, point.z).unwrap();
+    }
+    cl += "END-OF-PATH\nFINI\n";
+    let (run, blocks) = posted(&bench, 3, ALL.and(Capabilities::SPLINE), &cl);
+    let run = run.good(&cl);
+    let printed = run.asked.iter().find_map(|asked| asked.spline.clone());
+    let printed = printed.expect("a spline");
+    let bound = blocks.last().unwrap().deviation.tip;
+    let controls: Vec<V> = printed.points.chunks(5).map(point).collect();
+    assert_eq!(controls.len(), points.len());
+    let last = printed.knots[printed.knots.len() - 1];
+    let mut worst: f64 = 0.0;
+    for step in 0..2000 {
+        let u = f64::from(step) / 2000.0;
+        let mut words = printed.points[..5].to_vec();
+        // Knot span by knot span both go alike.
+        let span = (3..8).rev().find(|span| knots[*span] <= u).unwrap();
+        let share = (u - knots[span]) / (knots[span + 1] - knots[span]);
+        let (from, to) = (printed.knots[span], printed.knots[span + 1]);
+        let place = spline_at(&printed.knots, &controls, from + (to - from) * share);
+        words[..3].copy_from_slice(place.as_slice());
+        let (tip, _) = bench.reference.forward(&bench.joints(&words));
+        worst = worst.max((tip - spline_at(&knots, &points, u)).norm());
+    }
+    println!("spline to {last}: {worst} mm off, at most {bound} certified");
+    assert!(worst <= bound && bound < 0.006, "{worst} {bound}");
+    let (chords, _) = posted(&bench, 3, ALL, &cl);
+    assert!(chords.good(&cl).report.unwrap().blocks > 50);
+}

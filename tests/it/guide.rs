@@ -1,4 +1,5 @@
-//! The two dialects of the guide, made as it says: each posts the sample of the README.
+//! `post plugin new`, followed as an author outside of this checkout would: what it writes builds with nothing but
+//! itself, passes the kit, and posts its sample.
 
 #![cfg(unix)]
 
@@ -7,89 +8,156 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::common::{check_numbers, post, root};
+use tempfile::TempDir;
+
+use crate::common::{Run, check_numbers, command, post, root, run};
 
 const GUIDE: &str = include_str!("../../plugins/README.md");
 
-/// The first block of code behind `mark`.
-fn code(mark: &str) -> &'static str {
-    let (_, rest) = GUIDE.split_once(mark).unwrap();
-    let (_, rest) = rest.split_once("```").unwrap();
-    let (_, rest) = rest.split_once('\n').unwrap();
-    rest.split_once("```").unwrap().0
+fn in_folder(folder: &Path, arguments: &[&str]) -> Run {
+    run(command().current_dir(folder).args(arguments), b"")
 }
 
-fn library(folder: &Path, name: &str) -> PathBuf {
-    folder.join(format!("{DLL_PREFIX}post_{name}{DLL_SUFFIX}"))
+/// A dialect of this form, in a folder of its own.
+fn new(name: &str, form: &str) -> (TempDir, PathBuf) {
+    let parent = tempfile::tempdir().unwrap();
+    let made = in_folder(parent.path(), &["plugin", "new", name, form]);
+    assert_eq!((made.code, made.err.as_str()), (0, ""), "{form}");
+    let folder = parent.path().join(name);
+    // The commands that it prints are those of the folder's own guide.
+    let read_me = fs::read_to_string(folder.join("README.md")).unwrap();
+    for line in made.out.lines().skip(1) {
+        assert!(read_me.contains(line.trim()), "{line}\n{read_me}");
+    }
+    (parent, folder)
 }
 
-/// Does as the guide says; the folder of the library.
-fn build_rust(folder: &Path) -> PathBuf {
-    let manifest = code("A library crate called `post_<name>`");
-    let api = root().join("plugins/api").display().to_string();
-    let package = "[package]\nname = \"post_tiny\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[workspace]\n\n";
-    let manifest = manifest.replace("../post/plugins/api", &api);
-    assert!(manifest.contains(&api), "{manifest}");
-    fs::write(folder.join("Cargo.toml"), format!("{package}{manifest}")).unwrap();
-    fs::create_dir(folder.join("src")).unwrap();
-    let source = code("and this (it is `host/examples/post_tiny.rs`");
-    fs::write(folder.join("src/lib.rs"), source).unwrap();
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("guide");
-    let output = Command::new(env!("CARGO"))
-        .args(["build", "--offline", "--quiet", "--target-dir"])
-        .arg(&target)
+/// Runs a tool of the author's, which must not fetch anything.
+fn tool(folder: &Path, words: &[&str]) -> String {
+    let output = Command::new(words[0])
+        .args(&words[1..])
         .current_dir(folder)
+        .env("CARGO_TARGET_DIR", folder.join("target"))
+        .env("CARGO_NET_OFFLINE", "true")
+        .env_remove("RUSTFLAGS")
         .output()
         .unwrap();
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{message}");
-    target.join("debug")
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let (out, err) = (text(&output.stdout), text(&output.stderr));
+    assert!(output.status.success(), "{words:?}\n{out}{err}");
+    assert!(!err.contains("warning"), "{words:?}\n{err}");
+    out
 }
 
-fn build_c(folder: &Path) -> PathBuf {
-    let command = code("`host/tests/c/minimal.c` is a dialect");
-    let command = command.trim().replace(
-        "minimal.c -o libpost_minimal.so",
-        &format!(
-            "plugins/host/tests/c/minimal.c -o {}",
-            library(folder, "minimal").display()
-        ),
+/// The kit finds nothing, and the sample is posted as the README says.
+fn is_good(folder: &Path, name: &str, libraries: &str) {
+    let library = format!("{libraries}/{DLL_PREFIX}post_{name}{DLL_SUFFIX}");
+    let tested = in_folder(folder, &["plugin", "test", &library, "--events", "20000"]);
+    assert_eq!(
+        (tested.code, tested.err.as_str()),
+        (0, ""),
+        "{}",
+        tested.out
     );
-    let mut words = command.split_whitespace();
-    let output = Command::new(words.next().unwrap())
-        .args(words)
-        .current_dir(root())
-        .output()
-        .unwrap();
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{message}");
-    folder.to_owned()
+    let arguments = [
+        "--plugins",
+        libraries,
+        "--machine",
+        "machine.toml",
+        "sample.cls",
+    ];
+    let posted = in_folder(folder, &arguments);
+    assert_eq!((posted.code, posted.err.as_str()), (0, ""), "{name}");
+    let program = fs::read_to_string(folder.join("sample.nc")).unwrap();
+    check_numbers(&program);
+    assert!(program.lines().count() > 100, "{program}");
+    for part in ["M6\n", " M3\n", "G43 H1", "\nM30\n"] {
+        assert!(program.contains(part), "{name}: {part}\n{program}");
+    }
+}
+
+fn rust(name: &str, form: &str) {
+    let (_parent, folder) = new(name, form);
+    let tests = tool(&folder, &[env!("CARGO"), "test", "--quiet"]);
+    assert!(tests.contains("2 passed"), "{tests}");
+    is_good(&folder, name, "target/debug");
+    let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+    assert!(!manifest.contains(root().to_str().unwrap()), "{manifest}");
 }
 
 #[test]
-fn the_dialects_of_the_guide_post_the_sample_of_the_readme() {
-    let readme = fs::read_to_string(root().join("README.md")).unwrap();
-    assert!(readme.contains("--machine ac-trunnion tests/samples/blade.cls"));
-    let folders = [(); 2].map(|()| tempfile::tempdir().unwrap());
-    let libraries = [
-        ("tiny", build_rust(folders[0].path())),
-        ("minimal", build_c(folders[1].path())),
-    ];
-    for (name, folder) in libraries {
-        let folder = folder.to_str().unwrap();
-        let setting = format!("control.dialect={name}");
-        let arguments = ["--machine", "ac-trunnion", "tests/samples/blade.cls"];
-        let more = ["--plugins", folder, "--set", &setting, "-o", "-"];
-        let run = post(&[arguments.as_slice(), &more].concat());
-        assert_eq!(run.code, 0, "{name}\n{}", run.err);
-        check_numbers(&run.out);
-        assert!(run.out.lines().count() > 100, "{}", run.out);
-        for part in [" M6\n", " M3\n", " G43 H", "\nM30\n"] {
-            assert!(run.out.contains(part), "{name}: {part}\n{}", run.out);
+fn a_dialect_in_rust_builds_as_it_stands_and_posts_the_sample() {
+    rust("mine", "--rust");
+}
+
+#[test]
+fn a_table_of_the_g_code_family_builds_as_it_stands_and_posts_the_sample() {
+    rust("table_1", "--iso");
+}
+
+#[test]
+fn a_dialect_in_c_builds_as_it_stands_and_posts_the_sample() {
+    let (_parent, folder) = new("in_c", "--c");
+    tool(&folder, &["make", "CFLAGS=-O2 -Wall -Wextra -Werror"]);
+    is_good(&folder, "in_c", ".");
+}
+
+/// The guide shows what `post plugin new tiny --rust` writes.
+#[test]
+fn the_guide_shows_the_folder_as_it_is_written() {
+    let (_parent, folder) = new("mine", "--rust");
+    let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+    let dependencies = manifest.split_once("[dependencies]\n").unwrap().1;
+    let line = dependencies.lines().next().unwrap();
+    assert!(GUIDE.contains(line), "{line} is not in the guide");
+    let source = fs::read_to_string(folder.join("src/lib.rs")).unwrap();
+    let shown = source.replace("export_dialect!(mine, ", "export_dialect!(tiny, ");
+    assert!(GUIDE.contains(&shown), "the guide must show src/lib.rs");
+    // And it is published with the licences that its text is under.
+    for krate in ["post-plugin", "post-kit"] {
+        for licence in ["LICENSE-MIT", "LICENSE-APACHE"] {
+            let own = folder.join("vendor").join(krate).join(licence);
+            let ours = fs::read_to_string(root().join(licence)).unwrap();
+            assert_eq!(fs::read_to_string(own).unwrap(), ours);
         }
-        // It is no worse than the kit says, as the guide has it.
-        let path = library(Path::new(folder), name);
-        let run = post(&["plugin", "test", path.to_str().unwrap()]);
-        assert_eq!(run.code, 0, "{}{}", run.out, run.err);
     }
+}
+
+#[test]
+fn a_name_that_cannot_be_is_refused_and_nothing_is_replaced() {
+    let parent = tempfile::tempdir().unwrap();
+    fs::create_dir(parent.path().join("there")).unwrap();
+    fs::write(parent.path().join("a_file"), "mine\n").unwrap();
+    let long = "x".repeat(41);
+    for (name, message) in [
+        ("fanuc", "`fanuc` is built in"),
+        ("sampled", "`sampled` is built in"),
+        ("kit", "post_kit is a crate that dialects are built with"),
+        ("9axes", "`9axes` cannot be the name of a dialect"),
+        ("Mine", "`Mine` cannot be"),
+        ("mi-ne", "`mi-ne` cannot be"),
+        ("mi ne", "`mi ne` cannot be"),
+        ("naïve", "`naïve` cannot be"),
+        (&long, "cannot be the name"),
+        ("..", ".. is no name"),
+        ("there", "there is there already"),
+        ("a_file", "a_file is there already"),
+        ("no/such", "there is no folder no"),
+        ("a_file/mine", "cannot be made"),
+    ] {
+        for form in ["--rust", "--iso", "--c"] {
+            let run = in_folder(parent.path(), &["plugin", "new", name, form]);
+            assert_eq!((run.code, run.out.as_str()), (1, ""), "{name}");
+            assert!(run.err.contains(message), "{name}: {}", run.err);
+        }
+    }
+    assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 2);
+    assert_eq!(
+        fs::read_dir(parent.path().join("there")).unwrap().count(),
+        0
+    );
+    let file = fs::read_to_string(parent.path().join("a_file")).unwrap();
+    assert_eq!(file, "mine\n");
+    assert_eq!(post(&["plugin", "new", "mine"]).code, 2);
+    assert_eq!(post(&["plugin", "new", "mine", "--c", "--iso"]).code, 2);
 }

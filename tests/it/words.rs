@@ -5,9 +5,7 @@ use crate::common::{Run, command, post, run};
 use std::fs;
 
 /// Words that a program without them would cut otherwise, as CAM systems write them.
-const CHANGING: [&str; 24] = [
-    "SET/OFSETL,1",
-    "OFSETL/2",
+const CHANGING: [&str; 22] = [
     "MIRROR/XYPLAN",
     "CALSUB/SUB1",
     "PREFUN/54",

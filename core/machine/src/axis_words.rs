@@ -1,5 +1,7 @@
 //! From axis values to the words of the program and back: work offset, units, decimals, order.
 
+mod coordinates;
+
 use nalgebra::Vector3;
 use post_plugin::Format;
 
@@ -22,6 +24,8 @@ pub struct Words {
     zero: Joints,
     /// The tilted plane whose coordinates the linear words are.
     plane: Option<TiltedPlane>,
+    /// The linear words are X, Y and Z, one each.
+    cartesian: bool,
 }
 
 /// One word.
@@ -139,9 +143,12 @@ impl Words {
                     per_scale: 1.0 / scale,
                 }
             });
-        let (rotary, linear) = words.partition(|word| machine.axes[word.joint].joint.rotary);
+        let (rotary, linear): (Vec<Word>, Vec<Word>) =
+            words.partition(|word| machine.axes[word.joint].joint.rotary);
+        let name = |word: &Word| machine.axes[word.joint].name.as_str();
         Self {
             tcp: machine.control.tcp,
+            cartesian: linear.iter().map(name).eq(["X", "Y", "Z"]),
             rotary,
             linear,
             zero: [0.0; MAX_AXES],
@@ -152,12 +159,7 @@ impl Words {
     /// The words inside a tilted plane: the linear ones are the tip in its frame, whoever keeps the tip outside. None
     /// where they are not just X, Y and Z.
     pub fn in_plane(&self, plane: TiltedPlane) -> Option<Self> {
-        let coordinate = |wanted: usize| {
-            let mut words = self.linear.iter();
-            words.any(|word| word.coordinate == wanted)
-        };
-        let whole = self.linear.len() == 3 && (0..3).all(coordinate);
-        whole.then(|| Self {
+        self.cartesian.then(|| Self {
             plane: Some(plane),
             ..self.clone()
         })

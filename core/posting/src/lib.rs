@@ -6,7 +6,7 @@
 //! | stage | takes | hands on |
 //! |---|---|---|
 //! | [`program`] | records | [`program::Step`]: what is meant, mm, part frame |
-//! | `expand` | steps | straight moves: as yet no later stage carries a curve to a dialect that writes it |
+//! | `expand` | steps | straight moves; those of a curve that may stay one between two commands |
 //! | `configuration` | moves | points with the axis values chosen for them, over whole passes |
 //! | `blocks` | points | [`Block`]: as printed, more or fewer of them, each certified |
 //! | `timing` | blocks | the same with time, feed and what limits it |
@@ -20,6 +20,7 @@ pub mod accuracy;
 pub mod ahead;
 mod blocks;
 mod configuration;
+pub mod curve;
 mod emit;
 pub mod expand;
 mod findings;

@@ -102,6 +102,17 @@ impl Observer for MountBounds<'_> {
                     command: Command::Head(name),
                     ..
                 } => self.swap(name),
+                Flow::Command {
+                    line,
+                    command: Command::Curve(curve),
+                } => {
+                    if let Some((_, room)) = self.rooms.get_mut(self.at) {
+                        curve
+                            .between
+                            .iter()
+                            .for_each(|joints| room.take(joints, *line));
+                    }
+                }
                 Flow::Command { .. } => {}
             }
         }

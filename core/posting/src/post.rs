@@ -149,7 +149,8 @@ impl<'a> Post<'a> {
         let format = dialect.format().clone();
         let fault = refusal::too_fine(machine, &format)
             .or_else(|| refusal::depth_counts_down(machine))
-            .or_else(|| refusal::no_way_off(machine));
+            .or_else(|| refusal::no_way_off(machine))
+            .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()));
         if let Some(fault) = fault {
             return Err(fault.boxed());
         }
@@ -306,6 +307,7 @@ impl<'a> Post<'a> {
             records: self.records,
             moves: stages.configuration.moves(),
             blocks: extremes.blocks,
+            curves: extremes.curves,
             nc_lines: stages.emit.lines(),
             points_added: counts.points_added,
             points_dropped: counts.points_dropped,

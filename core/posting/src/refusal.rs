@@ -9,7 +9,7 @@ use post_machine::diagnostic::{Diagnostic, Extreme, Short};
 use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, Second, Unreachable};
-use post_plugin::Format;
+use post_plugin::{Capabilities, Format};
 
 /// Where the words are axis positions, the control adds the tool's length to those of the depth axis: away from the part
 /// if they count that way.
@@ -294,6 +294,18 @@ pub(crate) fn no_way(
         ),
     )
     .help(help)
+}
+
+/// The machine file asks the control to smooth, and the dialect has no words for it.
+pub(crate) fn no_smoothing(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
+    (machine.smoothing.any() && !writes.has(Capabilities::SMOOTHING)).then(|| {
+        let message = format!(
+            "[program.smoothing] of {}: the dialect {} has no words for smoothing",
+            machine.name, machine.control.dialect
+        );
+        Diagnostic::error("dialect", message)
+            .help("leave the table out, or name a dialect that has them")
+    })
 }
 
 /// Tolerances below what the words round off, told before anything is made: pieces without end would go in, and none

@@ -21,6 +21,8 @@ pub struct Report {
     pub moves: u64,
     /// Blocks with a motion in the NC program.
     pub blocks: u64,
+    /// Those of them that are arcs or splines.
+    pub curves: u64,
     /// Lines of the NC program.
     pub nc_lines: u64,
     /// Points put in to keep the tolerance.

@@ -112,6 +112,15 @@ pub enum Statement {
         /// Tool axis, if given.
         axis: Option<Direction>,
     },
+    /// `SET/OFSETL,n`, `OFSETL/n`: the work offset of that number holds from here on.
+    WorkOffset {
+        /// From 1.
+        number: u32,
+        /// It stands behind `SET`.
+        set: bool,
+    },
+    /// `CALSUB/n`: a subprogram of the control runs.
+    Subprogram(u32),
     /// `CYCLE/`.
     Cycle(Cycle),
     /// `CUTCOM/`.
@@ -185,6 +194,9 @@ impl Statement {
             Self::Nurbs => "NURBS",
             Self::Knot(_) => "KNOT",
             Self::Control { .. } => "CNTRL",
+            Self::WorkOffset { set: true, .. } => "SET",
+            Self::WorkOffset { .. } => "OFSETL",
+            Self::Subprogram(_) => "CALSUB",
             Self::Cycle(_) => "CYCLE",
             Self::Cutcom(_) => "CUTCOM",
             Self::CutcomOnCentre(_) => "CUTCOM_GEOMETRY_TYPE",
@@ -264,6 +276,8 @@ pub enum Spindle {
         unit: SpindleUnit,
         /// Sense of turning, seen from the spindle to the part.
         sense: Option<Sense>,
+        /// The speed that it must not exceed at a surface speed (`MAXRPM,n`), revolutions a minute.
+        most: Option<f64>,
     },
     /// `SPINDL/OFF`.
     Off,

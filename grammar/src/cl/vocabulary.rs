@@ -13,7 +13,8 @@ use super::statements::geometry::{
     tlaxis,
 };
 use super::statements::technology::{
-    coolnt, delay, end_of_path, fedrat, fini, opstop, rapid, spindl, stop, units,
+    coolnt, delay, end_of_path, fedrat, fini, opstop, rapid, spindl, stop, subprogram, units,
+    work_offset,
 };
 use super::statements::tooling::{
     cutcom, cutcom_on_centre, cutter, load_tool, select_tool, tldata,
@@ -76,6 +77,8 @@ pub struct MajorWord {
     pub(super) behind: Behind,
     /// What becomes of it in a form that is not known: refused where the tool would end up in the wrong place.
     otherwise: Usage,
+    /// Lines that a machine file has for it go before its meaning, which not every control has words for.
+    pub by_rule: bool,
 }
 
 impl MajorWord {
@@ -96,6 +99,11 @@ impl MajorWord {
 
     const fn else_refused(mut self) -> Self {
         self.otherwise = Usage::Refused;
+        self
+    }
+
+    const fn by_rule(mut self) -> Self {
+        self.by_rule = true;
         self
     }
 }
@@ -167,6 +175,7 @@ const fn row(
         meaning,
         behind,
         otherwise: Usage::Unknown,
+        by_rule: false,
     }
 }
 
@@ -227,7 +236,7 @@ static WORDS: &[MajorWord] = &[
     ignored(&["BOX"], "the blank"),
     unsupported(&["BREAK"], "a break in the tape"),
     refused(&["CALL"], "runs a macro"),
-    refused(&["CALSUB"], "runs a subprogram"),
+    used(&["CALSUB"], subprogram, ["CALSUB/100", "runs a subprogram by its number, if the dialect calls any"]).else_refused().by_rule(),
     ignored(&["CAMERA"], "display"),
     unsupported(&["CHECK"], "limits of the axes to be watched; post watches those of the machine file"),
     used(&["CIRCLE"], circle, ["CIRCLE/0,0,0,0,0,1,10", "arc to the next GOTO: centre, axis, radius"]).else_refused(),
@@ -283,7 +292,7 @@ static WORDS: &[MajorWord] = &[
     used(&["MSYS"], msys, ["MSYS/0,0,0,1,0,0,0,1,0", "frame of the operation (--msys)"]).else_refused(),
     used(&["MULTAX"], multax, ["MULTAX/ON", "tool axis with the points; OFF: Z"]),
     used(&["NURBS"], nurbs, ["NURBS/", "a spline begins"]),
-    refused(&["OFSETL"], "a work offset by its number"),
+    used(&["OFSETL"], work_offset, ["OFSETL/2", "a work offset by its number, if the dialect has several"]).else_refused().by_rule(),
     ignored_as(&["OPFEATEND"], Behind::Text(feature), ["OPFEATEND/Hole1", "name of a feature"]),
     ignored_as(&["OPFEATSTART"], Behind::Text(feature), ["OPFEATSTART/Hole1", "name of a feature"]),
     refused(&["OPSKIP"], "blocks that the operator may skip"),
@@ -312,7 +321,7 @@ static WORDS: &[MajorWord] = &[
     ignored(&["SAFETY"], "how the CAM system kept clear"),
     used(&["SELECT", "SELCTL"], select_tool, ["SELECT/TOOL,4", "makes the next tool ready; SELECT with TOOL"]),
     ignored(&["SEQNO"], "block numbers; the machine file states ours"),
-    refused(&["SET"], "a work offset (SET/OFSETL), or how what follows is meant"),
+    used(&["SET"], work_offset, ["SET/OFSETL,2", "a work offset by its number, if the dialect has several"]).else_refused().by_rule(),
     unsupported(&["SLOWDN"], "slows down before corners"),
     used(&["SPINDL"], spindl, ["SPINDL/RPM,9000,CLW", "spindle"]),
     used(&["STOP"], stop, ["STOP", "stop"]),

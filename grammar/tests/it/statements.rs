@@ -181,7 +181,14 @@ fn feeds() {
 
 #[test]
 fn spindle_and_coolant() {
-    let on = |speed, unit, sense| Statement::Spindle(Spindle::On { speed, unit, sense });
+    let on = |speed, unit, sense| {
+        Statement::Spindle(Spindle::On {
+            speed,
+            unit,
+            sense,
+            most: None,
+        })
+    };
     let clockwise = Some(Sense::Clockwise);
     same(
         on(Some(9000.0), SpindleUnit::Rpm, clockwise),

@@ -181,9 +181,10 @@ typedef struct {
 } PostCurve;
 
 typedef void (*PostEmit)(void *host, const PostOption *option);
+typedef void (*PostEmitWord)(void *host, uint32_t meaning, const uint8_t *word, size_t len);
 typedef void (*PostDeviationFn)(void *host, size_t n, const double *ts, PostDeviation *out);
 
-/* The functions of a dialect; none may be null. */
+/* The functions of a dialect; none up to `close` may be null. */
 typedef struct {
     /* Once a program. The context, or null after a sentence to `error`. */
     void *(*open)(const PostSetup *setup, const PostSink *error);
@@ -196,6 +197,9 @@ typedef struct {
     void (*last_error)(void *ctx, const PostSink *out);
     /* Once, at the end, also after a failure. */
     void (*close)(void *ctx);
+    /* Calls `emit(host, POST_MEANING_..., word, len)` for each word of the control, so that programs can be read
+     * back. At most once, after `format`. 0, else the reason is in `last_error`. May be null. */
+    int32_t (*vocabulary)(void *ctx, void *host, PostEmitWord emit);
 } PostDialect;
 
 /* The functions of an error model; none may be null. */
@@ -813,12 +817,13 @@ POST_ASSERT(offsetof(PostPlugin, loaded) == 72, "PostPlugin.loaded");
 POST_ASSERT(offsetof(PostPlugin, dialect) == 80, "PostPlugin.dialect");
 POST_ASSERT(offsetof(PostPlugin, model) == 88, "PostPlugin.model");
 POST_ASSERT(offsetof(PostPlugin, about) == 96, "PostPlugin.about");
-POST_ASSERT(sizeof(PostDialect) == 40 && POST_ALIGN(PostDialect) == 8, "PostDialect");
+POST_ASSERT(sizeof(PostDialect) == 48 && POST_ALIGN(PostDialect) == 8, "PostDialect");
 POST_ASSERT(offsetof(PostDialect, open) == 0, "PostDialect.open");
 POST_ASSERT(offsetof(PostDialect, format) == 8, "PostDialect.format");
 POST_ASSERT(offsetof(PostDialect, write) == 16, "PostDialect.write");
 POST_ASSERT(offsetof(PostDialect, last_error) == 24, "PostDialect.last_error");
 POST_ASSERT(offsetof(PostDialect, close) == 32, "PostDialect.close");
+POST_ASSERT(offsetof(PostDialect, vocabulary) == 40, "PostDialect.vocabulary");
 POST_ASSERT(sizeof(PostModel) == 40 && POST_ALIGN(PostModel) == 8, "PostModel");
 POST_ASSERT(offsetof(PostModel, open) == 0, "PostModel.open");
 POST_ASSERT(offsetof(PostModel, fit) == 8, "PostModel.fit");

@@ -242,6 +242,27 @@ impl Axes {
         }
     }
 
+    /// Where these axes stand is not known any more: word n where bit n of `axes` is set.
+    pub fn forget_some(&mut self, axes: u32) {
+        for (place, axis) in self.axes.iter_mut().enumerate() {
+            if axes >> place & 1 == 1 {
+                axis.last.forget();
+            }
+        }
+    }
+
+    /// Sets the decimals of the word of this name; false if there is none.
+    pub fn set_decimals(&mut self, name: &str, decimals: u8) -> bool {
+        let named = |axis: &&mut Axis| axis.name.trim_end_matches('=') == name;
+        match self.axes.iter_mut().find(named) {
+            Some(axis) => {
+                axis.decimals = decimals;
+                true
+            }
+            None => false,
+        }
+    }
+
     /// A move to `words` has something to write.
     pub fn moved(&self, words: &[f64]) -> bool {
         self.axes

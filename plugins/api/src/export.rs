@@ -13,10 +13,10 @@ use std::ptr::{null, null_mut};
 use std::sync::Once;
 
 use crate::raw::{self, PostDialect, PostEmit, PostFormat, PostModel, PostPlugin, PostText};
-use crate::raw::{PostDeviationFn, PostEvent, PostPair, PostSetup, PostSink};
+use crate::raw::{PostDeviationFn, PostEmitWord, PostEvent, PostPair, PostSetup, PostSink};
 use crate::{
     Batch, Capabilities, Curve, Deviation, Dialect, ErrorModel, Format, OptionSpec, Promise, Setup,
-    Tolerance, WriteFault,
+    Tolerance, VocabularyWord, WriteFault,
 };
 
 /// A plugin that is part of the program itself.
@@ -41,6 +41,12 @@ pub trait LinkedDialect: Send {
     /// # Errors
     /// The dialect panicked.
     fn format(&mut self) -> Result<(Format, Capabilities), String>;
+
+    /// See [`Dialect::vocabulary`].
+    ///
+    /// # Errors
+    /// The dialect panicked.
+    fn vocabulary(&mut self) -> Result<Vec<VocabularyWord>, String>;
 
     /// Appends the text of all events to `out`, and to `ends` the length of `out` behind each.
     ///
@@ -112,6 +118,11 @@ fn open_linked<D: Dialect>(setup: &Setup<'_>) -> Result<Box<dyn LinkedDialect>, 
 impl<D: Dialect> LinkedDialect for Context<D> {
     fn format(&mut self) -> Result<(Format, Capabilities), String> {
         self.run(|dialect| Ok((dialect.format(), dialect.capabilities())))
+            .ok_or_else(|| self.error.clone())
+    }
+
+    fn vocabulary(&mut self) -> Result<Vec<VocabularyWord>, String> {
+        self.run(|dialect| Ok(dialect.vocabulary()))
             .ok_or_else(|| self.error.clone())
     }
 
@@ -400,6 +411,7 @@ impl<D: Dialect> Table<D> {
         write: Some(write::<D>),
         last_error: Some(last_error::<D>),
         close: Some(close::<D>),
+        vocabulary: Some(vocabulary::<D>),
     };
 }
 
@@ -499,6 +511,23 @@ unsafe extern "C" fn write<D: Dialect>(
     unsafe { (*out).put(text.get(..good).unwrap_or_default()) };
     context.text = text;
     written
+}
+
+unsafe extern "C" fn vocabulary<D: Dialect>(
+    ctx: *mut c_void,
+    host: *mut c_void,
+    emit: PostEmitWord,
+) -> i32 {
+    // SAFETY: as stated above.
+    let context = unsafe { context::<D>(ctx) };
+    let Some(words) = context.run(|dialect| Ok(dialect.vocabulary())) else {
+        return 1;
+    };
+    for VocabularyWord { word, meaning } in &words {
+        // SAFETY: as stated above; the word lives for the call.
+        unsafe { emit(host, meaning.number(), word.as_ptr(), word.len()) };
+    }
+    0
 }
 
 unsafe extern "C" fn open_model<M: ErrorModel>(

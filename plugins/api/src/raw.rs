@@ -33,6 +33,9 @@ pub const KIND_DIALECT: u32 = 1;
 /// [`PostPlugin::kind`] of an error model.
 pub const KIND_MODEL: u32 = 2;
 
+/// The contract in C: `post_plugin.h`.
+pub const HEADER: &str = include_str!("../include/post_plugin.h");
+
 /// Most axis words that a program may have.
 pub const MAX_WORDS: usize = 32;
 
@@ -256,6 +259,10 @@ pub struct PostFormat {
 /// Host's function that takes a declared option.
 pub type PostEmit = unsafe extern "C" fn(host: *mut c_void, option: *const PostOption);
 
+/// Host's function that takes a word of a vocabulary: `len` bytes of UTF-8 at `word`, and one of `MEANING_…`.
+pub type PostEmitWord =
+    unsafe extern "C" fn(host: *mut c_void, meaning: u32, word: *const u8, len: usize);
+
 /// Host's function that computes `n` deviations. Callable only inside the `fit` that brought it.
 pub type PostDeviationFn =
     unsafe extern "C" fn(host: *mut c_void, n: usize, ts: *const f64, out: *mut Deviation);
@@ -300,10 +307,10 @@ pub struct PostPlugin {
 // SAFETY: every pointer in it leads to constants that live as long as the library, which is never closed.
 unsafe impl Sync for PostPlugin {}
 
-/// The functions of a dialect. None may be null.
+/// The functions of a dialect. None up to `close` may be null.
 ///
 /// A context is used from one thread at a time, though not always the same; several may be open at once.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostDialect {
     /// Called once a program. Returns its context, or null after a sentence to `error`.
@@ -328,10 +335,16 @@ pub struct PostDialect {
     pub last_error: Option<unsafe extern "C" fn(ctx: *mut c_void, out: *const PostSink)>,
     /// Called once at the end, also after a failure. The context is not used again.
     pub close: Option<unsafe extern "C" fn(ctx: *mut c_void)>,
+    /// Calls `emit` once for each word of the control and what it means: [`VocabularyWord`](crate::VocabularyWord).
+    /// Called at most once, after `format`. Returns 0, else the reason is in `last_error`. Null, or a table that ends
+    /// before it: programs of this dialect cannot be read back.
+    pub vocabulary: Option<
+        unsafe extern "C" fn(ctx: *mut c_void, host: *mut c_void, emit: PostEmitWord) -> i32,
+    >,
 }
 
 /// The functions of an error model. None may be null. Contexts are used as those of a dialect.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostModel {
     /// Called once a program and thread. Returns its context, or null after a sentence to `error`.

@@ -13,6 +13,35 @@ pub struct VocabularyWord {
     pub meaning: Meaning,
 }
 
+impl VocabularyWord {
+    /// One for the table of a dialect: `VocabularyWord::new("G0", Meaning::Rapid)`.
+    pub const fn new(word: &'static str, meaning: Meaning) -> Self {
+        VocabularyWord {
+            word: Cow::Borrowed(word),
+            meaning,
+        }
+    }
+}
+
+impl Meaning {
+    /// Its number in the contract.
+    pub const fn number(self) -> u32 {
+        self.code()
+    }
+
+    /// The meaning of this number; none if this version does not know it.
+    pub const fn from_number(number: u32) -> Option<Self> {
+        Meaning::of(number)
+    }
+
+    /// Its name in C, behind `POST_MEANING_`.
+    pub fn name(self) -> &'static str {
+        let mut codes = Meaning::CODES.codes.iter();
+        let own = codes.find(|(_, code)| *code == self.code());
+        own.map_or("", |(name, _)| name)
+    }
+}
+
 codes! {
     /// What a word of a program means.
     Meaning "MEANING" {

@@ -2,58 +2,65 @@
 //!
 //! What it assumes about the control stands in `plugins/README.md`.
 
-use post_iso::{Control, Iso, Offset, Table, Tcp, options};
-use post_plugin::{OptionSpec, Setup, export_dialect, remark};
+use post_iso::{
+    Control, Iso, Offset, Plane, Rigid, Splines, Subprogram, SurfaceSpeed, Table, Tcp,
+    is_offset_beyond_six, iso_options, offset_beyond_six, options,
+};
+use post_plugin::{OptionSpec, Setup, export_dialect};
 
-struct Fanuc {
-    /// The O number.
-    number: i64,
-}
+struct Fanuc;
 
 impl Control for Fanuc {
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
+        title: Some(("O", 4)),
         largest_number: 99_999_999,
         offset: Offset {
-            known: is_work_offset,
+            known: |text| is_offset_beyond_six(text, "G54.1 P", 300),
             range: "G54 to G59 or G54.1 P1 to P300",
+            word: |number| offset_beyond_six(number, "G54.1 P", 300),
             ..Table::ISO.offset
         },
         relies: RELIES,
         cancel: CANCEL,
         tcp: Tcp::Length("G43.4"),
+        vector: "G43.5",
+        plane: Plane::Euler {
+            on: "G68.2",
+            turn: "G53.1",
+            off: "G69",
+        },
+        cycles_in_plane: true,
+        // P, Q and K of cycles have no point.
+        step_in_increments: true,
+        rigid: Rigid::Ahead("M29"),
+        splines: Splines::Knots {
+            code: "G6.2",
+            begin: "G5 P10000",
+            end: "G5 P0",
+        },
+        smoothing: SMOOTHING,
+        surface: Some(SurfaceSpeed {
+            codes: ["G96", "G97"],
+            most: "G92 S",
+        }),
+        probe: "G31",
+        subprogram: Subprogram {
+            number: "M98 P{}",
+            name: "",
+            times: " L",
+        },
         ..Table::ISO
     };
 
-    fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        let number = setup.integer("program_number");
-        Ok(Fanuc { number })
-    }
-
-    fn title(&self, program: &str) -> String {
-        format!("O{:04} {}", self.number, remark(program))
+    fn open(_: &Setup<'_>) -> Result<Self, String> {
+        Ok(Fanuc)
     }
 }
 
-fn is_work_offset(text: &str) -> bool {
-    let number = |digits: &str| digits.parse().unwrap_or(0);
-    match text.strip_prefix("G54.1 P") {
-        Some(digits) => (1..=300).contains(&number(digits)),
-        None => text
-            .strip_prefix('G')
-            .is_some_and(|digits| (54..=59).contains(&number(digits))),
-    }
-}
-
-const OPTIONS: &[OptionSpec] = &[
-    OptionSpec::integer("program_number", (1, 9999), 1000, "The O number."),
-    options::BLOCK_NUMBERS,
-    options::BLOCK_STEP,
-    options::decimals(3),
-    options::decimals_inch(4),
-    options::rotary_decimals(3),
-    options::TRAILING_ZEROS,
-    options::feed_decimals(1),
+const OPTIONS: &[OptionSpec] = iso_options![
+    options::program_number(9999),
+    options::SPACES,
     options::inverse_time_decimals(3),
     options::most_inverse_time(9999.999),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
@@ -62,19 +69,13 @@ const OPTIONS: &[OptionSpec] = &[
         CANCEL,
         "Block at the start that cancels scaling, mirror and rotation; less on a control without one of them.",
     ),
-    options::RETRACT,
-    options::PARAMETERS,
-    OptionSpec::integer(
-        "length_register",
-        (0, 999),
-        0,
-        "H of a program that loads no tool; 0: such a program is refused.",
-    ),
-    options::COOLANT_OFF,
-    options::COOLANT_THROUGH,
-    options::COOLANT_THROUGH_OFF,
-    options::COOLANT_AIR,
-    options::COOLANT_AIR_OFF,
+    options::TOOL_VECTOR,
+    options::cycles_in_plane(true),
+    options::tapping("rigid"),
+    options::BORE_SHIFT,
+    options::SPLINES,
+    options::smoothing(SMOOTHING[0]),
+    options::smoothing_off(SMOOTHING[1]),
 ];
 
 /// Numbers of parameters are those of the 30i, 31i, 32i (B-63950EN, B-64490EN).
@@ -88,6 +89,9 @@ const RELIES: &[&str] = &[
 
 /// Scaling, programmable mirror image, rotation and tilted plane off.
 const CANCEL: &str = "G50 G50.1 G69";
+
+/// AI contour control: how much it leaves the path is the parameters' to say.
+const SMOOTHING: [&str; 2] = ["0 G5.1 Q1", "G5.1 Q0"];
 
 export_dialect!(fanuc, Iso<Fanuc>);
 

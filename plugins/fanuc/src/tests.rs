@@ -1,4 +1,4 @@
-use post_kit::{ASIDE, Bench, P1, P3, TOP, at, cut, turn};
+use post_kit::{ASIDE, Bench, P1, P3, TOP, at, cut, jobs, turn};
 use post_plugin::{Compensation, Coolant, Event, Value};
 
 fn bench() -> Bench {
@@ -20,7 +20,7 @@ fn options_change_what_they_say() {
     let bench = bench()
         .inch()
         .with("program_number", Value::Integer(7))
-        .with("block_numbers", Value::Flag(true))
+        .with("block_numbers", Value::Text("all"))
         .with("trailing_zeros", Value::Flag(false))
         .with("work_offset", Value::Text("G54.1 P12"))
         .with("cancel", Value::Text("G69"))
@@ -53,4 +53,26 @@ fn what_cannot_be_written_is_refused() {
     assert!(refused(&[Event::Unknown { kind: 99 }]).contains("99"));
     let offset = bench().with("work_offset", Value::Text("G60"));
     assert!(offset.write(&[]).is_err());
+}
+
+#[test]
+fn three_axes_with_arcs_and_cycles() {
+    insta::assert_snapshot!(bench().write_declared(&jobs::three_axes()).unwrap());
+}
+
+#[test]
+fn tools_and_what_stands_between_them() {
+    let bench = bench().with("clamps", Value::Text("C M10 M11"));
+    insta::assert_snapshot!(bench.write_declared(&jobs::tools()).unwrap());
+}
+
+#[test]
+fn a_spline() {
+    let bench = bench().with("splines", Value::Flag(true));
+    insta::assert_snapshot!(bench.write_declared(&jobs::spline()).unwrap());
+}
+
+#[test]
+fn tilted_planes() {
+    insta::assert_snapshot!(bench().write_declared(&jobs::tilted()).unwrap());
 }

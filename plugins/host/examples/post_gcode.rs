@@ -3,9 +3,9 @@
 use post_iso::{Control, Dwell, Iso, Table, Tcp, options};
 use post_plugin::{Setup, export_dialect};
 
-struct Gcode;
+struct Writer;
 
-impl Control for Gcode {
+impl Control for Writer {
     const TABLE: &'static Table = &Table {
         options: &[
             options::BLOCK_NUMBERS,
@@ -19,8 +19,8 @@ impl Control for Gcode {
     };
 
     fn open(_: &Setup<'_>) -> Result<Self, String> {
-        Ok(Gcode)
+        Ok(Writer)
     }
 }
 
-export_dialect!(gcode, Iso<Gcode>);
+export_dialect!(gcode, Iso<Writer>);

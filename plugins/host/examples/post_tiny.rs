@@ -1,11 +1,43 @@
 //! The smallest dialect that is of use: absolute moves, nothing modal.
 
 use post_plugin::{
-    Axes, AxisNames, Block, Coolant, Dialect, Event, Feed, Format, Group, NumberStyle, Setup,
-    Spindle, SpindleSense, Units, export_dialect, remark,
+    Axes, AxisNames, Block, Coolant, Dialect, Event, Feed, Format, Group, Meaning, NumberStyle,
+    Setup, Spindle, SpindleSense, Units, VocabularyWord, export_dialect, remark,
 };
 
-struct Tiny {
+/// What the words mean, so that a program can be read back.
+const VOCABULARY: &[VocabularyWord] = &[
+    VocabularyWord::new("(", Meaning::RemarkOpen),
+    VocabularyWord::new(")", Meaning::RemarkClose),
+    VocabularyWord::new("G21", Meaning::Millimetre),
+    VocabularyWord::new("G20", Meaning::Inch),
+    VocabularyWord::new("G17", Meaning::PlaneXy),
+    VocabularyWord::new("G40", Meaning::CompensationOff),
+    VocabularyWord::new("G80", Meaning::CycleOff),
+    VocabularyWord::new("G90", Meaning::Absolute),
+    VocabularyWord::new("G94", Meaning::FeedPerMinute),
+    VocabularyWord::new("G0", Meaning::Rapid),
+    VocabularyWord::new("G1", Meaning::Linear),
+    VocabularyWord::new("F", Meaning::Feed),
+    VocabularyWord::new("G53", Meaning::MachineCoordinates),
+    VocabularyWord::new("G43", Meaning::LengthOn),
+    VocabularyWord::new("H", Meaning::LengthRegister),
+    VocabularyWord::new("G49", Meaning::LengthOff),
+    VocabularyWord::new("T", Meaning::Tool),
+    VocabularyWord::new("M6", Meaning::ToolChange),
+    VocabularyWord::new("S", Meaning::SpindleSpeed),
+    VocabularyWord::new("M3", Meaning::SpindleClockwise),
+    VocabularyWord::new("M4", Meaning::SpindleCounterClockwise),
+    VocabularyWord::new("M5", Meaning::SpindleOff),
+    VocabularyWord::new("M8", Meaning::CoolantOn),
+    VocabularyWord::new("M9", Meaning::CoolantOff),
+    VocabularyWord::new("G4", Meaning::Dwell),
+    VocabularyWord::new("M0", Meaning::Stop),
+    VocabularyWord::new("M1", Meaning::OptionalStop),
+    VocabularyWord::new("M30", Meaning::End),
+];
+
+struct Writer {
     axes: Axes,
     block: Block,
     units: &'static str,
@@ -13,13 +45,13 @@ struct Tiny {
     register: u32,
 }
 
-impl Dialect for Tiny {
+impl Dialect for Writer {
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
         AxisNames::ISO.check(setup)?;
         if setup.tcp {
             return Err("this control does not keep the tip: tcp = \"post\"".to_owned());
         }
-        Ok(Tiny {
+        Ok(Writer {
             axes: Axes::new(setup, 4, 3, NumberStyle::default()),
             block: Block::plain(),
             units: match setup.units {
@@ -39,6 +71,10 @@ impl Dialect for Tiny {
             extension: "nc".to_owned(),
             ..Format::default()
         }
+    }
+
+    fn vocabulary(&self) -> Vec<VocabularyWord> {
+        VOCABULARY.to_vec()
     }
 
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
@@ -102,7 +138,7 @@ impl Dialect for Tiny {
     }
 }
 
-impl Tiny {
+impl Writer {
     fn line(&mut self, words: &str, out: &mut String) {
         self.block.line(words, out);
     }
@@ -159,4 +195,4 @@ impl Tiny {
     }
 }
 
-export_dialect!(tiny, Tiny);
+export_dialect!(tiny, Writer);

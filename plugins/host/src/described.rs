@@ -3,11 +3,12 @@
 use post_plugin::OptionSpec;
 use post_plugin::raw::{PostDialect, PostModel};
 
-/// The functions of a plugin. Every pointer in them was found not to be null.
+/// The functions of a plugin. Every pointer in them was found not to be null, but for those that came later: what a
+/// library of an earlier version does not have is null.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Table {
-    Dialect(&'static PostDialect),
-    Model(&'static PostModel),
+    Dialect(PostDialect),
+    Model(PostModel),
 }
 
 /// What a plugin says about itself, once it was found to hold together.

@@ -8,13 +8,14 @@ use std::fmt;
 use post_plugin::raw::{self, PostDialect, PostEvent, PostFormat, PostText};
 use post_plugin::{
     Accuracy, Ahead, AxisWord, Batch, Capabilities, DialectSession, Event, Format, LinkedDialect,
-    Promise, Setup, Tool, Units, Value, WriteFault,
+    Promise, Setup, Tool, Units, Value, VocabularyWord, WriteFault,
 };
 
 use crate::call::Caller;
 use crate::described::Table;
 use crate::shown::{is_odd, quoted, sentence};
 use crate::sink::{MOST_TEXT, message, with_sink};
+use crate::vocabulary;
 use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};
 
 /// What a dialect is told about a program.
@@ -149,7 +150,7 @@ enum Way {
 /// A context behind the C contract.
 struct Library {
     caller: Caller,
-    table: &'static PostDialect,
+    table: PostDialect,
     ctx: *mut c_void,
     /// The batch in its raw form; empty but during a call.
     events: Vec<PostEvent>,
@@ -249,11 +250,7 @@ fn check_format(format: &Format, words: usize) -> Result<(), String> {
 impl Library {
     /// # Errors
     /// Why it refuses.
-    fn open(
-        caller: Caller,
-        table: &'static PostDialect,
-        setup: &Setup<'_>,
-    ) -> Result<Self, String> {
+    fn open(caller: Caller, table: PostDialect, setup: &Setup<'_>) -> Result<Self, String> {
         let mut ctx = std::ptr::null_mut();
         let refusal = message(|sink| {
             raw::with_setup(setup, |setup| {
@@ -313,6 +310,21 @@ impl Library {
             plane_decimals: decimals(raw.plane_decimals),
         };
         Ok((format, Capabilities::from_bits(raw.writes)))
+    }
+
+    fn vocabulary(&self) -> Result<Vec<VocabularyWord>, String> {
+        let Some(vocabulary) = self.table.vocabulary else {
+            return Ok(Vec::new());
+        };
+        let asked = vocabulary::taken(|host, emit| {
+            // SAFETY: the context is open, and `emit` takes `host`.
+            self.caller
+                .call(|| unsafe { vocabulary(self.ctx, host, emit) })
+        });
+        match asked {
+            (0, words) => words,
+            _ => Err(self.last_error()),
+        }
     }
 
     fn last_error(&self) -> String {
@@ -400,6 +412,21 @@ impl Library {
             return fault(written.saturating_sub(1), message);
         }
         broken.map_or(Ok(()), Err)
+    }
+}
+
+impl OpenedDialect {
+    /// The words of this control and what they mean; none if the dialect does not tell them.
+    ///
+    /// # Errors
+    /// A sentence: it failed to tell them, or told what cannot be.
+    pub fn vocabulary(&mut self) -> Result<Vec<VocabularyWord>, String> {
+        let told = match &mut self.way {
+            Way::Linked(dialect) => dialect.vocabulary(),
+            Way::Library(library) => library.vocabulary(),
+        };
+        let judged = told.and_then(vocabulary::judge);
+        judged.map_err(|message| format!("dialect `{}`: {}", self.plugin, reason_of(message)))
     }
 }
 

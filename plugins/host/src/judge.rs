@@ -17,11 +17,14 @@ use crate::{GivenValue, Reason};
 /// Bytes of [`PostPlugin`] as version 2 of the contract began: what stands behind them may be missing.
 const LEAST: usize = offset_of!(PostPlugin, about);
 
+/// Bytes of [`PostDialect`] then.
+const LEAST_DIALECT: usize = offset_of!(PostDialect, vocabulary);
+
 /// Most bytes by which a later version's struct or table may be longer than ours.
 const MOST_MORE: usize = 65_536;
 
 /// Most bytes of a name, a key, a version, or a text of a choice.
-const MOST_NAME: usize = 200;
+pub(crate) const MOST_NAME: usize = 200;
 
 /// Most bytes of a sentence, or of an option's default.
 const MOST_SENTENCE: usize = 16 << 10;
@@ -65,22 +68,13 @@ pub(crate) unsafe fn judge(
         });
     }
     check_size("PostPlugin", size, LEAST)?;
-    // What a plugin of an earlier version does not have is zero.
-    let mut own = MaybeUninit::<PostPlugin>::zeroed();
-    let there = size_of::<PostPlugin>().min(size as usize);
-    // SAFETY: as many bytes as both have; of zeros all fields are valid.
-    let own = unsafe {
-        plugin
-            .cast::<u8>()
-            .copy_to_nonoverlapping(own.as_mut_ptr().cast(), there);
-        own.assume_init()
-    };
-    let plugin = &own;
+    // SAFETY: as long as stated; of zeros all fields are valid.
+    let plugin = &unsafe { own(plugin, size) };
     let table = match kind {
         raw::KIND_DIALECT => {
-            check_size("PostDialect", table_size, size_of::<PostDialect>())?;
-            // SAFETY: as long as stated.
-            let table = unsafe { table("dialect", plugin.dialect) }?;
+            check_size("PostDialect", table_size, LEAST_DIALECT)?;
+            // SAFETY: as long as stated; of zeros all fields are valid.
+            let table = unsafe { table("dialect", plugin.dialect, table_size) }?;
             present("open", table.open)?;
             present("format", table.format)?;
             present("write", table.write)?;
@@ -90,8 +84,8 @@ pub(crate) unsafe fn judge(
         }
         raw::KIND_MODEL => {
             check_size("PostModel", table_size, size_of::<PostModel>())?;
-            // SAFETY: as long as stated.
-            let table = unsafe { table("model", plugin.model) }?;
+            // SAFETY: as long as stated; of zeros all fields are valid.
+            let table = unsafe { table("model", plugin.model, table_size) }?;
             present("open", table.open)?;
             present("fit", table.fit)?;
             present("value", table.value)?;
@@ -129,14 +123,33 @@ fn nonsense(message: String) -> Reason {
     Reason::Nonsense { message }
 }
 
+/// What a plugin of an earlier version does not have is zero.
+///
 /// # Safety
-/// `table` is null, or not aligned, or leads to a table that lives for ever.
-unsafe fn table<T>(what: &'static str, table: *const T) -> Result<&'static T, Reason> {
+/// `given` leads to `size` bytes, and a `T` may be zeros.
+unsafe fn own<T>(given: *const T, size: u32) -> T {
+    let mut own = MaybeUninit::<T>::zeroed();
+    let there = size_of::<T>().min(size as usize);
+    // SAFETY: as many bytes as both have; the caller vouches for the zeros behind them.
+    unsafe {
+        given
+            .cast::<u8>()
+            .copy_to_nonoverlapping(own.as_mut_ptr().cast(), there);
+        own.assume_init()
+    }
+}
+
+/// # Safety
+/// `table` is null, or not aligned, or leads to a table of `size` bytes; a `T` may be zeros.
+unsafe fn table<T>(what: &'static str, table: *const T, size: u32) -> Result<T, Reason> {
     if !table.is_aligned() {
         return Err(Reason::NotAligned { what });
     }
-    // SAFETY: aligned; the caller vouches for the rest.
-    unsafe { table.as_ref() }.ok_or(Reason::Null { what })
+    if table.is_null() {
+        return Err(Reason::Null { what });
+    }
+    // SAFETY: not null; the caller vouches for the rest.
+    Ok(unsafe { own(table, size) })
 }
 
 fn check_size(of: &'static str, found: u32, wanted: usize) -> Result<(), Reason> {
@@ -181,7 +194,7 @@ unsafe fn name(what: &'static str, given: PostText) -> Result<&'static str, Reas
 ///
 /// # Safety
 /// `text` is null, or keeps the contract for `'a`.
-unsafe fn text<'a>(text: PostText, most: usize) -> Result<&'a str, String> {
+pub(crate) unsafe fn text<'a>(text: PostText, most: usize) -> Result<&'a str, String> {
     if text.len > most {
         return Err(format!("has {} bytes, at most {most} are taken", text.len));
     }

@@ -8,6 +8,7 @@ mod call;
 pub mod conformance;
 mod described;
 mod dialect;
+pub mod examples;
 mod fault;
 mod finder;
 mod float_mode;
@@ -20,6 +21,7 @@ mod plugin;
 mod results;
 mod shown;
 mod sink;
+mod vocabulary;
 mod working_folder;
 
 pub use dialect::{OpenedDialect, ProgramAhead, ProgramSetup, ProgramTool, ProgramWord};

@@ -21,7 +21,7 @@ use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};
 pub struct OpenedModel {
     plugin: String,
     caller: Caller,
-    table: &'static PostModel,
+    table: PostModel,
     ctx: *mut c_void,
     /// Why a value since the last fit could not be had.
     fault: RefCell<Option<String>>,

@@ -1,14 +1,19 @@
 //! Writes a program by a [`Table`].
 
 use post_plugin::{
-    Axes, Block, Compensation, Coolant, Event, Feed, Format, Modal, NumberStyle, Setup, Spindle,
-    SpindleSense, Units, Value,
+    Axes, Block, Capabilities, Compensation, Coolant, Event, Feed, Format, Meaning, Modal,
+    NumberStyle, Setup, Spindle, SpindleSense, ToolPose, Units, Value,
 };
 
+use crate::cycles::Cycles;
 use crate::lines::{fits, program_name, remark_lines};
+use crate::look::Look;
+use crate::motion::{Arc, Motion};
 use crate::options::{flag, integer, text};
-use crate::table::{Dwell, Leave, Table, Tcp};
-use crate::{FeedDecimals, Motion};
+use crate::planes::TiltedPlane;
+use crate::settings::Settings;
+use crate::table::{Codes, Dwell, Leave, Table, Tcp};
+use crate::{FeedDecimals, splines};
 
 /// Most decimals of a number with a point where the option of it is not offered.
 const DECIMALS: [i64; 3] = [3, 4, 3];
@@ -16,16 +21,29 @@ const DECIMALS: [i64; 3] = [3, 4, 3];
 /// A program on its way out: what is in force, and the words that a table and the options give.
 #[derive(Debug)]
 pub struct Engine {
-    table: &'static Table,
+    pub(crate) table: &'static Table,
     /// Moves, with the block under construction.
     pub motion: Motion,
-    program: String,
+    pub(crate) look: Look,
+    pub(crate) settings: Settings,
+    pub(crate) cycles: Cycles,
+    pub(crate) plane: TiltedPlane,
+    /// Words of the tool vector have so many decimals; none: rotary words are written.
+    vector: Option<u8>,
+    splines: bool,
+    /// The program's title, with its number.
+    title: String,
     machine: String,
     percent: bool,
     /// The parameters that it relies on are written as remarks.
     parameters: bool,
-    inch: bool,
-    tcp: bool,
+    /// The N of the next block that changes a tool, and the step; none: they have no other numbers than all blocks.
+    tool_blocks: Option<[u32; 2]>,
+    /// A safe state is written behind each tool change.
+    restart: bool,
+    pub(crate) change: String,
+    pub(crate) inch: bool,
+    pub(crate) tcp: bool,
     work_offset: String,
     cancel: String,
     /// In the place of a retract in machine coordinates; empty: none.
@@ -38,14 +56,18 @@ pub struct Engine {
     /// What ends each of them.
     coolant_ends: [String; 5],
     /// Of the tool in use.
-    register: Option<u32>,
+    pub(crate) register: Option<u32>,
     offset_active: Modal<bool>,
     /// A line of the user's own has named a work offset: which one is in force is the user's from there on.
     own_offset: bool,
-    length_active: Modal<bool>,
-    tcp_active: Modal<bool>,
+    pub(crate) length_active: Modal<bool>,
+    pub(crate) tcp_active: Modal<bool>,
+    /// The tool centre point is kept, and I J K are written in the place of rotary words.
+    follows_vector: bool,
     /// The spindle's last command, if that has it turning.
-    turning: Option<Spindle>,
+    pub(crate) turning: Option<Spindle>,
+    /// A rigid tap has stopped the spindle.
+    pub(crate) tapped: bool,
     spindle: Modal<bool>,
     coolant: Modal<bool>,
     /// The coolant that is on: its place in [`COOLANTS`].
@@ -79,12 +101,17 @@ impl Engine {
             false => integer(setup, "decimals", linear_mm),
         };
         let rotary = integer(setup, "rotary_decimals", rotary);
-        let axes = Axes::new(setup, linear as u8, rotary as u8, style);
+        let mut axes = Axes::new(setup, linear as u8, rotary as u8, style);
+        single_decimals(setup, &mut axes)?;
         let step = integer(setup, "block_step", 10) as u32;
-        let block = match flag(setup, "block_numbers", false) {
-            true => Block::numbered("N", step, step, table.largest_number),
-            false => Block::plain(),
+        let numbers = setup.option("block_numbers");
+        let block = match numbers {
+            Some(Value::Text("all") | Value::Flag(true)) => {
+                Block::numbered("N", step, step, table.largest_number)
+            }
+            _ => Block::plain(),
         };
+        let tool_blocks = (numbers == Some(Value::Text("tools"))).then_some([step; 2]);
         let work_offset = text(setup, "work_offset", "G54");
         if !(table.offset.known)(&work_offset) {
             let range = table.offset.range;
@@ -106,6 +133,19 @@ impl Engine {
             given if given.is_empty() && setup.tcp => tcp_off.to_owned(),
             given => given,
         };
+        if let (true, Tcp::Blocks { on: "", .. }) = (setup.tcp, table.tcp)
+            && text(setup, "tcp_on", "").is_empty()
+        {
+            return Err(
+                "the words of this control's tool centre point control are not beyond doubt: name them by the options \
+                 `tcp_on` and `tcp_off`, or say tcp = \"post\""
+                    .to_owned(),
+            );
+        }
+        let mut codes = table.codes;
+        if !flag(setup, "inverse_time", true) {
+            codes.feed[1] = "";
+        }
         let register = integer(setup, "length_register", 0) as u32;
         let mut coolant = table.coolant.iter();
         let coolant_codes =
@@ -116,8 +156,20 @@ impl Engine {
         });
         Ok(Engine {
             table,
-            motion: Motion::new(&table.codes, block, axes, feeds),
-            program: program_name(table, setup.program),
+            motion: Motion::new(setup, codes, block, axes, style, feeds),
+            look: Look {
+                spaces: flag(setup, "spaces", true),
+                leading_zeros: flag(setup, "leading_zeros", false),
+            },
+            settings: Settings::new(table, setup)?,
+            cycles: Cycles::new(table, setup),
+            plane: TiltedPlane::new(table, setup, rotary as u8),
+            vector: (!table.vector.is_empty() && flag(setup, "tool_vector", false)).then_some(6),
+            splines: flag(setup, "splines", false),
+            title: title(table, setup),
+            tool_blocks,
+            restart: flag(setup, "restart", false),
+            change: text(setup, "change", table.change),
             machine: setup.machine.to_owned(),
             percent: flag(setup, "percent", table.percent),
             parameters: flag(setup, "parameters", false),
@@ -139,7 +191,9 @@ impl Engine {
             own_offset: false,
             length_active: Modal::default(),
             tcp_active: Modal::default(),
+            follows_vector: false,
             turning: None,
+            tapped: false,
             spindle: Modal::default(),
             coolant: Modal::default(),
             flowing: None,
@@ -147,15 +201,48 @@ impl Engine {
     }
 
     pub(crate) fn format(&self) -> Format {
+        let (plane_angles, plane_decimals) = self.plane.angles();
         Format {
             most_inverse_time: self.most_inverse_time,
+            plane_angles,
+            plane_decimals,
             ..self.motion.format(self.table.extension)
         }
     }
 
-    /// Name of the program.
-    pub fn program(&self) -> &str {
-        &self.program
+    /// What table and options give it words for.
+    pub(crate) fn capabilities(&self) -> Capabilities {
+        let table = self.table;
+        let mut writes = Capabilities::OPERATION | Capabilities::INSTEAD;
+        if !table.codes.arc[0].is_empty() {
+            writes |= Capabilities::ARC_XY
+                | Capabilities::ARC_ZX
+                | Capabilities::ARC_YZ
+                | Capabilities::HELIX
+                | Capabilities::ARC_RADIUS;
+        }
+        if self.splines && table.splines != crate::Splines::None {
+            writes |= Capabilities::SPLINE;
+        }
+        if self.vector.is_some() {
+            writes |= Capabilities::TOOL_VECTOR;
+        }
+        if self.tcp && matches!(table.tcp, Tcp::Blocks { .. }) {
+            writes |= Capabilities::TCP_SWITCH;
+        }
+        if table.units_inside {
+            writes |= Capabilities::UNITS;
+        }
+        if (table.offset.word)(2).is_some() {
+            writes |= Capabilities::WORK_OFFSET;
+        }
+        if !table.length.on.is_empty() && !table.length.by_itself {
+            writes |= Capabilities::OFFSETS;
+        }
+        writes
+            | self.cycles.capabilities()
+            | self.plane.capabilities()
+            | self.settings.capabilities(table)
     }
 
     /// A block of these words, or of each line of them; none for no words.
@@ -176,12 +263,24 @@ impl Engine {
         }
     }
 
-    pub(crate) fn start(&mut self, title: &str, out: &mut String) {
+    /// Words that the options name, for reading back.
+    pub(crate) fn own_words(&self, add: &mut dyn FnMut(&str, Meaning)) {
+        if matches!(self.table.tcp, Tcp::Blocks { .. }) {
+            add(&self.tcp_on, Meaning::TcpOn);
+            add(&self.tcp_off, Meaning::TcpOff);
+        }
+        let [off, on @ ..] = &self.coolant_codes;
+        add(off, Meaning::CoolantOff);
+        on.iter().for_each(|word| add(word, Meaning::CoolantOn));
+        self.settings.words(add);
+    }
+
+    pub(crate) fn start(&mut self, out: &mut String) {
         if self.percent {
             self.bare("%", out);
         }
-        if !title.is_empty() {
-            self.bare(title, out);
+        if !self.title.is_empty() {
+            self.bare(&self.title, out);
         }
         if !self.machine.is_empty() {
             self.remark(&self.machine, out);
@@ -192,6 +291,11 @@ impl Engine {
             }
         }
         self.line(self.table.codes.units[usize::from(self.inch)], out);
+        self.safe(out);
+    }
+
+    /// Everything modal in a known state.
+    fn safe(&mut self, out: &mut String) {
         let mut safe = self.table.safe.to_owned();
         if self.table.offset.at_start {
             safe.push(' ');
@@ -201,6 +305,7 @@ impl Engine {
         self.line(&safe, out);
         let cancel = std::mem::take(&mut self.cancel);
         self.line(&cancel, out);
+        self.cancel = cancel;
         self.motion.feeds_per_minute();
     }
 
@@ -211,8 +316,10 @@ impl Engine {
     #[inline]
     pub fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
         match *event {
-            Event::Rapid { words, .. } => self.motion.rapid(words, out),
-            Event::Linear { words, feed, .. } if self.motion.has(feed) => {
+            Event::Rapid { words, .. } if !self.follows_vector => self.motion.rapid(words, out),
+            Event::Linear { words, feed, .. }
+                if self.motion.has(feed) && !self.follows_vector && !self.tapped =>
+            {
                 self.motion.cut(words, feed, out);
             }
             _ => return self.command(event, out),
@@ -221,9 +328,13 @@ impl Engine {
     }
 
     fn command(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
-        let codes = &self.table.codes;
+        let codes: &Codes = &self.table.codes;
         match *event {
             Event::Linear { feed, .. }
+            | Event::Arc { feed, .. }
+            | Event::Spline { feed, .. }
+            | Event::Cycle { feed, .. }
+            | Event::Probe { feed, .. }
             | Event::Position {
                 feed: Some(feed), ..
             } if !self.motion.has(feed) => {
@@ -234,7 +345,52 @@ impl Engine {
             {
                 return Err(event.refusal());
             }
+            Event::Linear { words, feed, tool } => {
+                self.turn_again(out)?;
+                match self.follows_vector {
+                    true => self.motion.lead(words, leaning(tool)?, Some(feed), out),
+                    false => self.motion.cut(words, feed, out),
+                }
+            }
+            Event::Rapid { words, tool } => self.motion.lead(words, leaning(tool)?, None, out),
+            Event::Arc {
+                feed,
+                centre,
+                normal,
+                turn,
+                radius,
+                words,
+                ..
+            } if !codes.arc[0].is_empty() => {
+                self.turn_again(out)?;
+                let arc = Arc {
+                    centre,
+                    normal,
+                    turn,
+                    radius,
+                    words,
+                };
+                self.motion.arc(&arc, feed, out)?;
+            }
+            Event::Spline {
+                feed,
+                degree,
+                knots,
+                weights,
+                points,
+            } if self.splines => {
+                self.turn_again(out)?;
+                let spline = splines::Spline {
+                    degree,
+                    knots: knots.0,
+                    weights: weights.0,
+                    points: points.0,
+                };
+                self.motion.spline(self.table.splines, &spline, feed, out)?;
+            }
             Event::Comment { text } => self.remark(text, out),
+            Event::Operation { name: "" } | Event::OperationEnd => {}
+            Event::Operation { name } => self.remark(name, out),
             Event::Literal { text } => {
                 fits(self.table, text)?;
                 self.line(text, out);
@@ -250,21 +406,24 @@ impl Engine {
                 register,
                 name,
                 ..
-            } => self.change(number, register, name, out),
+            } => {
+                self.plane.must_be_off("a tool change")?;
+                self.change(number, register, name, out);
+            }
             Event::Preselect { number } => self.line(&format!("T{number}"), out),
             Event::Spindle(spindle) => self.turn(spindle, out)?,
             Event::Coolant(coolant) => self.cool(coolant, out)?,
             Event::Compensate(compensation) => self.motion.compensate(compensation),
             Event::Turn { words } => {
-                self.work_offset(out);
+                self.offset_before_position(out);
                 self.motion.turn(words, out);
             }
             Event::Position {
                 words,
                 feed,
                 plane_first,
-                ..
-            } => self.position(words, feed, plane_first, out)?,
+                tool,
+            } => self.position(words, tool, feed, plane_first, out)?,
             Event::Retract { axes, words } => self.leave(axes, words, out),
             Event::Park { axes, words } => {
                 self.motion.machine(self.table.machine, axes, words, out);
@@ -273,7 +432,48 @@ impl Engine {
             Event::Stop => self.stop(codes.stop[0], out)?,
             Event::OptionalStop => self.stop(codes.stop[1], out)?,
             Event::End => self.end(out),
-            ref other => return Err(other.refusal()),
+            Event::WorkOffset { number, .. } => {
+                self.plane.must_be_off("another work offset")?;
+                if self.tcp_active.is(true) {
+                    return Err(
+                        "tool centre point control is on across a change of the work offset"
+                            .to_owned(),
+                    );
+                }
+                let word = (self.table.offset.word)(number);
+                self.work_offset = word.ok_or_else(|| {
+                    let range = self.table.offset.range;
+                    format!("the work offset has the number {number}, and this control has {range}")
+                })?;
+                self.own_offset = false;
+                self.offset_active.forget();
+                self.offset_in_force(out);
+            }
+            Event::Tcp { on } if self.tcp && matches!(self.table.tcp, Tcp::Blocks { .. }) => {
+                let words = if on { &self.tcp_on } else { &self.tcp_off };
+                self.motion.line(&words.replace("{h}", &self.h()), out);
+                self.tcp_active.set(on);
+                self.motion.axes.forget();
+            }
+            Event::Units(units) if self.table.units_inside => {
+                self.inch = units == Units::Inch;
+                self.line(codes.units[usize::from(self.inch)], out);
+                self.motion.forget();
+            }
+            Event::Plane {
+                origin,
+                angles,
+                words,
+                ..
+            } => {
+                self.offset_in_force(out);
+                self.begin_plane(origin, angles, words, out)?;
+            }
+            Event::PlaneOff => self.end_plane(out)?,
+            Event::Cycle { .. } => self.begin_cycle(event)?,
+            Event::CyclePoint { words, .. } => self.cycle_point(words, out)?,
+            Event::CycleOff => self.end_cycle(out),
+            ref other => self.setting(other, out)?,
         }
         Ok(())
     }
@@ -283,7 +483,11 @@ impl Engine {
         if !name.is_empty() {
             self.remark(&format!("T{number} {name}"), out);
         }
-        let change = format!("T{number} {}", self.table.change);
+        if let Some([number, step]) = &mut self.tool_blocks {
+            self.motion.block.integer("N", *number);
+            *number += *step;
+        }
+        let change = format!("T{number} {}", self.change);
         self.line(change.trim_end(), out);
         // The changer may have moved any axis.
         self.motion.moved_by_line();
@@ -293,14 +497,29 @@ impl Engine {
             self.offset_active.forget();
         }
         self.turning = None;
+        self.tapped = false;
         self.spindle.forget();
+        if self.restart {
+            self.forget();
+            self.safe(out);
+        }
     }
 
-    fn turn(&mut self, spindle: Spindle, out: &mut String) -> Result<(), String> {
+    /// The spindle turns again behind a rigid tap, which has stopped it.
+    pub(crate) fn turn_again(&mut self, out: &mut String) -> Result<(), String> {
+        match self.turning {
+            Some(spindle) if std::mem::take(&mut self.tapped) => self.turn(spindle, out),
+            _ => Ok(()),
+        }
+    }
+
+    pub(crate) fn turn(&mut self, spindle: Spindle, out: &mut String) -> Result<(), String> {
         let [clockwise, counter, off, orient] = self.table.spindle;
         let on = matches!(spindle, Spindle::On { .. });
         self.spindle.set(on);
         self.turning = on.then_some(spindle);
+        self.tapped = false;
+        let fixed = self.settings.end_surface_speed(self.table);
         match spindle {
             Spindle::Off => self.line(off, out),
             Spindle::Orient if orient.is_empty() => {
@@ -309,6 +528,9 @@ impl Engine {
             Spindle::Orient => self.line(orient, out),
             Spindle::On { rpm, sense } => {
                 let block = &mut self.motion.block;
+                if let Some(fixed) = fixed {
+                    block.word(fixed);
+                }
                 block.number("S", rpm, 0, NumberStyle::default());
                 block.word(match sense {
                     SpindleSense::Clockwise => clockwise,
@@ -318,6 +540,12 @@ impl Engine {
             }
         }
         Ok(())
+    }
+
+    /// The spindle turns by a command other than [`Event::Spindle`].
+    pub(crate) fn spindle_turns(&mut self) {
+        self.spindle.set(true);
+        self.turning = None;
     }
 
     fn cool(&mut self, coolant: Coolant, out: &mut String) -> Result<(), String> {
@@ -357,8 +585,11 @@ impl Engine {
     /// A stop, and behind it what it has switched off, before the tool moves on.
     fn stop(&mut self, word: &str, out: &mut String) -> Result<(), String> {
         self.line(word, out);
-        if let (true, Some(spindle)) = (self.table.stops.spindle, self.turning) {
-            self.turn(spindle, out)?;
+        if self.table.stops.spindle {
+            match self.turning {
+                Some(spindle) => self.turn(spindle, out)?,
+                None => self.surface_speed_again(out)?,
+            }
         }
         if let (true, Some(flowing)) = (self.table.stops.coolant, self.flowing) {
             one_by_one(&self.coolant_codes[flowing], &mut self.motion, out);
@@ -366,46 +597,72 @@ impl Engine {
         Ok(())
     }
 
-    fn work_offset(&mut self, out: &mut String) {
-        if self.own_offset {
-            return;
-        }
-        if self.offset_active.set(true) && !self.table.offset.at_start {
+    fn offset_in_force(&mut self, out: &mut String) {
+        if !self.own_offset && self.offset_active.set(true) {
             self.motion.line(&self.work_offset, out);
+        }
+    }
+
+    fn offset_before_position(&mut self, out: &mut String) {
+        if !self.table.offset.at_start {
+            self.offset_in_force(out);
         }
     }
 
     fn position(
         &mut self,
         words: &[f64],
+        tool: Option<ToolPose>,
         feed: Option<Feed>,
         plane_first: bool,
         out: &mut String,
     ) -> Result<(), String> {
+        let keeps_tip = self.tcp && !self.plane.is_on();
         let mut length = self.length()?;
-        self.work_offset(out);
+        self.settings.smoothing_due(&mut self.motion, out);
+        self.offset_before_position(out);
         // The rotary axes have been turned; what is left of them here moves nothing else.
         self.motion.turn(words, out);
         if plane_first {
             self.motion.plane(words, out);
         }
-        if let (true, Tcp::Blocks { length_first, .. }) = (self.tcp, self.table.tcp) {
+        if let (true, Tcp::Blocks { length_first, .. }) = (keeps_tip, self.table.tcp) {
             if length_first {
                 self.motion.line(&std::mem::take(&mut length), out);
             }
-            self.motion.line(&self.tcp_on, out);
+            self.motion
+                .line(&self.tcp_on.replace("{h}", &self.h()), out);
+        }
+        if keeps_tip {
             self.tcp_active.set(true);
         }
-        self.motion.arrive(words, feed, &length, out);
+        let axis = match self.vector.filter(|_| keeps_tip) {
+            Some(decimals) => {
+                self.follows_vector = true;
+                self.motion.follow_vector(Some(decimals));
+                Some(leaning(tool)?)
+            }
+            None => None,
+        };
+        self.motion.arrive(words, axis, feed, &length, out);
         self.length_active.set(true);
         Ok(())
     }
 
+    /// The number of the length's register, for the words of the user's own.
+    fn h(&self) -> String {
+        self.register
+            .map_or(String::new(), |register| register.to_string())
+    }
+
     /// The words that put the length in force.
-    fn length(&self) -> Result<String, String> {
+    pub(crate) fn length(&self) -> Result<String, String> {
         let length = &self.table.length;
         let on = match self.table.tcp {
-            Tcp::Length(word) if self.tcp => word,
+            Tcp::Length(_) if self.tcp && !self.plane.is_on() && self.vector.is_some() => {
+                self.table.vector
+            }
+            Tcp::Length(word) if self.tcp && !self.plane.is_on() => word,
             _ => length.on,
         };
         match self.register {
@@ -421,15 +678,26 @@ impl Engine {
     }
 
     fn dwell(&mut self, seconds: f64, out: &mut String) {
-        let (address, value, decimals) = match self.table.dwell {
+        self.motion.block.word("G4");
+        self.wait(seconds);
+        self.motion.block.end(out);
+    }
+
+    /// The word of a wait, in the block under construction.
+    fn wait(&mut self, seconds: f64) {
+        let (Dwell::Milliseconds(address) | Dwell::Seconds(address, _)) = self.table.dwell;
+        self.wait_by(address, seconds);
+    }
+
+    /// The same, by another address.
+    pub(crate) fn wait_by(&mut self, address: &str, seconds: f64) {
+        let (value, decimals) = match self.table.dwell {
             // A dwell too short to be written waits the least.
-            Dwell::Milliseconds(address) => (address, (seconds * 1000.0).round().max(1.0), 0),
-            Dwell::Seconds(address, decimals) => (address, seconds, decimals),
+            Dwell::Milliseconds(_) => ((seconds * 1000.0).round().max(1.0), 0),
+            Dwell::Seconds(_, decimals) => (seconds, decimals),
         };
         let block = &mut self.motion.block;
-        block.word("G4");
         block.number(address, value, decimals, NumberStyle::default());
-        block.end(out);
     }
 
     /// The tool leaves the part, and what was in force is cancelled, in the order of the table.
@@ -459,11 +727,15 @@ impl Engine {
                 }
             }
         }
+        self.tcp_active.set(false);
+        self.follows_vector = false;
+        self.motion.follow_vector(None);
         self.motion.axes.forget();
     }
 
     fn end(&mut self, out: &mut String) {
         self.motion.settle(out);
+        self.settings.end_smoothing(&mut self.motion, out);
         if self.spindle.set(false) {
             self.line(self.table.spindle[2], out);
         }
@@ -485,7 +757,47 @@ impl Engine {
         // What turns and flows was asked for all the same: a stop behind it switches that off.
         self.spindle.forget();
         self.coolant.forget();
+        self.cycles.forget();
     }
+}
+
+/// The line with the program's number and name; empty if it has neither.
+fn title(table: &Table, setup: &Setup<'_>) -> String {
+    let name = program_name(table, setup.program);
+    let name = match name.is_empty() {
+        true => name,
+        false => (table.remark)(&name),
+    };
+    match table.title {
+        Some((letter, digits)) => {
+            let number = integer(setup, "program_number", 1000);
+            format!("{letter}{number:0digits$} {name}")
+                .trim_end()
+                .to_owned()
+        }
+        None => name,
+    }
+}
+
+/// Decimals of single words, by the option `word_decimals`.
+fn single_decimals(setup: &Setup<'_>, axes: &mut Axes) -> Result<(), String> {
+    for entry in text(setup, "word_decimals", "").split_whitespace() {
+        let (name, decimals) = entry.split_once('=').unwrap_or((entry, ""));
+        let decimals = decimals.parse().ok().filter(|decimals| *decimals <= 6);
+        let known = decimals.is_some_and(|decimals| axes.set_decimals(name, decimals));
+        if !known {
+            return Err(format!(
+                "word_decimals has `{entry}`, must be the name of an axis, an equals sign and 0 to 6: `A=4`"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The direction of the tool, where its words are written.
+fn leaning(tool: Option<ToolPose>) -> Result<[f64; 3], String> {
+    tool.map(|tool| tool.axis)
+        .ok_or_else(|| "nobody knows the direction of the tool here".to_owned())
 }
 
 /// Own lines that end with counting from where the tool stands (`G91 G28 Z0.`) leave that in force.
@@ -506,7 +818,7 @@ fn names_offset(table: &Table, line: &str) -> bool {
 }
 
 /// One M in a block, as most controls have it by default.
-fn one_by_one(codes: &str, motion: &mut Motion, out: &mut String) {
+pub(crate) fn one_by_one(codes: &str, motion: &mut Motion, out: &mut String) {
     for code in codes.split_whitespace() {
         motion.line(code, out);
     }

@@ -4,17 +4,27 @@
 //! `export_dialect!(name, Iso<MyControl>)`. It is a crate beside `post-plugin`, not a part of it: the contract has no
 //! opinion on any control, and this may change without it.
 
+mod cycles;
 mod engine;
 mod lines;
+mod look;
 mod motion;
 pub mod options;
+mod planes;
+mod settings;
+mod splines;
 mod table;
+mod vocabulary;
 
-use post_plugin::{Capabilities, Dialect, Event, Format, OptionSpec, Setup};
+use post_plugin::{Capabilities, Dialect, Event, Format, OptionSpec, Setup, VocabularyWord};
 
 pub use engine::Engine;
-pub use motion::{FeedDecimals, Motion};
-pub use table::{Codes, Dwell, Leave, Length, Offset, Stops, Table, Tcp};
+pub use motion::{Arc, FeedDecimals, Motion};
+pub use splines::Spline;
+pub use table::{
+    CYCLES, Codes, CycleCode, Dwell, Leave, Length, Offset, Plane, Rigid, Splines, Stops,
+    Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six, offset_beyond_six, offset_of_six,
+};
 
 /// A control of the family: its table, and what does not fit into one.
 pub trait Control: Sized + Send + 'static {
@@ -26,14 +36,6 @@ pub trait Control: Sized + Send + 'static {
     /// # Errors
     /// A sentence for the user, if machine or options cannot be served.
     fn open(setup: &Setup<'_>) -> Result<Self, String>;
-
-    /// The line in front of the machine's name: by default the program's name as a remark.
-    fn title(&self, program: &str) -> String {
-        match program {
-            "" => String::new(),
-            name => (Self::TABLE.remark)(name),
-        }
-    }
 
     /// Lines behind the one that puts the control into a safe state.
     fn begin(&self, _engine: &mut Engine, _out: &mut String) {}
@@ -51,7 +53,7 @@ pub trait Control: Sized + Send + 'static {
         Ok(false)
     }
 
-    /// What it writes beyond straight moves.
+    /// What it writes beyond what table and options say.
     fn capabilities(&self) -> Capabilities {
         Capabilities::NONE
     }
@@ -62,6 +64,42 @@ pub trait Control: Sized + Send + 'static {
 pub struct Iso<C> {
     control: C,
     engine: Engine,
+    /// Lines of the user's own have been written in the place of those of the next event.
+    instead: bool,
+}
+
+impl<C: Control> Iso<C> {
+    #[inline]
+    fn write_plain(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        let Iso {
+            control, engine, ..
+        } = self;
+        if control.write(event, engine, out)? {
+            return Ok(());
+        }
+        if let Event::Start = event {
+            engine.start(out);
+            control.begin(engine, out);
+            return Ok(());
+        }
+        engine.write(event, out)
+    }
+
+    /// Lines of the user's own, and the event that they stand for: what it writes is dropped, what it puts in force is
+    /// in force.
+    fn write_instead(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        if let Event::Instead { text } = *event {
+            self.engine.own_lines(text, out)?;
+            self.instead = true;
+            return Ok(());
+        }
+        self.instead = false;
+        let block = self.engine.motion.block.clone();
+        self.write_plain(event, &mut String::new())?;
+        self.engine.motion.block = block;
+        self.engine.motion.forget();
+        Ok(())
+    }
 }
 
 impl<C: Control> Dialect for Iso<C> {
@@ -72,7 +110,11 @@ impl<C: Control> Dialect for Iso<C> {
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
         let engine = Engine::new(C::TABLE, setup)?;
         let control = C::open(setup)?;
-        Ok(Iso { control, engine })
+        Ok(Iso {
+            control,
+            engine,
+            instead: false,
+        })
     }
 
     fn format(&self) -> Format {
@@ -80,20 +122,24 @@ impl<C: Control> Dialect for Iso<C> {
     }
 
     fn capabilities(&self) -> Capabilities {
-        self.control.capabilities()
+        self.engine.capabilities() | self.control.capabilities()
+    }
+
+    fn vocabulary(&self) -> Vec<VocabularyWord> {
+        self.engine.vocabulary()
     }
 
     #[inline]
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
-        let Iso { control, engine } = self;
-        if control.write(event, engine, out)? {
-            return Ok(());
+        let start = out.len();
+        if self.instead || matches!(event, Event::Instead { .. }) {
+            return self.write_instead(event, out);
         }
-        if let Event::Start = event {
-            engine.start(&control.title(engine.program()), out);
-            control.begin(engine, out);
-            return Ok(());
+        self.write_plain(event, out)?;
+        let own = matches!(event, Event::Literal { .. } | Event::Word { .. });
+        if !self.engine.look.is_plain() && !own {
+            self.engine.look.apply(out, start);
         }
-        engine.write(event, out)
+        Ok(())
     }
 }

@@ -1,9 +1,11 @@
 //! Moves in G-code.
 //!
-//! Rapids, cuts, the three feed modes, compensation and the way a tool comes to the part. A word that is in force is
+//! Rapids, cuts, the three feed modes, compensation, arcs and the way a tool comes to the part. A word that is in force is
 //! not written again, and a move that changes no word is not written at all.
 
-use post_plugin::{Axes, Block, Compensation, Feed, Format, Group, Modal, NumberStyle};
+use post_plugin::{
+    Axes, Block, Compensation, Feed, Format, Group, Modal, NumberStyle, Setup, quantise,
+};
 
 use crate::lines::takes_number;
 use crate::table::Codes;
@@ -11,16 +13,41 @@ use crate::table::Codes;
 /// The moving part of a G-code dialect.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    codes: &'static Codes,
+    pub(crate) codes: Codes,
     /// The block under construction.
     pub block: Block,
     /// The axis words.
     pub axes: Axes,
+    /// How their numbers look.
+    pub(crate) style: NumberStyle,
     decimals: FeedDecimals,
     motion: Modal<&'static str>,
     feed_mode: Modal<&'static str>,
     feed: Modal<f64>,
     pending: Option<Compensation>,
+    /// Cutter compensation is on, or waits for the next move.
+    compensates: bool,
+    /// Another register of the length, to be written with the next move.
+    length: Option<String>,
+    /// The plane of arcs.
+    plane: Modal<&'static str>,
+    /// It is another one than that of X and Y.
+    other_plane: bool,
+    /// Words of the last move; empty where nobody knows where the axes stand.
+    at: Vec<f64>,
+    /// Places of the words X, Y and Z among those of the program.
+    pub(crate) linear: [Option<usize>; 3],
+    /// Decimals of the words.
+    places: Vec<u8>,
+    /// The tool vector, where its words take the place of rotary ones.
+    vector: Option<Vector>,
+}
+
+/// Words of the tool vector.
+#[derive(Clone, Copy, Debug)]
+struct Vector {
+    decimals: u8,
+    last: Modal<[f64; 3]>,
 }
 
 /// Decimals of the three kinds of feed.
@@ -34,6 +61,9 @@ pub struct FeedDecimals {
     pub per_revolution: u8,
 }
 
+/// Addresses of the parts of a centre or a vector.
+pub(crate) const CENTRE: [&str; 3] = ["I", "J", "K"];
+
 /// A feed has a point but no zeros behind it: `F850.`
 const FEED_STYLE: NumberStyle = NumberStyle {
     plus: false,
@@ -43,16 +73,34 @@ const FEED_STYLE: NumberStyle = NumberStyle {
 
 impl Motion {
     /// Nothing is known to be in force.
-    pub fn new(codes: &'static Codes, block: Block, axes: Axes, decimals: FeedDecimals) -> Self {
+    pub fn new(
+        setup: &Setup<'_>,
+        codes: Codes,
+        block: Block,
+        axes: Axes,
+        style: NumberStyle,
+        decimals: FeedDecimals,
+    ) -> Self {
+        let words = setup.words;
+        let place = |name| words.iter().position(|word| word.name == name);
         Motion {
             codes,
             block,
+            places: axes.decimals(),
             axes,
+            style,
             decimals,
             motion: Modal::default(),
             feed_mode: Modal::default(),
             feed: Modal::default(),
             pending: None,
+            compensates: false,
+            length: None,
+            plane: Modal::default(),
+            other_plane: false,
+            at: Vec::with_capacity(words.len()),
+            linear: ["X", "Y", "Z"].map(place),
+            vector: None,
         }
     }
 
@@ -74,11 +122,23 @@ impl Motion {
         self.feed_mode.forget();
         self.feed.forget();
         self.axes.forget();
+        self.plane.forget();
     }
 
     /// A line of the dialect's own has put the feed a minute in force.
     pub fn feeds_per_minute(&mut self) {
         self.feed_mode.set(self.codes.feed[0]);
+        self.plane.set(self.codes.planes[0]);
+        self.other_plane = false;
+    }
+
+    /// The plane of X and Y is in force again, in the block under construction.
+    pub(crate) fn plane_xy(&mut self) {
+        if std::mem::take(&mut self.other_plane) {
+            let word = self.codes.planes[0];
+            self.plane.set(word);
+            self.block.word(word);
+        }
     }
 
     /// A block of its own, or one for each line; none for no words. A remark, or a line that is numbered already, is
@@ -112,7 +172,13 @@ impl Motion {
 
     /// Cutter compensation, to be written with the next move.
     pub fn compensate(&mut self, compensation: Compensation) {
+        self.compensates = compensation != Compensation::Off;
         self.pending = Some(compensation);
+    }
+
+    /// Another register of the length in force, to be written with the next move.
+    pub(crate) fn change_length(&mut self, words: String) {
+        self.length = Some(words);
     }
 
     /// Cutter compensation that waits for a move which does not come is written in a block of its own.
@@ -124,16 +190,119 @@ impl Motion {
     /// A rapid.
     pub fn rapid(&mut self, words: &[f64], out: &mut String) {
         if self.axes.moved(words) {
+            self.write_plane();
             self.motion(self.codes.motion[0]);
             self.write_pending();
             self.axes.write(&mut self.block, words);
             self.block.end(out);
+        }
+        self.stands(words);
+    }
+
+    /// Decimals of the words X, Y and Z.
+    pub(crate) fn linear_decimals(&self, part: usize) -> u8 {
+        let place = self.linear[part].unwrap_or_default();
+        self.places.get(place).copied().unwrap_or_default()
+    }
+
+    /// Cutter compensation is on, or waits for the next move.
+    pub(crate) fn is_compensating(&self) -> bool {
+        self.compensates || self.pending.is_some()
+    }
+
+    /// The axes are known to stand at `words`.
+    pub(crate) fn stands_at(&self, words: &[f64]) -> bool {
+        self.at == words
+    }
+
+    /// The axes stand at `words`, but the one at `place`, which a cycle has left at `level`.
+    pub(crate) fn at_level(&mut self, words: &[f64], place: usize, level: f64) {
+        self.stands(words);
+        self.at[place] = level;
+        self.axes.forget_some(1 << place);
+        self.motion.forget();
+    }
+
+    /// The feed, whatever is in force, with so many decimals more.
+    pub(crate) fn feed_again(&mut self, feed: Feed, more: u8) {
+        self.feed.forget();
+        self.feed_with(feed, more);
+    }
+
+    /// A move until the probe touches.
+    pub(crate) fn probe(&mut self, code: &str, words: &[f64], feed: Feed, out: &mut String) {
+        self.feed_mode(feed);
+        self.block.word(code);
+        self.forget_linear();
+        self.axes.write(&mut self.block, words);
+        self.feed(feed);
+        self.block.end(out);
+        self.moved_by_line();
+    }
+
+    /// Where the axes stand.
+    pub(crate) fn stands(&mut self, words: &[f64]) {
+        self.at.clear();
+        self.at.extend_from_slice(words);
+    }
+
+    /// A move with the tool vector in the place of rotary words; a rapid without a feed.
+    pub(crate) fn lead(
+        &mut self,
+        words: &[f64],
+        axis: [f64; 3],
+        feed: Option<Feed>,
+        out: &mut String,
+    ) {
+        let linear = [Group::Plane, Group::Depth];
+        let moved = linear.map(|group| self.axes.moved_group(words, group));
+        let turned = self.vector.is_some_and(|vector| {
+            let written = axis.map(|part| quantise(part, vector.decimals));
+            !vector.last.is(written)
+        });
+        if moved != [false; 2] || turned {
+            if let Some(feed) = feed {
+                self.feed_mode(feed);
+            }
+            self.motion(self.codes.motion[usize::from(feed.is_some())]);
+            self.write_pending();
+            for group in linear {
+                self.axes.write_group(&mut self.block, words, group);
+            }
+            self.write_vector(axis);
+            if let Some(feed) = feed {
+                self.feed(feed);
+            }
+            self.block.end(out);
+        }
+        self.stands(words);
+    }
+
+    /// Tool vectors take the place of rotary words from here on; with none, rotary words are written again.
+    pub(crate) fn follow_vector(&mut self, decimals: Option<u8>) {
+        self.vector = decimals.map(|decimals| Vector {
+            decimals,
+            last: Modal::default(),
+        });
+    }
+
+    fn write_vector(&mut self, axis: [f64; 3]) {
+        let Some(vector) = &mut self.vector else {
+            return;
+        };
+        let written = axis.map(|part| quantise(part, vector.decimals));
+        if vector.last.set(written) {
+            for (address, part) in CENTRE.into_iter().zip(written) {
+                self.block
+                    .number(address, part, vector.decimals, self.style);
+            }
         }
     }
 
     /// A cut.
     pub fn cut(&mut self, words: &[f64], feed: Feed, out: &mut String) {
         if self.axes.moved(words) {
+            self.write_plane();
             self.feed_mode(feed);
             self.motion(self.codes.motion[1]);
             self.write_pending();
@@ -141,10 +310,20 @@ impl Motion {
             self.feed(feed);
             self.block.end(out);
         }
+        self.stands(words);
     }
 
-    /// What is left of the way to `words`, with `length` (`G43 H1`), at `feed` or at rapid.
-    pub fn arrive(&mut self, words: &[f64], feed: Option<Feed>, length: &str, out: &mut String) {
+    /// What is left of the way to `words`, with `length` (`G43 H1`), at `feed` or at rapid; with the tool's `axis` where
+    /// its vector is written.
+    pub fn arrive(
+        &mut self,
+        words: &[f64],
+        axis: Option<[f64; 3]>,
+        feed: Option<Feed>,
+        length: &str,
+        out: &mut String,
+    ) {
+        self.plane_xy();
         if let Some(feed) = feed {
             self.feed_mode(feed);
         }
@@ -153,10 +332,14 @@ impl Motion {
             self.block.word(length);
         }
         self.axes.write(&mut self.block, words);
+        if let Some(axis) = axis {
+            self.write_vector(axis);
+        }
         if let Some(feed) = feed {
             self.feed(feed);
         }
         self.block.end(out);
+        self.stands(words);
     }
 
     /// Axes at rapid to positions in machine coordinates; `front` is what says so (`G53 G0`).
@@ -166,6 +349,7 @@ impl Motion {
             self.axes.write_machine(&mut self.block, axes, words);
             self.block.end(out);
             self.motion.forget();
+            self.at.clear();
         }
     }
 
@@ -183,6 +367,31 @@ impl Motion {
     pub fn moved_by_line(&mut self) {
         self.motion.forget();
         self.axes.forget();
+        self.at.clear();
+    }
+
+    /// The linear words have a frame of their own from here on; the rotary axes stand where they did.
+    pub(crate) fn other_frame(&mut self) {
+        self.forget_linear();
+        self.motion.forget();
+        self.at.clear();
+    }
+
+    /// The next move writes all linear words.
+    pub(crate) fn forget_linear(&mut self) {
+        let linear = self.linear.into_iter().flatten();
+        self.axes
+            .forget_some(linear.fold(0, |all, place| all | 1 << place));
+    }
+
+    /// Where the axis of this word stands, if it is known.
+    pub(crate) fn stands_on(&self, place: usize) -> Option<f64> {
+        self.at.get(place).copied()
+    }
+
+    /// A code of the same group as the motion words was written.
+    pub(crate) fn forget_motion(&mut self) {
+        self.motion.forget();
     }
 
     /// Feed and its mode are not known any more.
@@ -199,13 +408,13 @@ impl Motion {
         }
     }
 
-    fn motion(&mut self, word: &'static str) {
+    pub(crate) fn motion(&mut self, word: &'static str) {
         if self.motion.set(word) {
             self.block.word(word);
         }
     }
 
-    fn feed_mode(&mut self, feed: Feed) {
+    pub(crate) fn feed_mode(&mut self, feed: Feed) {
         let word = self.feed_word(feed);
         if self.feed_mode.set(word) {
             self.block.word(word);
@@ -213,7 +422,11 @@ impl Motion {
         }
     }
 
-    fn feed(&mut self, feed: Feed) {
+    pub(crate) fn feed(&mut self, feed: Feed) {
+        self.feed_with(feed, 0);
+    }
+
+    fn feed_with(&mut self, feed: Feed, more: u8) {
         let (value, decimals) = match feed {
             Feed::PerMinute(value) => (value, self.decimals.per_minute),
             Feed::InverseTime(value) => (value, self.decimals.inverse_time),
@@ -221,11 +434,21 @@ impl Motion {
         };
         // Under inverse time every block needs its own.
         if self.feed.set(value) || matches!(feed, Feed::InverseTime(_)) {
-            self.block.number("F", value, decimals, FEED_STYLE);
+            self.block.number("F", value, decimals + more, FEED_STYLE);
+        }
+    }
+
+    /// Compensation is in the plane of X and Y.
+    fn write_plane(&mut self) {
+        if self.pending.is_some() {
+            self.plane_xy();
         }
     }
 
     fn write_pending(&mut self) {
+        if let Some(length) = self.length.take() {
+            self.block.word(&length);
+        }
         let [off, left, right] = self.codes.compensation;
         let (word, register) = match self.pending.take() {
             None => return,
@@ -236,6 +459,107 @@ impl Motion {
         self.block.word(word);
         if let Some(register) = register {
             self.block.integer(self.codes.radius, register);
+        }
+    }
+
+    /// An arc or a helix.
+    ///
+    /// # Errors
+    /// If the control cannot be told it: a plane that is none of the three, a start that nobody knows, more than a turn,
+    /// an arc that would be read as a whole circle, the first move of a cutter compensation.
+    pub fn arc(&mut self, arc: &Arc<'_>, feed: Feed, out: &mut String) -> Result<(), String> {
+        let (plane, sense) = arc.plane()?;
+        let across = PLANES[plane];
+        let places = across.map(|part| self.linear[part]);
+        let [Some(first), Some(second)] = places else {
+            return Err("the machine has not both axes of the arc's plane".to_owned());
+        };
+        if self.at.len() != arc.words.len() {
+            return Err("nobody knows where the arc starts".to_owned());
+        }
+        if self.pending.is_some() || self.compensates && plane != 0 {
+            return Err(
+                "cutter compensation begins and ends with a straight move, and holds in the plane of X and Y alone"
+                    .to_owned(),
+            );
+        }
+        if arc.turn.abs() > 360.0 + 1e-6 {
+            return Err("this control makes one turn in a block at most".to_owned());
+        }
+        let ends_at_start = [first, second]
+            .iter()
+            .all(|place| self.at[*place] == arc.words[*place]);
+        if ends_at_start && (arc.turn.abs() < 180.0 || arc.radius.is_some()) {
+            return Err(
+                "the arc ends where it starts: the control would make a whole circle of it, or none".to_owned(),
+            );
+        }
+        let word = self.codes.planes[plane];
+        if self.plane.set(word) {
+            self.block.word(word);
+            // Beside another plane the code is not left to be remembered.
+            self.motion.forget();
+        }
+        self.other_plane = plane != 0;
+        self.feed_mode(feed);
+        self.motion(self.codes.arc[usize::from(arc.turn * sense > 0.0)]);
+        self.write_pending();
+        self.axes.forget_some(1 << first | 1 << second);
+        self.axes.write(&mut self.block, arc.words);
+        match arc.radius {
+            Some(radius) => {
+                self.block
+                    .number("R", radius, self.places[first], self.style);
+            }
+            None => {
+                let mut parts = [(across[0], first), (across[1], second)];
+                parts.sort_unstable();
+                for (part, place) in parts {
+                    let offset = arc.centre[part] - self.at[place];
+                    self.block
+                        .number(CENTRE[part], offset, self.places[place], self.style);
+                }
+            }
+        }
+        self.feed(feed);
+        self.block.end(out);
+        self.stands(arc.words);
+        Ok(())
+    }
+}
+
+/// Coordinates that lie in G17, G18, G19, in the order in which a turn to the left goes from one to the other.
+const PLANES: [[usize; 2]; 3] = [[0, 1], [2, 0], [1, 2]];
+
+/// An arc or a helix, as [`Event::Arc`](post_plugin::Event::Arc) has it.
+#[derive(Clone, Copy, Debug)]
+pub struct Arc<'a> {
+    /// Centre in the frame and the units of the linear words.
+    pub centre: [f64; 3],
+    /// Unit vector about which it turns.
+    pub normal: [f64; 3],
+    /// Degrees, to the left seen against the normal.
+    pub turn: f64,
+    /// To be written in the place of the centre.
+    pub radius: Option<f64>,
+    /// All axis words at its end.
+    pub words: &'a [f64],
+}
+
+impl Arc<'_> {
+    /// The plane's place among G17, G18, G19, and 1 or -1 where the normal points the other way.
+    fn plane(&self) -> Result<(usize, f64), String> {
+        // Along Z, Y, X.
+        let along = [2, 1, 0].map(|part| self.normal[part]);
+        let plane = along.iter().position(|part| part.abs() > 1.0 - 1e-9);
+        match plane {
+            Some(plane) => Ok((plane, along[plane].signum())),
+            None => {
+                let [x, y, z] = self.normal;
+                Err(format!(
+                    "the arc turns about ({x:.6}, {y:.6}, {z:.6}), and this control has arcs about X, Y and Z alone"
+                ))
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What differs from control to control.
 
-use post_plugin::{AxisNames, OptionSpec, remark};
+use post_plugin::{AxisNames, Cycle, OptionSpec, remark};
 
 /// How a control of the family differs from the others. Begin with [`Table::ISO`] and say what is different.
 ///
@@ -16,6 +16,8 @@ pub struct Table {
     pub extension: &'static str,
     /// `%` before and after the program. Option `percent`.
     pub percent: bool,
+    /// Letter and digits of the program's number, in front of its name: `O` and 4. Option `program_number`.
+    pub title: Option<(&'static str, usize)>,
     /// A text as a remark of this control.
     pub remark: fn(&str) -> String,
     /// Most characters of a remark: a longer one becomes several, the program's name is cut.
@@ -54,8 +56,37 @@ pub struct Table {
     pub stops: Stops,
     /// A wait.
     pub dwell: Dwell,
-    /// Behind `T1`: the change of the tool.
+    /// Behind `T1`: the change of the tool. Option `change`.
     pub change: &'static str,
+    /// Cycles that the control has.
+    pub cycles: &'static [CycleCode],
+    /// Cycles, and arcs, inside a tilted plane. Option `cycles_in_plane`.
+    pub cycles_in_plane: bool,
+    /// The step of a cycle (Q) counts in least increments (0.001 mm, 0.0001 inch), without a point.
+    pub step_in_increments: bool,
+    /// What makes tapping rigid. Option `tapping`.
+    pub rigid: Rigid,
+    /// Tilted planes.
+    pub plane: Plane,
+    /// Words in the place of the length's that have tool vectors (I J K) follow the tool centre point control in the
+    /// place of rotary words; empty where the control has none. Option `tool_vector` asks for them.
+    pub vector: &'static str,
+    /// Splines. Option `splines` asks for them.
+    pub splines: Splines,
+    /// Levels of smoothing and its end. Options `smoothing`, `smoothing_off`.
+    pub smoothing: [&'static str; 2],
+    /// Smoothing may change while the length is in force.
+    pub smoothing_anywhere: bool,
+    /// Constant cutting speed.
+    pub surface: Option<SurfaceSpeed>,
+    /// Opens a remark that the control shows to the operator: `MSG, `; empty where it has none.
+    pub message: &'static str,
+    /// Units may change inside a program.
+    pub units_inside: bool,
+    /// A move until the probe touches; empty where the control has none.
+    pub probe: &'static str,
+    /// Calls of subprograms.
+    pub subprogram: Subprogram,
     /// Spindle clockwise, counter-clockwise, off, oriented; empty where the control has none.
     pub spindle: [&'static str; 4],
     /// M codes of coolant off, flood, mist, through the tool, air; empty where they are the machine builder's.
@@ -73,6 +104,10 @@ pub struct Codes {
     pub units: [&'static str; 2],
     /// Rapid, cut.
     pub motion: [&'static str; 2],
+    /// Arcs clockwise and counter-clockwise; empty where the control has none.
+    pub arc: [&'static str; 2],
+    /// Planes of X and Y, Z and X, Y and Z.
+    pub planes: [&'static str; 3],
     /// Feed a minute, inverse time, feed a revolution; empty where the control has none.
     pub feed: [&'static str; 3],
     /// Compensation off, left, right; the last two empty where the control has none.
@@ -90,6 +125,8 @@ pub struct Offset {
     pub known: fn(&str) -> bool,
     /// Those that are, for a message.
     pub range: &'static str,
+    /// The words of the n-th, from 1; none if the control has no such offset.
+    pub word: fn(u32) -> Option<String>,
     /// It stands in the first block; else in one of its own before the first position behind a tool change.
     pub at_start: bool,
 }
@@ -156,11 +193,148 @@ pub enum Dwell {
     Seconds(&'static str, u8),
 }
 
+/// A cycle's code.
+#[derive(Clone, Copy, Debug)]
+pub struct CycleCode {
+    /// Its kind.
+    pub kind: Cycle,
+    /// Without a dwell at the bottom; empty where the control has none.
+    pub plain: &'static str,
+    /// With one; empty where the control has none.
+    pub waits: &'static str,
+}
+
+/// What makes tapping rigid: the spindle turns with the feed axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rigid {
+    /// The cycle is, or the control's parameters say so.
+    Always,
+    /// A block with the speed ahead of the cycle: `M29`.
+    Ahead(&'static str),
+    /// Another code than that of the cycle, right-hand and left-hand.
+    Codes([&'static str; 2]),
+    /// A move of its own down and up, with the pitch as K: `G33.1`.
+    Move(&'static str),
+}
+
+/// Tilted planes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plane {
+    /// The control has none.
+    None,
+    /// Told by origin and Euler angles: X Y Z I J K.
+    Euler {
+        /// In front of them: `G68.2`.
+        on: &'static str,
+        /// The block behind it that has the machine turn to it: `G53.1`.
+        turn: &'static str,
+        /// It ends.
+        off: &'static str,
+    },
+    /// Where the rotary words have turned the part: the work offset turns with it.
+    Turned {
+        /// It begins: `G254`.
+        on: &'static str,
+        /// It ends.
+        off: &'static str,
+    },
+}
+
+/// Splines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Splines {
+    /// The control has none.
+    None,
+    /// Control points with knots (K) and weights (R) up to degree 3, between two blocks of the control's own.
+    Knots {
+        /// The code: `G6.2`.
+        code: &'static str,
+        /// The block ahead.
+        begin: &'static str,
+        /// The block behind.
+        end: &'static str,
+    },
+    /// Control points in X and Y with weights (P); their knots are even.
+    Even {
+        /// The code: `G5.2`.
+        code: &'static str,
+        /// The block behind.
+        end: &'static str,
+    },
+}
+
+/// Constant cutting speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SurfaceSpeed {
+    /// It begins, and a fixed speed again: `G96`, `G97`.
+    pub codes: [&'static str; 2],
+    /// The largest speed: `G92 S` in a block ahead, or `D` in the same.
+    pub most: &'static str,
+}
+
+/// Calls of subprograms: `{}` stands for number or name; empty where the control has none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Subprogram {
+    /// By number: `M98 P{}`.
+    pub number: &'static str,
+    /// By name.
+    pub name: &'static str,
+    /// Behind it, how often: ` L`; empty: it is called so often.
+    pub times: &'static str,
+}
+
+/// G54 to G59 for 1 to 6.
+pub fn offset_of_six(number: u32) -> Option<String> {
+    (1..=6)
+        .contains(&number)
+        .then(|| format!("G{}", 53 + number))
+}
+
+/// G54 to G59, then `word` with 1 up to `most`: `G54.1 P1`.
+pub fn offset_beyond_six(number: u32, word: &str, most: u32) -> Option<String> {
+    let beyond = number.checked_sub(6).filter(|beyond| *beyond != 0);
+    match beyond {
+        None => offset_of_six(number),
+        Some(beyond) => (beyond <= most).then(|| format!("{word}{beyond}")),
+    }
+}
+
+/// Is it G54 to G59, or `word` with 1 to `most`?
+pub fn is_offset_beyond_six(text: &str, word: &str, most: u32) -> bool {
+    let beyond = text
+        .strip_prefix(word)
+        .and_then(|digits| digits.parse().ok());
+    match beyond {
+        Some(beyond) => (1..=most).contains(&beyond),
+        None => (Table::ISO.offset.known)(text),
+    }
+}
+
+/// A cycle with and without a dwell.
+const fn cycle(kind: Cycle, plain: &'static str, waits: &'static str) -> CycleCode {
+    CycleCode { kind, plain, waits }
+}
+
+/// As most controls have them. Fine boring and boring from below are written where the machine file gives their shift.
+pub const CYCLES: &[CycleCode] = &[
+    cycle(Cycle::Drill, "G81", "G82"),
+    cycle(Cycle::Deep, "G83", ""),
+    cycle(Cycle::BreakChip, "G73", ""),
+    cycle(Cycle::Tap, "G84", "G84"),
+    cycle(Cycle::TapLeft, "G74", "G74"),
+    cycle(Cycle::Ream, "G85", "G89"),
+    cycle(Cycle::Bore, "G86", ""),
+    cycle(Cycle::BoreFine, "G76", "G76"),
+    cycle(Cycle::BoreBack, "G87", "G87"),
+];
+
 impl Codes {
     /// As most controls have them.
     pub const ISO: Codes = Codes {
         units: ["G21", "G20"],
         motion: ["G0", "G1"],
+        arc: ["G2", "G3"],
+        planes: ["G17", "G18", "G19"],
         feed: ["G94", "G93", "G95"],
         compensation: ["G40", "G41", "G42"],
         radius: "D",
@@ -175,6 +349,7 @@ impl Table {
         axes: AxisNames::ISO,
         extension: "nc",
         percent: true,
+        title: None,
         remark,
         // No manual gives a limit; a line of any control's screen is as long.
         remark_length: 80,
@@ -189,6 +364,7 @@ impl Table {
         offset: Offset {
             known: |text| matches!(text, "G54" | "G55" | "G56" | "G57" | "G58" | "G59"),
             range: "G54 to G59",
+            word: |number| offset_of_six(number),
             at_start: false,
         },
         length: Length {
@@ -206,6 +382,24 @@ impl Table {
         },
         dwell: Dwell::Milliseconds("P"),
         change: "M6",
+        cycles: CYCLES,
+        cycles_in_plane: false,
+        step_in_increments: false,
+        rigid: Rigid::Always,
+        plane: Plane::None,
+        vector: "",
+        splines: Splines::None,
+        smoothing: ["", ""],
+        smoothing_anywhere: false,
+        surface: None,
+        message: "",
+        units_inside: false,
+        probe: "",
+        subprogram: Subprogram {
+            number: "",
+            name: "",
+            times: "",
+        },
         spindle: ["M3", "M4", "M5", "M19"],
         coolant: ["M9", "M8", "M7", "", ""],
         end: "M30",

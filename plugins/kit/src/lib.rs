@@ -9,6 +9,8 @@
 //! It writes the way the host does with a dialect that is linked in. What it leaves to `post plugin test` is whether
 //! the text is the same in every cut of the batches, and through the C contract.
 
+pub mod jobs;
+
 use post_plugin::{
     AxisWord, Batch, Capabilities, Compensation, Coolant, Event, Feed, Linked, LinkedDialect,
     Promise, Setup, Spindle, SpindleSense, Units, Value,
@@ -20,6 +22,8 @@ pub struct Bench {
     plugin: Linked,
     units: Units,
     tcp: bool,
+    /// So many of the words.
+    axes: usize,
     given: Vec<(&'static str, Value<'static>)>,
 }
 
@@ -49,6 +53,7 @@ impl Bench {
             plugin,
             units: Units::Millimetre,
             tcp: false,
+            axes: WORDS.len(),
             given: Vec::new(),
         }
     }
@@ -62,6 +67,12 @@ impl Bench {
     /// The control keeps the tip.
     pub fn tcp(mut self) -> Self {
         self.tcp = true;
+        self
+    }
+
+    /// A machine with X Y Z alone: events keep the first three of their words.
+    pub fn three_axes(mut self) -> Self {
+        self.axes = 3;
         self
     }
 
@@ -94,6 +105,37 @@ impl Bench {
         self.write_with(&mut *dialect, &events)
     }
 
+    /// The text of a job of [`jobs`], without what the dialect does not declare: a host would not send it.
+    ///
+    /// # Errors
+    /// As [`Bench::write`].
+    pub fn write_declared(&self, events: &[Event<'_>]) -> Result<String, String> {
+        let mut dialect = self.open()?;
+        let (_, writes) = dialect.format()?;
+        let mut in_plane = false;
+        let mut in_cycle = true;
+        let declared = events.iter().filter(|event| {
+            let written = writes.has(jobs::declared_by(event));
+            match event {
+                Event::Plane { .. } => in_plane = true,
+                Event::PlaneOff => in_plane = false,
+                Event::Cycle { .. } => {
+                    in_cycle = written && (!in_plane || writes.has(Capabilities::CYCLE_IN_PLANE));
+                }
+                Event::Arc { .. } if in_plane && !writes.has(Capabilities::CYCLE_IN_PLANE) => {
+                    return false;
+                }
+                _ => {}
+            }
+            match event {
+                Event::Cycle { .. } | Event::CyclePoint { .. } | Event::CycleOff => in_cycle,
+                _ => written,
+            }
+        });
+        let declared: Vec<Event<'_>> = declared.copied().collect();
+        self.write_with(&mut *dialect, &declared)
+    }
+
     fn open(&self) -> Result<Box<dyn LinkedDialect>, String> {
         let declared = self.plugin.options();
         for (key, _) in &self.given {
@@ -111,7 +153,7 @@ impl Bench {
             machine: "AC trunnion",
             units: self.units,
             tcp: self.tcp,
-            words: WORDS,
+            words: &WORDS[..self.axes],
             options: &options,
             cl_file: "bracket.cls",
             ..Setup::default()
@@ -127,19 +169,39 @@ impl Bench {
     ) -> Result<String, String> {
         let (format, _) = dialect.format()?;
         let promise = Promise {
-            words: WORDS.len(),
+            words: self.axes,
             // A dialect without inverse time must be able to refuse it by itself.
             inverse_time: true,
         };
-        assert_eq!(format.words.len(), WORDS.len(), "decimals of each word");
+        assert_eq!(format.words.len(), self.axes, "decimals of each word");
         let mut batch = Batch::default();
         for (line, event) in (1..).zip(events) {
-            batch.push(line, *event);
+            batch.push(line, first_words(*event, self.axes));
         }
         let (mut out, mut ends) = (String::new(), Vec::new());
         let written = dialect.write(&batch, &promise, &mut out, &mut ends);
         written.map(|()| out).map_err(|fault| fault.message)
     }
+}
+
+/// The event with so many words.
+fn first_words(event: Event<'_>, axes: usize) -> Event<'_> {
+    let mut event = event;
+    match &mut event {
+        Event::Position { words, .. }
+        | Event::Retract { words, .. }
+        | Event::Rapid { words, .. }
+        | Event::Linear { words, .. }
+        | Event::Park { words, .. }
+        | Event::Turn { words }
+        | Event::Plane { words, .. }
+        | Event::Arc { words, .. }
+        | Event::CyclePoint { words, .. }
+        | Event::Surface { words, .. }
+        | Event::Probe { words, .. } => *words = &words[..axes.min(words.len())],
+        _ => {}
+    }
+    event
 }
 
 /// Above the part.

@@ -2,7 +2,10 @@
 //!
 //! What it assumes about the control stands in `plugins/README.md`.
 
-use post_iso::{Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, Tcp, options};
+use post_iso::{
+    CYCLES, Control, Dwell, Engine, Iso, Leave, Length, Offset, Rigid, Splines, Stops, Subprogram,
+    SurfaceSpeed, Table, Tcp, offset_of_six, options,
+};
 use post_plugin::{Capabilities, NumberStyle, OptionSpec, Setup, export_dialect, remark};
 
 struct LinuxCnc {
@@ -24,6 +27,10 @@ impl Control for LinuxCnc {
                 (Table::ISO.offset.known)(text) || matches!(text, "G59.1" | "G59.2" | "G59.3")
             },
             range: "G54 to G59 or G59.1 to G59.3",
+            word: |number| match number {
+                7..=9 => Some(format!("G59.{}", number - 6)),
+                _ => offset_of_six(number),
+            },
             at_start: true,
         },
         // Without a register G43 takes that of the tool in the spindle.
@@ -47,6 +54,26 @@ impl Control for LinuxCnc {
             coolant: false,
         },
         dwell: Dwell::Seconds("P", 3),
+        cycles: CYCLES,
+        rigid: Rigid::Move("G33.1"),
+        splines: Splines::Even {
+            code: "G5.2",
+            end: "G5.3",
+        },
+        smoothing: SMOOTHING,
+        smoothing_anywhere: true,
+        surface: Some(SurfaceSpeed {
+            codes: ["G96", "G97"],
+            most: "D",
+        }),
+        message: "MSG, ",
+        units_inside: true,
+        probe: "G38.2",
+        subprogram: Subprogram {
+            number: "O{} CALL",
+            name: "O<{}> CALL",
+            times: "",
+        },
         end: "M2",
         ..Table::ISO
     };
@@ -62,9 +89,9 @@ impl Control for LinuxCnc {
         Ok(LinuxCnc { blend })
     }
 
-    /// Its interpreter offsets the programmed path, ahead of whatever kinematics is switched on.
+    /// Its interpreter makes arcs and cycles, and offsets the programmed path, ahead of whatever kinematics is switched on.
     fn capabilities(&self) -> Capabilities {
-        Capabilities::COMPENSATE_TCP
+        Capabilities::COMPENSATE_TCP | Capabilities::ARC_TCP | Capabilities::CYCLE_TCP
     }
 
     fn begin(&self, engine: &mut Engine, out: &mut String) {
@@ -96,9 +123,12 @@ const OPTIONS: &[OptionSpec] = &[
     OptionSpec::flag("percent", false, "% before and after the program."),
     options::BLOCK_NUMBERS,
     options::BLOCK_STEP,
+    options::SPACES,
+    options::LEADING_ZEROS,
     options::decimals(4),
     options::decimals_inch(5),
     options::rotary_decimals(4),
+    options::WORD_DECIMALS,
     options::feed_decimals(1),
     options::inverse_time_decimals(4),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G59.1 to G59.3."),
@@ -110,6 +140,7 @@ const OPTIONS: &[OptionSpec] = &[
         "P of G64, program units: the control leaves the path by up to as much; 0: G61, exact path.",
     ),
     options::RETRACT,
+    options::RESTART,
     OptionSpec::lines(
         "tcp_on",
         "M428",
@@ -120,9 +151,17 @@ const OPTIONS: &[OptionSpec] = &[
         "",
         "Remap that switches back; empty: M429 under tcp = \"control\", else nothing is written about it.",
     ),
+    options::tapping("rigid"),
+    options::SPLINES,
+    options::smoothing(SMOOTHING[0]),
+    options::smoothing_off(SMOOTHING[1]),
+    options::CLAMPS,
     options::COOLANT_THROUGH,
     options::COOLANT_AIR,
 ];
+
+/// G64 P is the tolerance, program units.
+const SMOOTHING: [&str; 2] = ["0 G64 P{}", "G61"];
 
 export_dialect!(linuxcnc, Iso<LinuxCnc>);
 

@@ -1,6 +1,7 @@
 //! `post plugin`: what is done with plugins beside posting, a file each.
 
 mod list;
+mod new;
 mod show;
 mod test;
 
@@ -9,6 +10,7 @@ use post_host::Plugin;
 
 use crate::failure::Failure;
 use list::ListArguments;
+use new::NewArguments;
 use show::ShowArguments;
 use test::TestArguments;
 
@@ -22,6 +24,7 @@ pub struct PluginArguments {
 #[derive(Debug, Subcommand)]
 enum PluginCommand {
     List(ListArguments),
+    New(NewArguments),
     Show(ShowArguments),
     Test(TestArguments),
 }
@@ -30,6 +33,7 @@ enum PluginCommand {
 pub fn run(arguments: &PluginArguments) -> Result<(), Failure> {
     match &arguments.command {
         PluginCommand::List(arguments) => list::run(arguments),
+        PluginCommand::New(arguments) => new::run(arguments),
         PluginCommand::Show(arguments) => show::run(arguments),
         PluginCommand::Test(arguments) => test::run(arguments),
     }

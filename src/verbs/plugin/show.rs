@@ -1,10 +1,11 @@
-//! `post plugin show`: the options of a plugin, and what a dialect writes.
+//! `post plugin show`: the options of a plugin, what a dialect writes, and the words of its control.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use post_host::{Kind, OpenedDialect, Plugin, ProgramSetup, ProgramWord, default_of, takes};
-use post_plugin::{CAPABILITIES, DialectSession, Format};
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{CAPABILITIES, CODES, DialectSession, Format};
 
 use super::title;
 use crate::failure::Failure;
@@ -17,6 +18,10 @@ pub struct ShowArguments {
     /// The name of a plugin in a folder of --plugins or built in, or a library. Opening a library runs its code.
     #[arg(value_name = "PLUGIN")]
     plugin: PathBuf,
+
+    /// Also the words of a dialect's control and what they mean, by which its programs can be read back.
+    #[arg(long)]
+    vocabulary: bool,
 
     /// A folder of plugin libraries; POST_PLUGINS adds more.
     #[arg(long, value_name = "FOLDER")]
@@ -33,9 +38,17 @@ pub fn run(arguments: &ShowArguments) -> Result<(), Failure> {
     text.push_str(&options(&plugin));
     if plugin.kind() == Kind::Dialect {
         text.push_str(&match plugin.dialect(&five_axes()) {
-            Ok(opened) => writes(&opened),
+            Ok(mut opened) => {
+                let mut told = writes(&opened);
+                if arguments.vocabulary {
+                    told.push_str(&vocabulary(&mut opened)?);
+                }
+                told
+            }
             Err(fault) => format!("\nWhat it writes cannot be asked: {fault}\n"),
         });
+    } else if arguments.vocabulary {
+        text.push_str("\nOnly a dialect has a vocabulary.\n");
     }
     print(&text);
     Ok(())
@@ -85,6 +98,25 @@ fn writes(opened: &OpenedDialect) -> String {
         ));
     }
     text
+}
+
+/// The words in the order of what they mean.
+fn vocabulary(opened: &mut OpenedDialect) -> Result<String, Diagnostic> {
+    let words = opened.vocabulary();
+    let words = words.map_err(|fault| Diagnostic::error("plugin", fault))?;
+    if words.is_empty() {
+        return Ok("\nIt tells no vocabulary: its programs cannot be read back.\n".to_owned());
+    }
+    let mut text = "\nVocabulary:\n".to_owned();
+    let meanings = CODES.iter().filter(|codes| codes.name == "MEANING");
+    for (meaning, _) in meanings.flat_map(|codes| codes.codes) {
+        let of_it = words.iter().filter(|word| word.meaning.name() == *meaning);
+        let of_it: Vec<&str> = of_it.map(|word| &*word.word).collect();
+        if !of_it.is_empty() {
+            text.push_str(&format!("  {meaning:<26} {}\n", of_it.join(", ")));
+        }
+    }
+    Ok(text)
 }
 
 fn numbers(format: &Format) -> String {

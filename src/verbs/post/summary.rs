@@ -39,8 +39,12 @@ pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
     row(
         "blocks",
         format!(
-            "{} in {} lines, {} points put in{}{}",
+            "{}{} in {} lines, {} points put in{}{}",
             report.blocks,
+            match report.curves {
+                0 => String::new(),
+                count => format!(" ({count} arcs and splines)"),
+            },
             report.nc_lines,
             report.points_added,
             match report.points_dropped {

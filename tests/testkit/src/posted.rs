@@ -29,12 +29,16 @@ pub struct Asked {
     pub feed: Option<Feed>,
     /// Tip (mm) and tool axis of a motion, part frame.
     pub tool: Option<ToolPose>,
+    /// Of an arc, what says how it goes.
+    pub arc: Option<AskedArc>,
     /// Any other number it has: the seconds of a dwell, the number of a tool.
     pub value: f64,
     /// What a cycle says, if it is one.
     pub cycle: Option<AskedCycle>,
     /// What a tilted plane says, if it is one.
     pub plane: Option<AskedPlane>,
+    /// An event without words as it prints for debugging, else empty.
+    pub event: String,
 }
 
 /// A cycle that a dialect was asked for: see [`Event::Cycle`].
@@ -59,6 +63,15 @@ pub struct AskedPlane {
     pub angles: [f64; 3],
     /// All axis words: the rotary ones count.
     pub words: Vec<f64>,
+}
+
+/// How an arc goes that a dialect was asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AskedArc {
+    pub centre: [f64; 3],
+    pub normal: [f64; 3],
+    pub turn: f64,
+    pub radius: Option<f64>,
 }
 
 /// A dialect that writes nothing down but the events themselves. No word may be a negative zero, no number an
@@ -115,12 +128,30 @@ impl DialectSession for Recorder {
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
+            let arc = match event {
+                Event::Arc {
+                    centre,
+                    normal,
+                    turn,
+                    radius,
+                    ..
+                } => Some(AskedArc {
+                    centre,
+                    normal,
+                    turn,
+                    radius,
+                }),
+                _ => None,
+            };
             let (words, tool, feed, value) = match event {
                 Event::Position {
                     words, tool, feed, ..
                 } => (words, tool, feed, 0.0),
                 Event::Rapid { words, tool } => (words, tool, None, 0.0),
                 Event::Linear { words, tool, feed } => (words, tool, Some(feed), 0.0),
+                Event::Arc {
+                    words, tool, feed, ..
+                } => (words, tool, Some(feed), 0.0),
                 Event::CyclePoint { words, tool } => (words, tool, None, 0.0),
                 Event::Dwell { seconds } => (&[][..], None, None, seconds),
                 Event::ToolChange { number, .. } => (&[][..], None, None, f64::from(number)),
@@ -144,9 +175,14 @@ impl DialectSession for Recorder {
                 words: words.to_vec(),
                 feed,
                 tool,
+                arc,
                 value,
                 cycle: cycle(&event),
                 plane: plane(&event),
+                event: match words {
+                    [] => format!("{event:?}"),
+                    _ => String::new(),
+                },
             });
             out.push_str("block\n");
             ends.push(out.len());

@@ -121,12 +121,12 @@ fn take_heads<'i>(
                 None => return Err(fault(word.span())),
             },
         };
-        let whole = |key: &str| matches!(key, "control" | "cl");
+        let whole = |key: &str| matches!(key, "control" | "cl" | "program");
         if let Some((key, _)) = overrides.iter().find(|(key, _)| whole(key.get_ref())) {
             return Err(vec![
                 Diagnostic::error("machine-head", format!("a head does not change [{}]", key.get_ref()))
                     .at(sources.place(key.span()))
-                    .help("[control] and [cl] hold for the whole program: units, dialect, who keeps the tip, words"),
+                    .help("[control], [cl] and [program] hold for the whole program: units, dialect, who keeps the tip, words, text"),
             ]);
         }
         taken.push(HeadLayer {
@@ -270,7 +270,12 @@ impl Builder<'_> {
             .collect();
         let control_point = self.control_point(&file.tool.control_point);
         let spindle = self.spindle(&file.spindle);
+        let arcs = self.arcs(&control.arcs);
         let word_rules = self.word_rules(&file.cl);
+        let smoothing = file.program.smoothing.as_ref();
+        let smoothing = smoothing
+            .map(|file| self.smoothing(file))
+            .unwrap_or_default();
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
         let mut machine = Machine {
@@ -303,10 +308,13 @@ impl Builder<'_> {
                 cycles: control.cycles,
                 planes: control.planes,
                 insert: control.insert,
+                print: control.print,
                 compensation_on_centre: control.compensation_on_centre,
+                arcs,
             },
             spindle,
             word_rules,
+            smoothing,
             accuracy,
             solution,
             rewind,

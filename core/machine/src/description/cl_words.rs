@@ -125,7 +125,9 @@ impl Builder<'_> {
 /// What to say instead of a rule for a word whose every record post carries out or passes on.
 fn known(words: &[String]) -> Option<String> {
     let [word] = words else { return None };
-    match MajorWord::find(word)?.usage {
+    let row = MajorWord::find(word)?;
+    match row.usage {
+        _ if row.by_rule => None,
         Usage::Passed => {
             Some("[control] insert says what becomes of INSERT; texts are remarks".to_owned())
         }

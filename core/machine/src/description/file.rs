@@ -11,6 +11,8 @@ use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
+use super::smoothing::SmoothingFile;
+
 /// A number, or an expression of the file's parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Number {
@@ -60,6 +62,9 @@ pub(crate) struct MachineFile {
     /// Words of the CL file that this machine has lines for.
     #[serde(default)]
     pub cl: ClFile,
+    /// Text of the program, and what the control does to it.
+    #[serde(default)]
+    pub program: ProgramFile,
     /// What the program must keep.
     #[serde(default)]
     pub accuracy: AccuracyFile,
@@ -114,6 +119,10 @@ pub(crate) struct SpindleFile {
     /// Largest speed, rpm; a faster one is refused.
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_speed: Option<Quantity>,
+    /// It turns the part, and SFM and SMM are constant cutting speeds that the control keeps (G96); else they are
+    /// those of the cutter's diameter, as revolutions a minute.
+    #[serde(default)]
+    pub surface_speed: bool,
 }
 
 /// Words of the CL file that this machine has lines for.
@@ -402,6 +411,17 @@ pub enum Insert {
     Literal,
 }
 
+/// What becomes of `PPRINT text`.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Print {
+    /// A comment.
+    #[default]
+    Comment,
+    /// A message on the control's screen, where the dialect has any; else a comment.
+    Message,
+}
+
 /// What becomes of `CUTCOM` on points of the tool's centre (`CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER`).
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -433,6 +453,14 @@ pub enum OutputUnits {
     Mm,
     /// inch, inch/min.
     Inch,
+}
+
+/// Text of the program, and what the control does to it.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ProgramFile {
+    /// By how much the control may leave the path; without it it keeps the path as it does by default.
+    pub smoothing: Option<SmoothingFile>,
 }
 
 /// The control and its language; `[control.<dialect>]` holds the dialect's own options.
@@ -472,9 +500,15 @@ pub(crate) struct ControlFile {
     /// What becomes of `INSERT text`; comment if not said.
     #[serde(default)]
     pub insert: Insert,
+    /// What becomes of `PPRINT text`; comment if not said.
+    #[serde(default)]
+    pub print: Print,
     /// What becomes of CUTCOM on points of the tool's centre; refuse if not said.
     #[serde(default)]
     pub compensation_on_centre: CompensationOnCentre,
+    /// Arcs and splines of the CL file that stay what they are, and arcs laid through points.
+    #[serde(default)]
+    pub arcs: ArcsFile,
     /// Where linear axes stand when the tool is retracted, machine coordinates, mm; the end of travel of the depth
     /// axis away from the part if not said.
     #[serde(default)]
@@ -488,6 +522,54 @@ pub(crate) struct ControlFile {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Number>")]
     pub park: Positions,
+}
+
+/// Which curves the program has as curves.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ArcsFile {
+    /// Arcs and splines of the CL file stay arcs and splines where dialect and machine allow; true if not said.
+    pub keep: Option<bool>,
+    /// How an arc is written: its centre (I J K), or its radius (R) where the dialect has that; centre if not said.
+    #[serde(default)]
+    pub form: ArcForm,
+    /// How far one block goes; full if not said.
+    #[serde(default)]
+    pub split: ArcSplit,
+    /// Smallest radius that is written as an arc, mm; 0.01 if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub least_radius: Option<Quantity>,
+    /// Largest radius that is written as an arc, mm; 10000 if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub largest_radius: Option<Quantity>,
+    /// Runs of points become the fewest arcs and lines that stay within the tolerance; false if not said.
+    #[serde(default)]
+    pub fit: bool,
+}
+
+/// How an arc is written.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum ArcForm {
+    /// With its centre.
+    #[default]
+    Centre,
+    /// With its radius; it is cut so that no block turns by more than 160 degrees, since a radius says little of the
+    /// centre near half a turn.
+    Radius,
+}
+
+/// How far one block of an arc goes.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum ArcSplit {
+    /// Up to a whole turn.
+    #[default]
+    Full,
+    /// Up to half a turn, but for the rounding of its ends.
+    Half,
+    /// To the next quadrant of the plane.
+    Quadrant,
 }
 
 /// Positions of axes by their names.

@@ -1,6 +1,7 @@
 //! One machine: what its TOML file says, checked and in the core's own units (mm, radians, minutes).
 
 mod accuracy;
+mod arcs;
 mod axes;
 mod build;
 mod choice;
@@ -14,6 +15,7 @@ mod numbers;
 mod options;
 mod schema;
 mod setting;
+mod smoothing;
 mod spindle;
 
 use std::f64::consts::TAU;
@@ -21,18 +23,20 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 
 pub use accuracy::{Accuracy, ControlPoint, SHARE_AT_POLES};
+pub use arcs::Arcs;
 pub use build::load;
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
-    CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert, InverseTime, Method,
-    OutputUnits, Placement, Pole, Rapid, Side, Tcp, ToolLength,
+    ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
+    InverseTime, Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
 pub use limits::MOST_BYTES;
 pub use schema::schema;
 pub use setting::Setting;
+pub use smoothing::{Smoothing, SmoothingRules};
 pub use spindle::SpindleSpeeds;
 
 use crate::diagnostic::{Diagnostic, Place};
@@ -68,6 +72,8 @@ pub struct Machine {
     pub spindle: SpindleSpeeds,
     /// Lines of the program for words of the CL file.
     pub word_rules: Vec<WordRule>,
+    /// By how much its control may leave the path, by operation.
+    pub smoothing: SmoothingRules,
     /// What it must keep.
     pub accuracy: Accuracy,
     /// Which of several solutions is taken.
@@ -252,8 +258,12 @@ pub struct Control {
     pub planes: bool,
     /// What becomes of `INSERT`.
     pub insert: Insert,
+    /// What becomes of `PPRINT`.
+    pub print: Print,
     /// What becomes of `CUTCOM` on points of the tool's centre.
     pub compensation_on_centre: CompensationOnCentre,
+    /// Which curves the program has as curves.
+    pub arcs: Arcs,
 }
 
 /// An option for a plugin.

@@ -11,6 +11,8 @@ pub struct SpindleSpeeds {
     pub min: f64,
     /// Largest speed; infinite if the file does not say.
     pub max: f64,
+    /// It turns the part, and the control can keep its cutting speed constant.
+    pub surface_speed: bool,
 }
 
 impl Default for SpindleSpeeds {
@@ -18,6 +20,7 @@ impl Default for SpindleSpeeds {
         Self {
             min: 0.0,
             max: f64::INFINITY,
+            surface_speed: false,
         }
     }
 }
@@ -58,9 +61,31 @@ impl SpindleSpeeds {
     }
 }
 
+impl SpindleSpeeds {
+    /// The revolutions a minute that a constant cutting speed may lead to, where the CL file says `most`.
+    ///
+    /// # Errors
+    /// No limit is known, or one that the spindle does not reach or passes: the finding has no place yet.
+    pub fn limit(&self, most: Option<f64>) -> Result<f64, Box<Diagnostic>> {
+        let limit = most.or(Some(self.max).filter(|max| max.is_finite()));
+        let Some(limit) = limit else {
+            let message = "a constant cutting speed without a limit: towards the centre the spindle would turn without end";
+            let finding = Diagnostic::error("spindle-speed", message.to_owned()).help(
+                "SPINDL/SMM,speed,MAXRPM,limit; or max_speed of [spindle] in the machine file",
+            );
+            return Err(finding.boxed());
+        };
+        self.refuse(limit)
+            .map_or(Ok(limit), |finding| Err(finding.boxed()))
+    }
+}
+
 impl Builder<'_> {
     pub(super) fn spindle(&mut self, file: &SpindleFile) -> SpindleSpeeds {
-        let mut speeds = SpindleSpeeds::default();
+        let mut speeds = SpindleSpeeds {
+            surface_speed: file.surface_speed,
+            ..SpindleSpeeds::default()
+        };
         for (key, quantity, speed) in [
             ("min_speed", &file.min_speed, &mut speeds.min),
             ("max_speed", &file.max_speed, &mut speeds.max),

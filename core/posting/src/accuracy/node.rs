@@ -378,6 +378,21 @@ impl Placer {
         }
     }
 
+    /// Do the rotary axes of `rotary`, as printed, stand as those of `at`, which are printed?
+    pub(crate) fn stand(&self, rotary: &Joints, at: &Joints) -> bool {
+        self.words.stand(rotary, at)
+    }
+
+    /// The linear words of a node as a point, mm; none where they are not X, Y and Z.
+    pub(crate) fn printed(&self, node: &Node) -> Option<Vector3<f64>> {
+        self.words.point(&node.words)
+    }
+
+    /// See [`Words::printed_point`].
+    pub(crate) fn printed_point(&self, point: Vector3<f64>) -> Option<([f64; 3], Vector3<f64>)> {
+        self.words.printed_point(point)
+    }
+
     /// Does a block turn an axis that the control shows over one turn so far that it would go the other way round?
     #[inline]
     pub fn turns_too_far(&self, from: &Joints, to: &Joints) -> bool {

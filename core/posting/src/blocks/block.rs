@@ -67,6 +67,10 @@ pub enum MotionKind {
     Rapid,
     /// All axes linear in time.
     Linear,
+    /// Along an arc or a helix that the command ahead of it describes, the rotary axes standing.
+    Arc,
+    /// Along a spline that the command ahead of it describes, the rotary axes standing.
+    Spline,
 }
 
 /// Why a block is there.

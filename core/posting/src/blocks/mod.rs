@@ -1,5 +1,6 @@
 //! Points whose axis values are chosen become blocks: points put in or left out, every block certified.
 
+mod along;
 mod audience;
 mod between_words;
 mod block;
@@ -18,10 +19,12 @@ use post_plugin::{Capabilities, Format, ModelSession};
 
 use crate::accuracy::{Bound, Linearise, Move, Node, PlacedBatch, Placer, Run};
 use crate::configuration::{Chosen, Configured, pose};
+use crate::curve::Keeps;
 use crate::findings::Findings;
 use crate::program::{Command, Motion, Pace};
 use crate::refusal;
 use crate::stream::{Flow, Outlet};
+use along::Following;
 pub(crate) use audience::Audience;
 pub(crate) use between_words::BetweenWords;
 pub use between_words::Follow;
@@ -118,6 +121,10 @@ pub(crate) struct Blocks<'a> {
     between: BetweenWords,
     /// CL points that wait for those behind them.
     gathered: Gathered,
+    /// Which curves are kept.
+    keeps: Keeps,
+    /// A curve whose end has not come yet.
+    following: Option<Following>,
     /// What each leg of the run in hand is due.
     nominal: Vec<Nominal>,
     /// Where the tool stands; none before the first position.
@@ -132,6 +139,8 @@ pub(crate) struct Blocks<'a> {
     compensates: bool,
     /// Cutter radius compensation is in force.
     compensating: bool,
+    /// It was switched on or off, and no block has moved since: that is no block along a curve.
+    compensation_due: bool,
     /// Set once the fault that compensation cannot be was given.
     told_compensation: bool,
     /// The largest deviations so far.
@@ -158,6 +167,8 @@ impl<'a> Blocks<'a> {
             kinds: Kinds::new(machine),
             between: BetweenWords::new(machine),
             gathered: Gathered::default(),
+            keeps: Keeps::new(machine, writes),
+            following: None,
             nominal: Vec::new(),
             last: None,
             spare: None,
@@ -165,6 +176,7 @@ impl<'a> Blocks<'a> {
             on_part: false,
             compensates: !tcp || writes.has(Capabilities::COMPENSATE_TCP),
             compensating: false,
+            compensation_due: false,
             told_compensation: false,
             largest: Largest::default(),
             counts: Counts::default(),
@@ -188,7 +200,8 @@ impl<'a> Blocks<'a> {
 
     /// Line of the first point that waits for those behind it.
     pub(crate) fn first_line(&self) -> Option<u64> {
-        self.gathered.first_line()
+        let following = self.following.as_ref().map(Following::line);
+        self.gathered.first_line().or(following)
     }
 
     /// Takes a batch.
@@ -218,7 +231,9 @@ impl<'a> Blocks<'a> {
         };
         let count = points().take(PlacedBatch::MOST).count();
         match &self.placer {
-            Some(placer) if count >= LEAST_TOGETHER => placed.settle(placer, points()),
+            Some(placer) if count >= LEAST_TOGETHER && self.following.is_none() => {
+                placed.settle(placer, points())
+            }
             _ => placed.forget(),
         }
         count.max(1)
@@ -233,6 +248,17 @@ impl<'a> Blocks<'a> {
         placed: &mut PlacedBatch,
         to: &mut Surroundings<'_, '_>,
     ) {
+        if let Some(following) = &mut self.following {
+            match next {
+                Flow::Point(Configured::Point(chosen)) => return following.push(chosen),
+                Flow::Command {
+                    command: Command::AlongEnd,
+                    ..
+                } => return self.go_along(true, placed, to),
+                // Something has come between: by its moves.
+                _ => self.go_along(false, placed, to),
+            }
+        }
         match next {
             Flow::Point(Configured::Point(chosen)) => self.point(chosen, lane, placed, to),
             Flow::Point(Configured::Placer(placer)) => {
@@ -251,6 +277,9 @@ impl<'a> Blocks<'a> {
 
     /// The file ends: what waits is carried out.
     pub(crate) fn finish(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
+        let mut placed = self.placed.take().unwrap_or_default();
+        placed.forget();
+        self.go_along(false, &mut placed, to);
         self.end_run(to);
         self.depart(line, to);
     }
@@ -258,9 +287,16 @@ impl<'a> Blocks<'a> {
     fn command(&mut self, line: u64, command: &Command, to: &mut Surroundings<'_, '_>) {
         self.end_run(to);
         match command {
-            Command::Tool(_) | Command::Home => self.depart(line, to),
             // Its place is told where it begins.
             Command::Still(origin) => return self.still(line, *origin, to),
+            Command::Tool(_) | Command::Home | Command::WorkOffset(_) | Command::Smoothing(_) => {
+                self.depart(line, to)
+            }
+            // Nobody knows where the tool stands behind it.
+            Command::Subprogram(_) => {
+                self.last = None;
+                self.on_part = false;
+            }
             Command::Head(name) => {
                 self.depart(line, to);
                 if let Some(head) = self.base.head(name) {
@@ -272,7 +308,13 @@ impl<'a> Blocks<'a> {
             }
             Command::Compensate(compensation) => {
                 self.compensate(line, *compensation, to.findings);
+                self.compensation_due = true;
             }
+            Command::Along(curve) => {
+                self.following = Some(Following::new(line, curve));
+                return;
+            }
+            Command::AlongEnd => return,
             _ => {}
         }
         to.out.command(line, command.clone());
@@ -548,6 +590,7 @@ impl<'a> Blocks<'a> {
         to: &mut Surroundings<'_, '_>,
     ) {
         self.largest.keep(leg, bound);
+        self.compensation_due = false;
         let mut block = Block {
             still: from.words == node.words,
             way: self.way(from, node),

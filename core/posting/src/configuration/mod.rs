@@ -313,6 +313,16 @@ impl<'a> Configuration<'a> {
             Command::Home => self.park(&self.machine.frame.park),
             // The tool is retracted before and behind: nothing is turned early on its behalf.
             Command::Still(_) => self.route.leave(),
+            Command::WorkOffset(_) | Command::Subprogram(_) | Command::Smoothing(_) => {
+                self.park(&[]);
+            }
+            Command::SurfaceSpeed { most, .. } => {
+                self.speed = None;
+                match self.machine.spindle.limit(*most) {
+                    Ok(limit) => *most = Some(limit),
+                    Err(finding) => findings.at(line, *finding),
+                }
+            }
             Command::Spindle(Spindle::On { rpm, .. }) => {
                 self.speed = Some(*rpm);
                 self.check_speed(line, findings);

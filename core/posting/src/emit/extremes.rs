@@ -17,6 +17,8 @@ const RAPID: usize = 2;
 pub(crate) struct Extremes {
     /// Blocks with a motion.
     pub blocks: u64,
+    /// Those of them that go along a curve.
+    pub curves: u64,
     /// Cuts: tip (mm), tool axis (radians); rapids: tip (mm).
     pub deviations: [Deviation; 3],
     /// Least axis values.
@@ -33,6 +35,7 @@ impl Extremes {
     pub(super) fn new() -> Self {
         Self {
             blocks: 0,
+            curves: 0,
             deviations: [Deviation::default(); 3],
             least: [f64::INFINITY; MAX_AXES],
             most: [f64::NEG_INFINITY; MAX_AXES],

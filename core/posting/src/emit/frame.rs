@@ -52,6 +52,7 @@ impl Emit<'_> {
         if std::mem::replace(&mut self.clear, true) {
             return;
         }
+        self.keep_tip(line, false);
         let machine = self.machine;
         self.go(line, &machine.frame.retract, |axes, words| Event::Retract {
             axes,
@@ -178,8 +179,12 @@ impl Emit<'_> {
     }
 
     pub(super) fn change(&mut self, line: u64, tool: &Tool, findings: &Findings) {
-        self.retract(line);
+        if self.offsets(line, tool) {
+            return;
+        }
+        self.leave(line);
         self.rest(line);
+        self.changed = true;
         let machine = self.machine;
         self.park(line, &machine.frame.change, findings);
         self.writer.tool_known();
@@ -217,8 +222,10 @@ impl Emit<'_> {
             return;
         };
         // Away first: a spindle that stops in the part tears.
-        self.retract(line);
+        self.leave(line);
         self.rest(line);
+        self.changed = true;
+        self.tool = None;
         self.machine = &head.machine;
         self.words = Words::new(self.machine, self.writer.format());
         self.chain = chain(self.machine);
@@ -238,14 +245,14 @@ impl Emit<'_> {
 
     /// Home: retracted, and parked.
     pub(super) fn go_home(&mut self, line: u64, findings: &Findings) {
-        self.retract(line);
+        self.leave(line);
         let machine = self.machine;
         self.park(line, &machine.frame.park, findings);
     }
 
     pub(super) fn end(&mut self, line: u64, findings: &Findings) {
         // The tool leaves the part first: a spindle that stops in it tears.
-        self.retract(line);
+        self.leave(line);
         self.rest(line);
         self.go_home(line, findings);
         self.tell_wound(line, findings);
@@ -273,11 +280,16 @@ impl Emit<'_> {
                 }
             }
         }
+        self.smooth(line);
         let plane_first = self.plane_first(&block.joints);
         if !plane_first {
             // Across in machine coordinates, before the words mean the tip; then down.
             let across = self.plane(&block.joints);
             self.go(line, &across, parks);
+        }
+        // In a plane the length alone is in force.
+        if self.plane.is_some() {
+            self.keep_tip(line, false);
         }
         if let Some(plane) = &self.plane {
             self.plane_on = true;
@@ -291,6 +303,9 @@ impl Emit<'_> {
                     words,
                 },
             );
+        }
+        if !self.plane_on {
+            self.keep_tip(line, true);
         }
         self.writer.push(
             line,
@@ -357,15 +372,17 @@ impl Emit<'_> {
         if let (false, Some(spindle)) = (self.turning, self.commanded) {
             // The tool change stopped it, and the CL file takes it to be turning.
             self.turning = true;
-            self.writer.push(line, Event::Spindle(spindle));
-            findings.at(
-                line,
-                Diagnostic::warning(
-                    "spindle",
-                    "no SPINDL since the tool change; the spindle was switched on again as before it",
-                )
-                .help("check that the speed fits the new tool"),
-            );
+            self.writer.push(line, spindle);
+            if self.changed {
+                findings.at(
+                    line,
+                    Diagnostic::warning(
+                        "spindle",
+                        "no SPINDL since the tool change; the spindle was switched on again as before it",
+                    )
+                    .help("check that the speed fits the new tool"),
+                );
+            }
         }
         if let (true, Some(coolant)) = (std::mem::take(&mut self.coolant_due), self.coolant) {
             self.writer.push(line, Event::Coolant(coolant));
@@ -379,8 +396,16 @@ impl Emit<'_> {
     }
 
     pub(super) fn spindle(&mut self, line: u64, spindle: Spindle) {
-        self.turning = matches!(spindle, Spindle::On { .. });
-        self.commanded = self.turning.then_some(spindle);
-        self.writer.push(line, Event::Spindle(spindle));
+        let event = Event::Spindle(spindle);
+        let on = matches!(spindle, Spindle::On { .. }).then_some(event);
+        self.set_spindle(line, on, event);
+    }
+
+    /// The spindle by `event`; `on` is what switches it on again as it turns then.
+    pub(super) fn set_spindle(&mut self, line: u64, on: Option<Event<'static>>, event: Event<'_>) {
+        self.turning = on.is_some();
+        self.commanded = on;
+        self.changed = false;
+        self.writer.push(line, event);
     }
 }

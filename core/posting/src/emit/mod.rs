@@ -1,17 +1,19 @@
 //! Blocks and commands become the events of the dialect: what is in force, tool changes, approach, clamps.
 
+mod control;
 mod cycles;
 mod extremes;
 mod frame;
 mod writer;
 
 use post_machine::axis_words::{self, Words};
-use post_machine::description::Machine;
+use post_machine::description::{Machine, Smoothing};
 use post_machine::kinematics::{Chain, Joints};
 use post_machine::tilted_plane::TiltedPlane;
-use post_plugin::{Capabilities, Coolant, DialectSession, Event, Spindle, ToolPose};
+use post_plugin::{Capabilities, Coolant, DialectSession, Event, List, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
+use crate::curve::{CurveWords, PrintedCurve};
 use crate::findings::Findings;
 use crate::observer::Output;
 use crate::program::Command;
@@ -40,7 +42,9 @@ pub(crate) struct Emit<'a> {
     /// The spindle was switched on since the last tool change.
     turning: bool,
     /// What the CL file last said of it.
-    commanded: Option<Spindle>,
+    commanded: Option<Event<'static>>,
+    /// The tool was changed since.
+    changed: bool,
     /// What the CL file last said of coolant.
     coolant: Option<Coolant>,
     /// Coolant was switched off in between.
@@ -49,6 +53,8 @@ pub(crate) struct Emit<'a> {
     plane: Option<Box<TiltedPlane>>,
     /// The control was told it.
     plane_on: bool,
+    /// What is printed of the next block, if it goes along a curve.
+    curve: Option<Box<PrintedCurve>>,
     /// The hole whose moves are coming.
     hole: Option<Box<Hole>>,
     /// The cycle in force.
@@ -58,6 +64,19 @@ pub(crate) struct Emit<'a> {
     depth_word: Option<usize>,
     /// Places of the words that move the tool across it.
     across: Vec<usize>,
+    /// The tool in the spindle.
+    tool: Option<u32>,
+    /// The work offset that the CL file names; none before it names one.
+    offset: Option<u32>,
+    /// Set once it was told which mount travel was checked with.
+    told_mount: bool,
+    /// Set once it was told that nobody checks what a subprogram does.
+    told_subprogram: bool,
+    /// By how much the control is to leave the path, and what it was told.
+    smoothing: Option<Smoothing>,
+    smoothed: Option<Smoothing>,
+    /// What a dialect was told that switches the keeping of the tip by itself.
+    keeps_tip: Option<bool>,
 }
 
 impl<'a> Emit<'a> {
@@ -85,11 +104,20 @@ impl<'a> Emit<'a> {
             coolant_due: false,
             plane: None,
             plane_on: false,
+            curve: None,
             hole: None,
             cycle: None,
             z_word: cycles::z_word(machine),
             depth_word: cycles::depth_word(machine),
             across: across(machine),
+            changed: false,
+            tool: None,
+            offset: None,
+            told_mount: false,
+            told_subprogram: false,
+            smoothing: machine.smoothing.default,
+            smoothed: None,
+            keeps_tip: None,
         };
         // Nothing is known of where the tool stands, nor of what is in force.
         emit.retract(0);
@@ -148,6 +176,7 @@ impl<'a> Emit<'a> {
                 self.extremes.go(&self.last, &block.joints);
                 self.position(block, findings);
             }
+            MotionKind::Arc | MotionKind::Spline => self.curve(block),
             MotionKind::Rapid | MotionKind::Linear => {
                 // A block without a changed word moves nothing and is not written.
                 if block.still {
@@ -173,13 +202,69 @@ impl<'a> Emit<'a> {
         self.last = block.joints;
     }
 
+    /// A block along a curve.
+    fn curve(&mut self, block: &Block) {
+        let (Some(curve), Some(feed)) = (self.curve.take(), block.time.feed) else {
+            return;
+        };
+        self.extremes.curves += 1;
+        self.extremes.reach(&block.joints);
+        let mut from = self.last;
+        for place in &curve.between {
+            self.extremes.cover(place);
+            self.extremes.go(&from, place);
+            from = *place;
+        }
+        self.extremes.go(&from, &block.joints);
+        if self.machine.clamps {
+            self.clamp(block);
+        }
+        self.extremes.mark(block, self.writer.next());
+        let event = match &curve.words {
+            CurveWords::Arc {
+                centre,
+                normal,
+                turn,
+                radius,
+            } => Event::Arc {
+                tool: stands(block),
+                feed,
+                centre: *centre,
+                normal: *normal,
+                turn: *turn,
+                radius: *radius,
+                words: &block.words[..self.writer.words()],
+            },
+            CurveWords::Spline {
+                degree,
+                knots,
+                weights,
+                points,
+            } => Event::Spline {
+                feed,
+                degree: *degree,
+                knots: List(knots),
+                weights: List(weights),
+                points: List(points),
+            },
+        };
+        self.writer.push(block.line, event);
+    }
+
     fn command(&mut self, line: u64, command: &Command, findings: &Findings) {
         let event = match command {
-            // These act on the choice of axis values alone.
-            Command::From { .. } | Command::Index { .. } | Command::Hole(_) | Command::Still(_) => {
+            // These act on the choice of axis values alone, or on the blocks.
+            Command::From { .. }
+            | Command::Index { .. }
+            | Command::Along(_)
+            | Command::AlongEnd
+            | Command::Still(_)
+            | Command::Hole(_) => return,
+            Command::Plane(plane) => return self.set_plane(line, plane.clone()),
+            Command::Curve(curve) => {
+                self.curve = Some(curve.clone());
                 return;
             }
-            Command::Plane(plane) => return self.set_plane(line, plane.clone()),
             Command::Tool(tool) => return self.change(line, tool, findings),
             Command::Head(name) => return self.swap_head(line, name),
             Command::Preselect(number) => Event::Preselect { number: *number },
@@ -200,6 +285,19 @@ impl<'a> Emit<'a> {
                 self.clear = false;
                 Event::Literal { text }
             }
+            Command::Message(text) if self.writer.knows(Capabilities::MESSAGE) => {
+                Event::Message { text }
+            }
+            Command::Message(text) => Event::Comment { text },
+            Command::SurfaceSpeed { speed, most, sense } => {
+                return self.surface_speed(line, (*speed, *most), *sense, findings);
+            }
+            Command::WorkOffset(number) => return self.work_offset(line, *number, findings),
+            Command::Subprogram(number) => return self.subprogram(line, *number, findings),
+            Command::Smoothing(wanted) => {
+                self.smoothing = *wanted;
+                return self.leave(line);
+            }
             Command::Dwell(seconds) => Event::Dwell { seconds: *seconds },
             Command::Stop => Event::Stop,
             Command::OptionalStop => Event::OptionalStop,
@@ -213,7 +311,7 @@ impl<'a> Emit<'a> {
         for joint in 0..self.machine.axes.len() {
             if self.last[joint] != block.joints[joint] {
                 self.set_clamp(block.line, joint, false, false);
-            } else if block.kind == MotionKind::Linear {
+            } else if block.kind != MotionKind::Rapid {
                 self.set_clamp(block.line, joint, true, false);
             }
         }

@@ -1,12 +1,13 @@
 //! Arcs, splines, cycles and planes become moves.
 //!
-//! What a dialect writes itself it declares at open ([`post_plugin::Capabilities`]). A step goes on in its own shape
-//! only if the stages behind can carry it there, and as yet they carry straight moves alone: everything leaves here
-//! as moves and commands.
+//! What a dialect writes itself it declares at open ([`post_plugin::Capabilities`]). Everything leaves here as moves and
+//! commands; the moves of a curve that the dialect may write stand between two commands, the first of which has the
+//! curve (see [`crate::curve`]).
 
 mod planes;
 mod tangential;
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -15,6 +16,7 @@ use post_machine::diagnostic::{Diagnostic, Short};
 use post_plugin::{Capabilities, Cycle};
 
 use crate::ahead::Ahead;
+use crate::curve::{Course, Curve, Keeps};
 use crate::findings::Findings;
 use crate::program::limits::MOST_CHORDS;
 use crate::program::{ArcStep, Command, CycleStep, HoleMark, Leg, Motion, Pace, SplineStep, Step};
@@ -40,6 +42,8 @@ pub(crate) struct Expand {
     tip: Option<Vector3<f64>>,
     /// For a tool with a leading edge.
     tangential: Option<Tangential>,
+    /// Which curves may stay curves; none if none may.
+    keeps: Option<Keeps>,
     /// The cycles that the dialect has words for, as far as the machine file wants them.
     cycles: Capabilities,
     /// Where the tool axis stays, if the control is to be told planes.
@@ -54,6 +58,7 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
         chord_tolerance,
         tip: None,
         tangential: None,
+        keeps: None,
         cycles: Capabilities::NONE,
         planes: None,
     };
@@ -70,12 +75,15 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
 type Out<'o> = Outlet<'o, Flow<Line>>;
 
 impl Expand {
+    /// For a machine and a dialect that declares what it `writes`; `ahead` if the control is to be told planes.
     pub(crate) fn new(
         machine: &Machine,
         chord_tolerance: f64,
         writes: Capabilities,
         ahead: Option<Arc<Ahead>>,
     ) -> Self {
+        let tangential = Tangential::new(machine);
+        let keeps = Keeps::new(machine, writes);
         Self {
             planes: ahead.map(Planes::new),
             cycles: match machine.control.cycles {
@@ -84,7 +92,9 @@ impl Expand {
             },
             chord_tolerance,
             tip: None,
-            tangential: Tangential::new(machine),
+            // An edge turns with the path.
+            keeps: tangential.is_none().then_some(keeps),
+            tangential,
         }
     }
 
@@ -150,8 +160,44 @@ impl Expand {
         }
     }
 
-    /// Chords, the tool axis turning evenly from start to end.
+    /// An arc. One that may stay an arc goes turn by turn, its moves between the commands that say so.
     fn arc(&mut self, line: u64, step: &ArcStep, out: &mut Out<'_>, findings: &Findings) {
+        let ArcStep { arc, end, .. } = step;
+        let turns = libm::ceil(arc.sweep / TAU - 1e-9).max(1.0);
+        let turn = arc.piece(0.0, 1.0 / turns);
+        let (count, _) = turn.chords(self.chord_tolerance);
+        let planes = self.planes.as_ref().is_some_and(Planes::on);
+        let keeps = |keeps: &Keeps| keeps.arc(arc, end, count, planes);
+        if step.start_axis != end.axis
+            || count.saturating_mul(turns as u64) > MOST_CHORDS
+            || !self.keeps.as_ref().is_some_and(keeps)
+        {
+            return self.chords(line, step, out, findings);
+        }
+        for place in 1..=turns as u32 {
+            let [from, to] = [place - 1, place].map(|place| f64::from(place) / turns);
+            let arc = if turns == 1.0 {
+                *arc
+            } else {
+                arc.piece(from, to)
+            };
+            let pace = match end.pace {
+                Pace::InverseTime(feed) => Pace::InverseTime(feed * turns),
+                pace => pace,
+            };
+            let tip = if to == 1.0 { end.tip } else { arc.at(1.0) };
+            let end = Motion { tip, pace, ..*end };
+            let course = Course::Arc(arc);
+            let curve = Box::new(Curve { course, end });
+            self.command(line, Command::Along(curve), out, findings);
+            let step = ArcStep { arc, end, ..*step };
+            self.chords(line, &step, out, findings);
+            self.command(line, Command::AlongEnd, out, findings);
+        }
+    }
+
+    /// Chords, the tool axis turning evenly from start to end.
+    fn chords(&mut self, line: u64, step: &ArcStep, out: &mut Out<'_>, findings: &Findings) {
         let ArcStep {
             arc,
             end,

@@ -9,16 +9,18 @@ use super::limits::direction;
 /// An arc about an axis; a spiral or a helix where its ends differ in radius or height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
-    centre: Vector3<f64>,
-    axis: Vector3<f64>,
+    /// Where heights count from, mm.
+    pub(crate) centre: Vector3<f64>,
+    /// About which it turns right-handed, unit vector.
+    pub(crate) axis: Vector3<f64>,
     /// From the centre to the start, in the plane, unit vector.
-    radial: Vector3<f64>,
-    start_radius: f64,
-    end_radius: f64,
-    start_height: f64,
-    end_height: f64,
+    pub(crate) radial: Vector3<f64>,
+    /// Of its start and its end, mm.
+    pub(crate) radii: [f64; 2],
+    /// Of its start and its end above the centre along the axis, mm.
+    pub(crate) heights: [f64; 2],
     /// Radians, above zero.
-    sweep: f64,
+    pub(crate) sweep: f64,
 }
 
 /// Ends nearer than this are one point, so the arc is a whole turn: mm. No CAM system writes arcs so short.
@@ -61,10 +63,8 @@ impl Arc {
             centre,
             axis,
             radial,
-            start_radius: from.norm(),
-            end_radius: to.norm(),
-            start_height,
-            end_height,
+            radii: [from.norm(), to.norm()],
+            heights: [start_height, end_height],
             sweep,
         })
     }
@@ -85,19 +85,19 @@ impl Arc {
 
     /// By how much the distances of its ends from the centre differ, mm.
     pub fn mismatch(&self) -> f64 {
-        libm::fabs(self.end_radius - self.start_radius)
+        libm::fabs(self.radii[1] - self.radii[0])
     }
 
     /// The distance between ends so near that a whole turn may be meant, mm.
     pub fn doubtful(&self) -> Option<f64> {
-        let gap = (self.at(1.0) - self.at(0.0) - self.axis * (self.end_height - self.start_height))
-            .norm();
+        let rise = self.axis * (self.heights[1] - self.heights[0]);
+        let gap = (self.at(1.0) - self.at(0.0) - rise).norm();
         (CLOSED..10.0 * CLOSED).contains(&gap).then_some(gap)
     }
 
     /// The largest of its radii, mm.
     pub fn radius(&self) -> f64 {
-        self.start_radius.max(self.end_radius)
+        self.radii[0].max(self.radii[1])
     }
 
     /// Number of chords that stay within `tolerance` mm, and how far they stray.
@@ -110,11 +110,28 @@ impl Arc {
         (count as u64, bend / (8.0 * count * count))
     }
 
+    /// Radius and height at `t`.
+    fn level(&self, t: f64) -> [f64; 2] {
+        [self.radii, self.heights].map(|[from, to]| from + (to - from) * t)
+    }
+
+    /// The piece of it from `from` to `to`, both in 0 to 1.
+    pub fn piece(&self, from: f64, to: f64) -> Self {
+        let (sine, cosine) = libm::sincos(self.sweep * from);
+        let [first, last] = [from, to].map(|t| self.level(t));
+        Self {
+            radial: self.radial * cosine + self.axis.cross(&self.radial) * sine,
+            radii: [first[0], last[0]],
+            heights: [first[1], last[1]],
+            sweep: self.sweep * (to - from),
+            ..*self
+        }
+    }
+
     /// The point at `t` in 0 to 1.
     pub fn at(&self, t: f64) -> Vector3<f64> {
         let (sine, cosine) = libm::sincos(self.sweep * t);
-        let radius = self.start_radius + (self.end_radius - self.start_radius) * t;
-        let height = self.start_height + (self.end_height - self.start_height) * t;
+        let [radius, height] = self.level(t);
         self.centre
             + (self.radial * cosine + self.axis.cross(&self.radial) * sine) * radius
             + self.axis * height

@@ -2,11 +2,12 @@
 //! between them.
 
 use nalgebra::Vector3;
-use post_machine::description::{Retract, Rewind};
+use post_machine::description::{Retract, Rewind, Smoothing};
 use post_machine::tilted_plane::TiltedPlane;
-use post_plugin::{Compensation, Coolant, Spindle};
+use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
 use super::{Arc, DrillCycle, Drilling, Spline};
+use crate::curve::{Curve, PrintedCurve};
 
 /// One step of the program, with every modal word settled. Curves and cycles keep their shape: whether they are
 /// written as such or as moves is for dialect and machine to say.
@@ -53,6 +54,15 @@ pub enum Command {
     Preselect(u32),
     /// Spindle.
     Spindle(Spindle),
+    /// The spindle turns at a constant cutting speed.
+    SurfaceSpeed {
+        /// m/min.
+        speed: f64,
+        /// Revolutions a minute that it must not exceed, if the CL file says so.
+        most: Option<f64>,
+        /// Its sense.
+        sense: SpindleSense,
+    },
     /// Coolant.
     Coolant(Coolant),
     /// Cutter radius compensation.
@@ -63,6 +73,15 @@ pub enum Command {
     OperationEnd,
     /// A remark for the operator.
     Comment(String),
+    /// A text for the control's screen.
+    Message(String),
+    /// The work offset of this number holds from here on, the tool retracted: from 1.
+    WorkOffset(u32),
+    /// A subprogram of the control runs, by its number. Where the tool stands behind it nobody knows.
+    Subprogram(u32),
+    /// The tool comes near anew, and the control may leave the path by other tolerances from there on; none: as it does
+    /// by default.
+    Smoothing(Option<Smoothing>),
     /// A line of the program, letter for letter.
     Literal(String),
     /// Wait, s.
@@ -78,6 +97,12 @@ pub enum Command {
     Still(Option<Vector3<f64>>),
     /// The words behind it are those of this tilted plane, the tool having left the part; none: of no plane.
     Plane(Option<Box<TiltedPlane>>),
+    /// The moves up to the next [`Command::AlongEnd`] go along this curve.
+    Along(Box<Curve>),
+    /// The curve ends.
+    AlongEnd,
+    /// What is printed of the next block, which goes along a curve.
+    Curve(Box<PrintedCurve>),
     /// The moves from here on are those of a hole, which the control may have a cycle for.
     Hole(HoleMark),
 }
@@ -109,6 +134,9 @@ impl Command {
                 | Self::Index { .. }
                 | Self::Head(_)
                 | Self::Still(_)
+                | Self::WorkOffset(_)
+                | Self::Subprogram(_)
+                | Self::Smoothing(_)
         )
     }
 }

@@ -6,7 +6,7 @@ use post_machine::description::{FeedLength, FeedMode, InverseTime, Machine, Tcp}
 use post_machine::kinematics::Joints;
 use post_plugin::{Feed, Format};
 
-use crate::blocks::{Block, Kinds, STILL};
+use crate::blocks::{Block, Kinds, MotionKind, STILL};
 use crate::program::Pace;
 
 /// What a length of the control's may differ from the way of the tip to be the same.
@@ -104,11 +104,11 @@ impl FeedWriter {
         {
             return printed.inverse(1.0 / minutes);
         }
-        // No detour over the axes where their ways make no difference.
+        // No detour over the axes where their ways make no difference. Along a curve the tool goes its own way.
         let plain = match self.tcp {
             Tcp::Control => tip > SAME,
             Tcp::Post => !turning && self.square,
-        };
+        } || matches!(block.kind, MotionKind::Arc | MotionKind::Spline);
         let length = if plain {
             tip / self.unit
         } else {

@@ -152,7 +152,7 @@ impl<'a> Timing<'a> {
         match block.kind {
             MotionKind::Position | MotionKind::Reference => self.approach(block),
             MotionKind::Rapid => self.rapid(block, findings),
-            MotionKind::Linear => self.cut(block, findings),
+            MotionKind::Linear | MotionKind::Arc | MotionKind::Spline => self.cut(block, findings),
         }
         self.last = block.joints;
         self.rapids.stand(block.tip);

@@ -5,7 +5,9 @@
 )]
 
 mod accuracy;
+mod arcs;
 mod certificate;
+mod events;
 mod feed;
 mod holes;
 mod path;

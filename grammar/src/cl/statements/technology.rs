@@ -2,6 +2,7 @@
 
 use super::Read;
 use super::items::{Items, word};
+use crate::cl::line::Item;
 use crate::cl::record::{
     Coolant, Delay, FeedRate, FeedUnit, Sense, Spindle, SpindleUnit, Statement, Units,
 };
@@ -54,7 +55,7 @@ pub(super) fn sense(word: &str) -> Option<Sense> {
 }
 
 pub(crate) fn spindl(items: &mut Items<'_, '_>) -> Read<Statement> {
-    const FORM: &str = "SPINDL/RPM,speed,CLW, SPINDL/speed,RPM,CLW, SPINDL/ON or SPINDL/OFF; units RPM, SFM, SMM, senses CLW, CCLW";
+    const FORM: &str = "SPINDL/RPM,speed,CLW, SPINDL/speed,RPM,CLW, SPINDL/ON or SPINDL/OFF; units RPM, SFM, SMM (with MAXRPM,speed), senses CLW, CCLW";
     if let [item] = items.line.items.as_slice() {
         match word(item).as_ref() {
             "OFF" => return Ok(Statement::Spindle(Spindle::Off)),
@@ -65,7 +66,7 @@ pub(crate) fn spindl(items: &mut Items<'_, '_>) -> Read<Statement> {
     if items.peek().is_none() {
         return Err(items.fault(items.rest(), "SPINDL needs a speed or a word", FORM));
     }
-    let (mut speed, mut unit, mut turning) = (None, None, None);
+    let (mut speed, mut unit, mut turning, mut most) = (None, None, None, None);
     while let Some(item) = items.take() {
         let name = word(item);
         if let (Some(value), None) = (item.value, speed) {
@@ -74,6 +75,8 @@ pub(crate) fn spindl(items: &mut Items<'_, '_>) -> Read<Statement> {
             turning = Some(found);
         } else if let (Some(found), None) = (spindle_unit(&name), unit) {
             unit = Some(found);
+        } else if name == "MAXRPM" && most.is_none() {
+            most = Some(items.number(&name, FORM)?);
         } else if name == "RANGE" {
             // The gear is for the machine to choose.
             items.take();
@@ -92,6 +95,7 @@ pub(crate) fn spindl(items: &mut Items<'_, '_>) -> Read<Statement> {
         speed,
         unit: unit.unwrap_or(SpindleUnit::Rpm),
         sense: turning,
+        most,
     }))
 }
 
@@ -150,6 +154,35 @@ pub(crate) fn delay(items: &mut Items<'_, '_>) -> Read<Statement> {
         Some(item) => return Err(items.unexpected(item, "REV or nothing is expected", FORM)),
     };
     items.nothing(Statement::Delay(delay))
+}
+
+pub(crate) fn work_offset(items: &mut Items<'_, '_>) -> Read<Statement> {
+    let set = items.line.word == "SET";
+    let numbers = match items.line.items.as_slice() {
+        [first, numbers @ ..] if set && word(first) == "OFSETL" => numbers,
+        numbers if !set => numbers,
+        _ => return items.other(),
+    };
+    match only_whole(numbers) {
+        Some(number) => Ok(Statement::WorkOffset { number, set }),
+        None => items.other(),
+    }
+}
+
+pub(crate) fn subprogram(items: &mut Items<'_, '_>) -> Read<Statement> {
+    match only_whole(&items.line.items) {
+        Some(number) => Ok(Statement::Subprogram(number)),
+        // With a name, or values to hand over, it is a form that nobody here knows.
+        None => items.other(),
+    }
+}
+
+/// The one item, if it is a whole number from 0 up.
+fn only_whole(items: &[Item<'_>]) -> Option<u32> {
+    let [item] = items else { return None };
+    let value = item.value?;
+    let whole = value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value);
+    whole.then_some(value as u32)
 }
 
 pub(crate) fn rapid(items: &mut Items<'_, '_>) -> Read<Statement> {

@@ -185,6 +185,28 @@ static void close_(void *ctx) {
     (void)ctx;
 }
 
+static int32_t vocabulary(void *ctx, void *host, PostEmitWord emit) {
+    (void)ctx;
+    emit(host, POST_MEANING_RAPID, (const uint8_t *)"G0", 2);
+#ifdef FAULT_MEANING
+    emit(host, 99999, (const uint8_t *)"G1", 2);
+#endif
+#ifdef FAULT_NO_WORD
+    emit(host, POST_MEANING_RAPID, NULL, 2);
+#endif
+#ifdef FAULT_LONG_WORD
+    emit(host, POST_MEANING_RAPID, (const uint8_t *)"G1", SIZE_MAX / 2);
+#endif
+#ifdef FAULT_MANY_WORDS
+    for (int i = 0; i < 100000000; i++)
+        emit(host, POST_MEANING_RAPID, (const uint8_t *)"G1", 2);
+#endif
+#ifdef FAULT_NO_VOCABULARY
+    return 1;
+#endif
+    return 0;
+}
+
 #if defined FAULT_MANY || defined FAULT_CHOICES || defined FAULT_NO_CHOICES || defined FAULT_KEY || defined FAULT_LONG \
     || defined FAULT_HELP || defined FAULT_TWICE || defined FAULT_UNALIGNED || defined FAULT_NOTHING
 static void describe(void *host, PostEmit emit) {
@@ -247,7 +269,7 @@ static void describe(void *host, PostEmit emit) {
 #define write_ NULL
 #endif
 
-static const PostDialect dialect = {open_, format, write_, last_error, close_};
+static const PostDialect dialect = {open_, format, write_, last_error, close_, vocabulary};
 
 #ifndef FAULT_SYMBOL
 POST_EXPORT const PostPlugin post_plugin_hostile;
@@ -275,7 +297,9 @@ const PostPlugin post_plugin_hostile = {
     sizeof(PostPlugin),
 #endif
 #ifdef FAULT_TABLE_SIZE
-    sizeof(PostDialect) - 8,
+    offsetof(PostDialect, vocabulary) - 8,
+#elif defined(FAULT_EARLIER)
+    offsetof(PostDialect, vocabulary),
 #elif defined(FAULT_TABLE_HUGE)
     4000000000u,
 #else

@@ -72,7 +72,7 @@ static int32_t format(void *ctx, PostFormat *f) {
     f->words_len = (uint32_t)c->words_len;
     f->feed = 1;
     f->inverse_time = -1;
-    memcpy(f->extension, "tap", 3);
+    memcpy(f->extension, "nc", 2);
     return 0;
 }
 
@@ -124,14 +124,18 @@ static int machine(Context *c, const PostEvent *e, size_t axes, size_t words, ch
     return n + snprintf(text + n, size - n, "\n");
 }
 
-/* The text of the event in a line, between these; what is no plain letter becomes a question mark in a remark. */
+/* The text of the event in a line, between these. A remark is cut, and what is no plain letter in it becomes a question
+ * mark: an operator reads it, no control. */
 static int line_of(Context *c, const PostEvent *e, const char *front, const char *behind, char *text, size_t size) {
-    if (e->texts[0].len > 200) {
+    size_t length = e->texts[0].len;
+    if (*front && length > 80)
+        length = 80;
+    if (length > 200) {
         snprintf(c->error, sizeof c->error, "a line has 200 characters at most");
         return -1;
     }
     int n = snprintf(text, size, "%s", front);
-    for (size_t i = 0; i < e->texts[0].len; i++) {
+    for (size_t i = 0; i < length; i++) {
         char letter = ((const char *)e->texts[0].ptr)[i];
         int odd = letter < ' ' || letter > '~' || strchr("()%", letter) != NULL;
         text[n++] = (char)(*front && odd ? '?' : letter);
@@ -218,7 +222,35 @@ static void close_(void *ctx) {
     free(ctx);
 }
 
-static const PostDialect dialect = {open_, format, write_, last_error, close_};
+static const struct {
+    const char *word;
+    uint32_t meaning;
+} words[] = {
+    {"(", POST_MEANING_REMARK_OPEN},     {")", POST_MEANING_REMARK_CLOSE},
+    {"G21", POST_MEANING_MILLIMETRE},    {"G20", POST_MEANING_INCH},
+    {"G17", POST_MEANING_PLANE_XY},      {"G40", POST_MEANING_COMPENSATION_OFF},
+    {"G80", POST_MEANING_CYCLE_OFF},     {"G90", POST_MEANING_ABSOLUTE},
+    {"G94", POST_MEANING_FEED_PER_MINUTE}, {"G0", POST_MEANING_RAPID},
+    {"G1", POST_MEANING_LINEAR},         {"F", POST_MEANING_FEED},
+    {"G53", POST_MEANING_MACHINE_COORDINATES}, {"G43", POST_MEANING_LENGTH_ON},
+    {"H", POST_MEANING_LENGTH_REGISTER}, {"G49", POST_MEANING_LENGTH_OFF},
+    {"T", POST_MEANING_TOOL},            {"M6", POST_MEANING_TOOL_CHANGE},
+    {"S", POST_MEANING_SPINDLE_SPEED},   {"M3", POST_MEANING_SPINDLE_CLOCKWISE},
+    {"M4", POST_MEANING_SPINDLE_COUNTER_CLOCKWISE}, {"M5", POST_MEANING_SPINDLE_OFF},
+    {"M8", POST_MEANING_COOLANT_ON},     {"M9", POST_MEANING_COOLANT_OFF},
+    {"G4", POST_MEANING_DWELL},          {"M0", POST_MEANING_STOP},
+    {"M1", POST_MEANING_OPTIONAL_STOP},  {"M30", POST_MEANING_END},
+};
+
+/* What the words mean, so that a program can be read back. */
+static int32_t vocabulary(void *ctx, void *host, PostEmitWord emit) {
+    (void)ctx;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        emit(host, words[i].meaning, (const uint8_t *)words[i].word, strlen(words[i].word));
+    return 0;
+}
+
+static const PostDialect dialect = {open_, format, write_, last_error, close_, vocabulary};
 
 POST_EXPORT const PostPlugin post_plugin_minimal;
 const PostPlugin post_plugin_minimal = {

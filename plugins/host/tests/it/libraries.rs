@@ -9,8 +9,8 @@ use std::path::Path;
 
 use post_host::{Finder, GivenValue, Kind, Plugin, PluginFault, ProgramSetup, Reason};
 use post_plugin::{
-    Batch, Coolant, Deviation, DialectSession, Event, Feed, ModelSession, Spindle, SpindleSense,
-    Tolerance,
+    Batch, Coolant, Deviation, DialectSession, Event, Feed, Meaning, ModelSession, Spindle,
+    SpindleSense, Tolerance, VocabularyWord,
 };
 
 fn five_axes() -> ProgramSetup {
@@ -92,7 +92,8 @@ fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
                 let mut session = plugin.dialect(&five_axes()).unwrap();
                 let (mut out, mut ends) = (String::new(), Vec::new());
                 let written = session.write_batch(&batch, &mut out, &mut ends);
-                (written, out, ends, session.capabilities())
+                let words = session.vocabulary();
+                (written, out, ends, session.capabilities(), words)
             });
             assert_eq!(by_contract, straight, "{}", event.name());
         }
@@ -160,6 +161,8 @@ fn a_panic_of_the_host_passes_through_a_model_unharmed() {
 fn a_small_dialect_of_rust() {
     let plugin = Plugin::open(&example("tiny")).unwrap();
     let mut session = plugin.dialect(&setup(&["X", "Z", "C"])).unwrap();
+    let words = session.vocabulary().unwrap();
+    assert!(words.contains(&VocabularyWord::new("G53", Meaning::MachineCoordinates)));
     let mut batch = Batch::default();
     batch.push(1, Event::tool_change(1, 11, ""));
     batch.push(2, Event::position(&[1.5, 50.0, 90.0], None));
@@ -194,7 +197,9 @@ fn a_dialect_in_c() {
     let mut session = plugin.dialect(&setup).unwrap();
     assert_eq!(session.format().words, [2, 2]);
     assert_eq!(session.format().inverse_time, None);
-    assert_eq!(session.format().extension, "tap");
+    assert_eq!(session.format().extension, "nc");
+    let words = session.vocabulary().unwrap();
+    assert!(words.contains(&VocabularyWord::new("G53", Meaning::MachineCoordinates)));
     let mut batch = Batch::default();
     batch.push(1, Event::Stop);
     batch.push(2, Event::rapid(&[1.5, 90.0]));

@@ -12,7 +12,10 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 
 use post_host::{Finder, OpenedDialect, Plugin, PluginFault, Reason};
-use post_plugin::{Batch, Deviation, DialectSession, Event, ModelSession, Tolerance, WriteFault};
+use post_plugin::{
+    Batch, Deviation, DialectSession, Event, Meaning, ModelSession, Tolerance, VocabularyWord,
+    WriteFault,
+};
 
 /// `hostile.c` with a fault, in a folder of its own: a library that is open already would be handed out again.
 fn hostile(folder: &Path, flag: &str) -> PathBuf {
@@ -160,8 +163,35 @@ fn a_library_of_the_first_days_of_this_contract_is_taken() {
     let folder = tempfile::tempdir().unwrap();
     let plugin = Plugin::open(&hostile(folder.path(), "EARLIER")).unwrap();
     assert_eq!(plugin.about(), "");
+    let mut session = plugin.dialect(&setup(&["X"])).unwrap();
+    assert_eq!(session.vocabulary(), Ok(Vec::new()));
+    assert_eq!(written(&mut session).unwrap(), "G0 X1\nG0 X1\n");
     let plugin = Plugin::open(&hostile(folder.path(), "NONE")).unwrap();
     assert_eq!(plugin.about(), "It means no good.");
+}
+
+#[test]
+fn a_vocabulary_is_bounded_and_of_known_meaning() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut good = session(folder.path(), "GOOD");
+    assert_eq!(
+        good.vocabulary().unwrap(),
+        [VocabularyWord::new("G0", Meaning::Rapid)]
+    );
+    for (flag, message) in [
+        (
+            "MEANING",
+            "its vocabulary has `G1` mean 99999, which this version does not know",
+        ),
+        ("NO_WORD", "a word of its vocabulary is null"),
+        ("LONG_WORD", "bytes, at most 200 are taken"),
+        ("MANY_WORDS", "its vocabulary has more than 1000 words"),
+        ("NO_VOCABULARY", "it gives no reason"),
+    ] {
+        let fault = session(folder.path(), flag).vocabulary().unwrap_err();
+        assert!(fault.starts_with("dialect `hostile`: "), "{fault}");
+        assert!(fault.contains(message), "{flag}: {fault}");
+    }
 }
 
 /// Rounded to nearest it is below a third.

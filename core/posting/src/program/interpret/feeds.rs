@@ -20,12 +20,17 @@ impl Interpreter {
                 .in_range(record, (feed * rpm, FEEDS, "mm/min"))
                 .map(Pace::PerMinute),
             (FeedWord::PerRevolution(_), _) => {
-                self.fault(
-                    record,
-                    "feed",
-                    "a feed per revolution needs a spindle speed".to_owned(),
-                    "put a SPINDL before it, or say --spindle RPM",
-                );
+                let (message, help) = match self.surface_speed {
+                    Some(_) => (
+                        "a feed per revolution at a constant cutting speed: how many revolutions a minute that is nobody knows here",
+                        "let the CAM system write the feed a minute (MMPM, IPM), or the speed in revolutions (RPM)",
+                    ),
+                    None => (
+                        "a feed per revolution needs a spindle speed",
+                        "put a SPINDL before it, or say --spindle RPM",
+                    ),
+                };
+                self.fault(record, "feed", message.to_owned(), help);
                 None
             }
         }

@@ -1,5 +1,6 @@
 //! Settles what is modal in a CL file: units, axis, feed, frames, cycles; curves keep their shape.
 
+mod control;
 mod curves;
 mod cycles;
 mod ending;
@@ -15,6 +16,7 @@ use post_grammar::text::{as_remark, excerpt};
 use post_grammar::{
     Circle, Coolant as CoolantWord, Delay, Delta, Record, Side, Statement, Units, Usage,
 };
+use post_machine::description::{Print, Smoothing};
 use post_plugin::{Coolant, SpindleSense};
 
 pub use reading::{Reading, ToldSpindle};
@@ -54,6 +56,8 @@ pub struct Interpreter {
     cycle: Option<(DrillCycle, FeedWord)>,
     last_cycle: Option<(DrillCycle, FeedWord)>,
     rpm: Option<f64>,
+    /// The constant cutting speed, m/min, and the revolutions a minute that it must not exceed.
+    surface_speed: Option<(f64, Option<f64>)>,
     sense: SpindleSense,
     /// The spindle turns, need not turn, or that it does not was said.
     may_cut: bool,
@@ -62,6 +66,10 @@ pub struct Interpreter {
     /// Something is to be seen to before the next move.
     due: bool,
     coolant: Coolant,
+    /// The work offset that the file named last.
+    offset: Option<u32>,
+    /// By how much the control may leave the path.
+    smoothing: Option<Smoothing>,
     side: Option<Side>,
     /// Number, register and length (as written) of the tool in the spindle.
     loaded: Option<(u32, u32, Option<f64>)>,
@@ -140,6 +148,7 @@ impl Interpreter {
     pub fn new(reading: Reading) -> Self {
         let scale = reading.units.map_or(1.0, millimetres);
         let frame = Frame::new(reading.apply_msys, reading.turn);
+        let smoothing = reading.smoothing.default;
         let may_cut = reading.knife || reading.spindle == ToldSpindle::Still;
         Self {
             reading,
@@ -159,11 +168,14 @@ impl Interpreter {
             cycle: None,
             last_cycle: None,
             rpm: None,
+            surface_speed: None,
             sense: SpindleSense::Clockwise,
             may_cut,
             spindle_said: false,
             due: true,
             coolant: Coolant::Flood,
+            offset: None,
+            smoothing,
             side: None,
             loaded: None,
             cutter_changed: false,
@@ -428,6 +440,10 @@ impl Interpreter {
                 }
             }
             Statement::Knot(_) | Statement::Control { .. } => self.spline_data(record),
+            Statement::WorkOffset { number, set } => {
+                self.work_offset(record, *number, *set, emit);
+            }
+            Statement::Subprogram(number) => self.subprogram(record, *number, emit),
             Statement::Cycle(cycle) => self.cycle(record, cycle, emit),
             Statement::Cutcom(cutcom) => {
                 self.load_told(record, emit);
@@ -495,12 +511,17 @@ impl Interpreter {
                 let name = as_remark(name.clone());
                 self.path = Some(excerpt(&name, SHOWN_NAME).into_owned());
                 self.paths = true;
+                let smoothing = self.reading.smoothing.of(&name);
                 emit(Step::Command(Command::Operation(name)));
+                self.smooth(smoothing, emit);
             }
             Statement::EndOfPath => {
                 self.end_spline(record, emit);
                 self.path = None;
                 emit(Step::Command(Command::OperationEnd));
+            }
+            Statement::Print(text) if self.reading.print == Print::Message => {
+                emit(Step::Command(Command::Message(as_remark(text.clone()))));
             }
             Statement::PartName(text) | Statement::Print(text) => {
                 emit(Step::Command(Command::Comment(as_remark(text.clone()))))

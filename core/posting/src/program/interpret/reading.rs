@@ -1,7 +1,9 @@
 //! How a file is to be read: what the user says of it, and what the machine file does.
 
 use post_grammar::{MajorWord, Units};
-use post_machine::description::{CompensationOnCentre, Insert, Machine, ToolLength, WordRule};
+use post_machine::description::{
+    CompensationOnCentre, Insert, Machine, Print, SmoothingRules, ToolLength, WordRule,
+};
 
 use crate::program::Unknown;
 
@@ -41,6 +43,12 @@ pub struct Reading {
     pub rules: Vec<WordRule>,
     /// The tool has an edge that leads: it cuts without turning.
     pub knife: bool,
+    /// What becomes of `PPRINT`.
+    pub print: Print,
+    /// The spindle turns the part: `SFM` and `SMM` are constant cutting speeds.
+    pub surface_speed: bool,
+    /// By how much the control may leave the path, by operation.
+    pub smoothing: SmoothingRules,
 }
 
 /// What the spindle does where the file does not say.
@@ -76,6 +84,9 @@ impl Reading {
         self.tool_length = machine.control.tool_length;
         self.rules.clone_from(&machine.word_rules);
         self.knife = machine.edge.is_some();
+        self.print = machine.control.print;
+        self.surface_speed = machine.spindle.surface_speed;
+        self.smoothing.clone_from(&machine.smoothing);
         self
     }
 

@@ -24,7 +24,30 @@ impl Interpreter {
         let step = match spindle {
             SpindleWord::Off => Spindle::Off,
             SpindleWord::Orient => Spindle::Orient,
-            SpindleWord::On { speed, unit, sense } => {
+            SpindleWord::On {
+                speed,
+                unit,
+                sense,
+                most,
+            } => {
+                if let Some(sense) = sense {
+                    self.sense = match sense {
+                        Sense::Clockwise => SpindleSense::Clockwise,
+                        Sense::CounterClockwise => SpindleSense::CounterClockwise,
+                    };
+                }
+                let kept = match speed {
+                    Some(speed) => Some((speed, unit)).filter(|_| unit != SpindleUnit::Rpm),
+                    None => self
+                        .surface_speed
+                        .map(|(speed, _)| (speed, SpindleUnit::SurfaceMetric)),
+                };
+                if let Some((speed, unit)) = kept.filter(|_| self.reading.surface_speed) {
+                    self.may_cut = true;
+                    self.surface_speed(record, (speed, unit, most), emit);
+                    return;
+                }
+                self.surface_speed = None;
                 if let Some(speed) = speed {
                     let per_minute = match unit {
                         SpindleUnit::Rpm => None,
@@ -34,7 +57,8 @@ impl Interpreter {
                     self.rpm = match (per_minute, self.diameter) {
                         (None, _) => Some(speed),
                         (Some(surface), Some(diameter)) if diameter > 0.0 => {
-                            Some(surface / (std::f64::consts::PI * diameter))
+                            let rpm = surface / (std::f64::consts::PI * diameter);
+                            Some(most.map_or(rpm, |most| rpm.min(most)))
                         }
                         _ => {
                             self.may_cut = true;
@@ -46,12 +70,6 @@ impl Interpreter {
                             );
                             return;
                         }
-                    };
-                }
-                if let Some(sense) = sense {
-                    self.sense = match sense {
-                        Sense::Clockwise => SpindleSense::Clockwise,
-                        Sense::CounterClockwise => SpindleSense::CounterClockwise,
                     };
                 }
                 // Whatever is wrong with it, that it does not turn is not said too.

@@ -43,7 +43,7 @@ impl Interpreter {
     }
 
     /// Writes the lines that the machine file has for the word; false if it has none.
-    fn by_rule(
+    pub(super) fn by_rule(
         &mut self,
         record: &Record<'_>,
         word: &str,

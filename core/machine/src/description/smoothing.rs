@@ -1,0 +1,144 @@
+//! By how much the control may leave the path: `[program.smoothing]`.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::build::Builder;
+use super::file::{Number, Quantity};
+use crate::diagnostic::Short;
+
+/// By how much the control may leave the path between the points of the program, to go on evenly.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SmoothingFile {
+    /// Of the tip, mm; without it only the operations below are smoothed.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub tolerance: Option<Quantity>,
+    /// Of the tool axis, degrees, where it turns.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub axis_tolerance: Option<Quantity>,
+    /// Of the tip, mm, in operations by their names: `{ "ROUGH*" = 0.05 }`; * stands for any text, capitals or not, and
+    /// of two that fit the longer one holds.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Number>")]
+    pub operations: BTreeMap<Spanned<String>, Quantity>,
+}
+
+/// By how much the control may leave the path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Smoothing {
+    /// Of the tip, mm.
+    pub tolerance: f64,
+    /// Of the tool axis, degrees; none where it does not turn or the file does not say.
+    pub axis_tolerance: Option<f64>,
+}
+
+/// What holds in which operation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SmoothingRules {
+    /// In those that have no rule; none: the control keeps the path as it does by default.
+    pub default: Option<Smoothing>,
+    /// By patterns of their names, in capitals.
+    operations: Vec<(String, Smoothing)>,
+}
+
+impl SmoothingRules {
+    /// Something is smoothed.
+    pub fn any(&self) -> bool {
+        self.default.is_some() || !self.operations.is_empty()
+    }
+
+    /// In the operation of this name.
+    pub fn of(&self, name: &str) -> Option<Smoothing> {
+        let name = name.to_uppercase();
+        self.operations
+            .iter()
+            .filter(|(pattern, _)| fits(pattern, &name))
+            .max_by_key(|(pattern, _)| pattern.len())
+            .map_or(self.default, |(_, smoothing)| Some(*smoothing))
+    }
+}
+
+/// A text of a pattern in which each `*` stands for any text, or none.
+fn fits(pattern: &str, text: &str) -> bool {
+    let Some((start, rest)) = pattern.split_once('*') else {
+        return pattern == text;
+    };
+    let Some(text) = text.strip_prefix(start) else {
+        return false;
+    };
+    let (middle, end) = rest.rsplit_once('*').unwrap_or(("", rest));
+    let Some(mut text) = text.strip_suffix(end) else {
+        return false;
+    };
+    // What stands between two stars is taken where it is met first: that leaves most for those behind it.
+    middle.split('*').all(|piece| match text.find(piece) {
+        Some(at) => {
+            text = &text[at + piece.len()..];
+            true
+        }
+        None => false,
+    })
+}
+
+impl Builder<'_> {
+    pub(super) fn smoothing(&mut self, file: &SmoothingFile) -> SmoothingRules {
+        let axis_tolerance = file
+            .axis_tolerance
+            .as_ref()
+            .map(|tolerance| self.above_zero("axis_tolerance", tolerance));
+        let mut rule = |name: &str, tolerance: &Quantity| Smoothing {
+            tolerance: self.above_zero(name, tolerance),
+            axis_tolerance,
+        };
+        SmoothingRules {
+            default: file.tolerance.as_ref().map(|said| rule("tolerance", said)),
+            operations: file
+                .operations
+                .iter()
+                .map(|(name, said)| (name.get_ref().to_uppercase(), rule(name.get_ref(), said)))
+                .collect(),
+        }
+    }
+
+    fn above_zero(&mut self, name: &str, quantity: &Quantity) -> f64 {
+        let value = self.number(quantity);
+        if value <= 0.0 {
+            self.fault(
+                "machine-program",
+                quantity.span(),
+                format!("[program.smoothing] {name} is {}", Short(value)),
+                "a tolerance lies above zero; an operation without smoothing has no rule",
+            );
+        }
+        value
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fits;
+
+    #[test]
+    fn stars_stand_for_any_text() {
+        for (pattern, text, whether) in [
+            ("ROUGH", "ROUGH", true),
+            ("ROUGH", "ROUGH_1", false),
+            ("ROUGH*", "ROUGH_1", true),
+            ("*FINISH", "PRE_FINISH", true),
+            ("*FINISH", "FINISH_2", false),
+            ("*", "", true),
+            ("A*A", "A", false),
+            ("A*A", "AA", true),
+            ("A*B*C", "A1B2C", true),
+            ("A*B*C", "A1C2C", false),
+            ("*B*B*", "AB", false),
+            ("**", "X", true),
+        ] {
+            assert_eq!(fits(pattern, text), whether, "{pattern} {text}");
+        }
+    }
+}

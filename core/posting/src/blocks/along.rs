@@ -1,0 +1,377 @@
+//! Curves that stay curves: an arc of the CL file becomes one block, or a few, where dialect, machine and tolerance
+//! allow; else it goes by the moves that it was cut into.
+
+use post_machine::description::ArcSplit;
+use post_machine::kinematics::Joints;
+use post_machine::kinematics::travel::{AT_END, passed};
+
+use super::{Block, Blocks, Follow, Leg, MotionKind, Nominal, Reason, Surroundings, Travels};
+use crate::accuracy::{Bound, Node, PlacedBatch, Placer, PrintedArc, WordFrame};
+use crate::configuration::{Chosen, pose};
+use crate::curve::{Course, Curve, CurveWords, PrintedCurve};
+use crate::program::{Arc, Command, Motion, Pace};
+use crate::stream::Flow;
+
+/// Controls take an arc whose ends differ by more in their distance from the centre for a slip: mm.
+const MISMATCH: f64 = 0.005;
+
+/// A control may divide F by the way in the plane alone: a helix is no arc where that makes it faster by more.
+const FASTER: f64 = 1.05;
+
+/// An arc by its radius turns by no more than this in a block, radians (160°).
+const BY_RADIUS: f64 = 2.792_526_803_190_927;
+
+/// Shares of an arc that are as near to its ends are no places to cut it at.
+const AT_ITS_END: f64 = 1e-6;
+
+/// A curve that is on its way, and the moves that it would be otherwise.
+#[derive(Debug)]
+pub(super) struct Following {
+    line: u64,
+    curve: Box<Curve>,
+    moves: Vec<Chosen>,
+}
+
+/// A block along an arc.
+struct ArcBlock {
+    node: Box<Node>,
+    printed: PrintedArc,
+    curve: PrintedCurve,
+    bound: Bound,
+    /// Share of the whole arc.
+    share: f64,
+}
+
+impl Following {
+    pub(super) fn new(line: u64, curve: &Curve) -> Self {
+        Self {
+            line,
+            curve: Box::new(curve.clone()),
+            moves: Vec::new(),
+        }
+    }
+
+    /// Line of the CL file that it is from.
+    pub(super) fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// One more of its moves.
+    pub(super) fn push(&mut self, next: &Chosen) {
+        self.moves.push(next.clone());
+    }
+}
+
+impl Blocks<'_> {
+    /// The curve that is on its way has come to its end, or is broken off: it is kept or gone by its moves. Nothing is
+    /// solved ahead in `placed`.
+    pub(super) fn go_along(
+        &mut self,
+        whole: bool,
+        placed: &mut PlacedBatch,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        let Some(following) = self.following.take() else {
+            return;
+        };
+        if whole && self.keep(&following, to) {
+            return;
+        }
+        for next in &following.moves {
+            self.point(next, 0, placed, to);
+        }
+    }
+
+    /// Makes blocks along the curve, if that can be.
+    fn keep(&mut self, following: &Following, to: &mut Surroundings<'_, '_>) -> bool {
+        let (Some(placer), Some(last)) = (self.placer.clone(), self.last.as_deref()) else {
+            return false;
+        };
+        let still = |next: &Chosen| {
+            let standing = self.planes.standing(next);
+            next.arrives && next.rewind.is_none() && placer.stand(standing, &last.trace.joints)
+        };
+        if !following.moves.iter().all(still)
+            || self.compensation_due
+            || !self.machine.solution.exclusive.is_empty()
+        {
+            return false;
+        }
+        let Some(frame) = WordFrame::new(&placer, last) else {
+            return false;
+        };
+        let curve = &following.curve;
+        let lift = curve.end.axis * self.machine.control_point.along;
+        match &curve.course {
+            Course::Arc(arc) => {
+                let wanted = arc.placed(|point| point + lift, |direction| direction);
+                let whole = Motion {
+                    tip: curve.end.tip + lift,
+                    ..curve.end
+                };
+                let Some(blocks) = self.arc_blocks(&placer, &frame, (&wanted, &whole)) else {
+                    return false;
+                };
+                self.push_arc(&placer, following.line, &whole, blocks, to);
+            }
+            Course::Spline(_) => return false,
+        }
+        true
+    }
+
+    /// The blocks along an arc, as few as may be: whole, by halves, by quadrants.
+    fn arc_blocks(
+        &self,
+        placer: &Placer,
+        frame: &WordFrame,
+        (arc, end): (&Arc, &Motion),
+    ) -> Option<Vec<ArcBlock>> {
+        let normal = frame.direction(arc.axis);
+        let axis = normal.iamax();
+        let sense = libm::copysign(1.0, normal[axis]);
+        if self.compensating && axis != 2 {
+            return None;
+        }
+        let from = self.keeps.arcs.split;
+        let splits = [ArcSplit::Full, ArcSplit::Half, ArcSplit::Quadrant];
+        let finer = splits.into_iter().skip_while(|split| *split != from);
+        finer
+            .map(|split| self.cuts(frame, (axis, sense), arc, split))
+            .find_map(|cuts| self.arc_pieces(placer, frame, (axis, sense), (arc, end), &cuts))
+    }
+
+    /// Shares of an arc at which its blocks end, 1 the last of them.
+    fn cuts(
+        &self,
+        frame: &WordFrame,
+        (axis, sense): (usize, f64),
+        arc: &Arc,
+        split: ArcSplit,
+    ) -> Vec<f64> {
+        use std::f64::consts::{FRAC_PI_2, PI, TAU};
+        let most: f64 = match split {
+            ArcSplit::Full => TAU,
+            _ => PI,
+        };
+        let most = match self.keeps.by_radius() {
+            true => most.min(BY_RADIUS),
+            false => most,
+        };
+        if split != ArcSplit::Quadrant {
+            // What is a turn but for rounding is one.
+            let count = libm::ceil(arc.sweep / most - AT_ITS_END).max(1.0);
+            return (1..=count as u32)
+                .map(|piece| f64::from(piece) / count)
+                .collect();
+        }
+        let radial = frame.direction(arc.radial);
+        let (x, y) = (radial[(axis + 1) % 3], radial[(axis + 2) % 3]);
+        let from = sense * libm::atan2(y, x);
+        let first = (libm::floor(from / FRAC_PI_2) + 1.0) * FRAC_PI_2 - from;
+        let mut cuts: Vec<f64> = (0..5)
+            .map(|quarter| (first + f64::from(quarter) * FRAC_PI_2) / arc.sweep)
+            .filter(|share| *share > AT_ITS_END && *share < 1.0 - AT_ITS_END)
+            .collect();
+        cuts.push(1.0);
+        cuts
+    }
+
+    /// The pieces of an arc between such shares as blocks; none if one of them cannot be.
+    fn arc_pieces(
+        &self,
+        placer: &Placer,
+        frame: &WordFrame,
+        (axis, sense): (usize, f64),
+        (arc, end): (&Arc, &Motion),
+        cuts: &[f64],
+    ) -> Option<Vec<ArcBlock>> {
+        let mut pieces: Vec<ArcBlock> = Vec::with_capacity(cuts.len());
+        let mut from = 0.0;
+        for &cut in cuts {
+            let before = pieces
+                .last()
+                .map(|piece| &*piece.node)
+                .or(self.last.as_deref())?;
+            let tip = if cut == 1.0 { end.tip } else { arc.at(cut) };
+            let target = pose(&Motion { tip, ..*end });
+            let node = placer.settled(target, 1.0, &before.trace.joints).ok()?;
+            let wanted = arc.piece(from, cut).placed(
+                |point| frame.point(point),
+                |direction| frame.direction(direction),
+            );
+            let piece = self.arc_block(placer, frame, (axis, sense), &wanted, [before, &node])?;
+            pieces.push(ArcBlock {
+                share: cut - from,
+                ..piece
+            });
+            from = cut;
+        }
+        Some(pieces)
+    }
+
+    /// The block along an arc in the frame of the words, if it is within what dialect, machine and tolerance allow.
+    fn arc_block(
+        &self,
+        placer: &Placer,
+        frame: &WordFrame,
+        about: (usize, f64),
+        wanted: &Arc,
+        [from, node]: [&Node; 2],
+    ) -> Option<ArcBlock> {
+        let ends = [placer.printed(from)?, placer.printed(node)?];
+        let (axis, sense) = about;
+        let mut centre = wanted.centre;
+        centre[axis] = ends[0][axis];
+        let (words, centre) = placer.printed_point(centre)?;
+        let (centre, radius) = match self.keeps.by_radius() {
+            false => (centre, None),
+            true => {
+                // The length of a word is printed with the decimals of that word.
+                let mut radius = ends[0];
+                radius[(axis + 1) % 3] = (wanted.radii[0] + wanted.radii[1]) / 2.0;
+                let (word, printed) = placer.printed_point(radius)?;
+                let radius = printed[(axis + 1) % 3];
+                let centre = PrintedArc::centre_by_radius(about, ends, radius)?;
+                (centre, Some(word[(axis + 1) % 3]))
+            }
+        };
+        let printed = PrintedArc::new(about, ends, centre)?;
+        let (length, rise) = (printed.length(), printed.rise());
+        if !self.keeps.about(axis, rise != 0.0, self.in_plane())
+            || !printed
+                .radii
+                .iter()
+                .all(|radius| self.keeps.radius(*radius))
+            || printed.mismatch() > MISMATCH
+            || libm::hypot(length, rise) > FASTER * length
+        {
+            return None;
+        }
+        let bound = self.arc_bound(placer, printed.deviation(wanted), [from, node])?;
+        let between = self.arc_between(frame, &printed)?;
+        let mut normal = [0.0; 3];
+        normal[axis] = 1.0;
+        let words = CurveWords::Arc {
+            centre: words,
+            normal,
+            turn: sense * printed.turn.to_degrees(),
+            radius,
+        };
+        Some(ArcBlock {
+            node: Box::new(*node),
+            printed,
+            curve: PrintedCurve { words, between },
+            bound,
+            share: 1.0,
+        })
+    }
+
+    /// What is proven of a block along a curve whose words stray from it by `off` mm, if that is within tolerance.
+    fn arc_bound(&self, placer: &Placer, off: f64, [from, node]: [&Node; 2]) -> Option<Bound> {
+        let accuracy = &self.machine.accuracy;
+        let margin = placer.margin(&from.trace.joints, &node.trace.joints);
+        // The rotary axes stand: the tool axis is off by what its words are rounded by.
+        let axis = from.axis_error.max(node.axis_error);
+        let bound = Bound {
+            tip: off + placer.control_point().radius * axis + margin.tip,
+            axis: axis + margin.axis,
+        };
+        (bound.tip <= accuracy.tolerance && bound.axis <= accuracy.axis_tolerance).then_some(bound)
+    }
+
+    /// Axis values where some axis turns back along an arc, in order; none where one leaves its travel.
+    fn arc_between(&self, frame: &WordFrame, printed: &PrintedArc) -> Option<Vec<Joints>> {
+        let slides = frame.slides().iter();
+        let mut shares: Vec<f64> = slides
+            .flat_map(|(_, slide)| printed.turns_back(*slide))
+            .collect();
+        shares.sort_by(f64::total_cmp);
+        let between: Vec<Joints> = shares
+            .into_iter()
+            .map(|share| frame.joints(printed.at(share)))
+            .collect();
+        // What the two radii differ by moves the place where an axis turns back a little farther.
+        let slack = printed.mismatch();
+        let inside = |joints: &Joints| {
+            frame.slides().iter().all(|(joint, _)| {
+                let travel = self.machine.axes[*joint].travel;
+                [-slack, slack]
+                    .iter()
+                    .all(|slack| passed(travel, joints[*joint] + slack, AT_END).is_none())
+            })
+        };
+        between.iter().all(inside).then_some(between)
+    }
+
+    /// Hands on the blocks of an arc.
+    fn push_arc(
+        &mut self,
+        placer: &Placer,
+        line: u64,
+        motion: &Motion,
+        pieces: Vec<ArcBlock>,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        let count = pieces.len();
+        for (place, piece) in pieces.into_iter().enumerate() {
+            if self.compensating {
+                self.check_compensation(placer, line, &piece.node, to.findings);
+            }
+            let leg = Leg {
+                line,
+                motion,
+                loose: false,
+                reason: match place + 1 == count {
+                    true => Reason::Point,
+                    false => Reason::Stage,
+                },
+            };
+            let (length, rise) = (piece.printed.length(), piece.printed.rise());
+            let way = libm::hypot(length, rise);
+            let nominal = match motion.pace {
+                // The time is that of the whole arc.
+                Pace::InverseTime(_) => {
+                    Nominal::of(motion.pace, way, Travels::default).share(piece.share)
+                }
+                pace => Nominal::of(pace, way, Travels::default),
+            };
+            let block = Block {
+                kind: MotionKind::Arc,
+                way,
+                nominal,
+                follow: self.arc_follow(&piece, way / length),
+                ..self.block(&leg, &piece.node, piece.bound)
+            };
+            self.largest.keep(&leg, piece.bound);
+            let command = Command::Curve(Box::new(piece.curve));
+            to.out.command(line, command);
+            to.out.push(Flow::Point(block));
+            self.spare = self.last.replace(piece.node);
+        }
+        self.on_part = true;
+    }
+
+    /// The least time in which no axis passes its largest feed, a control that divides F by the way in the plane being
+    /// `faster` by that factor.
+    fn arc_follow(&self, piece: &ArcBlock, faster: f64) -> Follow {
+        let mut follow = Follow::default();
+        let Some(frame) = self
+            .placer
+            .as_ref()
+            .and_then(|placer| WordFrame::new(placer, &piece.node))
+        else {
+            return follow;
+        };
+        for (joint, slide) in frame.slides() {
+            let fastest = piece.printed.fastest(*slide);
+            let minutes = faster * fastest / self.machine.axes[*joint].max_feed;
+            if minutes > follow.minutes {
+                follow = Follow {
+                    minutes,
+                    joint: *joint,
+                };
+            }
+        }
+        follow
+    }
+}

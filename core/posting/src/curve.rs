@@ -1,0 +1,137 @@
+//! Curves on their way through the stages: as the CL file has them, and as they are printed.
+//!
+//! A curve that may stay one goes from `expand` to `blocks` as the moves that it would be otherwise, between two
+//! commands. So the choice of axis values sees all of its way, and what cannot be kept is made of those moves, as if
+//! nobody had tried. What `blocks` keeps is one block or several, each behind a command with what was printed of it.
+
+use post_machine::description::{Arcs, Machine, Tcp};
+use post_machine::kinematics::Joints;
+use post_plugin::Capabilities;
+
+use crate::program::{Arc, Motion, Pace, Spline};
+
+/// A curve of the CL file that may stay one: the tool axis stands along it, and it is cut at a feed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Its course in the part frame; the tip goes along it.
+    pub course: Course,
+    /// The move to its end, whose pace is that of the whole curve.
+    pub end: Motion,
+}
+
+/// The course of a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Course {
+    /// Along an arc or a helix of a turn at most.
+    Arc(Arc),
+    /// Along a spline.
+    Spline(Spline),
+}
+
+/// What is printed of the next block, which goes along a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrintedCurve {
+    /// Its words.
+    pub words: CurveWords,
+    /// Axis values where some axis turns back on the way, in order.
+    pub between: Vec<Joints>,
+}
+
+/// The words of a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CurveWords {
+    /// An arc or a helix.
+    Arc {
+        /// Centre in the frame of the linear words, program units, on the level of the start.
+        centre: [f64; 3],
+        /// The axis of that frame about which it turns.
+        normal: [f64; 3],
+        /// Degrees from start to end, counter-clockwise seen against the normal; negative: clockwise.
+        turn: f64,
+        /// The radius, program units, to be written in the place of the centre.
+        radius: Option<f64>,
+    },
+    /// A spline.
+    Spline {
+        /// Degree.
+        degree: u32,
+        /// Knots.
+        knots: Vec<f64>,
+        /// A weight for each control point.
+        weights: Vec<f64>,
+        /// All axis words of each control point, one after the other.
+        points: Vec<f64>,
+    },
+}
+
+/// More chords than this do not wait for their curve to be kept or not.
+const MOST_CHORDS: u64 = 16_384;
+
+/// Which curves dialect and machine keep.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Keeps {
+    /// What the machine file says.
+    pub arcs: Arcs,
+    writes: Capabilities,
+    /// Beside those of the plane, what an arc asks of the dialect.
+    needs: Capabilities,
+}
+
+impl Keeps {
+    pub(crate) fn new(machine: &Machine, writes: Capabilities) -> Self {
+        Self {
+            arcs: machine.control.arcs,
+            writes,
+            needs: match machine.control.tcp {
+                Tcp::Control => Capabilities::ARC_TCP,
+                Tcp::Post => Capabilities::NONE,
+            },
+        }
+    }
+
+    /// Arcs about that axis of the words (0 is X), which end off the plane of their start or not, in a tilted plane or
+    /// not.
+    pub(crate) fn about(&self, axis: usize, helix: bool, in_plane: bool) -> bool {
+        let planes = [
+            Capabilities::ARC_YZ,
+            Capabilities::ARC_ZX,
+            Capabilities::ARC_XY,
+        ];
+        let helix = match helix {
+            true => Capabilities::HELIX,
+            false => Capabilities::NONE,
+        };
+        let needs = match in_plane {
+            true => Capabilities::CYCLE_IN_PLANE,
+            false => self.needs,
+        };
+        self.writes.has(planes[axis] | helix | needs)
+    }
+
+    /// A radius that is written as an arc.
+    pub(crate) fn radius(&self, radius: f64) -> bool {
+        let [least, largest] = self.arcs.radii;
+        (least..=largest).contains(&radius)
+    }
+
+    /// An arc is written by its radius.
+    pub(crate) fn by_radius(&self) -> bool {
+        self.arcs.form == post_machine::description::ArcForm::Radius
+            && self.writes.has(Capabilities::ARC_RADIUS)
+    }
+
+    /// Some arc of the CL file may be kept where the control may have been told a plane or surely has not.
+    pub(crate) fn arcs(&self, planes: bool) -> bool {
+        let possible =
+            |axis| self.about(axis, false, false) || planes && self.about(axis, false, true);
+        self.arcs.keep && (0..3).any(possible)
+    }
+
+    /// An arc of the CL file may be kept that would be so many chords; `planes` as for [`Keeps::arcs`].
+    pub(crate) fn arc(&self, arc: &Arc, end: &Motion, chords: u64, planes: bool) -> bool {
+        self.arcs(planes)
+            && end.pace != Pace::Rapid
+            && self.radius(arc.radius())
+            && (2..=MOST_CHORDS).contains(&chords)
+    }
+}

@@ -1,0 +1,163 @@
+//! What the control does by itself: work offsets, registers, subprograms, cutting speeds, smoothing, keeping the tip.
+
+use post_machine::description::{OutputUnits, Tcp};
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{Capabilities, Event, SpindleSense};
+
+use super::Emit;
+use crate::findings::Findings;
+use crate::program::Tool;
+
+/// mm in a foot.
+const FOOT: f64 = 304.8;
+
+impl Emit<'_> {
+    /// Another work offset, the tool retracted and nothing in force that counts from the one before.
+    pub(super) fn work_offset(&mut self, line: u64, number: u32, findings: &Findings) {
+        let event = Event::WorkOffset { number, name: "" };
+        if !self.writer.knows(Capabilities::WORK_OFFSET) {
+            refuse(line, &event, "SET and OFSETL", findings);
+            return;
+        }
+        if let Some(before) = self.offset.replace(number) {
+            self.tell_other_mount(line, [before, number], findings);
+        }
+        self.leave(line);
+        self.writer.push(line, event);
+    }
+
+    /// Travel, and axis positions, are those of the part on its one mount.
+    fn tell_other_mount(&mut self, line: u64, [before, number]: [u32; 2], findings: &Findings) {
+        let machine = self.machine;
+        let turns = |axis: &post_machine::description::Axis| axis.joint.rotary && axis.carries_part;
+        if machine.control.tcp == Tcp::Post && machine.axes.iter().any(turns) {
+            findings.at(
+                line,
+                Diagnostic::error(
+                    "work-offset",
+                    format!("work offset {number} behind {before}: the words are axis positions (tcp = \"post\"), and a rotary axis carries the part, so that they hold for one mount alone"),
+                )
+                .help("post the parts one by one, each with its --mount"),
+            );
+        } else if !std::mem::replace(&mut self.told_mount, true) {
+            findings.at(
+                line,
+                Diagnostic::warning(
+                    "work-offset",
+                    format!("work offset {number} behind {before}: travel was checked with the part where [workpiece] mount says, for every offset"),
+                ),
+            );
+        }
+    }
+
+    /// Another length register for the tool in the spindle: false if it is another tool, or the dialect knows only
+    /// tool changes.
+    pub(super) fn offsets(&mut self, line: u64, tool: &Tool) -> bool {
+        if self.tool != Some(tool.number) || !self.writer.knows(Capabilities::OFFSETS) {
+            self.tool = Some(tool.number);
+            return false;
+        }
+        self.leave(line);
+        self.writer.push(
+            line,
+            Event::Offsets {
+                length: Some(tool.register),
+                radius: None,
+            },
+        );
+        true
+    }
+
+    /// A subprogram of the control; what it leaves in force nobody knows.
+    pub(super) fn subprogram(&mut self, line: u64, number: u32, findings: &Findings) {
+        let event = Event::Subprogram {
+            number: Some(number),
+            times: 1,
+            name: "",
+        };
+        if !self.writer.knows(Capabilities::SUBPROGRAM) {
+            refuse(line, &event, "CALSUB", findings);
+            return;
+        }
+        self.writer.push(line, event);
+        self.clear = false;
+        self.turning = false;
+        self.coolant_due = true;
+        self.smoothed = None;
+        if !std::mem::replace(&mut self.told_subprogram, true) {
+            findings.at(
+                line,
+                Diagnostic::warning(
+                    "subprogram",
+                    format!("what subprogram {number} does is not checked; behind it the tool is retracted and comes near anew"),
+                ),
+            );
+        }
+    }
+
+    /// A cutting speed in m/min that the control keeps.
+    pub(super) fn surface_speed(
+        &mut self,
+        line: u64,
+        (speed, most): (f64, Option<f64>),
+        sense: SpindleSense,
+        findings: &Findings,
+    ) {
+        let speed = match self.machine.control.units {
+            OutputUnits::Mm => speed,
+            OutputUnits::Inch => speed * 1000.0 / FOOT,
+        };
+        let event = Event::SurfaceSpeed { speed, most, sense };
+        if !self.writer.knows(Capabilities::SURFACE_SPEED) {
+            refuse(line, &event, "SPINDL/SMM and SPINDL/SFM", findings);
+            return;
+        }
+        self.set_spindle(line, Some(event), event);
+    }
+
+    /// Out of the part, and nothing in force that a tool change, a reference or another offset would disturb.
+    pub(super) fn leave(&mut self, line: u64) {
+        self.retract(line);
+        if self.smoothed.take().is_some() {
+            self.writer.push(line, Event::SmoothingOff);
+        }
+    }
+
+    /// Smoothing as it is wanted, before the tool comes near: some controls take it with no length in force alone.
+    pub(super) fn smooth(&mut self, line: u64) {
+        if self.smoothed == self.smoothing {
+            return;
+        }
+        self.smoothed = self.smoothing;
+        self.writer.push(
+            line,
+            match self.smoothing {
+                Some(smoothing) => Event::Smoothing {
+                    tolerance: smoothing.tolerance,
+                    axis_tolerance: smoothing.axis_tolerance,
+                },
+                None => Event::SmoothingOff,
+            },
+        );
+    }
+
+    /// The control keeps the tip from here on, or no longer; for a dialect that is told so by itself.
+    pub(super) fn keep_tip(&mut self, line: u64, on: bool) {
+        let switches =
+            self.machine.control.tcp == Tcp::Control && self.writer.knows(Capabilities::TCP_SWITCH);
+        if switches && self.keeps_tip != Some(on) {
+            self.keeps_tip = Some(on);
+            self.writer.push(line, Event::Tcp { on });
+        }
+    }
+}
+
+/// The CL file asks for what the dialect has no words for.
+fn refuse(line: u64, event: &Event<'_>, words: &str, findings: &Findings) {
+    findings.at(
+        line,
+        Diagnostic::error("refused-word", event.refusal()).help(format!(
+            "[cl.words] in the machine file gives the lines of the program for {words}, --allow leaves a word out"
+        )),
+    );
+}

@@ -1,0 +1,119 @@
+//! What the control does by itself: work offsets, subprograms, constant cutting speeds, smoothing.
+
+use post_grammar::{Argument, Record, SpindleUnit};
+use post_machine::description::Smoothing;
+use post_machine::diagnostic::Short;
+
+use super::Interpreter;
+use crate::program::{Command, Step};
+
+/// Numbers that a file gives a work offset which may be meant as G codes: the first offset is G54.
+const CODES: std::ops::RangeInclusive<u32> = 54..=59;
+
+impl Interpreter {
+    /// A work offset by its number.
+    pub(super) fn work_offset(
+        &mut self,
+        record: &Record<'_>,
+        number: u32,
+        set: bool,
+        emit: &mut impl FnMut(Step),
+    ) {
+        let word = record.statement.word();
+        let value = Argument::Number(number.into());
+        let arguments = match set {
+            true => vec![Argument::Word("OFSETL".to_owned()), value],
+            false => vec![value],
+        };
+        if self.by_rule(record, word, &arguments, emit) || self.left_out(word, record) {
+            return;
+        }
+        if number == 0 || CODES.contains(&number) {
+            let why = match number {
+                0 => "offsets are counted from 1".to_owned(),
+                code => format!("it may be G{code} or the {code}th offset"),
+            };
+            self.fault(
+                record,
+                "work-offset",
+                format!("{word} asks for work offset {number}: {why}"),
+                "1 is G54, 2 is G55; what the CAM system means by its numbers says [cl.words] in the machine file, such as \"SET/OFSETL\" = \"G{n}\"",
+            );
+            return;
+        }
+        // CAM systems repeat it in every operation.
+        if self.offset.replace(number) != Some(number) {
+            self.tip = None;
+            emit(Step::Command(Command::WorkOffset(number)));
+        }
+    }
+
+    /// A subprogram of the control by its number.
+    pub(super) fn subprogram(
+        &mut self,
+        record: &Record<'_>,
+        number: u32,
+        emit: &mut impl FnMut(Step),
+    ) {
+        let word = record.statement.word();
+        let arguments = [Argument::Number(number.into())];
+        if self.by_rule(record, word, &arguments, emit) || self.left_out(word, record) {
+            return;
+        }
+        self.load_told(record, emit);
+        self.tip = None;
+        emit(Step::Command(Command::Subprogram(number)));
+    }
+
+    /// The user takes it upon himself that the word has no effect.
+    fn left_out(&mut self, word: &str, record: &Record<'_>) -> bool {
+        let allowed = self.reading.allows(word);
+        if allowed {
+            self.allow(word, "is left out", record);
+        }
+        allowed
+    }
+
+    /// A cutting speed that the control is to keep; false if there is none above zero.
+    pub(super) fn surface_speed(
+        &mut self,
+        record: &Record<'_>,
+        (speed, unit, most): (f64, SpindleUnit, Option<f64>),
+        emit: &mut impl FnMut(Step),
+    ) {
+        let metres = match unit {
+            SpindleUnit::SurfaceInch => speed * 0.3048,
+            _ => speed,
+        };
+        let wrong = [Some(metres), most]
+            .into_iter()
+            .flatten()
+            .find(|value| *value <= 0.0);
+        if let Some(wrong) = wrong {
+            let message = format!(
+                "a constant cutting speed with {}: it must be above zero",
+                Short(wrong)
+            );
+            self.fault(record, "spindle", message, "SPINDL/SMM,speed,MAXRPM,limit");
+            return;
+        }
+        let most = most.or(self.surface_speed.and_then(|(_, most)| most));
+        self.rpm = None;
+        self.surface_speed = Some((metres, most));
+        emit(Step::Command(Command::SurfaceSpeed {
+            speed: metres,
+            most,
+            sense: self.sense,
+        }));
+    }
+
+    /// Other tolerances of the control from here on; none: it keeps the path as it does by default.
+    pub(super) fn smooth(&mut self, wanted: Option<Smoothing>, emit: &mut impl FnMut(Step)) {
+        if wanted == self.smoothing {
+            return;
+        }
+        self.smoothing = wanted;
+        self.tip = None;
+        emit(Step::Command(Command::Smoothing(wanted)));
+    }
+}

@@ -1,0 +1,131 @@
+//! GRBL 1.1: three axes, no cycles, no changer, no length; grblHAL, by an option, has more of them.
+//!
+//! What it assumes about the control stands in `plugins/README.md`.
+
+use post_iso::{
+    Codes, Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, offset_of_six, options,
+};
+use post_plugin::{Capabilities, Event, OptionSpec, Setup, export_dialect, remark};
+
+struct Grbl {
+    hal: bool,
+}
+
+impl Control for Grbl {
+    const TABLE: &'static Table = &Table {
+        options: OPTIONS,
+        percent: false,
+        remark: passive,
+        // Its buffer has 80 characters, and the line's end is one of them.
+        remark_length: 78,
+        line_length: Some(78),
+        codes: Codes {
+            feed: ["G94", "G93", ""],
+            compensation: ["G40", "", ""],
+            ..Codes::ISO
+        },
+        offset: Offset {
+            word: offset_of_six,
+            at_start: true,
+            ..Table::ISO.offset
+        },
+        // The length is in the work offset: the operator sets it after each change.
+        length: Length {
+            on: "",
+            off: "",
+            ..Table::ISO.length
+        },
+        relies: RELIES,
+        leave: &[Leave::Retract],
+        stops: Stops {
+            spindle: false,
+            coolant: false,
+        },
+        dwell: Dwell::Seconds("P", 3),
+        // The operator changes the tool.
+        change: "M0",
+        cycles: &[],
+        units_inside: true,
+        spindle: ["M3", "M4", "M5", ""],
+        probe: "G38.2",
+        ..Table::ISO
+    };
+
+    fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        let hal = setup.flag("hal");
+        let beyond = |name: &str| !matches!(name, "X" | "Y" | "Z");
+        match setup.words.iter().find(|word| beyond(word.name)) {
+            Some(word) if !hal => Err(format!(
+                "axis {}: GRBL 1.1 has the axes X Y Z alone; the option `hal` is for grblHAL, which may have more",
+                word.name
+            )),
+            _ => Ok(Grbl { hal }),
+        }
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::TOOL_TABLE
+    }
+
+    fn write(
+        &mut self,
+        event: &Event<'_>,
+        engine: &mut Engine,
+        out: &mut String,
+    ) -> Result<bool, String> {
+        match *event {
+            Event::Preselect { number } if !self.hal => {
+                engine.remark(&format!("NEXT T{number}"), out);
+                Ok(true)
+            }
+            _ => Ok(false),
+        }
+    }
+}
+
+/// A remark without the characters that GRBL acts on wherever they stand.
+fn passive(text: &str) -> String {
+    remark(&text.replace(['?', '!', '~'], " ")).replace('?', " ")
+}
+
+const OPTIONS: &[OptionSpec] = &[
+    OptionSpec::flag(
+        "hal",
+        false,
+        "The control is grblHAL: axes beside X Y Z, if it is built with them.",
+    ),
+    OptionSpec::text(
+        "change",
+        "M0",
+        "Behind T: what changes the tool. M0: the operator does; M6 on a control that has it.",
+    ),
+    options::BLOCK_NUMBERS,
+    options::BLOCK_STEP,
+    options::SPACES,
+    options::LEADING_ZEROS,
+    options::decimals(3),
+    options::decimals_inch(4),
+    options::rotary_decimals(3),
+    options::WORD_DECIMALS,
+    options::TRAILING_ZEROS,
+    options::feed_decimals(1),
+    options::inverse_time_decimals(3),
+    OptionSpec::text("work_offset", "G54", "G54 to G59."),
+    options::RETRACT,
+    options::RESTART,
+    options::PARAMETERS,
+    options::CLAMPS,
+    options::COOLANT_THROUGH,
+    options::COOLANT_AIR,
+];
+
+const RELIES: &[&str] = &[
+    "the machine is homed: G53 counts from its zero",
+    "the work offset holds the length of the tool in the spindle: it is set after each change",
+    "$11 is the deviation at a junction: the control leaves corners by so much",
+];
+
+export_dialect!(grbl, Iso<Grbl>);
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,69 @@
+//! Haas NGC: Fanuc's words, G234 for the tool centre point, G254 for the dynamic work offset.
+//!
+//! What it assumes about the control stands in `plugins/README.md`.
+
+use post_iso::{
+    Control, Iso, Offset, Plane, Subprogram, Table, Tcp, is_offset_beyond_six, iso_options,
+    offset_beyond_six, options,
+};
+use post_plugin::{OptionSpec, Setup, export_dialect};
+
+struct Haas;
+
+impl Control for Haas {
+    const TABLE: &'static Table = &Table {
+        options: OPTIONS,
+        title: Some(("O", 5)),
+        offset: Offset {
+            known: |text| is_offset_beyond_six(text, "G154 P", 99),
+            range: "G54 to G59 or G154 P1 to P99",
+            word: |number| offset_beyond_six(number, "G154 P", 99),
+            ..Table::ISO.offset
+        },
+        relies: RELIES,
+        tcp: Tcp::Length("G234"),
+        plane: Plane::Turned {
+            on: "G254",
+            off: "G255",
+        },
+        cycles_in_plane: true,
+        smoothing: SMOOTHING,
+        smoothing_anywhere: true,
+        probe: "G31",
+        subprogram: Subprogram {
+            number: "M98 P{}",
+            name: "",
+            times: " L",
+        },
+        ..Table::ISO
+    };
+
+    fn open(_: &Setup<'_>) -> Result<Self, String> {
+        Ok(Haas)
+    }
+}
+
+const OPTIONS: &[OptionSpec] = iso_options![
+    options::program_number(99_999),
+    options::SPACES,
+    options::inverse_time_decimals(3),
+    OptionSpec::text("work_offset", "G54", "G54 to G59, or G154 Pn."),
+    options::BORE_SHIFT,
+    options::smoothing(SMOOTHING[0]),
+    options::smoothing_off(SMOOTHING[1]),
+];
+
+const RELIES: &[&str] = &[
+    "the options TCPC and DWO for G234 and G254; the rotary zero (MRZP) is set",
+    "B of the work offset is zero under G254",
+    "settings 34 and 79 are the diameters of the rotary axes: without TCPC a feed a minute counts with them",
+    "setting 9 has the units of the program; rapids that turn an axis may leave the straight line",
+];
+
+/// G187 P: 1 rough, 2 medium, 3 finish; E is the largest deviation of a corner. Alone it gives back the settings.
+const SMOOTHING: [&str; 2] = ["0 G187 P3 E{}\n0.02 G187 P2 E{}\n0.1 G187 P1 E{}", "G187"];
+
+export_dialect!(haas, Iso<Haas>);
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,66 @@
+//! Hurco WinMax in its ISNC dialect (the other one, BNC, differs): Fanuc's words, M128 for the tool centre point.
+//!
+//! What it assumes about the control stands in `plugins/README.md`.
+
+use post_iso::{Control, Iso, Leave, Subprogram, Table, Tcp, iso_options, options};
+use post_plugin::{OptionSpec, Setup, export_dialect};
+
+struct Hurco;
+
+impl Control for Hurco {
+    const TABLE: &'static Table = &Table {
+        options: OPTIONS,
+        extension: "fnc",
+        title: Some(("O", 4)),
+        relies: RELIES,
+        // G69 ahead of M128: no transform plane.
+        tcp: Tcp::Blocks {
+            on: "G69\nM128",
+            off: "M129",
+            length_first: true,
+        },
+        leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
+        subprogram: Subprogram {
+            number: "M98 P{}",
+            name: "",
+            times: " L",
+        },
+        ..Table::ISO
+    };
+
+    fn open(_: &Setup<'_>) -> Result<Self, String> {
+        Ok(Hurco)
+    }
+}
+
+const OPTIONS: &[OptionSpec] = iso_options![
+    options::program_number(9999),
+    options::SPACES,
+    options::INVERSE_TIME,
+    options::inverse_time_decimals(3),
+    OptionSpec::text("work_offset", "G54", "G54 to G59."),
+    OptionSpec::lines(
+        "tcp_on",
+        "G69\nM128",
+        "Blocks that switch tool centre point control on.",
+    ),
+    OptionSpec::lines(
+        "tcp_off",
+        "",
+        "Block that switches it off; empty: M129 under tcp = \"control\", else nothing is written about it.",
+    ),
+    options::BORE_SHIFT,
+    options::smoothing(""),
+    options::smoothing_off(""),
+];
+
+const RELIES: &[&str] = &[
+    "the control reads ISNC, not BNC",
+    "under M128 rotary words of plain G0 and G1 turn the tool about its tip, and coordinates stay with the part",
+    "frame, work offsets, H, D, cycles and subprograms are written as Fanuc has them: confirm at the machine",
+];
+
+export_dialect!(hurco, Iso<Hurco>);
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,341 @@
+//! Drilling cycles: one position a block, bottom and clearance plane absolute.
+
+use post_plugin::{
+    Capabilities, Cycle, Event, Feed, Group, Modal, NumberStyle, Setup, Spindle, SpindleSense,
+    Value,
+};
+
+use crate::engine::Engine;
+use crate::options::text;
+use crate::planes::INCH;
+use crate::table::{CycleCode, Rigid, Table};
+
+/// The cycles of a control, and the one in force.
+#[derive(Debug)]
+pub(crate) struct Cycles {
+    codes: &'static [CycleCode],
+    rigid: Option<Rigid>,
+    /// Off the wall, program units; 0: fine boring is not written.
+    shift: f64,
+    running: Option<Running>,
+}
+
+/// A cycle in force. Lengths are in program units.
+#[derive(Clone, Copy, Debug)]
+struct Running {
+    kind: Cycle,
+    code: &'static str,
+    feed: Feed,
+    depth: f64,
+    clearance: f64,
+    retract: f64,
+    step: Option<f64>,
+    dwell: Option<f64>,
+    pitch: Option<f64>,
+    /// No point has been written under it.
+    first: bool,
+    bottom: Modal<f64>,
+    plane: Modal<f64>,
+    level: Modal<&'static str>,
+}
+
+/// What each kind is declared by.
+const KINDS: [(Cycle, Capabilities); 9] = [
+    (Cycle::Drill, Capabilities::CYCLE_DRILL),
+    (Cycle::Deep, Capabilities::CYCLE_DEEP),
+    (Cycle::BreakChip, Capabilities::CYCLE_BREAK_CHIP),
+    (Cycle::Tap, Capabilities::CYCLE_TAP),
+    (Cycle::TapLeft, Capabilities::CYCLE_TAP_LEFT),
+    (Cycle::Ream, Capabilities::CYCLE_REAM),
+    (Cycle::Bore, Capabilities::CYCLE_BORE),
+    (Cycle::BoreFine, Capabilities::CYCLE_BORE_FINE),
+    (Cycle::BoreBack, Capabilities::CYCLE_BORE_BACK),
+];
+
+/// It draws the tool off the wall.
+const fn shifts(kind: Cycle) -> bool {
+    matches!(kind, Cycle::BoreFine | Cycle::BoreBack)
+}
+
+const fn taps(kind: Cycle) -> bool {
+    matches!(kind, Cycle::Tap | Cycle::TapLeft)
+}
+
+/// It goes down in steps.
+const fn pecks(kind: Cycle) -> bool {
+    matches!(kind, Cycle::Deep | Cycle::BreakChip)
+}
+
+impl Cycles {
+    pub(crate) fn new(table: &'static Table, setup: &Setup<'_>) -> Self {
+        let shift = match setup.option("bore_shift") {
+            Some(Value::Number(shift)) => shift,
+            _ => 0.0,
+        };
+        let inch = setup.units == post_plugin::Units::Inch;
+        Cycles {
+            codes: table.cycles,
+            rigid: (text(setup, "tapping", "rigid") == "rigid").then_some(table.rigid),
+            shift: if inch { shift / INCH } else { shift },
+            running: None,
+        }
+    }
+
+    /// Its cycles that the options leave.
+    pub(crate) fn codes(&self) -> impl Iterator<Item = &'static CycleCode> {
+        let shift = self.shift;
+        let codes = self.codes.iter();
+        codes.filter(move |code| !shifts(code.kind) || shift > 0.0)
+    }
+
+    pub(crate) fn capabilities(&self) -> Capabilities {
+        self.codes().fold(Capabilities::NONE, |all, code| {
+            let kind = KINDS.iter().find(|(kind, _)| *kind == code.kind);
+            kind.map_or(all, |(_, capability)| all | *capability)
+        })
+    }
+
+    /// A line of the user's own stands between its points: all is written again.
+    pub(crate) fn forget(&mut self) {
+        if let Some(running) = &mut self.running {
+            running.first = true;
+        }
+    }
+}
+
+impl Engine {
+    /// A cycle is in force from the next point on.
+    pub(crate) fn begin_cycle(&mut self, event: &Event<'_>) -> Result<(), String> {
+        let &Event::Cycle {
+            cycle: kind,
+            feed,
+            depth,
+            clearance,
+            retract,
+            step,
+            dwell,
+            pitch,
+        } = event
+        else {
+            return Err(event.refusal());
+        };
+        let code = self.cycles.codes().find(|code| code.kind == kind);
+        let code = code.ok_or_else(|| format!("this control has no cycle of the kind {kind:?}"))?;
+        let code = match dwell {
+            Some(_) => code.waits,
+            None => code.plain,
+        };
+        if code.is_empty() {
+            return Err(format!(
+                "this control has no cycle of the kind {kind:?} {} a dwell at the bottom",
+                if dwell.is_some() { "with" } else { "without" }
+            ));
+        }
+        if pecks(kind) && step.is_none_or(|step| step <= 0.0) {
+            return Err("a cycle in steps without a step".to_owned());
+        }
+        if depth + clearance <= 0.0 || retract < clearance {
+            return Err(format!(
+                "a cycle with the depth {depth}, the clearance {clearance} and the retract {retract}: the tool would \
+                 not go from the retract by the clearance to the bottom"
+            ));
+        }
+        if matches!(feed, Feed::InverseTime(_)) {
+            return Err("a cycle has no inverse-time feed".to_owned());
+        }
+        self.cycles.running = Some(Running {
+            kind,
+            code,
+            feed: self.cycle_feed(kind, feed, pitch),
+            depth,
+            clearance,
+            retract,
+            step,
+            dwell,
+            pitch,
+            first: true,
+            bottom: Modal::default(),
+            plane: Modal::default(),
+            level: Modal::default(),
+        });
+        Ok(())
+    }
+
+    /// The feed of a thread is its pitch, times the speed where it counts by the minute.
+    fn cycle_feed(&self, kind: Cycle, feed: Feed, pitch: Option<f64>) -> Feed {
+        match (feed, pitch, self.turning) {
+            (Feed::PerMinute(_), Some(pitch), Some(Spindle::On { rpm, .. })) if taps(kind) => {
+                Feed::PerMinute(pitch * rpm)
+            }
+            (Feed::PerRevolution(_), Some(pitch), _) if taps(kind) => Feed::PerRevolution(pitch),
+            _ => feed,
+        }
+    }
+
+    /// The cycle in force at a point: the words have the tip on it.
+    pub(crate) fn cycle_point(&mut self, words: &[f64], out: &mut String) -> Result<(), String> {
+        let Some(mut running) = self.cycles.running.take() else {
+            return Err("a point of a cycle, and none is in force".to_owned());
+        };
+        let depth = self.motion.linear[2].filter(|_| self.motion.axes.depth() == "Z");
+        let [Some(x), Some(y), Some(z)] = [self.motion.linear[0], self.motion.linear[1], depth]
+        else {
+            return Err("cycles of this control go along Z, across X and Y".to_owned());
+        };
+        if running.first && !taps(running.kind) {
+            self.turn_again(out)?;
+        }
+        let bottom = words[z] - running.depth;
+        let plane = words[z] + running.clearance;
+        let top = words[z] + running.retract;
+        let rigid = self.cycles.rigid.filter(|_| taps(running.kind));
+        if let Some(Rigid::Move(code)) = rigid {
+            self.tap_by_move(code, &running, words, z, [bottom, plane, top], out)?;
+            self.cycles.running = Some(running);
+            return Ok(());
+        }
+        if let (Some(Rigid::Ahead(word)), true) = (rigid, running.first) {
+            let Some(Spindle::On { rpm, .. }) = self.turning else {
+                return Err("a rigid tap without a speed of the spindle".to_owned());
+            };
+            self.motion.block.word(word);
+            let block = &mut self.motion.block;
+            block.number("S", rpm, 0, NumberStyle::default()).end(out);
+        }
+        self.tapped |= rigid.is_some();
+        let level = match top > plane + 1e-9 {
+            true => "G98",
+            false => "G99",
+        };
+        let stands = self.motion.stands_on(z).filter(|_| running.first);
+        if let Some(stands) = stands.filter(|z| level == "G98" && (z - top).abs() > 1e-6) {
+            return Err(format!(
+                "a cycle begins at Z {stands}, to where it returns, and is to return to Z {top}"
+            ));
+        }
+        let first = std::mem::take(&mut running.first);
+        if first {
+            self.motion.plane_xy();
+            self.motion.feed_mode(running.feed);
+            running.level.forget();
+            running.bottom.forget();
+            running.plane.forget();
+            self.motion.axes.forget_some(1 << x | 1 << y);
+        }
+        if running.level.set(level) {
+            self.motion.block.word(level);
+        }
+        if first {
+            let code = match rigid {
+                Some(Rigid::Codes([right, left])) => match running.kind {
+                    Cycle::TapLeft => left,
+                    _ => right,
+                },
+                _ => running.code,
+            };
+            self.motion.block.word(code);
+        } else if !self.motion.axes.moved_group(words, Group::Plane) {
+            // Without a word of an axis no hole is drilled.
+            self.motion.axes.forget_some(1 << x);
+        }
+        let (style, places) = (self.motion.style, self.motion.linear_decimals(2));
+        self.motion
+            .axes
+            .write_group(&mut self.motion.block, words, Group::Plane);
+        let block = &mut self.motion.block;
+        if running.bottom.set(bottom) {
+            block.number("Z", bottom, places, style);
+        }
+        if running.plane.set(plane) {
+            block.number("R", plane, places, style);
+        }
+        if first {
+            self.cycle_words(&running);
+            // Spindle and axis are told the same thread.
+            let more = if taps(running.kind) { 3 } else { 0 };
+            self.motion.feed_again(running.feed, more);
+        }
+        self.motion.block.end(out);
+        self.motion.at_level(words, z, top);
+        self.cycles.running = Some(running);
+        Ok(())
+    }
+
+    /// Step, shift and wait.
+    fn cycle_words(&mut self, running: &Running) {
+        let places = self.motion.linear_decimals(2);
+        let style = self.motion.style;
+        let q = match running.step.filter(|_| pecks(running.kind)) {
+            Some(step) => Some(step),
+            None => shifts(running.kind).then_some(self.cycles.shift),
+        };
+        if let Some(q) = q {
+            match self.table.step_in_increments {
+                true => {
+                    // Rounded down: a step is never longer than asked for.
+                    let increments = (q * if self.inch { 10_000.0 } else { 1000.0 } + 1e-6).floor();
+                    let block = &mut self.motion.block;
+                    block.number("Q", increments.max(1.0), 0, NumberStyle::default());
+                }
+                false => {
+                    self.motion.block.number("Q", q, places, style);
+                }
+            }
+        }
+        if let Some(seconds) = running.dwell {
+            self.wait_by("P", seconds);
+        }
+    }
+
+    /// Down and up with the spindle, and rapids around it.
+    fn tap_by_move(
+        &mut self,
+        code: &str,
+        running: &Running,
+        words: &[f64],
+        z: usize,
+        [bottom, plane, top]: [f64; 3],
+        out: &mut String,
+    ) -> Result<(), String> {
+        let wanted = match running.kind {
+            Cycle::TapLeft => SpindleSense::CounterClockwise,
+            _ => SpindleSense::Clockwise,
+        };
+        let Some(Spindle::On { rpm, sense }) = self.turning.filter(|_| running.dwell.is_none())
+        else {
+            return Err("a rigid tap needs a turning spindle, and has no dwell".to_owned());
+        };
+        if sense != wanted {
+            return Err("the spindle turns the other way than the thread".to_owned());
+        }
+        let pitch = match (running.pitch, running.feed) {
+            (Some(pitch), _) | (None, Feed::PerRevolution(pitch)) => pitch,
+            (None, Feed::PerMinute(feed) | Feed::InverseTime(feed)) => feed / rpm,
+        };
+        let mut level = words.to_vec();
+        for height in [top, plane] {
+            level[z] = height;
+            self.motion.rapid(&level, out);
+        }
+        let (style, places) = (self.motion.style, self.motion.linear_decimals(2));
+        let block = &mut self.motion.block;
+        block.word(code).number("Z", bottom, places, style);
+        block.number("K", pitch, places + 2, style).end(out);
+        self.motion.forget_motion();
+        level[z] = top;
+        self.motion.rapid(&level, out);
+        Ok(())
+    }
+
+    /// No cycle any more; the tool stands at the retract level.
+    pub(crate) fn end_cycle(&mut self, out: &mut String) {
+        let running = self.cycles.running.take();
+        let by_move = running.is_some_and(|running| {
+            taps(running.kind) && matches!(self.cycles.rigid, Some(Rigid::Move(_)))
+        });
+        if !by_move {
+            self.line("G80", out);
+            self.motion.forget_motion();
+        }
+    }
+}

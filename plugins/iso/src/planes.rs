@@ -1,0 +1,135 @@
+//! Tilted planes.
+
+use post_plugin::{Capabilities, PlaneAngles, Setup, quantise};
+
+use crate::engine::Engine;
+use crate::options::flag;
+use crate::table::{Plane, Table};
+
+/// mm in an inch.
+pub(crate) const INCH: f64 = 25.4;
+
+/// The tilted planes of a control, and the one in force.
+#[derive(Debug)]
+pub(crate) struct TiltedPlane {
+    words: Plane,
+    /// Decimals of the angles.
+    decimals: u8,
+    /// Cycles and arcs in it.
+    cycles: bool,
+    on: bool,
+}
+
+impl TiltedPlane {
+    pub(crate) fn new(table: &Table, setup: &Setup<'_>, decimals: u8) -> Self {
+        let offered = flag(setup, "planes", true);
+        TiltedPlane {
+            words: if offered { table.plane } else { Plane::None },
+            decimals,
+            cycles: flag(setup, "cycles_in_plane", table.cycles_in_plane),
+            on: false,
+        }
+    }
+
+    pub(crate) fn capabilities(&self) -> Capabilities {
+        match (self.words, self.cycles) {
+            (Plane::None, _) => Capabilities::NONE,
+            (_, true) => Capabilities::PLANE | Capabilities::CYCLE_IN_PLANE,
+            (_, false) => Capabilities::PLANE,
+        }
+    }
+
+    /// How the control is told one, and the decimals of its angles.
+    pub(crate) fn angles(&self) -> (PlaneAngles, u8) {
+        match self.words {
+            Plane::Euler { .. } => (PlaneAngles::Zxz, self.decimals),
+            Plane::None | Plane::Turned { .. } => (PlaneAngles::Rotary, 0),
+        }
+    }
+
+    /// The words that the options leave.
+    pub(crate) fn words(&self) -> Plane {
+        self.words
+    }
+
+    /// One is in force.
+    pub(crate) fn is_on(&self) -> bool {
+        self.on
+    }
+
+    /// Refuses what must not stand in a tilted plane.
+    pub(crate) fn must_be_off(&self, what: &str) -> Result<(), String> {
+        match self.on {
+            true => Err(format!("{what} inside a tilted plane: it must end before")),
+            false => Ok(()),
+        }
+    }
+}
+
+impl Engine {
+    /// A plane begins. The work offset is in force, the axes have been turned.
+    pub(crate) fn begin_plane(
+        &mut self,
+        origin: [f64; 3],
+        angles: [f64; 3],
+        words: &[f64],
+        out: &mut String,
+    ) -> Result<(), String> {
+        self.plane.must_be_off("a tilted plane")?;
+        self.motion.settle(out);
+        // The axes stand there: what is not known of it is written, and moves nothing.
+        self.motion.turn(words, out);
+        match self.plane.words() {
+            Plane::None => return Err("this control has no words for a tilted plane".to_owned()),
+            Plane::Turned { on, .. } => {
+                if origin != [0.0; 3] {
+                    return Err(format!(
+                        "the tilted plane begins at {origin:?}, and on this control it begins at the work offset"
+                    ));
+                }
+                self.motion.line(on, out);
+            }
+            Plane::Euler { on, turn, .. } => {
+                let (_, decimals) = self.plane.angles();
+                let style = self.motion.style;
+                self.motion.plane_xy();
+                self.motion.block.word(on);
+                for (place, part) in origin.into_iter().enumerate() {
+                    let part = if self.inch { part / INCH } else { part };
+                    let printed = self.motion.linear_decimals(place);
+                    if (quantise(part, printed) - part).abs() > 1e-7 {
+                        return Err(format!(
+                            "the tilted plane begins at {part} along {}, and {printed} decimals are written",
+                            ["X", "Y", "Z"][place]
+                        ));
+                    }
+                    let block = &mut self.motion.block;
+                    block.number(["X", "Y", "Z"][place], part, printed, style);
+                }
+                for (address, angle) in ["I", "J", "K"].into_iter().zip(angles) {
+                    self.motion.block.number(address, angle, decimals, style);
+                }
+                self.motion.block.end(out);
+                self.motion.line(turn, out);
+            }
+        }
+        self.plane.on = true;
+        // Its words are others from here on.
+        self.motion.other_frame();
+        Ok(())
+    }
+
+    /// The plane ends, the tool retracted.
+    pub(crate) fn end_plane(&mut self, out: &mut String) -> Result<(), String> {
+        match self.plane.words() {
+            Plane::None => return Err("this control has no words for a tilted plane".to_owned()),
+            Plane::Turned { off, .. } | Plane::Euler { off, .. } => {
+                self.motion.settle(out);
+                self.motion.line(off, out);
+            }
+        }
+        self.plane.on = false;
+        self.motion.other_frame();
+        Ok(())
+    }
+}

@@ -1,0 +1,165 @@
+//! The words of a control and what they mean, from its table and the options.
+
+use std::borrow::Cow;
+
+use post_plugin::{Cycle, Meaning, VocabularyWord};
+
+use crate::engine::Engine;
+use crate::table::{Plane, Rigid, Splines, Tcp};
+
+/// Words that all controls of the family share.
+const SHARED: &[(&str, Meaning)] = &[
+    ("(", Meaning::RemarkOpen),
+    (")", Meaning::RemarkClose),
+    ("N", Meaning::BlockNumber),
+    ("%", Meaning::Nothing),
+    ("G90", Meaning::Absolute),
+    ("G91", Meaning::Incremental),
+    ("I", Meaning::CentreX),
+    ("J", Meaning::CentreY),
+    ("K", Meaning::CentreZ),
+    ("R", Meaning::Radius),
+    ("F", Meaning::Feed),
+    ("T", Meaning::Tool),
+    ("S", Meaning::SpindleSpeed),
+    ("G4", Meaning::Dwell),
+    ("G80", Meaning::CycleOff),
+    ("G98", Meaning::ReturnStart),
+    ("G99", Meaning::ReturnClearance),
+];
+
+/// Meanings of the words of a list, in its order.
+fn each<'a>(
+    words: &'a [&'static str],
+    meanings: &'a [Meaning],
+) -> impl Iterator<Item = (&'static str, Meaning)> {
+    words.iter().copied().zip(meanings.iter().copied())
+}
+
+impl Engine {
+    /// The words of this control, those that the options have changed among them.
+    pub(crate) fn vocabulary(&self) -> Vec<VocabularyWord> {
+        use Meaning as M;
+        let table = self.table;
+        let codes = &self.motion.codes;
+        let mut words: Vec<(Cow<'static, str>, Meaning)> = Vec::new();
+        let mut add = |word: &str, meaning: Meaning| {
+            // Without the number behind it.
+            let word = word.split("{}").next().unwrap_or("").trim();
+            if !word.is_empty() && !words.iter().any(|(known, _)| known == word) {
+                words.push((word.to_owned().into(), meaning));
+            }
+        };
+        for (word, meaning) in SHARED {
+            add(word, *meaning);
+        }
+        if let Some((letter, _)) = table.title {
+            add(letter, M::Nothing);
+        }
+        let listed = each(&codes.units, &[M::Millimetre, M::Inch])
+            .chain(each(&codes.motion, &[M::Rapid, M::Linear]))
+            .chain(each(&codes.arc, &[M::ArcClockwise, M::ArcCounterClockwise]))
+            .chain(each(&codes.planes, &[M::PlaneXy, M::PlaneZx, M::PlaneYz]))
+            .chain(each(
+                &codes.feed,
+                &[M::FeedPerMinute, M::InverseTime, M::FeedPerRevolution],
+            ))
+            .chain(each(
+                &codes.compensation,
+                &[
+                    M::CompensationOff,
+                    M::CompensationLeft,
+                    M::CompensationRight,
+                ],
+            ))
+            .chain(each(&codes.stop, &[M::Stop, M::OptionalStop]))
+            .chain(each(
+                &table.spindle,
+                &[
+                    M::SpindleClockwise,
+                    M::SpindleCounterClockwise,
+                    M::SpindleOff,
+                    M::SpindleOrient,
+                ],
+            ));
+        for (word, meaning) in listed {
+            add(word, meaning);
+        }
+        add(codes.radius, M::RadiusRegister);
+        add(first(table.machine), M::MachineCoordinates);
+        add(table.length.on, M::LengthOn);
+        add(table.length.off, M::LengthOff);
+        if !table.length.on.is_empty() {
+            add(table.length.register, M::LengthRegister);
+        }
+        if let Tcp::Length(word) = table.tcp {
+            add(word, M::TcpOn);
+            add(table.vector, M::TcpOn);
+        }
+        for number in 1..=MOST_OFFSETS {
+            let Some(word) = (table.offset.word)(number) else {
+                break;
+            };
+            add(first(&word), M::WorkOffset);
+        }
+        match self.plane.words() {
+            Plane::None => {}
+            Plane::Turned { on, off } => {
+                add(on, M::TiltedPlane);
+                add(off, M::TiltedPlaneOff);
+            }
+            Plane::Euler { on, turn, off } => {
+                add(on, M::TiltedPlane);
+                add(turn, M::TiltedPlaneTurn);
+                add(off, M::TiltedPlaneOff);
+            }
+        }
+        match table.splines {
+            Splines::None => {}
+            Splines::Knots { code, .. } | Splines::Even { code, .. } => add(code, M::Spline),
+        }
+        for code in self.cycles.codes() {
+            for word in [code.plain, code.waits] {
+                add(word, cycle(code.kind));
+            }
+        }
+        if let Rigid::Codes([right, left]) = table.rigid {
+            add(right, M::CycleTap);
+            add(left, M::CycleTapLeft);
+        }
+        add(table.probe, M::Probe);
+        add(first(table.subprogram.number), M::Subprogram);
+        add(table.end, M::End);
+        for word in self.change.split_whitespace() {
+            add(word, M::ToolChange);
+        }
+        self.own_words(&mut add);
+        let words = words.into_iter();
+        words
+            .map(|(word, meaning)| VocabularyWord { word, meaning })
+            .collect()
+    }
+}
+
+/// More than any control has.
+const MOST_OFFSETS: u32 = 1000;
+
+/// The first of several words: the number or the axis behind it is not its own.
+fn first(words: &str) -> &str {
+    words.split_whitespace().next().unwrap_or("")
+}
+
+/// What a cycle's code means.
+const fn cycle(kind: Cycle) -> Meaning {
+    match kind {
+        Cycle::Drill => Meaning::CycleDrill,
+        Cycle::Deep => Meaning::CycleDeep,
+        Cycle::BreakChip => Meaning::CycleBreakChip,
+        Cycle::Tap => Meaning::CycleTap,
+        Cycle::TapLeft => Meaning::CycleTapLeft,
+        Cycle::Ream => Meaning::CycleReam,
+        Cycle::Bore => Meaning::CycleBore,
+        Cycle::BoreFine => Meaning::CycleBoreFine,
+        Cycle::BoreBack => Meaning::CycleBoreBack,
+    }
+}

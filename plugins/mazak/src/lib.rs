@@ -1,0 +1,87 @@
+//! Mazak Smooth, EIA/ISO: Fanuc's words for the most part, no `%`, files that end in `.EIA`.
+//!
+//! What it assumes about the control stands in `plugins/README.md`.
+
+use post_iso::{
+    Control, Iso, Offset, Plane, Rigid, Subprogram, Table, Tcp, is_offset_beyond_six, iso_options,
+    offset_beyond_six, options,
+};
+use post_plugin::{OptionSpec, Setup, export_dialect};
+
+struct Mazak;
+
+impl Control for Mazak {
+    const TABLE: &'static Table = &Table {
+        options: OPTIONS,
+        extension: "EIA",
+        percent: false,
+        title: Some(("O", 4)),
+        offset: Offset {
+            known: |text| is_offset_beyond_six(text, "G54.1 P", 300),
+            range: "G54 to G59 or G54.1 P1 to P300",
+            word: |number| offset_beyond_six(number, "G54.1 P", 300),
+            ..Table::ISO.offset
+        },
+        relies: RELIES,
+        cancel: CANCEL,
+        tcp: Tcp::Length("G43.4"),
+        vector: "G43.5",
+        // P0: I J K are Euler angles.
+        plane: Plane::Euler {
+            on: "G68.2 P0",
+            turn: "G53.1",
+            off: "G69",
+        },
+        rigid: Rigid::Codes(["G84.2", "G84.3"]),
+        smoothing: SMOOTHING,
+        smoothing_anywhere: true,
+        probe: "G31",
+        subprogram: Subprogram {
+            number: "M98 P{}",
+            name: "",
+            times: " L",
+        },
+        ..Table::ISO
+    };
+
+    fn open(_: &Setup<'_>) -> Result<Self, String> {
+        Ok(Mazak)
+    }
+}
+
+const OPTIONS: &[OptionSpec] = iso_options![
+    options::program_number(99_999_999),
+    OptionSpec::flag("percent", false, "% before and after the program."),
+    options::SPACES,
+    options::INVERSE_TIME,
+    options::inverse_time_decimals(3),
+    OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
+    OptionSpec::lines(
+        "cancel",
+        CANCEL,
+        "Block at the start that cancels a tilted plane; empty on a control without them.",
+    ),
+    options::TOOL_VECTOR,
+    options::cycles_in_plane(false),
+    options::tapping("floating"),
+    options::BORE_SHIFT,
+    options::smoothing(SMOOTHING[0]),
+    options::smoothing_off(SMOOTHING[1]),
+];
+
+const RELIES: &[&str] = &[
+    "F86.6 = 1: tool centre point control is in force; F93.3, F94.7: the length is that of H",
+    "under G43.4 coordinates stay with the table (parameter)",
+    "G53 counts from the machine's zero; cycles and their letters are those of Fanuc: confirm at the machine",
+];
+
+/// Tilted plane off.
+const CANCEL: &str = "G69";
+
+/// Geometry compensation; the range of its P is the control's.
+const SMOOTHING: [&str; 2] = ["0 G61.1", "G64"];
+
+export_dialect!(mazak, Iso<Mazak>);
+
+#[cfg(test)]
+mod tests;

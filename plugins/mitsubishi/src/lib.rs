@@ -1,0 +1,81 @@
+//! Mitsubishi M800, M80 and M700V: tool centre point and inclined surface as the maker has them, the rest as Fanuc's.
+//!
+//! What it assumes about the control stands in `plugins/README.md`.
+
+use post_iso::{
+    Control, Iso, Offset, Plane, Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six,
+    iso_options, offset_beyond_six, options,
+};
+use post_plugin::{OptionSpec, Setup, export_dialect};
+
+struct Mitsubishi;
+
+impl Control for Mitsubishi {
+    const TABLE: &'static Table = &Table {
+        options: OPTIONS,
+        title: Some(("O", 4)),
+        offset: Offset {
+            known: |text| is_offset_beyond_six(text, "G54.1 P", 300),
+            range: "G54 to G59 or G54.1 P1 to P300",
+            word: |number| offset_beyond_six(number, "G54.1 P", 300),
+            ..Table::ISO.offset
+        },
+        relies: RELIES,
+        cancel: CANCEL,
+        tcp: Tcp::Length("G43.4"),
+        vector: "G43.5",
+        plane: Plane::Euler {
+            on: "G68.2",
+            turn: "G53.1",
+            off: "G69",
+        },
+        surface: Some(SurfaceSpeed {
+            codes: ["G96", "G97"],
+            most: "G92 S",
+        }),
+        probe: "G31",
+        subprogram: Subprogram {
+            number: "M98 P{}",
+            name: "",
+            times: " L",
+        },
+        ..Table::ISO
+    };
+
+    fn open(_: &Setup<'_>) -> Result<Self, String> {
+        Ok(Mitsubishi)
+    }
+}
+
+const OPTIONS: &[OptionSpec] = iso_options![
+    options::program_number(99_999_999),
+    options::SPACES,
+    options::INVERSE_TIME,
+    options::inverse_time_decimals(3),
+    OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
+    OptionSpec::lines(
+        "cancel",
+        CANCEL,
+        "Block at the start that cancels an inclined surface; empty on a control without them.",
+    ),
+    options::TOOL_VECTOR,
+    options::cycles_in_plane(false),
+    options::BORE_SHIFT,
+    options::smoothing(""),
+    options::smoothing_off(""),
+];
+
+const RELIES: &[&str] = &[
+    "frame, work offsets, H, D, cycles and subprograms are written as Fanuc has them: confirm at the machine",
+    "7915, 1247, 8901 to 8906, 1450: tool centre point control and inclined surface are set up",
+    "under G43.4 coordinates stay with the table",
+    "cycles, G41 and G42 stand neither under G43.4 nor on an inclined surface, unless an option says so",
+];
+
+/// Inclined surface off.
+const CANCEL: &str = "G69";
+
+export_dialect!(mitsubishi, Iso<Mitsubishi>);
+
+#[cfg(test)]
+mod tests;

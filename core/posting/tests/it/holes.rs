@@ -658,7 +658,8 @@ fn real_files_need_fewer_blocks_with_cycles() {
         ("nx_HumMan_deep_drill.clsf", 2, false),
         ("creo3x_MichaHofft_bohren_1.ncl", 2, false),
         ("swcam_aamorim_basemach.apt", 16, false),
-        ("camworks_neMoguta_UniSource.clt", 2, true),
+        // Its first peck is deeper than the others: no cycle of a control does that.
+        ("camworks_neMoguta_UniSource.clt", 0, true),
     ] {
         let Ok(cl) = std::fs::read(format!("{folder}/{file}")) else {
             println!("{file} is not here");

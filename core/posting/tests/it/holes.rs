@@ -199,7 +199,7 @@ fn swept(acts: &[Act]) -> Vec<Swept> {
         if to == at {
             continue;
         }
-        let down = (to[0] - at[0]).hypot(to[1] - at[1]) < 0.002;
+        let down = libm::hypot(to[0] - at[0], to[1] - at[1]) < 0.002;
         if down {
             if !matches!(swept.last(), Some(Swept::Hole { .. })) {
                 cut = f64::INFINITY;
@@ -299,14 +299,14 @@ fn job(rng: &mut Rng, tilt: f64) -> String {
         let mut height = 0.0;
         for _ in 0..4 {
             // Some holes have the height of the one before.
-            if rng.next() % 2 == 0 {
+            if rng.next().is_multiple_of(2) {
                 height = rng.range(-20.0, 20.0);
             }
             let [x, y] = [0, 1].map(|_| rng.range(-50.0, 50.0));
             cl += &format!("GOTO/{x:.3},{y:.3},{height:.3}\n");
         }
         cl += "CYCLE/OFF\n";
-        if rng.next() % 2 == 0 {
+        if rng.next().is_multiple_of(2) {
             cl += "RAPID\nGOTO/0,0,100\n";
         }
     }

@@ -111,9 +111,9 @@ fn words_and_angles_of_planes_lead_back_to_the_path() {
                 // The pole: the first axis upright, where nothing need be told.
                 0 => Vector3::z(),
                 _ => Vector3::new(
-                    lean.sin() * about.cos(),
-                    lean.sin() * about.sin(),
-                    lean.cos(),
+                    libm::sin(lean) * libm::cos(about),
+                    libm::sin(lean) * libm::sin(about),
+                    libm::cos(lean),
                 ),
             }
         });

@@ -159,12 +159,7 @@ impl Words {
     /// The words inside a tilted plane: the linear ones are the tip in its frame, whoever keeps the tip outside. None
     /// where they are not just X, Y and Z.
     pub fn in_plane(&self, plane: TiltedPlane) -> Option<Self> {
-        let coordinate = |wanted: usize| {
-            let mut words = self.linear.iter();
-            words.any(|word| word.coordinate == wanted)
-        };
-        let whole = self.linear.len() == 3 && (0..3).all(coordinate);
-        whole.then(|| Self {
+        self.cartesian.then(|| Self {
             plane: Some(plane),
             ..self.clone()
         })

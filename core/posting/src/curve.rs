@@ -75,8 +75,6 @@ pub(crate) struct Keeps {
     writes: Capabilities,
     /// The control keeps the tip.
     tcp: bool,
-    /// The words are those of a tilted plane.
-    pub tilted: bool,
 }
 
 impl Keeps {
@@ -85,12 +83,12 @@ impl Keeps {
             arcs: machine.control.arcs,
             writes,
             tcp: machine.control.tcp == Tcp::Control,
-            tilted: false,
         }
     }
 
-    /// Arcs about that axis of the words (0 is X), which end off the plane of their start or not.
-    pub(crate) fn about(&self, axis: usize, helix: bool) -> bool {
+    /// Arcs about that axis of the words (0 is X), which end off the plane of their start or not, in a tilted plane or
+    /// not.
+    pub(crate) fn about(&self, axis: usize, helix: bool, in_plane: bool) -> bool {
         let planes = [
             Capabilities::ARC_YZ,
             Capabilities::ARC_ZX,
@@ -100,7 +98,7 @@ impl Keeps {
             true => Capabilities::HELIX,
             false => Capabilities::NONE,
         };
-        let needs = match (self.tilted, self.tcp) {
+        let needs = match (in_plane, self.tcp) {
             (true, _) => Capabilities::CYCLE_IN_PLANE,
             (false, true) => Capabilities::ARC_TCP,
             (false, false) => Capabilities::NONE,
@@ -132,26 +130,23 @@ impl Keeps {
             && (2..=MOST_CHORDS).contains(&chords)
     }
 
-    /// Some arc may be written, in a tilted plane or not.
-    fn writes(&self) -> bool {
-        [false, true].iter().any(|tilted| {
-            let keeps = Self {
-                tilted: *tilted,
-                ..*self
-            };
-            (0..3).any(|axis| keeps.about(axis, false))
-        })
+    /// Some arc may be written; `planes` if the control may have been told a tilted plane.
+    fn writes(&self, planes: bool) -> bool {
+        let possible =
+            |axis| self.about(axis, false, false) || planes && self.about(axis, false, true);
+        (0..3).any(possible)
     }
 
     /// Runs of points become arcs and lines.
     pub(crate) fn fits(&self) -> bool {
-        self.arcs.fit && self.writes()
+        self.arcs.fit && self.writes(true)
     }
 
-    /// An arc of the CL file may be kept that would be so many chords.
-    pub(crate) fn arc(&self, arc: &Arc, end: &Motion, chords: u64) -> bool {
+    /// An arc of the CL file may be kept that would be so many chords; `planes` if the control may have been told a tilted
+    /// plane.
+    pub(crate) fn arc(&self, arc: &Arc, end: &Motion, chords: u64, planes: bool) -> bool {
         self.arcs.keep
-            && self.writes()
+            && self.writes(planes)
             && end.pace != Pace::Rapid
             && self.radius(arc.radius())
             && (2..=MOST_CHORDS).contains(&chords)

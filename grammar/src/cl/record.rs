@@ -375,7 +375,7 @@ pub enum Cycle {
     /// `ON`: the last definition again; `INIT`.
     On,
     /// A definition; it acts at every point that follows.
-    Define(CycleDefinition),
+    Define(Box<CycleDefinition>),
 }
 
 /// A cycle's definition. Lengths in the file's units, along the tool axis from the programmed point,

@@ -342,7 +342,7 @@ fn cycles() {
             .map(|kind| (*kind).to_owned())
             .collect::<Vec<_>>()
     };
-    let define = |cycle| Statement::Cycle(Cycle::Define(cycle));
+    let define = |cycle| Statement::Cycle(Cycle::Define(Box::new(cycle)));
     let feed = |value| {
         Some(FeedRate {
             value: Some(value),

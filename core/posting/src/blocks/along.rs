@@ -100,7 +100,8 @@ impl Blocks<'_> {
             return false;
         };
         let still = |next: &Chosen| {
-            next.arrives && next.rewind.is_none() && placer.stand(&next.joints, &last.trace.joints)
+            let standing = self.planes.standing(next);
+            next.arrives && next.rewind.is_none() && placer.stand(standing, &last.trace.joints)
         };
         if !following.moves.iter().all(still)
             || self.compensation_due
@@ -269,7 +270,7 @@ impl Blocks<'_> {
         };
         let printed = PrintedArc::new(about, ends, centre)?;
         let (length, rise) = (printed.length(), printed.rise());
-        if !self.keeps.about(axis, rise != 0.0)
+        if !self.keeps.about(axis, rise != 0.0, self.in_plane())
             || !printed
                 .radii
                 .iter()

@@ -88,7 +88,7 @@ impl Blocks<'_> {
     ) -> Option<SplineBlock> {
         let last = self.last.as_deref()?;
         // No dialect declares splines inside a tilted plane.
-        if self.compensating || self.keeps.tilted {
+        if self.compensating || self.in_plane() {
             return None;
         }
         let node = placer.settled(pose(end), 1.0, &last.trace.joints).ok()?;

@@ -299,7 +299,10 @@ impl Emit<'_> {
             let across = self.plane(&block.joints);
             self.go(line, &across, parks);
         }
-        self.keep_tip(line, true);
+        // In a plane the length alone is in force.
+        if self.plane.is_some() {
+            self.keep_tip(line, false);
+        }
         if let Some(plane) = &self.plane {
             self.plane_on = true;
             self.writer.push(
@@ -312,6 +315,9 @@ impl Emit<'_> {
                     words,
                 },
             );
+        }
+        if !self.plane_on {
+            self.keep_tip(line, true);
         }
         self.writer.push(
             line,

@@ -111,9 +111,9 @@ fn words_and_angles_of_planes_lead_back_to_the_path() {
                 // The pole: the first axis upright, where nothing need be told.
                 0 => Vector3::z(),
                 _ => Vector3::new(
-                    lean.sin() * about.cos(),
-                    lean.sin() * about.sin(),
-                    lean.cos(),
+                    libm::sin(lean) * libm::cos(about),
+                    libm::sin(lean) * libm::sin(about),
+                    libm::cos(lean),
                 ),
             }
         });
@@ -272,6 +272,46 @@ fn holes_in_a_plane_are_cycles_along_its_normal() {
                     let off = (plane.origin + told * words - Vector3::from(tip)).norm();
                     assert!(off < 0.001, "{name} {tcp} {off}");
                 }
+            }
+        }
+    }
+}
+
+/// In a plane an arc about its normal is an arc in X and Y, whoever keeps the tip outside.
+#[test]
+fn arcs_in_a_plane_are_laid_in_its_x_and_y() {
+    const ARC: &str = "UNITS/MM\nMULTAX/ON\nFEDRAT/500,MMPM\nRAPID\nGOTO/10,-60,80,0,-0.6,0.8\nGOTO/10,0,0,0,-0.6,0.8\n\
+                       CIRCLE/0,0,0,0,-0.6,0.8,10\nGOTO/0,8,6,0,-0.6,0.8\nRAPID\nGOTO/0,-60,80,0,-0.6,0.8\n";
+    for tcp in ["post", "control"] {
+        for (name, machine) in machines(tcp) {
+            for in_plane in [false, true] {
+                let mut recorder = Recorder::new(&machine, 3).with_planes(PlaneAngles::Zyx, 3);
+                recorder.capabilities |= Capabilities::ARC_XY | Capabilities::HELIX;
+                if in_plane {
+                    recorder.capabilities |= Capabilities::CYCLE_IN_PLANE;
+                }
+                let run = run(&machine, recorder, ARC).good(name);
+                let arcs: Vec<_> = run
+                    .asked
+                    .iter()
+                    .filter(|asked| asked.arc.is_some())
+                    .collect();
+                assert_eq!(arcs.len(), usize::from(in_plane), "{name} {tcp}");
+                let (Some(asked), Some(plane)) = (
+                    arcs.first(),
+                    run.asked.iter().find_map(|asked| asked.plane.clone()),
+                ) else {
+                    continue;
+                };
+                let arc = asked.arc.unwrap();
+                let told = frame(PlaneAngles::Zyx, &plane);
+                let centre = plane.origin + told * Vector3::from(arc.centre);
+                assert!(centre.norm() < 0.002, "{name} {tcp} {centre}");
+                let end = Vector3::new(asked.words[0], asked.words[1], asked.words[2]);
+                let off = (plane.origin + told * end - Vector3::new(0.0, 8.0, 6.0)).norm();
+                assert!(off < 0.001, "{name} {tcp} {off}");
+                assert!((arc.turn - 90.0).abs() < 0.05, "{arc:?}");
+                assert_eq!(arc.normal, [0.0, 0.0, 1.0]);
             }
         }
     }

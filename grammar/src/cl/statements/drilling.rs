@@ -95,5 +95,5 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
             .map_or_else(|| items.rest(), Item::span);
         return Err(items.fault(span, "CYCLE needs the kind of cycle", FORM));
     }
-    Ok(Statement::Cycle(Cycle::Define(cycle)))
+    Ok(Statement::Cycle(Cycle::Define(Box::new(cycle))))
 }

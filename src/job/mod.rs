@@ -1,6 +1,7 @@
 //! A job as the flags mean it: a CL file, a machine with its settings, and the plugins that the machine asks for.
 
 mod dry_run;
+mod look_ahead;
 pub mod machine_files;
 pub mod other_dialect;
 pub mod plugin_finder;
@@ -15,7 +16,6 @@ use post_grammar::{ReadError, Reader};
 use post_host::Finder;
 use post_machine::check::Check;
 use post_machine::description::{Machine, Setting};
-use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, DialectSession};
 use post_posting::ahead::{Ahead, AheadPass};
 use post_posting::program::Reading;
@@ -24,9 +24,10 @@ use post_posting::{Job, Post};
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
-use crate::files::{ClInput, FileFault, NullSink, PathArg};
+use crate::files::{ClInput, ClSource, FileFault, NullSink, PathArg};
 use crate::terminal::Progress;
 pub use dry_run::DryRun;
+pub use look_ahead::look_ahead;
 
 /// The machine with all settings of the command line, and `more` after them.
 pub fn machine(arguments: &JobArguments, more: &[Setting]) -> Result<Machine, Failure> {
@@ -101,35 +102,24 @@ pub fn posting(arguments: &JobArguments, file: &str) -> Job {
             ..Reading::default()
         },
         tool_length: arguments.tool_length,
-        trust_model: false,
-        ahead: None,
+        ..Job::default()
     }
 }
 
-/// What a first pass over the CL file finds out, where the program depends on it: `[control] planes`, and a dialect that
+/// What a first pass over the CL file finds out where the program depends on it: `[control] planes`, and a dialect that
 /// writes them.
 pub fn ahead(
-    source: &PathArg,
+    arguments: &JobArguments,
+    source: &mut ClSource,
     machine: &Machine,
     dialect: &impl DialectSession,
-    posting: &Job,
 ) -> Result<Option<Arc<Ahead>>, Failure> {
     if !machine.control.planes || !dialect.capabilities().has(Capabilities::PLANE) {
         return Ok(None);
     }
-    let input = ClInput::open(source)?;
-    if input.length.is_none() {
-        return Err(Diagnostic::error(
-            "planes",
-            format!(
-                "[control] planes reads the CL file twice, and {} can be read once",
-                input.name
-            ),
-        )
-        .help("name a file, or planes = false")
-        .into());
-    }
-    let mut pass = AheadPass::new(machine, posting.reading.clone());
+    let input = source.open()?;
+    let reading = posting(arguments, &input.name).reading;
+    let mut pass = AheadPass::new(machine, reading);
     let mut reader = Reader::new(input.bytes);
     loop {
         match reader.next_record() {

@@ -2,6 +2,8 @@
 //!
 //! The tip is computed from the joints by the laws of LinuxCNC's kinematics modules, not by the product.
 
+mod arcs;
+
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -134,6 +136,7 @@ struct Row {
     /// The tilting axis and C, degrees.
     rotary: [f64; 2],
     feed: bool,
+    arc: bool,
     length: f64,
 }
 
@@ -189,6 +192,7 @@ fn joints(machine: &Machine, program: &Path, tcp_on: bool) -> Option<Vec<Row>> {
             linear: Vector3::from(places.map(number)),
             rotary: turning.map(number),
             feed: fields[motion] == "feed",
+            arc: fields[motion] == "arc",
             length: number(length),
         }
     });
@@ -328,12 +332,8 @@ fn turned(from: &Row, to: &Row) -> f64 {
     axes.map(|(from, to)| (to - from).abs()).fold(0.0, f64::max)
 }
 
-fn two_tools_on(machine: &Machine) {
-    if shared("linuxcnc/run").is_none() {
-        return;
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("fast.toml");
+/// The machine file, with the two tools and feeds by which a run takes seconds.
+fn fast(machine: &Machine) -> String {
     let mut text = format!("extends = {:?}\n", machine.file);
     text += &format!(
         "[workpiece]\nmount = [0, 0, {}]\n[tools]\n1 = {}\n2 = {}\n",
@@ -345,7 +345,15 @@ fn two_tools_on(machine: &Machine) {
     for axis in [machine.tilting, 'C'] {
         text += &format!("[axis.{axis}]\nmax_feed = {ROTARY}\n");
     }
-    fs::write(&file, text).unwrap();
+    text
+}
+
+fn two_tools_on(machine: &Machine) {
+    if shared("linuxcnc/run").is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("fast.toml"), fast(machine)).unwrap();
     fs::write(folder.path().join("two.cls"), TWO_TOOLS).unwrap();
     for (tcp, rapid) in [
         ("control", "rapid"),

@@ -22,8 +22,10 @@ mod memory;
 mod messages;
 mod names;
 mod new;
+mod order;
 mod place;
 mod plugins;
+mod program_text;
 mod readiness;
 mod real_files;
 #[cfg(unix)]

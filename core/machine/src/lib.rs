@@ -13,4 +13,5 @@ pub mod diagnostic;
 mod halton;
 pub mod kinematics;
 pub mod place;
+pub mod program_text;
 pub mod tilted_plane;

@@ -73,8 +73,10 @@ pub(crate) struct Keeps {
     /// What the machine file says.
     pub arcs: Arcs,
     writes: Capabilities,
-    /// Beside those of the plane, what an arc asks of the dialect.
-    needs: Capabilities,
+    /// The control keeps the tip.
+    tcp: bool,
+    /// The words are those of a tilted plane.
+    pub tilted: bool,
 }
 
 impl Keeps {
@@ -82,16 +84,13 @@ impl Keeps {
         Self {
             arcs: machine.control.arcs,
             writes,
-            needs: match machine.control.tcp {
-                Tcp::Control => Capabilities::ARC_TCP,
-                Tcp::Post => Capabilities::NONE,
-            },
+            tcp: machine.control.tcp == Tcp::Control,
+            tilted: false,
         }
     }
 
-    /// Arcs about that axis of the words (0 is X), which end off the plane of their start or not, in a tilted plane or
-    /// not.
-    pub(crate) fn about(&self, axis: usize, helix: bool, in_plane: bool) -> bool {
+    /// Arcs about that axis of the words (0 is X), which end off the plane of their start or not.
+    pub(crate) fn about(&self, axis: usize, helix: bool) -> bool {
         let planes = [
             Capabilities::ARC_YZ,
             Capabilities::ARC_ZX,
@@ -101,9 +100,10 @@ impl Keeps {
             true => Capabilities::HELIX,
             false => Capabilities::NONE,
         };
-        let needs = match in_plane {
-            true => Capabilities::CYCLE_IN_PLANE,
-            false => self.needs,
+        let needs = match (self.tilted, self.tcp) {
+            (true, _) => Capabilities::CYCLE_IN_PLANE,
+            (false, true) => Capabilities::ARC_TCP,
+            (false, false) => Capabilities::NONE,
         };
         self.writes.has(planes[axis] | helix | needs)
     }
@@ -120,16 +120,38 @@ impl Keeps {
             && self.writes.has(Capabilities::ARC_RADIUS)
     }
 
-    /// Some arc of the CL file may be kept where the control may have been told a plane or surely has not.
-    pub(crate) fn arcs(&self, planes: bool) -> bool {
-        let possible =
-            |axis| self.about(axis, false, false) || planes && self.about(axis, false, true);
-        self.arcs.keep && (0..3).any(possible)
+    /// A spline of the CL file may be kept that would be so many chords.
+    pub(crate) fn spline(&self, end: &Motion, chords: u64) -> bool {
+        let needs = match self.tcp {
+            true => Capabilities::SPLINE | Capabilities::ARC_TCP,
+            false => Capabilities::SPLINE,
+        };
+        self.arcs.keep
+            && self.writes.has(needs)
+            && end.pace != Pace::Rapid
+            && (2..=MOST_CHORDS).contains(&chords)
     }
 
-    /// An arc of the CL file may be kept that would be so many chords; `planes` as for [`Keeps::arcs`].
-    pub(crate) fn arc(&self, arc: &Arc, end: &Motion, chords: u64, planes: bool) -> bool {
-        self.arcs(planes)
+    /// Some arc may be written, in a tilted plane or not.
+    fn writes(&self) -> bool {
+        [false, true].iter().any(|tilted| {
+            let keeps = Self {
+                tilted: *tilted,
+                ..*self
+            };
+            (0..3).any(|axis| keeps.about(axis, false))
+        })
+    }
+
+    /// Runs of points become arcs and lines.
+    pub(crate) fn fits(&self) -> bool {
+        self.arcs.fit && self.writes()
+    }
+
+    /// An arc of the CL file may be kept that would be so many chords.
+    pub(crate) fn arc(&self, arc: &Arc, end: &Motion, chords: u64) -> bool {
+        self.arcs.keep
+            && self.writes()
             && end.pace != Pace::Rapid
             && self.radius(arc.radius())
             && (2..=MOST_CHORDS).contains(&chords)

@@ -1,5 +1,6 @@
 //! One run: records in, text and a report out.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use post_grammar::{Record, SyntaxFault};
@@ -14,12 +15,14 @@ use crate::configuration::{Configuration, Configured};
 use crate::emit::Emit;
 use crate::expand::{Expand, Line};
 use crate::findings::Findings;
+use crate::job_facts::JobFacts;
 use crate::observer::{Observer, Observers, Output};
 use crate::program::{Interpreter, Reading, Step};
 use crate::refusal;
 use crate::report::{AxisRange, Deviation, Report};
 use crate::stream::{BATCH, Flow, Outlet};
 use crate::timing::Timing;
+use crate::window::Window;
 
 /// How one CL file is to be posted.
 #[derive(Clone, Debug, Default)]
@@ -32,12 +35,17 @@ pub struct Job {
     pub trust_model: bool,
     /// What a first pass found out; without one the tool is taken to turn anywhere.
     pub ahead: Option<Arc<Ahead>>,
+    /// What texts of the program can speak of.
+    pub facts: JobFacts,
+    /// Lines of the CL file that become the program, if not all: those before them set the state that it begins in.
+    pub lines: Option<Range<u64>>,
 }
 
 /// Posts one CL file, record by record: the stages, and what lies between them.
 pub struct Post<'a> {
     machine: &'a Machine,
     interpreter: Interpreter,
+    window: Option<Window>,
     /// Steps that the stages have not seen yet, each with its line.
     steps: Vec<(u64, Step)>,
     stages: Stages<'a>,
@@ -150,7 +158,8 @@ impl<'a> Post<'a> {
         let fault = refusal::too_fine(machine, &format)
             .or_else(|| refusal::depth_counts_down(machine))
             .or_else(|| refusal::no_way_off(machine))
-            .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()));
+            .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()))
+            .or_else(|| refusal::no_instead(machine, dialect.capabilities()));
         if let Some(fault) = fault {
             return Err(fault.boxed());
         }
@@ -168,12 +177,13 @@ impl<'a> Post<'a> {
             blocks: Blocks::new(machine, writes, &format, model, job.trust_model),
             made: Vec::new(),
             observers: Observers::default(),
-            emit: Emit::new(machine, dialect, output),
+            emit: Emit::new(machine, &job.facts, dialect, output),
         };
         Ok(Self {
             machine,
             findings: Findings::new(&job.reading.file),
             interpreter: Interpreter::new(job.reading),
+            window: job.lines.map(Window::new),
             steps: Vec::with_capacity(BATCH),
             stages,
             records: 0,
@@ -196,8 +206,14 @@ impl<'a> Post<'a> {
         self.findings.read(record, || {
             [waiting, stages.settled_line()].into_iter().flatten().min()
         });
-        self.interpreter
-            .record(record, &mut |step| steps.push((record.line, step)));
+        match &mut self.window {
+            None => self
+                .interpreter
+                .record(record, &mut |step| steps.push((record.line, step))),
+            Some(window) => self.interpreter.record(record, &mut |step| {
+                window.step(record.line, step, steps);
+            }),
+        }
         if self.interpreter.has_findings() {
             // What the stages find in the lines before comes before it.
             self.run();

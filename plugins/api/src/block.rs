@@ -174,6 +174,10 @@ struct Axis {
     front: Option<Front>,
     group: Group,
     decimals: u8,
+    /// Its words lie within one turn.
+    wrapped: bool,
+    /// Behind the number.
+    behind: &'static str,
     last: Modal<f64>,
 }
 
@@ -206,11 +210,22 @@ impl Axes {
                 (false, false) => Group::Plane,
             },
             decimals: if word.rotary { rotary } else { linear },
+            wrapped: word.wrapped,
+            behind: "",
             last: Modal::default(),
         });
         Axes {
             axes: axes.collect(),
             style,
+        }
+    }
+
+    /// Words of wrapped axes say that the control takes the shorter way: `C=DC(45.000)` with `=DC(` and `)`.
+    pub fn shorter_way(&mut self, open: &str, close: &'static str) {
+        for axis in self.axes.iter_mut().filter(|axis| axis.wrapped) {
+            axis.name = axis.name.trim_end_matches('=').to_owned() + open;
+            axis.front = Front::blank(&axis.name);
+            axis.behind = close;
         }
     }
 
@@ -312,6 +327,7 @@ impl Axis {
     fn write(&mut self, block: &mut Block, value: f64, style: NumberStyle) {
         if self.last.set(value) {
             block.number_behind(self.front, &self.name, value, self.decimals, style);
+            block.words.push_str(self.behind);
         }
     }
 }

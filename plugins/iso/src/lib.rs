@@ -57,6 +57,16 @@ pub trait Control: Sized + Send + 'static {
     fn capabilities(&self) -> Capabilities {
         Capabilities::NONE
     }
+
+    /// How it writes numbers, where that is not what the engine does.
+    fn format(&self, engine: Format) -> Format {
+        engine
+    }
+
+    /// Its words and what they mean, where they are others than the table's.
+    fn vocabulary(&self, engine: Vec<VocabularyWord>) -> Vec<VocabularyWord> {
+        engine
+    }
 }
 
 /// A dialect of the family.
@@ -118,7 +128,7 @@ impl<C: Control> Dialect for Iso<C> {
     }
 
     fn format(&self) -> Format {
-        self.engine.format()
+        self.control.format(self.engine.format())
     }
 
     fn capabilities(&self) -> Capabilities {
@@ -126,7 +136,7 @@ impl<C: Control> Dialect for Iso<C> {
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
-        self.engine.vocabulary()
+        self.control.vocabulary(self.engine.vocabulary())
     }
 
     #[inline]

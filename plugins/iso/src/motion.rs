@@ -241,7 +241,7 @@ impl Motion {
     }
 
     /// Where the axes stand.
-    pub(crate) fn stands(&mut self, words: &[f64]) {
+    pub fn stands(&mut self, words: &[f64]) {
         self.at.clear();
         self.at.extend_from_slice(words);
     }
@@ -408,13 +408,15 @@ impl Motion {
         }
     }
 
-    pub(crate) fn motion(&mut self, word: &'static str) {
+    /// Adds the word of a kind of motion, unless it is in force.
+    pub fn motion(&mut self, word: &'static str) {
         if self.motion.set(word) {
             self.block.word(word);
         }
     }
 
-    pub(crate) fn feed_mode(&mut self, feed: Feed) {
+    /// Adds the word of the feed's kind, unless it is in force.
+    pub fn feed_mode(&mut self, feed: Feed) {
         let word = self.feed_word(feed);
         if self.feed_mode.set(word) {
             self.block.word(word);
@@ -422,7 +424,8 @@ impl Motion {
         }
     }
 
-    pub(crate) fn feed(&mut self, feed: Feed) {
+    /// Adds the feed's number, unless it is in force; its kind comes before it.
+    pub fn feed(&mut self, feed: Feed) {
         self.feed_with(feed, 0);
     }
 
@@ -445,7 +448,8 @@ impl Motion {
         }
     }
 
-    fn write_pending(&mut self) {
+    /// Adds cutter compensation that waits for a move.
+    pub fn write_pending(&mut self) {
         if let Some(length) = self.length.take() {
             self.block.word(&length);
         }
@@ -457,7 +461,8 @@ impl Motion {
             Some(Compensation::Right { register }) => (right, Some(register)),
         };
         self.block.word(word);
-        if let Some(register) = register {
+        // Without an address the control knows the radius by itself.
+        if let Some(register) = register.filter(|_| !self.codes.radius.is_empty()) {
             self.block.integer(self.codes.radius, register);
         }
     }

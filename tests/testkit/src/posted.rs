@@ -31,14 +31,16 @@ pub struct Asked {
     pub tool: Option<ToolPose>,
     /// Of an arc, what says how it goes.
     pub arc: Option<AskedArc>,
+    /// Of a spline, its knots and control points.
+    pub spline: Option<AskedSpline>,
     /// Any other number it has: the seconds of a dwell, the number of a tool.
     pub value: f64,
+    /// An event without words as it prints for debugging, else empty.
+    pub event: String,
     /// What a cycle says, if it is one.
     pub cycle: Option<AskedCycle>,
     /// What a tilted plane says, if it is one.
     pub plane: Option<AskedPlane>,
-    /// An event without words as it prints for debugging, else empty.
-    pub event: String,
 }
 
 /// A cycle that a dialect was asked for: see [`Event::Cycle`].
@@ -72,6 +74,13 @@ pub struct AskedArc {
     pub normal: [f64; 3],
     pub turn: f64,
     pub radius: Option<f64>,
+}
+
+/// The spline that a dialect was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AskedSpline {
+    pub knots: Vec<f64>,
+    pub points: Vec<f64>,
 }
 
 /// A dialect that writes nothing down but the events themselves. No word may be a negative zero, no number an
@@ -128,6 +137,13 @@ impl DialectSession for Recorder {
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
+            let spline = match event {
+                Event::Spline { knots, points, .. } => Some(AskedSpline {
+                    knots: knots.0.to_vec(),
+                    points: points.0.to_vec(),
+                }),
+                _ => None,
+            };
             let arc = match event {
                 Event::Arc {
                     centre,
@@ -176,13 +192,14 @@ impl DialectSession for Recorder {
                 feed,
                 tool,
                 arc,
+                spline,
                 value,
-                cycle: cycle(&event),
-                plane: plane(&event),
                 event: match words {
                     [] => format!("{event:?}"),
                     _ => String::new(),
                 },
+                cycle: cycle(&event),
+                plane: plane(&event),
             });
             out.push_str("block\n");
             ends.push(out.len());

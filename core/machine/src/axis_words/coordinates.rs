@@ -13,14 +13,16 @@ impl Words {
         self.cartesian.then_some(words)
     }
 
-    /// The linear words of a place, not rounded, mm: those of the `tip` (mm, part frame) in a tilted plane and where the
-    /// control keeps it, else those of the axis values `joints`. None where the linear words are not X, Y and Z.
+    /// The linear words of a place, not rounded, mm: those of the `tip` (mm, part frame) where the control keeps it, those
+    /// of it in the frame of a tilted plane, else those of the axis values `joints`. None where the linear words are not X, Y and Z.
     pub fn place(&self, tip: Vector3<f64>, joints: &Joints) -> Option<Vector3<f64>> {
         let words = self.cartesian()?;
-        Some(match (&self.plane, self.tcp) {
-            (Some(plane), _) => plane.into_plane(tip),
-            (None, Tcp::Control) => tip,
-            (None, Tcp::Post) => Vector3::from_fn(|row, _| {
+        if let Some(plane) = &self.plane {
+            return Some(plane.into_plane(tip));
+        }
+        Some(match self.tcp {
+            Tcp::Control => tip,
+            Tcp::Post => Vector3::from_fn(|row, _| {
                 let joint = words[row].joint;
                 joints[joint] - self.zero[joint]
             }),
@@ -41,6 +43,13 @@ impl Words {
         let printed = [0, 1, 2].map(|row| words[row].printed(point[row] * words[row].per_unit));
         let mm = Vector3::from_fn(|row, _| printed[row] * words[row].unit);
         Some((printed, mm))
+    }
+
+    /// The number nearest to `number` that has no more decimals than any linear word.
+    pub fn printed_number(&self, number: f64) -> Option<f64> {
+        let words = self.cartesian()?.iter();
+        let coarsest = words.min_by(|a, b| a.scale.total_cmp(&b.scale))?;
+        Some(coarsest.printed(number))
     }
 
     /// The words of `values` with their linear ones as in `point`, program units.

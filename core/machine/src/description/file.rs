@@ -11,7 +11,7 @@ use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
-use super::smoothing::SmoothingFile;
+use super::program::ProgramFile;
 
 /// A number, or an expression of the file's parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -453,14 +453,6 @@ pub enum OutputUnits {
     Mm,
     /// inch, inch/min.
     Inch,
-}
-
-/// Text of the program, and what the control does to it.
-#[derive(Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ProgramFile {
-    /// By how much the control may leave the path; without it it keeps the path as it does by default.
-    pub smoothing: Option<SmoothingFile>,
 }
 
 /// The control and its language; `[control.<dialect>]` holds the dialect's own options.

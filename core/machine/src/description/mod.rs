@@ -13,6 +13,7 @@ mod layers;
 mod limits;
 mod numbers;
 mod options;
+mod program;
 mod schema;
 mod setting;
 mod smoothing;
@@ -34,6 +35,7 @@ pub use file::{
 pub use frame::Frame;
 pub use layers::Source;
 pub use limits::MOST_BYTES;
+pub use program::{ProgramRules, ProgramText, TextPlace};
 pub use schema::schema;
 pub use setting::Setting;
 pub use smoothing::{Smoothing, SmoothingRules};
@@ -74,6 +76,8 @@ pub struct Machine {
     pub word_rules: Vec<WordRule>,
     /// By how much its control may leave the path, by operation.
     pub smoothing: SmoothingRules,
+    /// Text of its programs.
+    pub program: ProgramRules,
     /// What it must keep.
     pub accuracy: Accuracy,
     /// Which of several solutions is taken.

@@ -5,6 +5,7 @@
 //! between (and leave out CL points that are needless, if told to), `fewest` goes as far as the certificate
 //! allows, `compensate` moves points that lie on the axes' own straight line.
 
+pub(crate) mod arc_fit;
 mod bisect;
 mod bound;
 pub mod certificate;

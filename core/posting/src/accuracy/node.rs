@@ -388,6 +388,21 @@ impl Placer {
         self.words.point(&node.words)
     }
 
+    /// The words of a node with their linear ones at the printed `point`, program units.
+    pub(crate) fn with_point(&self, node: &Node, point: [f64; 3]) -> WordValues {
+        self.words.with_point(&node.words, point)
+    }
+
+    /// A number printed with as many decimals as every linear word has, rounded to them.
+    pub(crate) fn printed_number(&self, number: f64) -> Option<f64> {
+        self.words.printed_number(number)
+    }
+
+    /// Words of a block.
+    pub(crate) fn count(&self) -> usize {
+        self.words.len()
+    }
+
     /// See [`Words::printed_point`].
     pub(crate) fn printed_point(&self, point: Vector3<f64>) -> Option<([f64; 3], Vector3<f64>)> {
         self.words.printed_point(point)

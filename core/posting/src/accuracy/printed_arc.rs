@@ -33,7 +33,7 @@ pub(crate) struct PrintedArc {
     /// On the level of the start.
     pub centre: Vector3<f64>,
     /// Angle of the start about the axis, from the direction behind the axis in X, Y, Z, X, radians.
-    from: f64,
+    pub from: f64,
     /// Radians, above zero.
     pub turn: f64,
     /// Distances of start and end from the centre.
@@ -43,7 +43,7 @@ pub(crate) struct PrintedArc {
 }
 
 /// The part of a vector in the plane across an axis of the words.
-fn in_plane(axis: usize, vector: Vector3<f64>) -> Vector2<f64> {
+pub(super) fn in_plane(axis: usize, vector: Vector3<f64>) -> Vector2<f64> {
     Vector2::new(vector[(axis + 1) % 3], vector[(axis + 2) % 3])
 }
 
@@ -54,7 +54,7 @@ fn toward(angle: f64) -> Vector2<f64> {
 }
 
 /// An angle brought to where it is no larger than half a turn.
-fn least_turn(angle: f64) -> f64 {
+pub(super) fn least_turn(angle: f64) -> f64 {
     angle - TAU * libm::rint(angle / TAU)
 }
 

@@ -1,6 +1,7 @@
 //! Curves that stay curves: an arc of the CL file becomes one block, or a few, where dialect, machine and tolerance
 //! allow; else it goes by the moves that it was cut into.
 
+use nalgebra::Vector3;
 use post_machine::description::ArcSplit;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{AT_END, passed};
@@ -27,19 +28,30 @@ const AT_ITS_END: f64 = 1e-6;
 /// A curve that is on its way, and the moves that it would be otherwise.
 #[derive(Debug)]
 pub(super) struct Following {
-    line: u64,
-    curve: Box<Curve>,
-    moves: Vec<Chosen>,
+    pub(super) line: u64,
+    pub(super) curve: Box<Curve>,
+    pub(super) moves: Vec<Chosen>,
 }
 
 /// A block along an arc.
-struct ArcBlock {
+pub(super) struct ArcBlock {
     node: Box<Node>,
-    printed: PrintedArc,
+    pub(super) printed: PrintedArc,
     curve: PrintedCurve,
+    /// The least time in which the axes keep up.
+    minutes: Follow,
+    /// How far it is from its path, mm.
+    pub(super) off: f64,
     bound: Bound,
     /// Share of the whole arc.
     share: f64,
+}
+
+impl ArcBlock {
+    /// With what is proven of it.
+    pub(super) fn proven(self, bound: Bound) -> Self {
+        Self { bound, ..self }
+    }
 }
 
 impl Following {
@@ -114,7 +126,10 @@ impl Blocks<'_> {
                 };
                 self.push_arc(&placer, following.line, &whole, blocks, to);
             }
-            Course::Spline(_) => return false,
+            Course::Spline(spline) => {
+                let lifted = spline.clone().placed(|point| point + lift);
+                return self.keep_spline(&placer, &frame, following, &lifted, to);
+            }
         }
         true
     }
@@ -216,28 +231,46 @@ impl Blocks<'_> {
         frame: &WordFrame,
         about: (usize, f64),
         wanted: &Arc,
+        ends: [&Node; 2],
+    ) -> Option<ArcBlock> {
+        let off = |printed: &PrintedArc| printed.deviation(wanted);
+        let block = self.printed_arc(placer, frame, about, wanted.centre, ends, off)?;
+        let farthest = ends[0].axis_error.max(ends[1].axis_error);
+        let bound = self.kept_bound(placer, block.off, farthest, 0.0, ends)?;
+        Some(block.proven(bound))
+    }
+
+    /// The block along an arc about `centre` (frame of the words, mm) as it is printed, if dialect and machine allow; how
+    /// far it is from what is wanted `off` says.
+    pub(super) fn printed_arc(
+        &self,
+        placer: &Placer,
+        frame: &WordFrame,
+        about: (usize, f64),
+        mut centre: Vector3<f64>,
         [from, node]: [&Node; 2],
+        off: impl Fn(&PrintedArc) -> f64,
     ) -> Option<ArcBlock> {
         let ends = [placer.printed(from)?, placer.printed(node)?];
         let (axis, sense) = about;
-        let mut centre = wanted.centre;
         centre[axis] = ends[0][axis];
-        let (words, centre) = placer.printed_point(centre)?;
+        let (words, rounded) = placer.printed_point(centre)?;
         let (centre, radius) = match self.keeps.by_radius() {
-            false => (centre, None),
+            false => (rounded, None),
             true => {
                 // The length of a word is printed with the decimals of that word.
-                let mut radius = ends[0];
-                radius[(axis + 1) % 3] = (wanted.radii[0] + wanted.radii[1]) / 2.0;
-                let (word, printed) = placer.printed_point(radius)?;
-                let radius = printed[(axis + 1) % 3];
-                let centre = PrintedArc::centre_by_radius(about, ends, radius)?;
-                (centre, Some(word[(axis + 1) % 3]))
+                let across = (axis + 1) % 3;
+                let mut length = ends[0];
+                let radii = PrintedArc::new(about, ends, centre)?.radii;
+                length[across] = radii[0].midpoint(radii[1]);
+                let (word, printed) = placer.printed_point(length)?;
+                let centre = PrintedArc::centre_by_radius(about, ends, printed[across])?;
+                (centre, Some(word[across]))
             }
         };
         let printed = PrintedArc::new(about, ends, centre)?;
         let (length, rise) = (printed.length(), printed.rise());
-        if !self.keeps.about(axis, rise != 0.0, self.in_plane())
+        if !self.keeps.about(axis, rise != 0.0)
             || !printed
                 .radii
                 .iter()
@@ -247,7 +280,10 @@ impl Blocks<'_> {
         {
             return None;
         }
-        let bound = self.arc_bound(placer, printed.deviation(wanted), [from, node])?;
+        let off = off(&printed);
+        if off.is_infinite() {
+            return None;
+        }
         let between = self.arc_between(frame, &printed)?;
         let mut normal = [0.0; 3];
         normal[axis] = 1.0;
@@ -261,22 +297,32 @@ impl Blocks<'_> {
             node: Box::new(*node),
             printed,
             curve: PrintedCurve { words, between },
-            bound,
+            minutes: self.arc_follow(frame, &printed),
+            off,
+            bound: Bound::default(),
             share: 1.0,
         })
     }
 
-    /// What is proven of a block along a curve whose words stray from it by `off` mm, if that is within tolerance.
-    fn arc_bound(&self, placer: &Placer, off: f64, [from, node]: [&Node; 2]) -> Option<Bound> {
+    /// What is proven of a block between two nodes that is `off` its path and has `chord` mm of the tolerance spent
+    /// already, if that is within tolerance; the tool axis is off by `farthest` at most.
+    pub(super) fn kept_bound(
+        &self,
+        placer: &Placer,
+        off: f64,
+        farthest: f64,
+        chord: f64,
+        [from, node]: [&Node; 2],
+    ) -> Option<Bound> {
         let accuracy = &self.machine.accuracy;
         let margin = placer.margin(&from.trace.joints, &node.trace.joints);
-        // The rotary axes stand: the tool axis is off by what its words are rounded by.
-        let axis = from.axis_error.max(node.axis_error);
         let bound = Bound {
-            tip: off + placer.control_point().radius * axis + margin.tip,
-            axis: axis + margin.axis,
+            tip: off + placer.control_point().radius * farthest + margin.tip,
+            axis: farthest + margin.axis,
         };
-        (bound.tip <= accuracy.tolerance && bound.axis <= accuracy.axis_tolerance).then_some(bound)
+        let holds =
+            bound.tip + chord <= accuracy.tolerance && bound.axis <= accuracy.axis_tolerance;
+        holds.then_some(bound)
     }
 
     /// Axis values where some axis turns back along an arc, in order; none where one leaves its travel.
@@ -326,45 +372,46 @@ impl Blocks<'_> {
                     false => Reason::Stage,
                 },
             };
-            let (length, rise) = (piece.printed.length(), piece.printed.rise());
-            let way = libm::hypot(length, rise);
-            let nominal = match motion.pace {
-                // The time is that of the whole arc.
-                Pace::InverseTime(_) => {
-                    Nominal::of(motion.pace, way, Travels::default).share(piece.share)
-                }
-                pace => Nominal::of(pace, way, Travels::default),
-            };
-            let block = Block {
-                kind: MotionKind::Arc,
-                way,
-                nominal,
-                follow: self.arc_follow(&piece, way / length),
-                ..self.block(&leg, &piece.node, piece.bound)
-            };
-            self.largest.keep(&leg, piece.bound);
-            let command = Command::Curve(Box::new(piece.curve));
-            to.out.command(line, command);
-            to.out.push(Flow::Point(block));
-            self.spare = self.last.replace(piece.node);
+            let node = self.push_piece(&leg, piece, to);
+            self.spare = self.last.replace(node);
         }
         self.on_part = true;
     }
 
-    /// The least time in which no axis passes its largest feed, a control that divides F by the way in the plane being
-    /// `faster` by that factor.
-    fn arc_follow(&self, piece: &ArcBlock, faster: f64) -> Follow {
-        let mut follow = Follow::default();
-        let Some(frame) = self
-            .placer
-            .as_ref()
-            .and_then(|placer| WordFrame::new(placer, &piece.node))
-        else {
-            return follow;
+    /// Hands on a block along an arc; gives where it ends.
+    pub(super) fn push_piece(
+        &mut self,
+        leg: &Leg<'_>,
+        piece: ArcBlock,
+        to: &mut Surroundings<'_, '_>,
+    ) -> Box<Node> {
+        let way = libm::hypot(piece.printed.length(), piece.printed.rise());
+        let nominal = Nominal::of(leg.motion.pace, way, Travels::default);
+        let block = Block {
+            kind: MotionKind::Arc,
+            way,
+            nominal: match leg.motion.pace {
+                // The time is that of the whole arc.
+                Pace::InverseTime(_) => nominal.share(piece.share),
+                _ => nominal,
+            },
+            follow: piece.minutes,
+            ..self.block(leg, &piece.node, piece.bound)
         };
+        self.largest.keep(leg, piece.bound);
+        let command = Command::Curve(Box::new(piece.curve));
+        to.out.command(leg.line, command);
+        to.out.push(Flow::Point(block));
+        piece.node
+    }
+
+    /// The least time in which no axis passes its largest feed, also on a control that divides F by the way in the plane.
+    fn arc_follow(&self, frame: &WordFrame, printed: &PrintedArc) -> Follow {
+        let mut follow = Follow::default();
+        let length = printed.length();
+        let faster = libm::hypot(length, printed.rise()) / length;
         for (joint, slide) in frame.slides() {
-            let fastest = piece.printed.fastest(*slide);
-            let minutes = faster * fastest / self.machine.axes[*joint].max_feed;
+            let minutes = faster * printed.fastest(*slide) / self.machine.axes[*joint].max_feed;
             if minutes > follow.minutes {
                 follow = Follow {
                     minutes,

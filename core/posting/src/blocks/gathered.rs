@@ -1,7 +1,7 @@
 //! CL points that wait for what comes behind them: along one stretch of path some of them may be needless.
 
 use super::{Blocks, Leg, Reason, STILL, Surroundings};
-use crate::accuracy::Node;
+use crate::accuracy::{Node, Placer};
 use crate::program::{Motion, Pace};
 use post_machine::description::Axis;
 use post_machine::kinematics::Second;
@@ -54,7 +54,7 @@ impl Blocks<'_> {
     #[inline]
     pub(super) fn gathers(&self, leg: &Leg<'_>, node: &Node) -> bool {
         // Cutter radius compensation offsets the points that the control is given.
-        if !self.machine.accuracy.reduce || leg.loose || self.compensating {
+        if !(self.machine.accuracy.reduce || self.keeps.fits()) || leg.loose || self.compensating {
             return false;
         }
         // A time of its own cannot be shared; axes that exclude one another, or of which one moves where the other
@@ -102,6 +102,22 @@ impl Blocks<'_> {
         }
     }
 
+    /// Goes along legs by straight blocks, without the points that are needless, if that is wanted.
+    pub(super) fn go_straight(
+        &mut self,
+        placer: &Placer,
+        legs: &[Leg<'_>],
+        nodes: &[Node],
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        if let (true, [_, _, ..]) = (self.machine.accuracy.reduce, legs) {
+            return self.split(placer, legs, nodes, to);
+        }
+        for (leg, pair) in legs.iter().zip(nodes.windows(2)) {
+            self.cut(placer, leg, &pair[0], &pair[1], to);
+        }
+    }
+
     fn carry_out_run(&mut self, to: &mut Surroundings<'_, '_>) {
         let Some(placer) = self.placer.clone() else {
             return;
@@ -123,9 +139,9 @@ impl Blocks<'_> {
                 reason: Reason::Point,
             })
             .collect();
-        match (legs.as_slice(), gathered.nodes.as_slice()) {
-            ([leg], [last, node]) => self.cut(&placer, leg, last, node, to),
-            (legs, nodes) => self.split(&placer, legs, nodes, to),
+        match self.keeps.fits() {
+            true => self.fit(&placer, &legs, &gathered.nodes, to),
+            false => self.go_straight(&placer, &legs, &gathered.nodes, to),
         }
         gathered.legs.clear();
         gathered.nodes.clear();

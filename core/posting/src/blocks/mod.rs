@@ -5,10 +5,12 @@ mod audience;
 mod between_words;
 mod block;
 mod cutter;
+mod fitted;
 mod gathered;
 mod nominal;
 mod off_part;
 mod plane;
+mod splined;
 mod staged;
 
 use std::rc::Rc;
@@ -287,8 +289,6 @@ impl<'a> Blocks<'a> {
     fn command(&mut self, line: u64, command: &Command, to: &mut Surroundings<'_, '_>) {
         self.end_run(to);
         match command {
-            // Its place is told where it begins.
-            Command::Still(origin) => return self.still(line, *origin, to),
             Command::Tool(_) | Command::Home | Command::WorkOffset(_) | Command::Smoothing(_) => {
                 self.depart(line, to)
             }
@@ -297,6 +297,8 @@ impl<'a> Blocks<'a> {
                 self.last = None;
                 self.on_part = false;
             }
+            // Its place is told where it begins.
+            Command::Still(origin) => return self.still(line, *origin, to),
             Command::Head(name) => {
                 self.depart(line, to);
                 if let Some(head) = self.base.head(name) {

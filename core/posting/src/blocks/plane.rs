@@ -89,6 +89,7 @@ impl Blocks<'_> {
     fn leave_plane(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
         self.planes.stands = None;
         self.placer.clone_from(&self.planes.outside);
+        self.keeps.tilted = false;
         if std::mem::take(&mut self.planes.told) {
             to.out.command(line, Command::Plane(None));
         }
@@ -160,6 +161,7 @@ impl Blocks<'_> {
         };
         self.placer = Some(Rc::new(inside));
         self.planes.told = true;
+        self.keeps.tilted = true;
         to.out.command(line, Command::Plane(Some(Box::new(plane))));
     }
 

@@ -311,8 +311,6 @@ impl<'a> Configuration<'a> {
                 self.check_speed(line, findings);
             }
             Command::Home => self.park(&self.machine.frame.park),
-            // The tool is retracted before and behind: nothing is turned early on its behalf.
-            Command::Still(_) => self.route.leave(),
             Command::WorkOffset(_) | Command::Subprogram(_) | Command::Smoothing(_) => {
                 self.park(&[]);
             }
@@ -323,6 +321,8 @@ impl<'a> Configuration<'a> {
                     Err(finding) => findings.at(line, *finding),
                 }
             }
+            // The tool is retracted before and behind: nothing is turned early on its behalf.
+            Command::Still(_) => self.route.leave(),
             Command::Spindle(Spindle::On { rpm, .. }) => {
                 self.speed = Some(*rpm);
                 self.check_speed(line, findings);

@@ -1,7 +1,7 @@
 //! The frame around the moves: retracts, positions of the machine, the way to a first position.
 
 use post_machine::axis_words::{self, WordValues, Words};
-use post_machine::description::{Machine, Tcp};
+use post_machine::description::{Machine, Tcp, TextPlace};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_machine::tilted_plane::TiltedPlane;
@@ -53,6 +53,7 @@ impl Emit<'_> {
             return;
         }
         self.keep_tip(line, false);
+        self.instead(line, TextPlace::Retract);
         let machine = self.machine;
         self.go(line, &machine.frame.retract, |axes, words| Event::Retract {
             axes,
@@ -185,8 +186,12 @@ impl Emit<'_> {
         self.leave(line);
         self.rest(line);
         self.changed = true;
+        if self.texts.any_tool() {
+            self.say(line, TextPlace::BetweenTools);
+        }
         let machine = self.machine;
         self.park(line, &machine.frame.change, findings);
+        self.texts.tool(tool);
         self.writer.tool_known();
         if tool.register != tool.number && self.writer.knows(Capabilities::TOOL_TABLE) {
             findings.at(
@@ -201,6 +206,7 @@ impl Emit<'_> {
                 .help("the length of the tool must stand in its own line of the table"),
             );
         }
+        self.instead(line, TextPlace::ToolChange);
         self.writer.push(
             line,
             Event::ToolChange {
@@ -214,6 +220,11 @@ impl Emit<'_> {
         );
         // A changer may leave the depth axis anywhere.
         self.clear = false;
+        self.say(line, TextPlace::AfterToolChange);
+        let next = self.texts.next_tool();
+        if let Some(number) = next.filter(|_| self.texts.preselects()) {
+            self.writer.push(line, Event::Preselect { number });
+        }
     }
 
     /// Another head: the machine is that of the head from here on.
@@ -256,6 +267,7 @@ impl Emit<'_> {
         self.rest(line);
         self.go_home(line, findings);
         self.tell_wound(line, findings);
+        self.say(line, TextPlace::Footer);
         self.writer.push(line, Event::End);
     }
 

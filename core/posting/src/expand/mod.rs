@@ -75,7 +75,7 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
 type Out<'o> = Outlet<'o, Flow<Line>>;
 
 impl Expand {
-    /// For a machine and a dialect that declares what it `writes`; `ahead` if the control is to be told planes.
+    /// For a machine and a dialect that declares what it `writes`; `ahead` where the control is to be told planes.
     pub(crate) fn new(
         machine: &Machine,
         chord_tolerance: f64,
@@ -166,8 +166,7 @@ impl Expand {
         let turns = libm::ceil(arc.sweep / TAU - 1e-9).max(1.0);
         let turn = arc.piece(0.0, 1.0 / turns);
         let (count, _) = turn.chords(self.chord_tolerance);
-        let planes = self.planes.as_ref().is_some_and(Planes::on);
-        let keeps = |keeps: &Keeps| keeps.arc(arc, end, count, planes);
+        let keeps = |keeps: &Keeps| keeps.arc(arc, end, count);
         if step.start_axis != end.axis
             || count.saturating_mul(turns as u64) > MOST_CHORDS
             || !self.keeps.as_ref().is_some_and(keeps)
@@ -246,17 +245,30 @@ impl Expand {
 
     fn spline(&mut self, line: u64, step: &SplineStep, out: &mut Out<'_>, findings: &Findings) {
         let SplineStep { spline, end } = step;
-        match spline.chords(self.chord_tolerance) {
-            Some(count) if count <= MOST_CHORDS => {}
+        let keeps = |count| {
+            self.keeps
+                .as_ref()
+                .is_some_and(|keeps| keeps.spline(end, count))
+        };
+        let along = match spline.chords(self.chord_tolerance) {
+            Some(count) if count <= MOST_CHORDS => keeps(count),
             count => {
                 let count = count.map_or("countless".to_owned(), |count| count.to_string());
                 findings.at(line, self.too_many_chords("spline", &count));
                 return;
             }
+        };
+        if along {
+            let course = Course::Spline(spline.clone());
+            let curve = Box::new(Curve { course, end: *end });
+            self.command(line, Command::Along(curve), out, findings);
         }
         spline.flatten(self.chord_tolerance, &mut |tip, chord| {
             self.go(line, Motion { tip, chord, ..*end }, out, findings);
         });
+        if along {
+            self.command(line, Command::AlongEnd, out, findings);
+        }
     }
 
     /// Approach, pecks, dwell and retract at one point; where the control has the cycle, marked for what writes it.

@@ -52,6 +52,53 @@ impl Spline {
         self
     }
 
+    /// The same knots about other control points.
+    pub(crate) fn about(&self, points: Vec<Vector3<f64>>) -> Self {
+        debug_assert_eq!(points.len(), self.points.len());
+        Self {
+            knots: self.knots.clone(),
+            points,
+        }
+    }
+
+    /// All of its knots.
+    pub(crate) fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// The same control points over other knots; none where these do not follow one another as its own do.
+    pub(crate) fn over(&self, knots: Vec<f64>) -> Option<Self> {
+        let rises = |knots: &[f64]| -> Vec<bool> {
+            knots.windows(2).map(|pair| pair[0] < pair[1]).collect()
+        };
+        (rises(&knots) == rises(&self.knots)).then(|| Self {
+            knots,
+            points: self.points.clone(),
+        })
+    }
+
+    /// Its control points.
+    pub(crate) fn points(&self) -> &[Vector3<f64>] {
+        &self.points
+    }
+
+    /// It as cubics, each over one knot span from its start to its end: their control points (Bézier), in order. In the
+    /// hull of its four points each of them lies.
+    pub(crate) fn cubics(&self) -> impl Iterator<Item = [Vector3<f64>; DEGREE + 1]> {
+        (DEGREE..self.points.len())
+            .filter(|span| self.knots[span + 1] > self.knots[*span])
+            .map(|span| {
+                let (from, to) = (self.knots[span], self.knots[span + 1]);
+                // The blossom at the start so often, and at the end else.
+                [0, 1, 2, 3].map(|count| {
+                    self.blossom(
+                        span,
+                        std::array::from_fn(|level| if level < count { to } else { from }),
+                    )
+                })
+            })
+    }
+
     /// Where it ends.
     pub fn end(&self) -> Vector3<f64> {
         self.points.last().copied().unwrap_or_default()
@@ -102,8 +149,13 @@ impl Spline {
         }
     }
 
-    /// The point at `u` in the knot span `span` (de Boor).
+    /// The point at `u` in the knot span `span`.
     fn at(&self, span: usize, u: f64) -> Vector3<f64> {
+        self.blossom(span, [u; DEGREE])
+    }
+
+    /// Its blossom in the knot span `span` (de Boor, each level with a place of its own).
+    fn blossom(&self, span: usize, places: [f64; DEGREE]) -> Vector3<f64> {
         let mut work = [Vector3::zeros(); DEGREE + 1];
         work.copy_from_slice(&self.points[span - DEGREE..=span]);
         for level in 1..=DEGREE {
@@ -111,7 +163,7 @@ impl Spline {
                 let knot = span - DEGREE + index;
                 let low = self.knots[knot];
                 let high = self.knots[knot + DEGREE + 1 - level];
-                let alpha = (u - low) / (high - low);
+                let alpha = (places[level - 1] - low) / (high - low);
                 work[index] = work[index - 1] * (1.0 - alpha) + work[index] * alpha;
             }
         }

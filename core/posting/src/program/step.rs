@@ -92,17 +92,17 @@ pub enum Command {
     OptionalStop,
     /// The tool is retracted and the axes are parked.
     Home,
-    /// The tool axis stays from here on until the next of these, and the control is to be told a tilted plane for it,
-    /// with this origin (mm, part frame); none: no plane.
-    Still(Option<Vector3<f64>>),
-    /// The words behind it are those of this tilted plane, the tool having left the part; none: of no plane.
-    Plane(Option<Box<TiltedPlane>>),
     /// The moves up to the next [`Command::AlongEnd`] go along this curve.
     Along(Box<Curve>),
     /// The curve ends.
     AlongEnd,
     /// What is printed of the next block, which goes along a curve.
     Curve(Box<PrintedCurve>),
+    /// The tool axis stays from here on until the next of these, and the control is to be told a tilted plane for it,
+    /// with this origin (mm, part frame); none: no plane.
+    Still(Option<Vector3<f64>>),
+    /// The words behind it are those of this tilted plane, the tool having left the part; none: of no plane.
+    Plane(Option<Box<TiltedPlane>>),
     /// The moves from here on are those of a hole, which the control may have a cycle for.
     Hole(HoleMark),
 }
@@ -133,10 +133,10 @@ impl Command {
                 | Self::From { .. }
                 | Self::Index { .. }
                 | Self::Head(_)
-                | Self::Still(_)
                 | Self::WorkOffset(_)
                 | Self::Subprogram(_)
                 | Self::Smoothing(_)
+                | Self::Still(_)
         )
     }
 }

@@ -5,11 +5,14 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use nalgebra::{Unit, UnitQuaternion, Vector3};
+use post_machine::description::{Setting, Source, load};
 use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Feed};
+use post_posting::program::{Reading, ToldSpindle};
 use post_posting::{Block, Flow, Job, MotionKind, Observer};
+use post_testkit::frechet::keeps_within;
 use post_testkit::posted::{Asked, AskedArc, Bench, Recorder, Run, Samples, watched};
-use post_testkit::{Rng, randomised};
+use post_testkit::{Rng, randomised, repository, shared};
 
 type V = Vector3<f64>;
 
@@ -90,7 +93,7 @@ impl Controlled {
             }
         };
         let (arm, last) = (flat(start - centre), flat(end - centre));
-        let mut angle = normal.dot(&arm.cross(&last)).atan2(arm.dot(&last));
+        let mut angle = libm::atan2(normal.dot(&arm.cross(&last)), arm.dot(&last));
         if clockwise && angle >= 0.0 {
             angle -= TAU;
         } else if !clockwise && angle <= 0.0 {
@@ -143,7 +146,7 @@ impl Wanted {
 
     fn sweep(&self) -> f64 {
         let ((from, _), (to, _)) = (self.split(self.start), self.split(self.end));
-        let angle = self.normal.dot(&from.cross(&to)).atan2(from.dot(&to));
+        let angle = libm::atan2(self.normal.dot(&from.cross(&to)), from.dot(&to));
         let first = if (from - to).norm() < 1e-3 {
             TAU
         } else if angle <= 0.0 {
@@ -347,7 +350,7 @@ fn printed_arcs_are_as_near_as_certified() {
                     let length =
                         (controlled.radii[0] + controlled.radii[1]) / 2.0 * controlled.angle.abs();
                     assert!(
-                        (length.hypot(rise) / feed - block.time.minutes).abs() < 1e-5,
+                        (libm::hypot(length, rise) / feed - block.time.minutes).abs() < 1e-5,
                         "{what}"
                     );
                     // A control may divide F by the way in the plane.
@@ -404,4 +407,428 @@ fn printed_arcs_are_as_near_as_certified() {
         1.0 / tightest
     );
     assert!(kept * 10 > all * 9, "{kept} of {all}");
+}
+
+/// Blocks of the real files with arcs, as chords and as arcs, on machines that make them.
+#[test]
+fn real_files_have_fewer_blocks() {
+    // File, machine, settings, blocks with chords, with arcs, and those of them that are arcs.
+    let files = [
+        (
+            "nx_HumMan__3_PAZ_125_N2.cls",
+            "head-head",
+            &[][..],
+            [14980, 640, 300],
+        ),
+        (
+            "nx_HumMan__10_KONTUR_125_N2_162.cls",
+            "head-head",
+            &[],
+            [964, 12, 7],
+        ),
+        ("nx_HumMan_cutcom.clsf", "vmc", &[], [6026, 566, 140]),
+        (
+            "creo3x_MichaHofft_profilfraesen_2.ncl",
+            "head-head",
+            &[],
+            [312, 52, 20],
+        ),
+        (
+            "creo3x_MichaHofft_schruppen_1.ncl",
+            "head-head",
+            &[],
+            [9582, 5590, 419],
+        ),
+        (
+            "camworks_neMoguta_UniSource.clt",
+            "ac-trunnion",
+            &[],
+            [1447, 376, 72],
+        ),
+        (
+            "swcam_aamorim_Interface-glue.clt",
+            "ac-trunnion",
+            &[],
+            [4012, 2125, 30],
+        ),
+        (
+            "swcam_aamorim_Teste-Metrologia.apt",
+            "ac-trunnion",
+            &[],
+            [3872, 479, 65],
+        ),
+        (
+            "swcam_aamorim_basemach.apt",
+            "vmc",
+            &[(-170.0, -75.0, 0.0)],
+            [4408, 2137, 304],
+        ),
+    ];
+    for (name, machine, mount, expected) in files {
+        let Some(path) = shared("data/cl") else {
+            return;
+        };
+        let text = std::fs::read_to_string(path.join(name)).unwrap();
+        let source = |name: &str| Source {
+            name: format!("{name}.toml"),
+            text: std::fs::read_to_string(repository().join(format!("machines/{name}.toml")))
+                .unwrap(),
+        };
+        let settings: Vec<Setting> = mount
+            .iter()
+            .map(|(x, y, z)| Setting::Mount([*x, *y, *z]))
+            .collect();
+        let machine = load(source(machine), &settings, &mut |name| Ok(source(name))).unwrap();
+        let counts = [Capabilities::NONE, ALL].map(|writes| {
+            let mut dialect = Recorder::new(&machine, 3);
+            dialect.capabilities = writes;
+            let job = Job {
+                tool_length: Some(if name.contains("Teste") { 80.0 } else { 150.0 }),
+                reading: Reading {
+                    spindle: ToldSpindle::On(6000.0),
+                    tool: (!text.contains("LOAD") && !name.ends_with(".clt")).then_some(1),
+                    tool_from_cutter: name.ends_with(".clt"),
+                    ..Reading::default()
+                },
+                ..Job::default()
+            };
+            let run = watched(&machine, dialect, &text, job, &mut Samples, &mut []);
+            let report = run.good(name).report.unwrap();
+            assert!(
+                report.tip_deviation_mm.value <= report.tolerance_mm,
+                "{name}"
+            );
+            [report.blocks, report.curves]
+        });
+        let [[chords, none], [blocks, arcs]] = counts;
+        assert_eq!((none, [chords, blocks, arcs]), (0, expected), "{name}");
+    }
+}
+
+/// A smooth row of arcs and lines in a plane, as points, and how many of them it was made of.
+fn row(rng: &mut Rng, pieces: usize, points: usize) -> Vec<[f64; 2]> {
+    let (mut at, mut heading) = ([0.0, 0.0], rng.range(-3.0, 3.0));
+    let mut row = vec![at];
+    for piece in 0..pieces {
+        let length = rng.range(8.0, 20.0);
+        let bend = match piece % 2 {
+            0 => 0.0,
+            _ => rng.range(-0.08, 0.08),
+        };
+        for _ in 0..points {
+            let step = length / points as f64;
+            heading += bend * step / 2.0;
+            let (sine, cosine) = libm::sincos(heading);
+            at = [at[0] + cosine * step, at[1] + sine * step];
+            heading += bend * step / 2.0;
+            row.push(at);
+        }
+    }
+    row
+}
+
+/// The CL path of points in the plane that `frame` has as its columns, the tool standing along `axis`.
+fn path_text(points: &[V], axis: V) -> (String, Vec<V>) {
+    let mut text = "UNITS/MM\nMULTAX/ON\nSPINDL/3000,RPM,CLW\nRAPID\n".to_owned();
+    let mut path = Vec::new();
+    for (index, point) in points.iter().enumerate() {
+        let point = point.map(|x| libm::rint(x * 1e4) / 1e4);
+        if index == 1 {
+            text += "FEDRAT/600,MMPM\n";
+        }
+        writeln!(
+            text,
+            "GOTO/{:.4},{:.4},{:.4},{:.9},{:.9},{:.9}",
+            point.x, point.y, point.z, axis.x, axis.y, axis.z
+        )
+        .unwrap();
+        path.push(point);
+    }
+    (text + "FINI\n", path)
+}
+
+const FITTED: &str = "arcs = { fit = true }";
+
+/// What the control makes of a fitted run: places along it, and for each piece between two how far it may be from the
+/// path.
+fn traced(bench: &Bench, run: &Run, blocks: &[Block]) -> (Vec<V>, Vec<f64>) {
+    const LOOKS: u32 = 64;
+    let motions = run.motions();
+    let (mut curve, mut apart) = (Vec::new(), Vec::new());
+    for (pair, block) in motions.windows(2).zip(&blocks[1..]) {
+        let (from, to) = (pair[0], pair[1]);
+        let arc = to
+            .arc
+            .map(|arc| Controlled::new(&from.words, &to.words, &arc));
+        let looks = if arc.is_some() { LOOKS } else { 1 };
+        for look in 0..=looks {
+            let t = f64::from(look) / f64::from(looks);
+            let words = match &arc {
+                Some(arc) => arc.words(t),
+                None if look == 0 => from.words.clone(),
+                None => to.words.clone(),
+            };
+            let (tip, _) = bench.reference.forward(&bench.joints(&words));
+            if look > 0 || curve.is_empty() {
+                curve.push(tip);
+            }
+            if look > 0 {
+                // Between two looks the arc is off its chord.
+                let bow = arc.as_ref().map_or(0.0, |arc| {
+                    let step = arc.angle / f64::from(LOOKS);
+                    arc.radii[0] * step * step / 8.0
+                });
+                apart.push(block.deviation.tip + bow + 1e-7);
+            }
+        }
+    }
+    (curve, apart)
+}
+
+/// Every fitted piece is as near to the path of its points as certified, gone along in order, in every plane and with the
+/// tables turned; and there are about as many pieces as the points were made of.
+#[test]
+fn fitted_pieces_are_as_near_as_certified() {
+    let (rounds, mut rng) = randomised(120, 31);
+    let (mut points, mut blocks_in_all, mut arcs) = (0, 0, 0);
+    for round in rounds {
+        let tcp = ["post", "control"][rng.pick(2)];
+        let form = ["centre", "radius"][rng.pick(2)];
+        let split = ["full", "half", "quadrant"][rng.pick(3)];
+        let more = format!("arcs = {{ fit = true, form = \"{form}\", split = \"{split}\" }}");
+        let chain = CHAINS[rng.pick(3)];
+        let bench = Bench::new(&machine(&mut rng, chain, tcp, "mm", &more), 3, LENGTH);
+        let arc = wanted(&mut rng, &bench, tcp);
+        let aside = (arc.start - arc.centre).normalize();
+        let across = arc.normal.cross(&aside);
+        let rise = [0.0, rng.range(-0.002, 0.002)][rng.pick(2)];
+        let flat = row(&mut rng, 5, 24);
+        let place = |(index, [x, y]): (usize, &[f64; 2])| {
+            arc.centre + aside * *x + across * *y + arc.normal * rise * index as f64
+        };
+        let places: Vec<V> = flat.iter().enumerate().map(place).collect();
+        let (cl, path) = path_text(&places, arc.axis);
+        let (run, blocks) = posted(&bench, 3, ALL, &cl);
+        let what = format!("round {round}: {tcp} {form} {split} {chain}\n{cl}");
+        let run = run.good(&what);
+        let (curve, apart) = traced(&bench, &run, &blocks);
+        assert!(keeps_within(&curve, &apart, &path), "{what}");
+        assert!(blocks.iter().all(|block| block.deviation.tip <= 0.006));
+        let report = run.report.unwrap();
+        points += path.len() - 1;
+        blocks_in_all += report.blocks - 1;
+        arcs += report.curves;
+    }
+    println!("{points} points: {blocks_in_all} blocks, {arcs} of them arcs");
+    assert!(blocks_in_all * 5 < points as u64 && arcs > 0);
+}
+
+/// The least number of arcs and lines from point to point of a path in the plane of X and Y, each of all those whose
+/// printed words keep the tolerance: every pair of points, and for an arc every bulge of a fine row.
+fn fewest(path: &[V], tolerance: f64) -> usize {
+    let printed = |v: V| v.map(|x| libm::rint(x * 1e3) / 1e3);
+    let words = |v: V| vec![v.x, v.y, v.z, 0.0, 0.0];
+    let mut least = vec![usize::MAX; path.len()];
+    least[0] = 0;
+    for from in 0..path.len() {
+        for to in from + 1..path.len() {
+            let (start, end) = (printed(path[from]), printed(path[to]));
+            let legs = &path[from..=to];
+            let near = |curve: &[V], bow: f64| {
+                keeps_within(curve, &vec![tolerance - bow; curve.len() - 1], legs)
+            };
+            let arc = |step: i32| {
+                let bulge = f64::from(step) / 2000.0;
+                let chord = end - start;
+                let left = V::new(-chord.y, chord.x, 0.0);
+                let middle = start.lerp(&end, 0.5);
+                let centre = middle - left * ((1.0 - bulge * bulge) / (4.0 * bulge));
+                let radius = (centre - start).norm();
+                if radius > 1e4 {
+                    return false;
+                }
+                let angle = -4.0 * libm::atan(bulge);
+                let mut arc = AskedArc {
+                    centre: printed(centre).into(),
+                    normal: [0.0, 0.0, 1.0],
+                    turn: angle.to_degrees(),
+                    radius: None,
+                };
+                let arm = |place: V| place - V::from(arc.centre);
+                let (first, last) = (arm(start), arm(end));
+                let turn = libm::atan2(first.cross(&last).z, first.dot(&last));
+                arc.turn = turn.to_degrees();
+                if (first.norm() - last.norm()).abs() > 0.005 || turn * angle <= 0.0 {
+                    return false;
+                }
+                let controlled = Controlled::new(&words(start), &words(end), &arc);
+                let curve: Vec<V> = (0..=48)
+                    .map(|look| point(&controlled.words(f64::from(look) / 48.0)))
+                    .collect();
+                near(&curve, radius * turn * turn / (8.0 * 48.0 * 48.0))
+            };
+            let step = least[from].saturating_add(1);
+            if step < least[to]
+                && (near(&[start, end], 0.0) || (-400..=400).any(|step| step != 0 && arc(step)))
+            {
+                least[to] = step;
+            }
+        }
+    }
+    least[path.len() - 1]
+}
+
+/// No choice of pieces has fewer, but in rare cases one fewer.
+#[test]
+fn no_choice_of_pieces_has_fewer() {
+    let (rounds, mut rng) = randomised(30, 32);
+    let (mut ours, mut theirs, mut more) = (0, 0, 0);
+    let all = rounds.end;
+    for round in rounds {
+        let text = machine(&mut rng, CHAINS[2], "post", "mm", FITTED)
+            .replace("tolerance = 0.006", "tolerance = 0.02\ncorner = 60");
+        let bench = Bench::new(&text, 3, LENGTH);
+        let flat = row(&mut rng, 3, 4);
+        let rough = rng.range(0.0, 0.02);
+        let place = |[x, y]: &[f64; 2]| V::new(*x, *y, 5.0);
+        let places: Vec<V> = flat
+            .iter()
+            .map(|at| place(at) + V::new(rng.range(-rough, rough), rng.range(-rough, rough), 0.0))
+            .collect();
+        let (cl, path) = path_text(&places, V::z());
+        let (run, _) = posted(&bench, 3, ALL, &cl);
+        let pieces = run.good(&cl).report.unwrap().blocks as usize - 1;
+        let least = fewest(&path, 0.02);
+        assert!(
+            pieces <= least + 1,
+            "round {round}: {pieces}, {least} are enough\n{cl}"
+        );
+        ours += pieces;
+        theirs += least;
+        more += usize::from(pieces > least);
+    }
+    println!("{ours} pieces, {theirs} by brute force; one more in {more} of {all} runs");
+    assert!(more * 10 <= all, "{more} of {all}");
+}
+
+/// Half circles of points become half circles.
+#[test]
+fn points_of_arcs_become_arcs_again() {
+    let text = machine(
+        &mut post_testkit::seeded(3),
+        CHAINS[2],
+        "post",
+        "mm",
+        FITTED,
+    );
+    let bench = Bench::new(&text, 3, LENGTH);
+    let mut places = vec![V::new(0.0, 0.0, 10.0), V::zeros()];
+    for wave in 0..6 {
+        let centre = 20.0 + 40.0 * f64::from(wave);
+        let side = if wave % 2 == 0 { 1.0 } else { -1.0 };
+        for step in 1..=100 {
+            let (sine, cosine) = libm::sincos(f64::from(step) * TAU / 200.0);
+            places.push(V::new(centre - 20.0 * cosine, side * 20.0 * sine, 0.0));
+        }
+    }
+    let (cl, _) = path_text(&places, V::z());
+    let report = posted(&bench, 3, ALL, &cl).0.good("points").report.unwrap();
+    assert_eq!(
+        (report.blocks, report.curves, report.points_dropped),
+        (8, 6, 594)
+    );
+    let report = posted(&bench, 3, Capabilities::NONE, &cl)
+        .0
+        .good("points")
+        .report
+        .unwrap();
+    assert_eq!((report.blocks, report.curves), (602, 0));
+}
+
+/// The places of a cubic B-spline by the recursion of Cox and de Boor.
+fn spline_at(knots: &[f64], points: &[V], u: f64) -> V {
+    fn basis(knots: &[f64], index: usize, degree: usize, u: f64) -> f64 {
+        if degree == 0 {
+            return f64::from(u8::from(knots[index] <= u && u < knots[index + 1]));
+        }
+        let share = |from: f64, to: f64, over: f64| match to > from {
+            true => over / (to - from),
+            false => 0.0,
+        };
+        let (low, high) = (knots[index], knots[index + degree + 1]);
+        share(low, knots[index + degree], u - low) * basis(knots, index, degree - 1, u)
+            + share(knots[index + 1], high, high - u) * basis(knots, index + 1, degree - 1, u)
+    }
+    let terms = points.iter().enumerate();
+    terms.fold(V::zeros(), |sum, (index, point)| {
+        sum + point * basis(knots, index, 3, u)
+    })
+}
+
+/// Splines of a real file stay splines: as the printed control points and knots have them, they are as near to those of
+/// the file as certified.
+#[test]
+fn splines_stay_splines() {
+    let mut rng = post_testkit::seeded(5);
+    let text = machine(&mut rng, CHAINS[0], "post", "mm", "");
+    let bench = Bench::new(&text, 3, LENGTH);
+    let knots = [
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.123_456_7,
+        0.4,
+        0.4,
+        0.777_777_7,
+        1.0,
+        1.0,
+        1.0,
+        1.0,
+    ];
+    let points: Vec<V> = (0..8)
+        .map(|index| {
+            V::new(
+                f64::from(index) * 7.0,
+                rng.range(-9.0, 9.0),
+                rng.range(-2.0, 2.0),
+            )
+        })
+        .map(|point| point.map(|x| libm::rint(x * 1e5) / 1e5))
+        .collect();
+    let first = points[0];
+    let mut cl = format!(
+        "UNITS/MM\nSPINDL/3000,RPM,CLW\nRAPID\nGOTO/{},{},50\nFEDRAT/600,MMPM\nGOTO/{},{},{}\nNURBS/\n",
+        first.x, first.y, first.x, first.y, first.z
+    );
+    cl += "KNOT/0.1234567,0.4,0.4,0.7777777,1.0\n";
+    for point in &points[1..] {
+        writeln!(cl, "CNTRL/{},{},{}", point.x, point.y, point.z).unwrap();
+    }
+    cl += "END-OF-PATH\nFINI\n";
+    let (run, blocks) = posted(&bench, 3, ALL.and(Capabilities::SPLINE), &cl);
+    let run = run.good(&cl);
+    let printed = run.asked.iter().find_map(|asked| asked.spline.clone());
+    let printed = printed.expect("a spline");
+    let bound = blocks.last().unwrap().deviation.tip;
+    let controls: Vec<V> = printed.points.chunks(5).map(point).collect();
+    assert_eq!(controls.len(), points.len());
+    let last = printed.knots[printed.knots.len() - 1];
+    let mut worst: f64 = 0.0;
+    for step in 0..2000 {
+        let u = f64::from(step) / 2000.0;
+        let mut words = printed.points[..5].to_vec();
+        // Knot span by knot span both go alike.
+        let span = (3..8).rev().find(|span| knots[*span] <= u).unwrap();
+        let share = (u - knots[span]) / (knots[span + 1] - knots[span]);
+        let (from, to) = (printed.knots[span], printed.knots[span + 1]);
+        let place = spline_at(&printed.knots, &controls, from + (to - from) * share);
+        words[..3].copy_from_slice(place.as_slice());
+        let (tip, _) = bench.reference.forward(&bench.joints(&words));
+        worst = worst.max((tip - spline_at(&knots, &points, u)).norm());
+    }
+    println!("spline to {last}: {worst} mm off, at most {bound} certified");
+    assert!(worst <= bound && bound < 0.006, "{worst} {bound}");
+    let (chords, _) = posted(&bench, 3, ALL, &cl);
+    assert!(chords.good(&cl).report.unwrap().blocks > 50);
 }

@@ -1,0 +1,143 @@
+//! Splines of the CL file that stay splines: one block, its control points and knots printed and certified.
+
+use super::along::Following;
+use super::{Block, Blocks, Follow, Leg, MotionKind, Nominal, Reason, Surroundings, Travels};
+use crate::accuracy::{Bound, Node, Placer, WordFrame};
+use crate::configuration::pose;
+use crate::curve::{CurveWords, PrintedCurve};
+use crate::program::{Command, Motion, Spline};
+use crate::stream::Flow;
+use nalgebra::Vector3;
+use post_machine::kinematics::Joints;
+use post_machine::kinematics::travel::{AT_END, passed};
+
+/// The last knot as it is printed: any multiple of the knots is the same spline, and so they have three digits more.
+const LAST_KNOT: f64 = 1000.0;
+
+/// A spline as it is printed.
+struct SplineBlock {
+    node: Box<Node>,
+    curve: PrintedCurve,
+    bound: Bound,
+}
+
+impl Blocks<'_> {
+    /// Makes a block along a spline of the control point, if that can be.
+    pub(super) fn keep_spline(
+        &mut self,
+        placer: &Placer,
+        frame: &WordFrame,
+        following: &Following,
+        spline: &Spline,
+        to: &mut Surroundings<'_, '_>,
+    ) -> bool {
+        let end = &following.curve.end;
+        let motion = Motion {
+            tip: spline.end(),
+            ..*end
+        };
+        let Some(block) = self.spline_block(placer, frame, spline, &motion) else {
+            return false;
+        };
+        // Its chords are shorter by less than a thousandth of what they stray.
+        let ways = following.moves.iter().scan(spline.points()[0], |at, next| {
+            let way = (next.motion.tip - *at).norm();
+            *at = next.motion.tip;
+            Some(way)
+        });
+        let way: f64 = ways.sum();
+        let leg = Leg {
+            line: following.line,
+            motion: &motion,
+            loose: false,
+            reason: Reason::Point,
+        };
+        // Whatever its direction, no axis goes faster than the tool.
+        let mut follow = Follow::default();
+        for (joint, slide) in frame.slides() {
+            let minutes = way * slide.norm() / self.machine.axes[*joint].max_feed;
+            if minutes > follow.minutes {
+                follow = Follow {
+                    minutes,
+                    joint: *joint,
+                };
+            }
+        }
+        let made = Block {
+            kind: MotionKind::Spline,
+            way,
+            nominal: Nominal::of(motion.pace, way, Travels::default),
+            follow,
+            ..self.block(&leg, &block.node, block.bound)
+        };
+        self.largest.keep(&leg, block.bound);
+        let command = Command::Curve(Box::new(block.curve));
+        to.out.command(leg.line, command);
+        to.out.push(Flow::Point(made));
+        self.spare = self.last.replace(block.node);
+        self.on_part = true;
+        true
+    }
+
+    fn spline_block(
+        &self,
+        placer: &Placer,
+        frame: &WordFrame,
+        spline: &Spline,
+        end: &Motion,
+    ) -> Option<SplineBlock> {
+        let last = self.last.as_deref()?;
+        // No dialect declares splines inside a tilted plane.
+        if self.compensating || self.keeps.tilted {
+            return None;
+        }
+        let node = placer.settled(pose(end), 1.0, &last.trace.joints).ok()?;
+        let wanted = spline.clone().placed(|point| frame.point(point));
+        let inner = &wanted.points()[1..wanted.points().len() - 1];
+        let mut words = last.words[..placer.count()].to_vec();
+        let mut points: Vec<Vector3<f64>> = vec![placer.printed(last)?];
+        for point in inner {
+            let (printed, mm) = placer.printed_point(*point)?;
+            words.extend_from_slice(&placer.with_point(last, printed)[..placer.count()]);
+            points.push(mm);
+        }
+        words.extend_from_slice(&node.words[..placer.count()]);
+        points.push(placer.printed(&node)?);
+        let knots = wanted.knots().iter();
+        let knots: Option<Vec<f64>> = knots
+            .map(|knot| placer.printed_number(knot * LAST_KNOT))
+            .collect();
+        let printed = wanted.about(points).over(knots?)?;
+        // Knot span by knot span both are cubics, whose difference lies in the hull of that of their control points.
+        let cubics = printed.cubics().zip(wanted.cubics());
+        let off = cubics
+            .flat_map(|(printed, wanted)| [0, 1, 2, 3].map(|at| (printed[at] - wanted[at]).norm()))
+            .fold(0.0, f64::max);
+        let farthest = last.axis_error.max(node.axis_error);
+        let bound = self.kept_bound(placer, off, farthest, 0.0, [last, &node])?;
+        // No axis goes beyond the hulls.
+        let between: Vec<Joints> = printed
+            .cubics()
+            .flat_map(|cubic| [cubic[1], cubic[2], cubic[3]])
+            .map(|place| frame.joints(place))
+            .collect();
+        let inside = |joints: &Joints| {
+            frame.slides().iter().all(|(joint, _)| {
+                passed(self.machine.axes[*joint].travel, joints[*joint], AT_END).is_none()
+            })
+        };
+        between.iter().all(inside).then(|| SplineBlock {
+            curve: PrintedCurve {
+                words: CurveWords::Spline {
+                    degree: 3,
+                    weights: vec![1.0; printed.points().len()],
+                    knots: printed.knots().to_vec(),
+                    points: words,
+                },
+                between,
+            },
+            bound,
+            node: Box::new(node),
+        })
+    }
+}

@@ -1,0 +1,125 @@
+//! Tool calls and the spindle, whose speed belongs to them.
+
+use post_plugin::{NumberStyle, Spindle, SpindleSense, ascii};
+
+use crate::{Heidenhain, Held};
+
+impl Heidenhain {
+    /// The tool call that waits, with its speed if one is known, and what waited for it.
+    pub(crate) fn call_tool(&mut self, speed: Option<f64>, out: &mut String) -> Result<(), String> {
+        let Some(tool) = self.tool.take() else {
+            return Ok(());
+        };
+        self.block.word("TOOL CALL").word(&tool);
+        self.block.word(self.axes.depth());
+        if let Some(speed) = speed {
+            self.block.number("S", speed, 0, NumberStyle::default());
+        }
+        self.block.end(out);
+        self.speed.forget();
+        self.spindle_on.forget();
+        self.sense = None;
+        self.rpm = None;
+        self.axes.forget();
+        for held in std::mem::take(&mut self.held) {
+            match held {
+                Held::Preselect(number) => self.preselect(number, out)?,
+                Held::Coolant(coolant) => self.cool(coolant, out)?,
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn preselect(&mut self, number: u32, out: &mut String) -> Result<(), String> {
+        let known = self.names.iter().find(|(known, _)| *known == number);
+        let name = known.map_or("", |(_, name)| name);
+        let tool = tool_call(number, name, self.tool_names)?;
+        self.block.line(&format!("TOOL DEF {tool}"), out);
+        Ok(())
+    }
+
+    pub(crate) fn turn(&mut self, spindle: Spindle, out: &mut String) -> Result<(), String> {
+        let (rpm, sense) = match spindle {
+            Spindle::On { rpm, sense } => (rpm, sense),
+            Spindle::Off => {
+                self.block.line("M5", out);
+                self.spindle_on.set(false);
+                self.sense = None;
+                self.rpm = None;
+                return Ok(());
+            }
+            Spindle::Orient => {
+                return Err("the oriented stop is a cycle of the machine builder's".to_owned());
+            }
+        };
+        if self.tool.is_some() {
+            self.call_tool(Some(rpm), out)?;
+            self.speed.set(rpm);
+        } else if self.speed.set(rpm) {
+            // A tool call, even one for the speed alone, is not allowed under TCP.
+            let tcp = self.tcp && !self.tcp_active.is(false);
+            if tcp {
+                self.own(&self.tcp_off.clone(), out);
+            }
+            self.block.word("TOOL CALL");
+            self.block
+                .number("S", rpm, 0, NumberStyle::default())
+                .end(out);
+            if tcp {
+                self.own(&self.tcp_on.clone(), out);
+            }
+        }
+        self.block.line(turns(sense), out);
+        self.spindle_on.set(true);
+        self.sense = Some(sense);
+        self.rpm = Some(rpm);
+        Ok(())
+    }
+
+    /// A stop switches spindle and coolant off: both are on again before the tool moves.
+    pub(crate) fn halt(&mut self, word: &str, out: &mut String) {
+        self.block.line(word, out);
+        if let Some(sense) = self.sense {
+            self.block.line(turns(sense), out);
+        }
+        if let Some(flowing) = self.flowing {
+            self.coolant_codes(flowing, out);
+        }
+    }
+
+    /// Spindle and coolant off, unless they are.
+    pub(crate) fn stop(&mut self, out: &mut String) {
+        if self.spindle_on.set(false) {
+            self.block.line("M5", out);
+        }
+        if !self.coolant_on.is(false) {
+            self.end_coolant(out);
+        }
+    }
+}
+
+pub(crate) fn turns(sense: SpindleSense) -> &'static str {
+    match sense {
+        SpindleSense::Clockwise => "M3",
+        SpindleSense::CounterClockwise => "M4",
+    }
+}
+
+/// A tool as a call has it: its number, or with `names` its name, if it has one.
+///
+/// # Errors
+/// If the control has no such names.
+pub(crate) fn tool_call(number: u32, name: &str, names: bool) -> Result<String, String> {
+    if !names || name.is_empty() {
+        return Ok(number.to_string());
+    }
+    let plain = ascii(name).to_ascii_uppercase();
+    let known = |letter: char| letter.is_ascii_alphanumeric() || "#$%&.,-_".contains(letter);
+    if plain.len() > 32 || !plain.chars().all(known) {
+        return Err(format!(
+            "`{name}` is no name of a tool of this control (32 letters, digits and #$%&.,-_): rename it, or leave out \
+             tool_names"
+        ));
+    }
+    Ok(format!("\"{plain}\""))
+}

@@ -1,0 +1,178 @@
+//! What events become that the engine has no words for.
+
+use post_iso::{Control, Engine};
+use post_plugin::{Drilling, Event, Feed, Spindle};
+
+use crate::Siemens;
+use crate::table::is_work_offset;
+use crate::text::{callable, called, message};
+
+impl Siemens {
+    /// True if it was written; else the engine writes it.
+    pub(crate) fn put(
+        &mut self,
+        event: &Event<'_>,
+        engine: &mut Engine,
+        out: &mut String,
+    ) -> Result<bool, String> {
+        if !matches!(event, Event::CyclePoint { .. } | Event::Comment { .. }) {
+            self.end_call(engine, out);
+        }
+        match *event {
+            Event::Start => {
+                engine.motion.axes.shorter_way("=DC(", ")");
+                if !self.header.is_empty() {
+                    engine.bare(&self.header, out);
+                }
+                self.plane.set("G17");
+                self.tcp_active.set(false);
+                return Ok(false);
+            }
+            Event::Linear { feed, .. } if self.surface && !matches!(feed, Feed::PerMinute(_)) => {
+                return Err(format!(
+                    "a feed of {feed} would end the constant cutting speed (G961)"
+                ));
+            }
+            Event::Rapid { words, tool } if self.by_vector() => {
+                self.go(words, tool, None, engine, out)
+            }
+            Event::Linear { words, tool, feed } if self.by_vector() => {
+                self.go(words, tool, Some(feed), engine, out);
+            }
+            Event::Rapid { words, .. } | Event::Linear { words, .. } => {
+                self.stand(words);
+                return Ok(false);
+            }
+            Event::Position {
+                words,
+                feed,
+                plane_first,
+                ..
+            } => {
+                self.position(words, feed, plane_first, engine, out)?;
+            }
+            Event::Park { .. } => {
+                self.length.set(false);
+                return Ok(false);
+            }
+            Event::Retract { .. } => {
+                self.length.set(false);
+                engine.motion.settle(out);
+                if self.rotary && self.tcp_active.set(false) {
+                    engine.line(&self.tcp_off, out);
+                }
+                return Ok(false);
+            }
+            Event::ToolChange {
+                number,
+                register,
+                name,
+                ..
+            } if self.tool_names && !name.is_empty() => {
+                self.length.forget();
+                engine.change(number, &called(name)?, register, name, out);
+            }
+            Event::ToolChange { .. } => {
+                self.length.forget();
+                return Ok(false);
+            }
+            Event::Preselect { number } => {
+                let name = self
+                    .names
+                    .iter()
+                    .find(|(known, name)| *known == number && !name.is_empty());
+                match name {
+                    Some((_, name)) if self.tool_names => engine.line(&called(name)?, out),
+                    _ => return Ok(false),
+                }
+            }
+            Event::Spindle(spindle) => {
+                self.surface = false;
+                self.turning = match spindle {
+                    Spindle::On { rpm, sense } => Some((rpm, sense)),
+                    Spindle::Off | Spindle::Orient => None,
+                };
+                return Ok(false);
+            }
+            Event::SurfaceSpeed { .. } => {
+                engine.write(event, out)?;
+                // G961 leaves the feed a minute.
+                engine.motion.forget_feed();
+                engine.motion.feeds_per_minute();
+                self.surface = true;
+                self.turning = None;
+            }
+            Event::Compensate(_) => {
+                self.upright(engine, out);
+                return Ok(false);
+            }
+            Event::Arc { .. } => self.arc(event, engine, out)?,
+            Event::Cycle { .. } => self.drilling = Drilling::of(event),
+            Event::CyclePoint { words, .. } => self.drill(words, engine, out)?,
+            Event::CycleOff => self.drilling = None,
+            Event::Plane {
+                origin,
+                angles,
+                words,
+                ..
+            } => {
+                // The cycle asks for a tool with its length.
+                self.length_on(engine, out);
+                engine.line(&self.swivel.plane(origin, angles, words), out);
+                self.tilted = true;
+            }
+            Event::PlaneOff => {
+                engine.line("CYCLE800()", out);
+                self.tilted = false;
+            }
+            Event::Smoothing {
+                tolerance,
+                axis_tolerance,
+            } => {
+                engine.line(&self.smoothing.on(tolerance, axis_tolerance), out);
+            }
+            Event::SmoothingOff => engine.line(self.smoothing.off(), out),
+            Event::Operation { name } => {
+                if !name.is_empty() {
+                    engine.remark(name, out);
+                }
+                if self.messages {
+                    engine.line(&message(name), out);
+                }
+            }
+            Event::OperationEnd => {}
+            Event::Message { text } => engine.line(&message(text), out),
+            Event::WorkOffset { number, .. } => {
+                self.offset = (Self::TABLE.offset.word)(number);
+                return Ok(false);
+            }
+            Event::Tcp { on } => {
+                let line = if on { &self.tcp_on } else { &self.tcp_off };
+                engine.line(line, out);
+                self.tcp_active.set(on);
+                engine.motion.axes.forget();
+            }
+            Event::Subprogram { number, name, .. } => {
+                if number.is_none() {
+                    callable(name)?;
+                }
+                self.forget();
+                return Ok(false);
+            }
+            Event::Probe { words, feed, .. } => {
+                engine.motion.block.word("MEAS=1");
+                engine.motion.arrive(words, None, Some(feed), "", out);
+                engine.motion.moved_by_line();
+            }
+            Event::Literal { text } => {
+                if text.split_whitespace().any(is_work_offset) {
+                    self.offset = None;
+                }
+                self.forget();
+                return Ok(false);
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+}

@@ -1,0 +1,202 @@
+//! Text of one's own in programs, several programs of one CL file, the setup sheet.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::{Run, command, run};
+
+const CL: &str = "UNITS/MM
+TOOL PATH/ROUGH,TOOL,MILL10
+TLDATA/MILL,10.0,0.0,75.0,0.0,0.0
+LOAD/TOOL,1
+SPINDL/RPM,3000,CLW
+COOLNT/FLOOD
+RAPID
+GOTO/0,0,50
+FEDRAT/600,MMPM
+GOTO/0,0,15
+END-OF-PATH
+TOOL PATH/FINISH,TOOL,MILL6
+TLDATA/MILL,6.0,0.0,75.0,0.0,0.0
+LOAD/TOOL,2
+SPINDL/RPM,5000,CLW
+RAPID
+GOTO/0,0,50
+FEDRAT/300,MMPM
+GOTO/20,0,14
+END-OF-PATH
+TOOL PATH/CHAMFER,TOOL,MILL6
+RAPID
+GOTO/0,0,50
+FEDRAT/200,MMPM
+GOTO/20,0,13
+END-OF-PATH
+";
+
+const TEXT: &str = r#"extends = "vmc"
+[program]
+header = ["({{ program.name }})", "{% for tool in program.tools %}", "(T{{ tool.number }} {{ tool.name }} D{{ tool.diameter|fixed(1) }})", "{% endfor %}"]
+between_tools = "M1"
+preselect = true
+extension = "eia"
+"#;
+
+fn post(folder: &Path, machine: &str, arguments: &[&str], input: &str) -> Run {
+    let file = folder.join("mine.toml");
+    fs::write(&file, machine).unwrap();
+    let mut all = vec!["-q", "-m", "mine.toml", "--tool-length", "100"];
+    all.extend(arguments);
+    run(command().current_dir(folder).args(all), input.as_bytes())
+}
+
+#[track_caller]
+fn good(done: Run) -> String {
+    assert_eq!(done.code, 0, "{}", done.err);
+    done.out
+}
+
+/// What is known ahead is known of standard input too.
+#[test]
+fn a_header_lists_the_tools_of_a_file_and_of_standard_input() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.cls"), CL).unwrap();
+    good(post(folder.path(), TEXT, &["part.cls"], ""));
+    let written = fs::read_to_string(folder.path().join("part.eia")).unwrap();
+    let piped = good(post(folder.path(), TEXT, &["-o", "-", "-"], CL));
+    for (program, name) in [(&written, "part"), (&piped, "PROGRAM")] {
+        let tools = format!("({name})\n(T1 MILL10 D10.0)\n(T2 MILL6 D6.0)\n");
+        assert!(program.contains(&tools), "{program}");
+        assert_eq!(program.matches("\nM1\n").count(), 1, "{program}");
+        assert!(
+            program.contains("T1 M6\nT2\n") && program.contains("T2 M6\nS5000"),
+            "{program}"
+        );
+    }
+}
+
+/// Each program has a frame and the state of its own: tool, spindle and coolant as the lines before it left them.
+#[test]
+fn operations_and_tools_become_programs_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.cls"), CL).unwrap();
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let machine = "extends = \"vmc\"\n";
+    let with = [
+        "part.cls",
+        "-o",
+        "a.nc",
+        "--split",
+        "operations",
+        "--number",
+        "100",
+        "--summary",
+        "a.json",
+    ];
+    good(post(folder.path(), machine, &with, ""));
+    let programs = ["a-1.nc", "a-2.nc", "a-3.nc"].map(read);
+    for (program, [number, name, tool, spindle]) in programs.iter().zip([
+        ["O0100", "(ROUGH)", "T1 M6", "S3000 M3"],
+        ["O0101", "(FINISH)", "T2 M6", "S5000 M3"],
+        ["O0102", "(CHAMFER)", "T2 M6", "S5000 M3"],
+    ]) {
+        for word in [number, name, tool, spindle, "M8", "G54", "M30"] {
+            assert!(program.contains(word), "{word}\n{program}");
+        }
+        assert_eq!(program.matches(" M6").count(), 1, "{program}");
+        assert_eq!(program.matches("G43").count(), 1, "{program}");
+    }
+    let summary: serde_json::Value = serde_json::from_str(&read("a.json")).unwrap();
+    assert_eq!(summary.as_array().unwrap().len(), 3);
+
+    good(post(
+        folder.path(),
+        TEXT,
+        &["part.cls", "-o", "b.nc", "--split", "tools"],
+        "",
+    ));
+    let [first, second] = ["b-1.nc", "b-2.nc"].map(read);
+    assert!(
+        first.contains("(T1 MILL10") && !first.contains("T2"),
+        "{first}"
+    );
+    assert!(
+        second.contains("(T2 MILL6") && !second.contains("T1 "),
+        "{second}"
+    );
+    assert!(
+        second.contains("FINISH") && second.contains("CHAMFER"),
+        "{second}"
+    );
+    assert!(!folder.path().join("b-3.nc").exists());
+
+    let none = post(
+        folder.path(),
+        machine,
+        &["-o", "-", "part.cls", "--split", "tools"],
+        "",
+    );
+    assert!(
+        none.code == 1 && none.err.contains("standard output takes one"),
+        "{}",
+        none.err
+    );
+}
+
+/// The sheet is written with the program, or not at all.
+#[test]
+fn a_setup_sheet_says_what_is_to_be_set_up() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let cl = CL.replace("MILL6", "MILL<6>");
+    fs::write(folder.path().join("part.cls"), &cl).unwrap();
+    for sheet in ["sheet.md", "sheet.html"] {
+        good(post(
+            folder.path(),
+            TEXT,
+            &["part.cls", "--setup-sheet", sheet],
+            "",
+        ));
+    }
+    let markdown = read("sheet.md");
+    for part in [
+        "# Setup: part.cls",
+        "| 2 | 2 | MILL&lt;6> | 100.000 | 6.000 |",
+        "| X | 0.000 to 20.000 |",
+        "Z 13.000 to 50.000 mm",
+    ] {
+        assert!(markdown.contains(part), "{part}\n{markdown}");
+    }
+    assert!(read("sheet.html").contains("<td>MILL&lt;6&gt;</td>"));
+
+    fs::write(
+        folder.path().join("bad.cls"),
+        CL.replace("GOTO/20,0,14", "GOTO/20000,0,14"),
+    )
+    .unwrap();
+    let bad = post(
+        folder.path(),
+        TEXT,
+        &["bad.cls", "--setup-sheet", "bad.md"],
+        "",
+    );
+    assert_eq!(bad.code, 1, "{}", bad.err);
+    assert!(!folder.path().join("bad.md").exists() && !folder.path().join("bad.eia").exists());
+}
+
+/// A slip in a template is underlined where it stands, and nothing is posted.
+#[test]
+fn a_template_with_a_slip_shows_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "extends = \"vmc\"\n[program]\nfooter = [\"(END)\", \"({{ program.nmae }})\"]\n";
+    let done = post(folder.path(), machine, &["-o", "-", "-"], CL);
+    assert_eq!(done.code, 1);
+    for part in [
+        "error[program-text]",
+        "mine.toml:3",
+        "program.nmae",
+        "undefined",
+    ] {
+        assert!(done.err.contains(part), "{part}\n{}", done.err);
+    }
+    assert_eq!(done.out, "");
+}

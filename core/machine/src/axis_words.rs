@@ -159,7 +159,12 @@ impl Words {
     /// The words inside a tilted plane: the linear ones are the tip in its frame, whoever keeps the tip outside. None
     /// where they are not just X, Y and Z.
     pub fn in_plane(&self, plane: TiltedPlane) -> Option<Self> {
-        self.cartesian.then(|| Self {
+        let coordinate = |wanted: usize| {
+            let mut words = self.linear.iter();
+            words.any(|word| word.coordinate == wanted)
+        };
+        let whole = self.linear.len() == 3 && (0..3).all(coordinate);
+        whole.then(|| Self {
             plane: Some(plane),
             ..self.clone()
         })

@@ -49,11 +49,6 @@ impl Planes {
         (!same).then_some(axis.map(|_| Vector3::zeros()))
     }
 
-    /// The control may have been told a plane.
-    pub(super) fn on(&self) -> bool {
-        self.axis.is_some()
-    }
-
     fn at(&mut self, line: u64) -> Option<&Still> {
         let stretches = &self.ahead.still;
         while stretches

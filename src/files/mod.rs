@@ -5,6 +5,7 @@
 
 mod atomic_file;
 mod cl_input;
+mod cl_source;
 mod file_fault;
 mod file_id;
 mod naming;
@@ -23,6 +24,7 @@ use target::{Target, refuse_losses};
 
 pub use atomic_file::{AtomicFile, NullSink};
 pub use cl_input::ClInput;
+pub use cl_source::ClSource;
 pub use file_fault::FileFault;
 pub use path_arg::PathArg;
 pub use target::Role;

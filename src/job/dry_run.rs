@@ -3,7 +3,7 @@
 use post_host::{Finder, OpenedDialect};
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Batch, DialectSession, Format, WriteFault};
+use post_plugin::{Batch, Capabilities, DialectSession, Format, WriteFault};
 use post_posting::program::ToldSpindle;
 use post_posting::report::Report;
 use post_posting::{Observer, Post};
@@ -70,6 +70,8 @@ impl<'a> DryRun<'a> {
         }
         let mut dialect = Rounding::new(dialect, self.exact);
         let mut sink = NullSink;
+        // What a template asks for may not be known here, and nobody reads it.
+        let machine = &machine.without_text();
         let mut post = Post::new(machine, posting, &mut dialect, &mut model, &mut sink)
             .map_err(|finding| *finding)?;
         if let Some(watch) = watch {
@@ -100,6 +102,16 @@ impl Rounding {
 }
 
 impl DialectSession for Rounding {
+    /// What stands between the moves; the moves are looked at as such, whatever the dialect makes of them.
+    fn capabilities(&self) -> Capabilities {
+        const BETWEEN: Capabilities = Capabilities::WORK_OFFSET
+            .and(Capabilities::OFFSETS)
+            .and(Capabilities::SUBPROGRAM)
+            .and(Capabilities::SURFACE_SPEED)
+            .and(Capabilities::SMOOTHING);
+        Capabilities::from_bits(self.dialect.capabilities().bits() & BETWEEN.bits())
+    }
+
     fn format(&self) -> &Format {
         &self.format
     }

@@ -1,6 +1,7 @@
 //! A job as the flags mean it: a CL file, a machine with its settings, and the plugins that the machine asks for.
 
 mod dry_run;
+mod look_ahead;
 pub mod machine_files;
 pub mod other_dialect;
 pub mod plugin_finder;
@@ -8,21 +9,25 @@ mod plugin_folders;
 pub mod unused_options;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use post_grammar::text::as_remark;
 use post_grammar::{ReadError, Reader};
 use post_host::Finder;
 use post_machine::check::Check;
 use post_machine::description::{Machine, Setting};
+use post_plugin::{Capabilities, DialectSession};
+use post_posting::ahead::{Ahead, AheadPass};
 use post_posting::program::Reading;
 use post_posting::{Job, Post};
 
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
-use crate::files::{ClInput, FileFault, NullSink, PathArg};
+use crate::files::{ClInput, ClSource, FileFault, NullSink, PathArg};
 use crate::terminal::Progress;
 pub use dry_run::DryRun;
+pub use look_ahead::look_ahead;
 
 /// The machine with all settings of the command line, and `more` after them.
 pub fn machine(arguments: &JobArguments, more: &[Setting]) -> Result<Machine, Failure> {
@@ -97,7 +102,39 @@ pub fn posting(arguments: &JobArguments, file: &str) -> Job {
             ..Reading::default()
         },
         tool_length: arguments.tool_length,
-        trust_model: false,
+        ..Job::default()
+    }
+}
+
+/// What a first pass over the CL file finds out where the program depends on it: `[control] planes`, and a dialect that
+/// writes them.
+pub fn ahead(
+    arguments: &JobArguments,
+    source: &mut ClSource,
+    machine: &Machine,
+    dialect: &impl DialectSession,
+) -> Result<Option<Arc<Ahead>>, Failure> {
+    if !machine.control.planes || !dialect.capabilities().has(Capabilities::PLANE) {
+        return Ok(None);
+    }
+    let input = source.open()?;
+    let reading = posting(arguments, &input.name).reading;
+    let mut pass = AheadPass::new(machine, reading);
+    let mut reader = Reader::new(input.bytes);
+    loop {
+        match reader.next_record() {
+            Ok(Some(record)) => pass.record(&record),
+            Ok(None) => return Ok(Some(Arc::new(pass.finish()))),
+            // The program is not made then, and says why.
+            Err(ReadError::Syntax(_)) => {}
+            Err(ReadError::Io(error)) => {
+                return Err(FileFault::Read {
+                    name: input.name,
+                    error,
+                }
+                .into());
+            }
+        }
     }
 }
 

@@ -4,13 +4,14 @@ use std::env::consts::DLL_SUFFIX;
 use std::path::{Path, PathBuf};
 
 use post_host::{
-    Finder, GivenValue, OpenedDialect, OpenedModel, Plugin, PluginFault, ProgramSetup, ProgramWord,
-    Reason,
+    Finder, GivenValue, OpenedDialect, OpenedModel, Plugin, PluginFault, ProgramAhead,
+    ProgramSetup, ProgramTool, ProgramWord, Reason,
 };
 use post_machine::axis_words;
 use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
 use post_machine::diagnostic::{self, Diagnostic, Place, nearest};
 use post_plugin::{Accuracy, Tolerance, Units};
+use post_posting::LookedAhead;
 use post_posting::report::PluginUse;
 
 use super::plugin_folders;
@@ -55,6 +56,17 @@ pub fn dialect(
     program: &str,
     cl_file: Option<&PathArg>,
 ) -> Result<(OpenedDialect, PluginUse), Vec<Diagnostic>> {
+    dialect_knowing(finder, machine, program, cl_file, None)
+}
+
+/// [`dialect`] with what a first pass over the CL file found.
+pub fn dialect_knowing(
+    finder: &Finder,
+    machine: &Machine,
+    program: &str,
+    cl_file: Option<&PathArg>,
+    ahead: Option<&LookedAhead>,
+) -> Result<(OpenedDialect, PluginUse), Vec<Diagnostic>> {
     let control = &machine.control;
     let fault = |fault: PluginFault| {
         let place = refused_axis(machine, &fault).or_else(|| control.dialect_place.clone());
@@ -86,11 +98,7 @@ pub fn dialect(
             })
             .collect(),
         options: given(&control.options),
-        cl_file: cl_file
-            .and_then(PathArg::path)
-            .and_then(Path::file_name)
-            .map(|name| name.to_string_lossy().into_owned())
-            .unwrap_or_default(),
+        cl_file: cl_file.map(cl_name).unwrap_or_default(),
         accuracy: Some(Accuracy {
             cut: Tolerance {
                 tip: machine.accuracy.tolerance,
@@ -98,11 +106,33 @@ pub fn dialect(
             },
             rapid: machine.accuracy.rapid_tolerance,
         }),
-        // The input is read once, as it may be a pipe.
-        ahead: None,
+        ahead: ahead.map(|ahead| ProgramAhead {
+            tools: ahead
+                .tools()
+                .into_iter()
+                .map(|tool| ProgramTool {
+                    number: tool.number,
+                    name: tool.name.clone(),
+                    length: tool.length,
+                    diameter: tool.diameter,
+                    corner_radius: tool.corner_radius,
+                })
+                .collect(),
+            extents: ahead.extents,
+            time: ahead.time_s,
+        }),
     };
     let opened = plugin.dialect(&setup).map_err(fault)?;
     Ok((opened, used(&plugin)))
+}
+
+/// The CL file's name without its folder; empty for standard input.
+pub fn cl_name(cl_file: &PathArg) -> String {
+    cl_file
+        .path()
+        .and_then(Path::file_name)
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default()
 }
 
 /// Opens the error model of a machine.

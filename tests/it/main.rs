@@ -22,6 +22,7 @@ mod memory;
 mod messages;
 mod names;
 mod new;
+mod order;
 mod place;
 mod plugins;
 mod readiness;

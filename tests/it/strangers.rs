@@ -300,14 +300,14 @@ fn another_dialect_for_one_run() {
     assert!(short.err.contains(message), "{}", short.err);
 
     // Options of the machine's own stay behind, and it is said which.
-    let options = ["--set", "control.fanuc.block_numbers=true"];
+    let options = ["--set", "control.fanuc.block_numbers=\"all\""];
     let told = post_as(&[&options, &["--dialect", "linuxcnc"][..]].concat());
     assert_eq!(told.code, 0, "{}", told.err);
     let message = "its options are not carried over (block_numbers)";
     assert!(told.err.contains(message), "{}", told.err);
     assert!(!told.out.contains("N10 "), "{}", told.out);
     // Those of the other one are used.
-    let options = ["--set", "control.linuxcnc.block_numbers=true"];
+    let options = ["--set", "control.linuxcnc.block_numbers=\"all\""];
     let used = post_as(&[&options, &["--dialect", "linuxcnc"][..]].concat());
     assert!(used.out.contains("N10 "), "{}", used.out);
 

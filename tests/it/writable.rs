@@ -175,7 +175,7 @@ fn lines_of_the_users_own_are_numbered_and_may_be_several() {
     let machine = folder.path().join("own.toml");
     let options = |retract: &str| {
         format!(
-            "extends = \"vmc\"\n[control]\ninsert = \"literal\"\n[control.fanuc]\nblock_numbers = true\nretract = {retract}\n"
+            "extends = \"vmc\"\n[control]\ninsert = \"literal\"\n[control.fanuc]\nblock_numbers = \"all\"\nretract = {retract}\n"
         )
     };
     let cl = MOVES.replacen(

@@ -7,6 +7,7 @@ use post_plugin::Format;
 
 use crate::description::{Machine, OutputUnits, Tcp};
 use crate::kinematics::{Joints, MAX_AXES, Solver};
+use crate::tilted_plane::TiltedPlane;
 
 /// Values of the words of a block, in the order in which they are written.
 pub type WordValues = [f64; MAX_AXES];
@@ -23,6 +24,8 @@ pub struct Words {
     zero: Joints,
     /// The linear words are X, Y and Z, one each.
     cartesian: bool,
+    /// The tilted plane whose coordinates the linear words are.
+    plane: Option<TiltedPlane>,
 }
 
 /// One word.
@@ -149,7 +152,22 @@ impl Words {
             rotary,
             linear,
             zero: [0.0; MAX_AXES],
+            plane: None,
         }
+    }
+
+    /// The words inside a tilted plane: the linear ones are the tip in its frame, whoever keeps the tip outside. None
+    /// where they are not just X, Y and Z.
+    pub fn in_plane(&self, plane: TiltedPlane) -> Option<Self> {
+        let coordinate = |wanted: usize| {
+            let mut words = self.linear.iter();
+            words.any(|word| word.coordinate == wanted)
+        };
+        let whole = self.linear.len() == 3 && (0..3).all(coordinate);
+        whole.then(|| Self {
+            plane: Some(plane),
+            ..self.clone()
+        })
     }
 
     /// Number of words.
@@ -189,20 +207,28 @@ impl Words {
         }
     }
 
-    /// Where the control keeps the tip: writes `tip` to `values` and gives the printed tip, which is where the
-    /// control brings it. None where the words are axis positions: [`Words::print_linear`].
+    /// Where the control keeps the tip, and in a tilted plane: writes `tip` (mm, part frame) to `values` and gives the
+    /// printed tip, which is where the control brings it. None where the words are axis positions:
+    /// [`Words::print_linear`].
     #[inline]
     pub fn print_tip(&self, tip: Vector3<f64>, values: &mut WordValues) -> Option<Vector3<f64>> {
-        if self.tcp == Tcp::Post {
-            return None;
+        match &self.plane {
+            Some(plane) => Some(plane.into_part(self.print_point(plane.into_plane(tip), values))),
+            None if self.tcp == Tcp::Post => None,
+            None => Some(self.print_point(tip, values)),
         }
+    }
+
+    /// Writes a point to `values`; gives the printed one.
+    #[inline]
+    fn print_point(&self, tip: Vector3<f64>, values: &mut WordValues) -> Vector3<f64> {
         let mut printed = tip;
         for word in &self.linear {
             let value = word.printed(tip[word.coordinate] * word.per_unit);
             values[word.place] = value;
             printed[word.coordinate] = value * word.unit;
         }
-        Some(printed)
+        printed
     }
 
     /// Puts the linear axes on printed numbers and writes them to `values`.

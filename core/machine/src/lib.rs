@@ -2,7 +2,8 @@
 //!
 //! [`description`] reads the file, [`kinematics`] derives forward and inverse solutions from its chain,
 //! [`axis_words`] turns axis values into the words of a block and back, [`check`] derives what the machine's
-//! builder can compare, and [`place`] where a part can sit. [`diagnostic`] is how every storey of the core says what is wrong.
+//! builder can compare, [`place`] where a part can sit, and [`tilted_plane`] how
+//! a control is told a plane. [`diagnostic`] is how every storey of the core says what is wrong.
 //! There is no input or output here, no unsafe code, no CL record and no dialect's name.
 
 pub mod axis_words;
@@ -12,3 +13,5 @@ pub mod diagnostic;
 mod halton;
 pub mod kinematics;
 pub mod place;
+pub mod program_text;
+pub mod tilted_plane;

@@ -73,8 +73,10 @@ pub(crate) struct Keeps {
     /// What the machine file says.
     pub arcs: Arcs,
     writes: Capabilities,
-    /// Beside those of the plane, what an arc asks of the dialect.
-    needs: Capabilities,
+    /// The control keeps the tip.
+    tcp: bool,
+    /// The words are those of a tilted plane.
+    pub tilted: bool,
 }
 
 impl Keeps {
@@ -82,10 +84,8 @@ impl Keeps {
         Self {
             arcs: machine.control.arcs,
             writes,
-            needs: match machine.control.tcp {
-                Tcp::Control => Capabilities::ARC_TCP,
-                Tcp::Post => Capabilities::NONE,
-            },
+            tcp: machine.control.tcp == Tcp::Control,
+            tilted: false,
         }
     }
 
@@ -100,7 +100,12 @@ impl Keeps {
             true => Capabilities::HELIX,
             false => Capabilities::NONE,
         };
-        self.writes.has(planes[axis] | helix | self.needs)
+        let needs = match (self.tilted, self.tcp) {
+            (true, _) => Capabilities::CYCLE_IN_PLANE,
+            (false, true) => Capabilities::ARC_TCP,
+            (false, false) => Capabilities::NONE,
+        };
+        self.writes.has(planes[axis] | helix | needs)
     }
 
     /// A radius that is written as an arc.
@@ -115,9 +120,15 @@ impl Keeps {
             && self.writes.has(Capabilities::ARC_RADIUS)
     }
 
-    /// Some arc may be written.
+    /// Some arc may be written, in a tilted plane or not.
     fn writes(&self) -> bool {
-        (0..3).any(|axis| self.about(axis, false))
+        [false, true].iter().any(|tilted| {
+            let keeps = Self {
+                tilted: *tilted,
+                ..*self
+            };
+            (0..3).any(|axis| keeps.about(axis, false))
+        })
     }
 
     /// Runs of points become arcs and lines.

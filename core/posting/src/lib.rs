@@ -17,12 +17,14 @@
 //! that grows with the file.
 
 pub mod accuracy;
+pub mod ahead;
 mod blocks;
 mod configuration;
 pub mod curve;
 mod emit;
 pub mod expand;
 mod findings;
+mod job_facts;
 mod mount_bounds;
 mod observer;
 mod post;
@@ -32,9 +34,11 @@ pub mod report;
 mod source_buffer;
 mod stream;
 mod timing;
+mod window;
 
 pub use blocks::{Block, MotionKind, Nominal, Reason, Time};
 pub use findings::MOST_FAULTS;
+pub use job_facts::{JobFacts, LookedAhead};
 pub use mount_bounds::MountBounds;
 pub use observer::{Observer, Output};
 pub use post::{Job, Post};

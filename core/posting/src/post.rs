@@ -1,22 +1,28 @@
 //! One run: records in, text and a report out.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use post_grammar::{Record, SyntaxFault};
 use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, DialectSession, ModelSession};
 
+use crate::ahead::Ahead;
 use crate::blocks::{Block, Blocks, Surroundings};
 use crate::configuration::{Configuration, Configured};
 use crate::emit::Emit;
 use crate::expand::{Expand, Line};
 use crate::findings::Findings;
+use crate::job_facts::JobFacts;
 use crate::observer::{Observer, Observers, Output};
 use crate::program::{Interpreter, Reading, Step};
 use crate::refusal;
 use crate::report::{AxisRange, Deviation, Report};
 use crate::stream::{BATCH, Flow, Outlet};
 use crate::timing::Timing;
+use crate::window::Window;
 
 /// How one CL file is to be posted.
 #[derive(Clone, Debug, Default)]
@@ -27,12 +33,19 @@ pub struct Job {
     pub tool_length: Option<f64>,
     /// Take the model's word over the certificate's.
     pub trust_model: bool,
+    /// What a first pass found out; without one the tool is taken to turn anywhere.
+    pub ahead: Option<Arc<Ahead>>,
+    /// What texts of the program can speak of.
+    pub facts: JobFacts,
+    /// Lines of the CL file that become the program, if not all: those before them set the state that it begins in.
+    pub lines: Option<Range<u64>>,
 }
 
 /// Posts one CL file, record by record: the stages, and what lies between them.
 pub struct Post<'a> {
     machine: &'a Machine,
     interpreter: Interpreter,
+    window: Option<Window>,
     /// Steps that the stages have not seen yet, each with its line.
     steps: Vec<(u64, Step)>,
     stages: Stages<'a>,
@@ -140,45 +153,37 @@ impl<'a> Post<'a> {
         model: &'a mut dyn ModelSession,
         output: &'a mut dyn Output,
     ) -> Result<Self, Box<Diagnostic>> {
-        // Half of the tolerance goes to chords of arcs and splines, half is left for the axes.
-        job.reading.chord_tolerance = machine.accuracy.tolerance / 2.0;
-        job.reading.turn = machine.turn;
-        job.reading.insert = machine.control.insert;
-        job.reading.compensation_on_centre = machine.control.compensation_on_centre;
-        job.reading.tool_length = machine.control.tool_length;
-        job.reading.rules.clone_from(&machine.word_rules);
-        job.reading.knife = machine.edge.is_some();
-        job.reading.print = machine.control.print;
-        job.reading.surface_speed = machine.spindle.surface_speed;
-        job.reading.smoothing.clone_from(&machine.smoothing);
+        job.reading = job.reading.on(machine);
         let format = dialect.format().clone();
         let fault = refusal::too_fine(machine, &format)
             .or_else(|| refusal::depth_counts_down(machine))
             .or_else(|| refusal::no_way_off(machine))
-            .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()));
+            .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()))
+            .or_else(|| refusal::no_instead(machine, dialect.capabilities()));
         if let Some(fault) = fault {
             return Err(fault.boxed());
         }
+        let writes = dialect.capabilities();
+        let planes = machine.control.planes && writes.has(Capabilities::PLANE);
+        let ahead = job.ahead.filter(|_| planes);
+        // A plane is come to in machine coordinates where a head turns.
+        let tcp_still = writes.has(Capabilities::TCP_STILL) && ahead.is_none();
         let stages = Stages {
-            expand: Expand::new(machine, job.reading.chord_tolerance, dialect.capabilities()),
+            expand: Expand::new(machine, job.reading.chord_tolerance, writes, ahead),
             lines: Vec::new(),
             timing: Timing::new(machine, &format)?,
-            configuration: Configuration::new(
-                machine,
-                &format,
-                job.tool_length,
-                dialect.capabilities().has(Capabilities::TCP_STILL),
-            )?,
+            configuration: Configuration::new(machine, &format, job.tool_length, tcp_still)?,
             configured: Vec::new(),
-            blocks: Blocks::new(machine, dialect.capabilities(), model, job.trust_model),
+            blocks: Blocks::new(machine, writes, &format, model, job.trust_model),
             made: Vec::new(),
             observers: Observers::default(),
-            emit: Emit::new(machine, dialect, output),
+            emit: Emit::new(machine, &job.facts, dialect, output),
         };
         Ok(Self {
             machine,
             findings: Findings::new(&job.reading.file),
             interpreter: Interpreter::new(job.reading),
+            window: job.lines.map(Window::new),
             steps: Vec::with_capacity(BATCH),
             stages,
             records: 0,
@@ -201,8 +206,14 @@ impl<'a> Post<'a> {
         self.findings.read(record, || {
             [waiting, stages.settled_line()].into_iter().flatten().min()
         });
-        self.interpreter
-            .record(record, &mut |step| steps.push((record.line, step)));
+        match &mut self.window {
+            None => self
+                .interpreter
+                .record(record, &mut |step| steps.push((record.line, step))),
+            Some(window) => self.interpreter.record(record, &mut |step| {
+                window.step(record.line, step, steps);
+            }),
+        }
         if self.interpreter.has_findings() {
             // What the stages find in the lines before comes before it.
             self.run();

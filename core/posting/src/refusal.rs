@@ -4,7 +4,7 @@ use crate::accuracy::{Refused, Stuck};
 use crate::program::Motion;
 use post_machine::axis_words;
 use post_machine::axis_words::Words;
-use post_machine::description::{Axis, Machine, Positions, Tcp};
+use post_machine::description::{Axis, Machine, Positions, Tcp, TextPlace};
 use post_machine::diagnostic::{Diagnostic, Extreme, Short};
 use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::travel::passed;
@@ -296,15 +296,32 @@ pub(crate) fn no_way(
     .help(help)
 }
 
+/// The machine file has text in the place of an event's, and the dialect cannot leave out what it writes for it.
+pub(crate) fn no_instead(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
+    let mut texts = machine.program.texts.iter();
+    let text = texts.find(|text| text.at.replaces())?;
+    (!writes.has(Capabilities::INSTEAD)).then(|| {
+        let message = format!(
+            "[program] {} of {}: the dialect {} cannot write other lines in the place of its own",
+            text.at.key(),
+            machine.name,
+            machine.control.dialect
+        );
+        Diagnostic::error("dialect", message)
+            .help("between_tools, after_tool_change and the others add lines, in every dialect")
+    })
+}
+
 /// The machine file asks the control to smooth, and the dialect has no words for it.
 pub(crate) fn no_smoothing(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
-    (machine.smoothing.any() && !writes.has(Capabilities::SMOOTHING)).then(|| {
+    let own = machine.program.text(TextPlace::SmoothingOn).is_some();
+    (machine.smoothing.any() && !own && !writes.has(Capabilities::SMOOTHING)).then(|| {
         let message = format!(
             "[program.smoothing] of {}: the dialect {} has no words for smoothing",
             machine.name, machine.control.dialect
         );
         Diagnostic::error("dialect", message)
-            .help("leave the table out, or name a dialect that has them")
+            .help("leave the table out, or give the lines of your own: smoothing_on and smoothing_off of [program]")
     })
 }
 

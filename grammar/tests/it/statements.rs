@@ -408,6 +408,56 @@ fn cycles() {
         define(CycleDefinition {
             kinds: kinds(&["TAP"]),
             depth: Some(10.0),
+            clearance: Some(3.0),
+            pitch: Some(-1.5),
+            ..CycleDefinition::default()
+        }),
+        &["CYCLE/TAP,DEPTH,10,CLEAR,3,PITCH,-1.5"],
+    );
+    same(
+        define(CycleDefinition {
+            kinds: kinds(&["TAP"]),
+            depth: Some(10.0),
+            clearance: Some(3.0),
+            turns_per_inch: Some(20.0),
+            ..CycleDefinition::default()
+        }),
+        &["CYCLE/TAP,DEPTH,10,CLEAR,3,TPI,20"],
+    );
+    same(
+        define(CycleDefinition {
+            kinds: kinds(&["CSINK"]),
+            clearance: Some(3.0),
+            diameter: Some(8.0),
+            angle: Some(90.0),
+            ..CycleDefinition::default()
+        }),
+        &["CYCLE/CSINK,DIAMET,8,ANGLE,90,CLEAR,3"],
+    );
+    same(
+        define(CycleDefinition {
+            kinds: kinds(&["BORE", "NODRAG"]),
+            depth: Some(5.0),
+            clearance: Some(3.0),
+            break_through: Some(2.0),
+            shift: Some(0.2),
+            ..CycleDefinition::default()
+        }),
+        &["CYCLE/BORE,NODRAG,0.2,DEPTH,5,THRU,2,CLEAR,3"],
+    );
+    same(
+        define(CycleDefinition {
+            kinds: kinds(&["THRU"]),
+            depth: Some(5.0),
+            clearance: Some(3.0),
+            ..CycleDefinition::default()
+        }),
+        &["CYCLE/THRU,5,3"],
+    );
+    same(
+        define(CycleDefinition {
+            kinds: kinds(&["TAP"]),
+            depth: Some(10.0),
             clearance: Some(2.0),
             feed: Some(FeedRate {
                 value: Some(30.0),

@@ -2,6 +2,8 @@
 
 use std::ops::{BitOr, BitOrAssign};
 
+use crate::Event;
+
 /// What a dialect declares to write, as a set.
 ///
 /// Without declaration it is sent straight moves and the events up to [`Event::Word`](crate::Event::Word); the host
@@ -144,6 +146,45 @@ impl Capabilities {
     /// The set of these bits.
     pub const fn from_bits(bits: u64) -> Capabilities {
         Capabilities(bits)
+    }
+}
+
+impl Event<'_> {
+    /// The event is sent to dialects that declare one of these alone; none of them: to every dialect.
+    pub const fn sent_under(&self) -> Capabilities {
+        const CYCLES: Capabilities = Capabilities::CYCLE_DRILL
+            .and(Capabilities::CYCLE_DEEP)
+            .and(Capabilities::CYCLE_BREAK_CHIP)
+            .and(Capabilities::CYCLE_TAP)
+            .and(Capabilities::CYCLE_TAP_LEFT)
+            .and(Capabilities::CYCLE_REAM)
+            .and(Capabilities::CYCLE_BORE)
+            .and(Capabilities::CYCLE_BORE_FINE)
+            .and(Capabilities::CYCLE_BORE_BACK);
+        match self {
+            Event::Operation { .. } | Event::OperationEnd => Capabilities::OPERATION,
+            Event::Message { .. } => Capabilities::MESSAGE,
+            Event::Units(_) => Capabilities::UNITS,
+            Event::WorkOffset { .. } => Capabilities::WORK_OFFSET,
+            Event::Offsets { .. } => Capabilities::OFFSETS,
+            Event::SurfaceSpeed { .. } => Capabilities::SURFACE_SPEED,
+            Event::Tcp { .. } => Capabilities::TCP_SWITCH,
+            Event::Plane { .. } | Event::PlaneOff => Capabilities::PLANE,
+            Event::Smoothing { .. } | Event::SmoothingOff => Capabilities::SMOOTHING,
+            Event::Clamp { .. } => Capabilities::CLAMP,
+            Event::Arc { .. } => Capabilities::ARC_XY
+                .and(Capabilities::ARC_ZX)
+                .and(Capabilities::ARC_YZ)
+                .and(Capabilities::ARC_ANY),
+            Event::Spline { .. } => Capabilities::SPLINE,
+            Event::Cycle { .. } | Event::CyclePoint { .. } | Event::CycleOff => CYCLES,
+            Event::Surface { .. } => Capabilities::SURFACE,
+            Event::Compensate3d { .. } => Capabilities::COMPENSATE_3D,
+            Event::Subprogram { .. } => Capabilities::SUBPROGRAM,
+            Event::Probe { .. } => Capabilities::PROBE,
+            Event::Instead { .. } => Capabilities::INSTEAD,
+            _ => Capabilities::NONE,
+        }
     }
 }
 

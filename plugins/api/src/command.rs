@@ -13,7 +13,8 @@ use crate::vocabulary::Meaning;
 pub enum Feed {
     /// Length units a minute (G94).
     PerMinute(f64),
-    /// 1/min: the block takes 1/F minutes (G93). Only to dialects whose format allows it.
+    /// The block takes 1/F minutes, or 1/F seconds where the machine file says so (G93). Only to dialects whose format
+    /// allows it.
     InverseTime(f64),
     /// Length units a spindle revolution (G95).
     PerRevolution(f64),

@@ -134,13 +134,14 @@ impl<D: Dialect> LinkedDialect for Context<D> {
         ends: &mut Vec<usize>,
     ) -> Result<(), WriteFault> {
         let mut index = 0;
-        let mut good = out.len();
+        let (base, first) = (out.len(), ends.len());
+        let mut good = base;
         let done = self.run(|dialect| {
             for event in batch.iter() {
                 event.check(promise)?;
                 dialect.write(&event, out)?;
                 if out.len() < good {
-                    return Err("it took back text of earlier events".to_owned());
+                    return Err(TOOK_BACK.to_owned());
                 }
                 good = out.len();
                 ends.push(good);
@@ -150,6 +151,14 @@ impl<D: Dialect> LinkedDialect for Context<D> {
         });
         match done {
             Some(()) => Ok(()),
+            None if out.len() < good => {
+                // Whatever else it says: nothing of this batch can be believed.
+                ends.truncate(first);
+                out.truncate(base);
+                out.extend(std::iter::repeat_n('\n', base - out.len()));
+                let message = TOOK_BACK.to_owned();
+                Err(WriteFault { index: 0, message })
+            }
             None => {
                 out.truncate(good);
                 let message = self.error.clone();
@@ -399,6 +408,8 @@ unsafe fn context<'a, T>(ctx: *mut c_void) -> &'a mut Context<T> {
     // SAFETY: the caller vouches for it.
     unsafe { &mut *ctx.cast::<Context<T>>() }
 }
+
+const TOOK_BACK: &str = "it took back text of earlier events";
 
 const NOT_TEXT: &str = "the host handed over text that is not UTF-8";
 

@@ -10,12 +10,18 @@
 //! # }
 //! ```
 
+mod arcs;
 mod commands;
+mod cycles;
+mod declared;
 mod dialect;
 mod model;
+mod options;
 mod pen;
 mod print;
+mod sessions;
 mod shapes;
+mod texts;
 
 use std::fmt::{self, Write as _};
 
@@ -41,6 +47,8 @@ pub struct Case {
     pub wrong: Vec<String>,
     /// What an author should know: an approximation, and what comes of it; something that it refuses.
     pub notes: Vec<String>,
+    /// What was counted or measured.
+    pub facts: Vec<String>,
 }
 
 /// An error model's answer beside the truth.
@@ -80,14 +88,29 @@ pub enum Verdict {
     Wrong,
 }
 
+/// Events of the longest program that [`test`] has a dialect write.
+pub const EVENTS: usize = 8_000;
+
 /// Runs the kit on a plugin that is opened with `options`.
 ///
 /// # Errors
 /// If it cannot be opened with them.
 pub fn test(plugin: &Plugin, options: &[(String, GivenValue)]) -> Result<Report, PluginFault> {
+    test_long(plugin, options, EVENTS)
+}
+
+/// As [`test`], with so many events in a dialect's longest program.
+///
+/// # Errors
+/// If it cannot be opened with the options.
+pub fn test_long(
+    plugin: &Plugin,
+    options: &[(String, GivenValue)],
+    events: usize,
+) -> Result<Report, PluginFault> {
     let cases = match plugin.kind() {
         Kind::ErrorModel => model::test(plugin, options)?,
-        Kind::Dialect => dialect::test(plugin, options)?,
+        Kind::Dialect => dialect::test(plugin, options, events)?,
     };
     Ok(Report {
         kind: plugin.kind(),
@@ -118,8 +141,12 @@ impl Case {
         self.wrong.push(sentence);
     }
 
+    /// Something to know, but that a panic is never one.
     fn note(&mut self, sentence: String) {
-        self.notes.push(sentence);
+        match sentence.contains("the plugin panicked") {
+            true => self.wrong.push(sentence),
+            false => self.notes.push(sentence),
+        }
     }
 }
 
@@ -174,7 +201,7 @@ impl Report {
             )?;
         }
         for case in &self.cases {
-            for note in &case.notes {
+            for note in case.notes.iter().chain(&case.facts) {
                 writeln!(text, "{}: {note}", case.name)?;
             }
         }

@@ -17,7 +17,7 @@ impl Control for Hurco {
         tcp: Tcp::Blocks {
             on: "G69\nM128",
             off: "M129",
-            length_first: true,
+            length_first: false,
         },
         leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
         subprogram: Subprogram {

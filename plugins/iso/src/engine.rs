@@ -1,22 +1,21 @@
 //! Writes a program by a [`Table`].
 
+mod opening;
+mod spindle;
+
 use post_plugin::{
-    Axes, Block, Capabilities, Compensation, Coolant, Event, Feed, Format, Meaning, Modal,
-    NumberStyle, Setup, Spindle, SpindleSense, ToolPose, Units, Value,
+    Capabilities, Compensation, Event, Feed, Format, Meaning, Modal, NumberStyle, Spindle,
+    ToolPose, Units,
 };
 
 use crate::cycles::Cycles;
-use crate::lines::{fits, program_name, remark_lines};
+use crate::lines::{fits, remark_lines};
 use crate::look::Look;
 use crate::motion::{Arc, Motion};
-use crate::options::{flag, integer, text};
 use crate::planes::TiltedPlane;
 use crate::settings::Settings;
+use crate::splines;
 use crate::table::{Codes, Dwell, Leave, Table, Tcp};
-use crate::{FeedDecimals, splines};
-
-/// Most decimals of a number with a point where the option of it is not offered.
-const DECIMALS: [i64; 3] = [3, 4, 3];
 
 /// A program on its way out: what is in force, and the words that a table and the options give.
 #[derive(Debug)]
@@ -74,132 +73,7 @@ pub struct Engine {
     flowing: Option<usize>,
 }
 
-/// Coolants in the order of [`Table::coolant`], with the options that say what switches them on and off.
-const COOLANTS: [(Coolant, &str, &str); 5] = [
-    (Coolant::Off, "coolant_off", "coolant_off"),
-    (Coolant::Flood, "coolant_flood", "coolant_off"),
-    (Coolant::Mist, "coolant_mist", "coolant_mist_off"),
-    (Coolant::Through, "coolant_through", "coolant_through_off"),
-    (Coolant::Air, "coolant_air", "coolant_air_off"),
-];
-
 impl Engine {
-    pub(crate) fn new(table: &'static Table, setup: &Setup<'_>) -> Result<Self, String> {
-        if setup.tcp && matches!(table.tcp, Tcp::None) {
-            return Err("this control has no tool centre point control: tcp = \"post\"".to_owned());
-        }
-        table.axes.check(setup)?;
-        let inch = setup.units == Units::Inch;
-        let style = NumberStyle {
-            point: true,
-            trim: !flag(setup, "trailing_zeros", !table.trim),
-            plus: false,
-        };
-        let [linear_mm, linear_inch, rotary] = DECIMALS;
-        let linear = match inch {
-            true => integer(setup, "decimals_inch", linear_inch),
-            false => integer(setup, "decimals", linear_mm),
-        };
-        let rotary = integer(setup, "rotary_decimals", rotary);
-        let mut axes = Axes::new(setup, linear as u8, rotary as u8, style);
-        single_decimals(setup, &mut axes)?;
-        let step = integer(setup, "block_step", 10) as u32;
-        let numbers = setup.option("block_numbers");
-        let block = match numbers {
-            Some(Value::Text("all") | Value::Flag(true)) => {
-                Block::numbered("N", step, step, table.largest_number)
-            }
-            _ => Block::plain(),
-        };
-        let tool_blocks = (numbers == Some(Value::Text("tools"))).then_some([step; 2]);
-        let work_offset = text(setup, "work_offset", "G54");
-        if !(table.offset.known)(&work_offset) {
-            let range = table.offset.range;
-            return Err(format!(
-                "the work offset is `{work_offset}`, must be {range}"
-            ));
-        }
-        let feeds = FeedDecimals {
-            per_minute: integer(setup, "feed_decimals", 1) as u8 + u8::from(inch),
-            inverse_time: integer(setup, "inverse_time_decimals", 3) as u8,
-            per_revolution: table.per_revolution,
-        };
-        let (tcp_on, tcp_off) = match table.tcp {
-            Tcp::Blocks { on, off, .. } => (on, off),
-            Tcp::None | Tcp::Length(_) => ("", ""),
-        };
-        // Where the post keeps the tip, the words may not exist: only a machine file that names them has them written.
-        let tcp_off = match text(setup, "tcp_off", "") {
-            given if given.is_empty() && setup.tcp => tcp_off.to_owned(),
-            given => given,
-        };
-        if let (true, Tcp::Blocks { on: "", .. }) = (setup.tcp, table.tcp)
-            && text(setup, "tcp_on", "").is_empty()
-        {
-            return Err(
-                "the words of this control's tool centre point control are not beyond doubt: name them by the options \
-                 `tcp_on` and `tcp_off`, or say tcp = \"post\""
-                    .to_owned(),
-            );
-        }
-        let mut codes = table.codes;
-        if !flag(setup, "inverse_time", true) {
-            codes.feed[1] = "";
-        }
-        let register = integer(setup, "length_register", 0) as u32;
-        let mut coolant = table.coolant.iter();
-        let coolant_codes =
-            COOLANTS.map(|(_, option, _)| text(setup, option, coolant.next().unwrap_or(&"")));
-        let coolant_ends = COOLANTS.map(|(_, _, option)| match text(setup, option, "") {
-            end if end.is_empty() => coolant_codes[0].clone(),
-            end => end,
-        });
-        Ok(Engine {
-            table,
-            motion: Motion::new(setup, codes, block, axes, style, feeds),
-            look: Look {
-                spaces: flag(setup, "spaces", true),
-                leading_zeros: flag(setup, "leading_zeros", false),
-            },
-            settings: Settings::new(table, setup)?,
-            cycles: Cycles::new(table, setup),
-            plane: TiltedPlane::new(table, setup, rotary as u8),
-            vector: (!table.vector.is_empty() && flag(setup, "tool_vector", false)).then_some(6),
-            splines: flag(setup, "splines", false),
-            title: title(table, setup),
-            tool_blocks,
-            restart: flag(setup, "restart", false),
-            change: text(setup, "change", table.change),
-            machine: setup.machine.to_owned(),
-            percent: flag(setup, "percent", table.percent),
-            parameters: flag(setup, "parameters", false),
-            inch,
-            tcp: setup.tcp,
-            work_offset,
-            cancel: text(setup, "cancel", table.cancel),
-            retract: text(setup, "retract", ""),
-            tcp_on: text(setup, "tcp_on", tcp_on),
-            tcp_off,
-            most_inverse_time: match setup.option("most_inverse_time") {
-                Some(Value::Number(most)) if most > 0.0 => Some(most),
-                _ => None,
-            },
-            coolant_codes,
-            coolant_ends,
-            register: (register != 0).then_some(register),
-            offset_active: Modal::default(),
-            own_offset: false,
-            length_active: Modal::default(),
-            tcp_active: Modal::default(),
-            follows_vector: false,
-            turning: None,
-            tapped: false,
-            spindle: Modal::default(),
-            coolant: Modal::default(),
-            flowing: None,
-        })
-    }
-
     pub(crate) fn format(&self) -> Format {
         let (plane_angles, plane_decimals) = self.plane.angles();
         Format {
@@ -506,98 +380,6 @@ impl Engine {
         }
     }
 
-    /// The spindle turns again behind a rigid tap, which has stopped it.
-    pub(crate) fn turn_again(&mut self, out: &mut String) -> Result<(), String> {
-        match self.turning {
-            Some(spindle) if std::mem::take(&mut self.tapped) => self.turn(spindle, out),
-            _ => Ok(()),
-        }
-    }
-
-    pub(crate) fn turn(&mut self, spindle: Spindle, out: &mut String) -> Result<(), String> {
-        let [clockwise, counter, off, orient] = self.table.spindle;
-        let on = matches!(spindle, Spindle::On { .. });
-        self.spindle.set(on);
-        self.turning = on.then_some(spindle);
-        self.tapped = false;
-        let fixed = self.settings.end_surface_speed(self.table);
-        match spindle {
-            Spindle::Off => self.line(off, out),
-            Spindle::Orient if orient.is_empty() => {
-                return Err("this dialect has no words for an oriented stop".to_owned());
-            }
-            Spindle::Orient => self.line(orient, out),
-            Spindle::On { rpm, sense } => {
-                let block = &mut self.motion.block;
-                if let Some(fixed) = fixed {
-                    block.word(fixed);
-                }
-                block.number("S", rpm, 0, NumberStyle::default());
-                block.word(match sense {
-                    SpindleSense::Clockwise => clockwise,
-                    SpindleSense::CounterClockwise => counter,
-                });
-                block.end(out);
-            }
-        }
-        Ok(())
-    }
-
-    /// The spindle turns by a command other than [`Event::Spindle`].
-    pub(crate) fn spindle_turns(&mut self) {
-        self.spindle.set(true);
-        self.turning = None;
-    }
-
-    fn cool(&mut self, coolant: Coolant, out: &mut String) -> Result<(), String> {
-        let known = COOLANTS.iter().position(|(known, ..)| *known == coolant);
-        let place = known.unwrap_or_default();
-        if coolant == Coolant::Off {
-            self.end_coolant(out);
-            return Ok(());
-        }
-        if self.coolant_codes[place].is_empty() {
-            let option = COOLANTS[place].1;
-            let offered = self.table.options.iter().any(|spec| spec.key == option);
-            return Err(match offered {
-                true => format!(
-                    "the M code of this coolant is the machine builder's: set the option `{option}`"
-                ),
-                false => "this control has no such coolant".to_owned(),
-            });
-        }
-        if self.flowing.is_some_and(|flowing| flowing != place) {
-            // One coolant takes the place of another.
-            self.end_coolant(out);
-        }
-        self.coolant.set(true);
-        self.flowing = Some(place);
-        one_by_one(&self.coolant_codes[place], &mut self.motion, out);
-        Ok(())
-    }
-
-    /// What ends the coolant that is on; where nobody knows, all of them.
-    fn end_coolant(&mut self, out: &mut String) {
-        let flowing = self.flowing.take().unwrap_or_default();
-        one_by_one(&self.coolant_ends[flowing], &mut self.motion, out);
-        self.coolant.set(false);
-    }
-
-    /// A stop, and behind it what it has switched off, before the tool moves on.
-    fn stop(&mut self, word: &str, out: &mut String) -> Result<(), String> {
-        self.line(word, out);
-        if self.table.stops.spindle {
-            match self.turning {
-                Some(spindle) => self.turn(spindle, out)?,
-                None => self.surface_speed_again(out)?,
-            }
-        }
-        if let (true, Some(flowing)) = (self.table.stops.coolant, self.flowing) {
-            one_by_one(&self.coolant_codes[flowing], &mut self.motion, out);
-        }
-        Ok(())
-    }
-
     fn offset_in_force(&mut self, out: &mut String) {
         if !self.own_offset && self.offset_active.set(true) {
             self.motion.line(&self.work_offset, out);
@@ -628,7 +410,10 @@ impl Engine {
             self.motion.plane(words, out);
         }
         if let (true, Tcp::Blocks { length_first, .. }) = (keeps_tip, self.table.tcp) {
-            if length_first {
+            if self.tcp_on.contains("{h}") {
+                // Its words name the register themselves.
+                length.clear();
+            } else if length_first {
                 self.motion.line(&std::mem::take(&mut length), out);
             }
             self.motion
@@ -760,39 +545,6 @@ impl Engine {
         self.coolant.forget();
         self.cycles.forget();
     }
-}
-
-/// The line with the program's number and name; empty if it has neither.
-fn title(table: &Table, setup: &Setup<'_>) -> String {
-    let name = program_name(table, setup.program);
-    let name = match name.is_empty() {
-        true => name,
-        false => (table.remark)(&name),
-    };
-    match table.title {
-        Some((letter, digits)) => {
-            let number = integer(setup, "program_number", 1000);
-            format!("{letter}{number:0digits$} {name}")
-                .trim_end()
-                .to_owned()
-        }
-        None => name,
-    }
-}
-
-/// Decimals of single words, by the option `word_decimals`.
-fn single_decimals(setup: &Setup<'_>, axes: &mut Axes) -> Result<(), String> {
-    for entry in text(setup, "word_decimals", "").split_whitespace() {
-        let (name, decimals) = entry.split_once('=').unwrap_or((entry, ""));
-        let decimals = decimals.parse().ok().filter(|decimals| *decimals <= 6);
-        let known = decimals.is_some_and(|decimals| axes.set_decimals(name, decimals));
-        if !known {
-            return Err(format!(
-                "word_decimals has `{entry}`, must be the name of an axis, an equals sign and 0 to 6: `A=4`"
-            ));
-        }
-    }
-    Ok(())
 }
 
 /// The direction of the tool, where its words are written.

@@ -310,22 +310,24 @@ pub fn is_offset_beyond_six(text: &str, word: &str, most: u32) -> bool {
     }
 }
 
-/// A cycle with and without a dwell.
-const fn cycle(kind: Cycle, plain: &'static str, waits: &'static str) -> CycleCode {
-    CycleCode { kind, plain, waits }
+impl CycleCode {
+    /// A cycle without and with a dwell.
+    pub const fn new(kind: Cycle, plain: &'static str, waits: &'static str) -> Self {
+        CycleCode { kind, plain, waits }
+    }
 }
 
 /// As most controls have them. Fine boring and boring from below are written where the machine file gives their shift.
 pub const CYCLES: &[CycleCode] = &[
-    cycle(Cycle::Drill, "G81", "G82"),
-    cycle(Cycle::Deep, "G83", ""),
-    cycle(Cycle::BreakChip, "G73", ""),
-    cycle(Cycle::Tap, "G84", "G84"),
-    cycle(Cycle::TapLeft, "G74", "G74"),
-    cycle(Cycle::Ream, "G85", "G89"),
-    cycle(Cycle::Bore, "G86", ""),
-    cycle(Cycle::BoreFine, "G76", "G76"),
-    cycle(Cycle::BoreBack, "G87", "G87"),
+    CycleCode::new(Cycle::Drill, "G81", "G82"),
+    CycleCode::new(Cycle::Deep, "G83", ""),
+    CycleCode::new(Cycle::BreakChip, "G73", ""),
+    CycleCode::new(Cycle::Tap, "G84", "G84"),
+    CycleCode::new(Cycle::TapLeft, "G74", "G74"),
+    CycleCode::new(Cycle::Ream, "G85", "G89"),
+    CycleCode::new(Cycle::Bore, "G86", ""),
+    CycleCode::new(Cycle::BoreFine, "G76", "G76"),
+    CycleCode::new(Cycle::BoreBack, "G87", "G87"),
 ];
 
 impl Codes {

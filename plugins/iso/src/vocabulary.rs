@@ -120,7 +120,7 @@ impl Engine {
         }
         for code in self.cycles.codes() {
             for word in [code.plain, code.waits] {
-                add(word, cycle(code.kind));
+                add(first(word), cycle(code.kind));
             }
         }
         if let Rigid::Codes([right, left]) = table.rigid {

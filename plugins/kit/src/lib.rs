@@ -1,4 +1,4 @@
-//! A bench for the tests of a dialect: a machine with five axes, and jobs to write.
+//! A bench for the tests of a dialect: a machine with five axes, jobs to write, and the order in which events come.
 //!
 //! ```ignore
 //! let bench = Bench::of(crate::plugin());
@@ -10,6 +10,9 @@
 //! the text is the same in every cut of the batches, and through the C contract.
 
 pub mod jobs;
+mod order;
+
+pub use order::{ORDER, Order};
 
 use post_plugin::{
     AxisWord, Batch, Capabilities, Compensation, Coolant, Event, Feed, Linked, LinkedDialect,

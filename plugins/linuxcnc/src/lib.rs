@@ -3,10 +3,10 @@
 //! What it assumes about the control stands in `plugins/README.md`.
 
 use post_iso::{
-    CYCLES, Control, Dwell, Engine, Iso, Leave, Length, Offset, Rigid, Splines, Stops, Subprogram,
-    SurfaceSpeed, Table, Tcp, offset_of_six, options,
+    Control, CycleCode, Dwell, Engine, Iso, Leave, Length, Offset, Rigid, Splines, Stops,
+    Subprogram, SurfaceSpeed, Table, Tcp, offset_of_six, options,
 };
-use post_plugin::{Capabilities, NumberStyle, OptionSpec, Setup, export_dialect, remark};
+use post_plugin::{Capabilities, Cycle, NumberStyle, OptionSpec, Setup, export_dialect, remark};
 
 struct LinuxCnc {
     /// P of G64, program units; 0: exact path.
@@ -158,6 +158,17 @@ const OPTIONS: &[OptionSpec] = &[
     options::CLAMPS,
     options::COOLANT_THROUGH,
     options::COOLANT_AIR,
+];
+
+/// G86 asks for a P; G76 is a thread here, and there is no G87.
+const CYCLES: &[CycleCode] = &[
+    CycleCode::new(Cycle::Drill, "G81", "G82"),
+    CycleCode::new(Cycle::Deep, "G83", ""),
+    CycleCode::new(Cycle::BreakChip, "G73", ""),
+    CycleCode::new(Cycle::Tap, "G84", "G84"),
+    CycleCode::new(Cycle::TapLeft, "G74", "G74"),
+    CycleCode::new(Cycle::Ream, "G85", "G89"),
+    CycleCode::new(Cycle::Bore, "G86 P0", "G86"),
 ];
 
 /// G64 P is the tolerance, program units.

@@ -5,7 +5,7 @@
 use post_iso::{
     Codes, Control, Dwell, Iso, Leave, Length, Offset, Subprogram, Table, Tcp, iso_options, options,
 };
-use post_plugin::{OptionKind, OptionSpec, Setup, Value, export_dialect};
+use post_plugin::{OptionKind, OptionSpec, Setup, Units, Value, export_dialect};
 
 struct Okuma;
 
@@ -42,7 +42,7 @@ impl Control for Okuma {
         tcp: Tcp::Blocks {
             on: "",
             off: "",
-            length_first: true,
+            length_first: false,
         },
         machine: "G16 H0 G0",
         leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
@@ -58,16 +58,20 @@ impl Control for Okuma {
     };
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        let wanted = match setup.units {
+            Units::Millimetre => "1 mm",
+            Units::Inch => "1 inch",
+        };
         match setup.text("unit_system") {
-            "1 mm" => Ok(Okuma),
+            named if named == wanted => Ok(Okuma),
             "" => Err(
-                "what a number without a unit means is a parameter of this control, and a point does not override it: \
-                 say which with the option `unit_system`"
+                "what a number means is a parameter of this control, and a point does not override it: say which unit \
+                 system it has by the option `unit_system`"
                     .to_owned(),
             ),
             other => Err(format!(
-                "numbers are written in mm or inches with a point, which the unit system {other} would read otherwise: \
-                 set the control's to 1 mm"
+                "the numbers of this program count in units of {wanted}, and the unit system of the control is {other}: \
+                 it would read them otherwise"
             )),
         }
     }
@@ -81,9 +85,9 @@ fn number(text: &str) -> Option<u32> {
 const OPTIONS: &[OptionSpec] = iso_options![
     OptionSpec {
         key: "unit_system",
-        kind: OptionKind::Choice(&["", "1 mm", "10 um", "1 um"]),
+        kind: OptionKind::Choice(&["", "1 mm", "1 inch", "10 um", "1 um"]),
         default: Value::Text(""),
-        help: "The unit system of the control's parameters; it must be named, and be 1 mm (or 1 inch).",
+        help: "The unit system of the control's parameters: must be named, and be 1 mm, or 1 inch for an inch program.",
     },
     options::program_number(9999),
     OptionSpec::text("work_offset", "G15 H1", "G15 H1 to H200."),

@@ -42,7 +42,7 @@ pub struct NewArguments {
     #[arg(long, value_enum, value_name = "CLASS")]
     class: Option<Class>,
 
-    /// The dialect of its control: fanuc, heidenhain, linuxcnc, or a plugin's name. [default: fanuc]
+    /// The dialect of its control: fanuc, haas, heidenhain, linuxcnc and others (`post plugin list`). [default: fanuc]
     #[arg(long, value_name = "NAME", value_parser = dialect)]
     dialect: Option<String>,
 

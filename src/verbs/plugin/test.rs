@@ -17,7 +17,9 @@ use crate::terminal::print;
 /// numbers), and its answers must hold together: peaks and curve, one move after another, in a turned frame.
 /// What a model may miss is said and not held against it: the certificate finds it. A dialect writes short
 /// five-axis programs, whole, in batches of every size, and with one number changed at a time: the text must show each,
-/// to the last decimal that the dialect declares.
+/// to the last decimal that the dialect declares. So it is with every option at its ends, with all that it declares to
+/// write (arcs, cycles, planes), with remarks of any length and language; what it does not declare or know it must
+/// refuse. A long program is written by two threads in turn, beside the same by one.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post plugin test target/release/libpost_mine.so
@@ -34,6 +36,10 @@ pub struct TestArguments {
     #[arg(long, value_name = "KEY=VALUE", value_parser = option)]
     option: Vec<(String, GivenValue)>,
 
+    /// Events of a dialect's longest program, which two threads write in turn.
+    #[arg(long, value_name = "COUNT", default_value_t = 1_000_000)]
+    events: usize,
+
     /// A folder of plugin libraries; POST_PLUGINS adds more.
     #[arg(long, value_name = "FOLDER")]
     plugins: Vec<PathBuf>,
@@ -42,7 +48,7 @@ pub struct TestArguments {
 /// Does as the arguments say.
 pub fn run(arguments: &TestArguments) -> Result<(), Failure> {
     let plugin = by_name_or_file(&arguments.plugin, &arguments.plugins)?;
-    let report = conformance::test(&plugin, &arguments.option)
+    let report = conformance::test_long(&plugin, &arguments.option, arguments.events)
         .map_err(|fault| diagnostic(&fault, &[], None))?;
     print(&format!("{}\n\n{}", title(&plugin), report.table()));
     if report.is_good() {

@@ -1,21 +1,34 @@
-//! The verb that has no name: one CL file on one machine becomes one program.
+//! The verb that has no name: one CL file on one machine becomes one program, or several.
 
+mod parts;
+mod setup_sheet;
 mod summary;
 
+use std::ops::Range;
+
 use clap::Args;
-use post_machine::diagnostic::Severity;
+use post_host::Finder;
+use post_machine::description::{Machine, Setting};
+use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::DialectSession;
-use post_posting::{Job, Post};
+use post_posting::report::Report;
+use post_posting::{Job, JobFacts, LookedAhead, Post};
 
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
-use crate::files::{self, AtomicFile, ClInput, PathArg, Role};
+use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
 use crate::job::{self, plugin_finder};
 use crate::terminal;
+use parts::Split;
 
 const SUMMARY: Role = Role {
     what: "summary",
     remedy: "name another file with --summary",
+};
+
+const SETUP_SHEET: Role = Role {
+    what: "setup sheet",
+    remedy: "name another file with --setup-sheet",
 };
 
 #[derive(Debug, Args)]
@@ -27,9 +40,23 @@ pub struct PostArguments {
     #[arg(short, long, value_name = "FILE", value_parser = PathArg::parser())]
     output: Option<PathArg>,
 
-    /// Writes the summary as JSON for programs to read; `-` is standard output.
+    /// Writes the summary as JSON for programs to read; `-` is standard output. Of several programs a list.
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
     summary: Option<PathArg>,
+
+    /// Writes a sheet for whoever sets the machine up: tools, extents, times, options; as HTML if the file's name ends
+    /// so, else as Markdown.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    setup_sheet: Option<PathArg>,
+
+    /// Writes a program of its own for each operation, or for each tool: part-1.nc, part-2.nc, …
+    #[arg(long, value_name = "WHERE", value_enum)]
+    split: Option<Split>,
+
+    /// The program's number (O1234); of several programs the first's. Short for --set
+    /// control.DIALECT.program_number=…
+    #[arg(long, value_name = "N")]
+    number: Option<u32>,
 
     /// No summary, warnings and errors alone.
     #[arg(short, long)]
@@ -41,37 +68,85 @@ pub struct PostArguments {
     trust_model: bool,
 }
 
+/// One program of a run.
+struct Part {
+    /// Lines of the CL file that it is made of; none: all.
+    lines: Option<Range<u64>>,
+    target: PathArg,
+    machine: Machine,
+}
+
 /// Posts as the arguments say.
 pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
-    let source = arguments.job.input();
-    let machine = job::machine(&arguments.job, &[])?;
+    let machine = numbered(arguments, 0)?;
     let finder = plugin_finder::finder(&arguments.job.plugins)?;
     job::say_what_is_left(&arguments.job, &machine, &finder);
-    let program = job::program_name(source, arguments.output.as_ref());
-    let (mut dialect, dialect_use) =
-        plugin_finder::dialect(&finder, &machine, &program, Some(source))?;
-    let (mut model, model_use) = plugin_finder::model(&finder, &machine)?;
-    let target = program_target(arguments, &dialect.format().extension);
-    let input = ClInput::open(source)?;
-    let mut targets = vec![(Role::PROGRAM, &target)];
+    let looks_ahead =
+        machine.program.looks_ahead || arguments.split.is_some() || arguments.setup_sheet.is_some();
+    let mut source = ClSource::new(arguments.job.input(), looks_ahead || machine.control.planes)?;
+    let ahead = match looks_ahead {
+        true => Some(job::look_ahead(
+            &arguments.job,
+            &machine,
+            &finder,
+            &mut source,
+            None,
+        )?),
+        false => None,
+    };
+    let parts = the_parts(arguments, machine, &finder, ahead.as_ref())?;
+    let mut targets: Vec<(Role, &PathArg)> = parts
+        .iter()
+        .map(|part| (Role::PROGRAM, &part.target))
+        .collect();
     targets.extend(arguments.summary.iter().map(|summary| (SUMMARY, summary)));
-    // Both are opened before the work begins: a program without its summary would be half a result.
+    targets.extend(
+        arguments
+            .setup_sheet
+            .iter()
+            .map(|sheet| (SETUP_SHEET, sheet)),
+    );
+    // All are opened before the work begins: a program without its summary would be half a result.
     let mut files = AtomicFile::create(&targets)?;
-    let name = input.name.clone();
-    let job = Job {
-        trust_model: arguments.trust_model,
-        ..job::posting(&arguments.job, &name)
-    };
-    let mut post = Post::new(&machine, job, &mut dialect, &mut model, &mut files[0])
-        .map_err(|finding| *finding)?;
-    job::read(input, &mut post)?;
-    let (report, findings) = post.finish();
-    let Some(mut report) = report else {
-        return Err(findings.into());
-    };
-    report.plugins = vec![dialect_use, model_use];
-    if let Some(summary) = files.get_mut(1) {
-        summary.write_bytes(files::json(&report).as_bytes())?;
+    let mut reports = Vec::new();
+    let mut findings = Vec::new();
+    for (part, file) in parts.iter().zip(&mut files) {
+        let (report, found) = post(arguments, part, &finder, ahead.as_ref(), &mut source, file)?;
+        // What is wrong with the file is found again in each of its parts.
+        for finding in found {
+            if !findings.contains(&finding) {
+                findings.push(finding);
+            }
+        }
+        match report {
+            Some(report) => reports.push(report),
+            None => return Err(findings.into()),
+        }
+    }
+    let mut others = files[parts.len()..].iter_mut();
+    if let (Some(_), Some(file)) = (&arguments.summary, others.next()) {
+        let json = match (arguments.split, reports.as_slice()) {
+            (None, [report]) => files::json(report),
+            (_, reports) => files::json(&reports),
+        };
+        file.write_bytes(json.as_bytes())?;
+    }
+    if let (Some(sheet), Some(ahead)) = (&arguments.setup_sheet, &ahead) {
+        let programs: Vec<_> = parts
+            .iter()
+            .map(|part| &part.target)
+            .zip(&reports)
+            .collect();
+        let text = setup_sheet::text(
+            sheet,
+            &parts[0].machine,
+            arguments.job.input(),
+            ahead,
+            &programs,
+        );
+        if let Some(file) = files.last_mut() {
+            file.write_bytes(text.as_bytes())?;
+        }
     }
     // Standard output is for a program or for JSON, alone there.
     let taken = files.iter().any(AtomicFile::is_standard);
@@ -83,14 +158,131 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     );
     terminal::findings(&findings);
     if !arguments.quiet {
-        let text = summary::text(&report, &name, &target);
-        if taken {
-            terminal::tell(&text);
-        } else {
-            terminal::print(&text);
+        let name = arguments.job.input().path();
+        let name = name.map_or("standard input".to_owned(), |path| {
+            path.display().to_string()
+        });
+        for (part, report) in parts.iter().zip(&reports) {
+            let text = summary::text(report, &name, &part.target);
+            if taken {
+                terminal::tell(&text);
+            } else {
+                terminal::print(&text);
+            }
         }
     }
     Ok(())
+}
+
+/// The machine of the command line; the program `index` of several has its number.
+fn numbered(arguments: &PostArguments, index: u32) -> Result<Machine, Failure> {
+    let Some(number) = arguments.number else {
+        return job::machine(&arguments.job, &[]);
+    };
+    let dialect = job::machine(&arguments.job, &[])?.control.dialect;
+    let number = u64::from(number) + u64::from(index);
+    let setting = Setting::Written(format!("control.{dialect}.program_number={number}"));
+    job::machine(&arguments.job, &[setting])
+}
+
+/// The programs of the run: one, or as many as the CL file has operations or tools.
+fn the_parts(
+    arguments: &PostArguments,
+    machine: Machine,
+    finder: &Finder,
+    ahead: Option<&LookedAhead>,
+) -> Result<Vec<Part>, Failure> {
+    let source = arguments.job.input();
+    let program = job::program_name(source, arguments.output.as_ref());
+    let (dialect, _) = plugin_finder::dialect(finder, &machine, &program, Some(source))?;
+    let extension = machine.program.extension.clone();
+    let target = program_target(
+        arguments,
+        &extension.unwrap_or(dialect.format().extension.clone()),
+    );
+    let (Some(split), Some(ahead)) = (arguments.split, ahead) else {
+        return Ok(vec![Part {
+            lines: None,
+            target,
+            machine,
+        }]);
+    };
+    if target == PathArg::Standard {
+        return Err(Diagnostic::error(
+            "split",
+            "--split writes several programs, and standard output takes one",
+        )
+        .help("name a file with -o")
+        .into());
+    }
+    let lines = parts::lines(split, ahead)?;
+    let count = lines.len();
+    lines
+        .into_iter()
+        .enumerate()
+        .map(|(index, lines)| {
+            Ok(Part {
+                lines: Some(lines),
+                target: parts::target(&target, index + 1, count),
+                machine: numbered(arguments, u32::try_from(index).unwrap_or(u32::MAX))?,
+            })
+        })
+        .collect()
+}
+
+/// Makes one program: its report, if all is good, and every finding.
+fn post(
+    arguments: &PostArguments,
+    part: &Part,
+    finder: &Finder,
+    ahead: Option<&LookedAhead>,
+    source: &mut ClSource,
+    file: &mut AtomicFile,
+) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
+    let cl_file = arguments.job.input();
+    let program = job::program_name(cl_file, Some(&part.target));
+    // Of a part of the file other tools and extents are known than of the whole.
+    let part_ahead = match &part.lines {
+        Some(lines) if part.machine.program.looks_ahead => {
+            let lines = Some(lines.clone());
+            Some(job::look_ahead(
+                &arguments.job,
+                &part.machine,
+                finder,
+                source,
+                lines,
+            )?)
+        }
+        _ => None,
+    };
+    let ahead = match part.lines {
+        None => ahead,
+        Some(_) => part_ahead.as_ref(),
+    };
+    let (mut dialect, dialect_use) =
+        plugin_finder::dialect_knowing(finder, &part.machine, &program, Some(cl_file), ahead)?;
+    let (mut model, model_use) = plugin_finder::model(finder, &part.machine)?;
+    let planes = job::ahead(&arguments.job, source, &part.machine, &dialect)?;
+    let input = source.open()?;
+    let job = Job {
+        ahead: planes,
+        trust_model: arguments.trust_model,
+        facts: JobFacts {
+            program,
+            cl_file: plugin_finder::cl_name(cl_file),
+            ahead: ahead.cloned(),
+        },
+        lines: part.lines.clone(),
+        ..job::posting(&arguments.job, &input.name)
+    };
+    let mut post = Post::new(&part.machine, job, &mut dialect, &mut model, file)
+        .map_err(|finding| *finding)?;
+    job::read(input, &mut post)?;
+    let (mut report, findings) = post.finish();
+    if let Some(report) = &mut report {
+        report.plugins = vec![dialect_use, model_use];
+    }
+    Ok((report, findings))
 }
 
 /// Where the program goes.

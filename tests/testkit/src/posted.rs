@@ -1,5 +1,7 @@
 //! Whole runs, from CL text to the events a dialect is asked to write, and the way back from their words.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 use post_grammar::{ReadError, Reader};
 use post_machine::description::{Machine, Source, Tcp, load};
@@ -7,8 +9,9 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{
     Batch, Capabilities, Curve, Cycle, Deviation, DialectSession, Event, Feed, Format,
-    ModelSession, Tolerance, ToolPose, WriteFault,
+    ModelSession, PlaneAngles, Tolerance, ToolPose, WriteFault,
 };
+use post_posting::ahead::AheadPass;
 use post_posting::program::ToldSpindle;
 use post_posting::report::Report;
 use post_posting::{Job, Observer, Output, Post};
@@ -30,12 +33,12 @@ pub struct Asked {
     pub arc: Option<AskedArc>,
     /// Any other number it has: the seconds of a dwell, the number of a tool.
     pub value: f64,
+    /// An event without words as it prints for debugging, else empty.
+    pub event: String,
     /// What a cycle says, if it is one.
     pub cycle: Option<AskedCycle>,
     /// What a tilted plane says, if it is one.
     pub plane: Option<AskedPlane>,
-    /// An event without words as it prints for debugging, else empty.
-    pub event: String,
 }
 
 /// A cycle that a dialect was asked for: see [`Event::Cycle`].
@@ -95,6 +98,17 @@ impl Recorder {
             capabilities: Capabilities::NONE,
             asked: Vec::new(),
         }
+    }
+}
+
+impl Recorder {
+    /// Told tilted planes by these angles, with so many decimals.
+    #[must_use]
+    pub fn with_planes(mut self, angles: PlaneAngles, decimals: u8) -> Self {
+        self.format.plane_angles = angles;
+        self.format.plane_decimals = decimals;
+        self.capabilities |= Capabilities::PLANE;
+        self
     }
 }
 
@@ -163,12 +177,12 @@ impl DialectSession for Recorder {
                 tool,
                 arc,
                 value,
-                cycle: cycle(&event),
-                plane: plane(&event),
                 event: match words {
                     [] => format!("{event:?}"),
                     _ => String::new(),
                 },
+                cycle: cycle(&event),
+                plane: plane(&event),
             });
             out.push_str("block\n");
             ends.push(out.len());
@@ -338,6 +352,14 @@ pub fn watched(
     // could not make.
     let mut machine = machine.clone();
     machine.frame.retract.clear();
+    if machine.control.planes {
+        let mut pass = AheadPass::new(&machine, job.reading.clone());
+        let mut reader = Reader::new(cl.as_bytes());
+        while let Ok(Some(record)) = reader.next_record() {
+            pass.record(&record);
+        }
+        job.ahead = Some(Arc::new(pass.finish()));
+    }
     let mut post = Post::new(&machine, job, &mut dialect, model, &mut output)
         .expect("machine and dialect agree");
     for observer in observers {

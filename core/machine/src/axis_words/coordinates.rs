@@ -13,10 +13,13 @@ impl Words {
         self.cartesian.then_some(words)
     }
 
-    /// The linear words of a place, not rounded, mm: those of the `tip` (mm, part frame) where the control keeps it, else
-    /// those of the axis values `joints`. None where the linear words are not X, Y and Z.
+    /// The linear words of a place, not rounded, mm: those of the `tip` (mm, part frame) where the control keeps it, those
+    /// of it in the frame of a tilted plane, else those of the axis values `joints`. None where the linear words are not X, Y and Z.
     pub fn place(&self, tip: Vector3<f64>, joints: &Joints) -> Option<Vector3<f64>> {
         let words = self.cartesian()?;
+        if let Some(plane) = &self.plane {
+            return Some(plane.into_plane(tip));
+        }
         Some(match self.tcp {
             Tcp::Control => tip,
             Tcp::Post => Vector3::from_fn(|row, _| {

@@ -254,6 +254,19 @@ impl Builder<'_> {
             value * unit
         };
         let max_feed = rate(self, "max_feed", &axis.max_feed);
+        // A length, not a rate of the axis.
+        let feed_diameter = axis
+            .feed_diameter
+            .as_ref()
+            .map(|_| rate(self, "feed_diameter", &axis.feed_diameter) / unit);
+        if let (Some(given), false) = (&axis.feed_diameter, rotary) {
+            self.fault(
+                "machine-axis",
+                given.span(),
+                format!("feed_diameter of {name}: it is for rotary axes, whose ways are angles"),
+                "",
+            );
+        }
         let max_accel = rate(self, "max_accel", &axis.max_accel);
         let max_jerk = rate(self, "max_jerk", &axis.max_jerk);
         let indexed = self.indexed(name, spanned, zero, unit, travel);
@@ -275,6 +288,7 @@ impl Builder<'_> {
             second: None,
             clamp,
             max_feed,
+            feed_diameter,
             max_accel,
             max_jerk,
         })

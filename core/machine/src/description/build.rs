@@ -272,6 +272,7 @@ impl Builder<'_> {
         let spindle = self.spindle(&file.spindle);
         let arcs = self.arcs(&control.arcs);
         let word_rules = self.word_rules(&file.cl);
+        let program = self.program(&file.program);
         let smoothing = file.program.smoothing.as_ref();
         let smoothing = smoothing
             .map(|file| self.smoothing(file))
@@ -302,6 +303,7 @@ impl Builder<'_> {
                 units: control.units,
                 feed: control.feed,
                 feed_length: control.feed_length,
+                inverse_time: control.inverse_time,
                 rapid: control.rapid,
                 tool_length: control.tool_length,
                 cycles: control.cycles,
@@ -314,6 +316,7 @@ impl Builder<'_> {
             spindle,
             word_rules,
             smoothing,
+            program,
             accuracy,
             solution,
             rewind,

@@ -11,7 +11,7 @@ use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
-use super::smoothing::SmoothingFile;
+use super::program::ProgramFile;
 
 /// A number, or an expression of the file's parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -210,6 +210,10 @@ pub(crate) struct AxisFile {
     /// Largest feed, mm/min or degrees a minute; no block asks for more.
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_feed: Option<Quantity>,
+    /// A feed a minute counts the way of this rotary axis along a circle of this diameter, mm, where the control does not
+    /// keep the tip; in degrees if not said.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub feed_diameter: Option<Quantity>,
     /// Largest acceleration, mm/s² or degrees/s².
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_accel: Option<Quantity>,
@@ -348,6 +352,17 @@ pub enum FeedMode {
     InverseTime,
 }
 
+/// What F means under inverse time.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum InverseTime {
+    /// One over the time of the block in minutes.
+    #[default]
+    Minutes,
+    /// One over the time of the block in seconds.
+    Seconds,
+}
+
 /// The length that a control's feed a minute is meant along when it does not keep the tip.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -440,14 +455,6 @@ pub enum OutputUnits {
     Inch,
 }
 
-/// Text of the program, and what the control does to it.
-#[derive(Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ProgramFile {
-    /// By how much the control may leave the path; without it it keeps the path as it does by default.
-    pub smoothing: Option<SmoothingFile>,
-}
-
 /// The control and its language; `[control.<dialect>]` holds the dialect's own options.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -463,6 +470,9 @@ pub(crate) struct ControlFile {
     /// How a cutting feed is written; auto if not said.
     #[serde(default)]
     pub feed: FeedMode,
+    /// What F means under inverse time; minutes if not said.
+    #[serde(default)]
+    pub inverse_time: InverseTime,
     /// The length that the control divides by F when it does not keep the tip; linear if not said.
     #[serde(default)]
     pub feed_length: FeedLength,

@@ -216,6 +216,7 @@ const TOP: &[&str] = &[
     "control",
     "spindle",
     "cl",
+    "program",
     "accuracy",
     "solution",
     "rewind",

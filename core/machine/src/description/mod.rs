@@ -13,6 +13,7 @@ mod layers;
 mod limits;
 mod numbers;
 mod options;
+mod program;
 mod schema;
 mod setting;
 mod smoothing;
@@ -29,11 +30,12 @@ pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
     ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
-    Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, ToolLength,
+    InverseTime, Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
 pub use limits::MOST_BYTES;
+pub use program::{ProgramRules, ProgramText, TextPlace};
 pub use schema::schema;
 pub use setting::Setting;
 pub use smoothing::{Smoothing, SmoothingRules};
@@ -74,6 +76,8 @@ pub struct Machine {
     pub word_rules: Vec<WordRule>,
     /// By how much its control may leave the path, by operation.
     pub smoothing: SmoothingRules,
+    /// Text of its programs.
+    pub program: ProgramRules,
     /// What it must keep.
     pub accuracy: Accuracy,
     /// Which of several solutions is taken.
@@ -140,6 +144,8 @@ pub struct Axis {
     pub clamp: Option<Clamp>,
     /// Largest feed, mm/min or rad/min; infinite if the file does not say.
     pub max_feed: f64,
+    /// A feed a minute counts the way of a rotary axis along a circle of this diameter, mm; none: in degrees.
+    pub feed_diameter: Option<f64>,
     /// Largest acceleration, mm/s² or rad/s²; infinite if the file does not say.
     pub max_accel: f64,
     /// Largest jerk, mm/s³ or rad/s³; infinite if the file does not say.
@@ -244,6 +250,8 @@ pub struct Control {
     pub feed: FeedMode,
     /// What a feed a minute is meant along.
     pub feed_length: FeedLength,
+    /// What F means under inverse time.
+    pub inverse_time: InverseTime,
     /// How a rapid is written in which a rotary axis turns, or an axis would pass its largest feed.
     pub rapid: Rapid,
     /// Which tool length counts.

@@ -13,3 +13,4 @@ mod kinematics;
 mod linuxcnc;
 mod machine_file;
 mod place;
+mod tilted_plane;

@@ -15,6 +15,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::choose::{Limit, Turning};
 use post_machine::kinematics::travel::{AT_END, OverTravel, over, passed};
 use post_machine::kinematics::{Joints, Pose, Solver, Trace, Unreachable};
+use post_machine::tilted_plane::TiltedPlane;
 
 /// A point of the path, solved and rounded.
 #[derive(Clone, Copy, Debug, Default)]
@@ -185,6 +186,14 @@ impl Placer {
             axis_tolerance: machine.accuracy.axis_tolerance,
             control_point: machine.control_point,
         }
+    }
+
+    /// What solves points inside a tilted plane, the rotary axes standing; none if the machine's words cannot.
+    pub fn in_plane(&self, plane: TiltedPlane) -> Option<Self> {
+        Some(Self {
+            words: self.words.in_plane(plane)?,
+            ..self.clone()
+        })
     }
 
     /// The point of the tool that poses and errors are those of.

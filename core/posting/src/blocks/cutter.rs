@@ -13,7 +13,7 @@ impl Blocks<'_> {
     /// Compensation is switched on or off.
     pub(super) fn compensate(&mut self, line: u64, to: Compensation, findings: &Findings) {
         self.compensating = to != Compensation::Off;
-        if self.compensating && !self.compensates {
+        if self.compensating && !self.compensates && !self.in_plane() {
             self.compensating = false;
             self.refuse_compensation(
                 line,
@@ -36,6 +36,8 @@ impl Blocks<'_> {
     ) {
         let machine = self.machine;
         let axis = match machine.control.tcp {
+            // The tool stands upright in it.
+            _ if self.in_plane() => machine.tool_axis,
             Tcp::Control => node.trace.pose.axis,
             Tcp::Post => self.in_machine(placer, node),
         };

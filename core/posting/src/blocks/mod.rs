@@ -9,13 +9,14 @@ mod fitted;
 mod gathered;
 mod nominal;
 mod off_part;
+mod plane;
 mod staged;
 
 use std::rc::Rc;
 
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Tcp};
-use post_plugin::{Capabilities, ModelSession};
+use post_plugin::{Capabilities, Format, ModelSession};
 
 use crate::accuracy::{Bound, Linearise, Move, Node, PlacedBatch, Placer, Run};
 use crate::configuration::{Chosen, Configured, pose};
@@ -32,6 +33,7 @@ pub use block::{Block, MotionKind, Reason, Time};
 use gathered::Gathered;
 pub use nominal::Nominal;
 pub(crate) use nominal::{Kinds, STILL, Travels};
+use plane::Planes;
 
 /// Turns that differ by less are the same, radians.
 const TURN: f64 = 1e-6;
@@ -113,6 +115,8 @@ pub(crate) struct Blocks<'a> {
     model: &'a mut dyn ModelSession,
     /// Solves the points; none before the first.
     placer: Option<Rc<Placer>>,
+    /// The tilted planes of the control.
+    planes: Planes,
     linearise: Linearise,
     kinds: Kinds,
     between: BetweenWords,
@@ -149,6 +153,7 @@ impl<'a> Blocks<'a> {
     pub(crate) fn new(
         machine: &'a Machine,
         writes: Capabilities,
+        format: &Format,
         model: &'a mut dyn ModelSession,
         trust_model: bool,
     ) -> Self {
@@ -158,6 +163,7 @@ impl<'a> Blocks<'a> {
             base: machine,
             model,
             placer: None,
+            planes: Planes::new(format),
             linearise: Linearise::new(&machine.accuracy, trust_model),
             kinds: Kinds::new(machine),
             between: BetweenWords::new(machine),
@@ -219,7 +225,7 @@ impl<'a> Blocks<'a> {
         let points = || {
             batch.iter().map_while(|next| match next {
                 Flow::Point(Configured::Point(chosen)) if chosen.arrives => {
-                    Some((pose(&chosen.motion), &chosen.joints))
+                    Some((pose(&chosen.motion), self.planes.standing(chosen)))
                 }
                 _ => None,
             })
@@ -258,7 +264,7 @@ impl<'a> Blocks<'a> {
             Flow::Point(Configured::Point(chosen)) => self.point(chosen, lane, placed, to),
             Flow::Point(Configured::Placer(placer)) => {
                 self.end_run(to);
-                self.placer = Some(Rc::clone(placer));
+                self.take_placer(placer);
             }
             Flow::Point(Configured::Broken) => {
                 self.end_run(to);
@@ -290,6 +296,8 @@ impl<'a> Blocks<'a> {
                 self.last = None;
                 self.on_part = false;
             }
+            // Its place is told where it begins.
+            Command::Still(origin) => return self.still(line, *origin, to),
             Command::Head(name) => {
                 self.depart(line, to);
                 if let Some(head) = self.base.head(name) {
@@ -321,6 +329,7 @@ impl<'a> Blocks<'a> {
         placed: &mut PlacedBatch,
         to: &mut Surroundings<'_, '_>,
     ) {
+        self.enter_plane(chosen, placed, to);
         let Some(placer) = self.placer.clone() else {
             return;
         };
@@ -341,7 +350,8 @@ impl<'a> Blocks<'a> {
             let settled = if placed.take(lane, &mut node) {
                 Ok(())
             } else {
-                placer.settle(&mut node, pose(leg.motion), 1.0, &chosen.joints)
+                let standing = self.planes.standing(chosen);
+                placer.settle(&mut node, pose(leg.motion), 1.0, standing)
             };
             match settled {
                 Ok(()) => self.travel(&placer, &leg, node, to),

@@ -95,6 +95,8 @@ impl Blocks<'_> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Kinds {
     rotary: [bool; MAX_AXES],
+    /// What a degree of each counts.
+    degree: [f64; MAX_AXES],
     count: usize,
 }
 
@@ -112,10 +114,22 @@ impl Kinds {
     pub(crate) fn new(machine: &Machine) -> Self {
         let mut kinds = Self {
             count: machine.axes.len(),
+            degree: [1.0; MAX_AXES],
             ..Self::default()
         };
         for (rotary, axis) in kinds.rotary.iter_mut().zip(&machine.axes) {
             *rotary = axis.joint.rotary;
+        }
+        kinds
+    }
+
+    /// As a control counts ways whose units of length are `unit` mm, and whose rotary axes may count along circles.
+    pub(crate) fn counted(machine: &Machine, unit: f64) -> Self {
+        let mut kinds = Self::new(machine);
+        for (degree, axis) in kinds.degree.iter_mut().zip(&machine.axes) {
+            if let Some(diameter) = axis.feed_diameter {
+                *degree = 1f64.to_radians() * diameter / 2.0 / unit;
+            }
         }
         kinds
     }
@@ -132,7 +146,7 @@ impl Kinds {
         for index in 0..self.count.min(MAX_AXES) {
             let travel = (to[index] - from[index]).abs();
             if self.rotary[index] {
-                let degrees = travel.to_degrees();
+                let degrees = travel.to_degrees() * self.degree[index];
                 rotary += degrees * degrees;
                 travels.rotary_longest = travels.rotary_longest.max(degrees);
             } else {

@@ -321,6 +321,8 @@ impl<'a> Configuration<'a> {
                     Err(finding) => findings.at(line, *finding),
                 }
             }
+            // The tool is retracted before and behind: nothing is turned early on its behalf.
+            Command::Still(_) => self.route.leave(),
             Command::Spindle(Spindle::On { rpm, .. }) => {
                 self.speed = Some(*rpm);
                 self.check_speed(line, findings);

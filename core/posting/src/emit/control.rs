@@ -1,6 +1,6 @@
 //! What the control does by itself: work offsets, registers, subprograms, cutting speeds, smoothing, keeping the tip.
 
-use post_machine::description::{OutputUnits, Tcp};
+use post_machine::description::{OutputUnits, Smoothing, Tcp, TextPlace};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, Event, SpindleSense};
 
@@ -58,6 +58,7 @@ impl Emit<'_> {
             return false;
         }
         self.leave(line);
+        self.texts.tool(tool);
         self.writer.push(
             line,
             Event::Offsets {
@@ -119,7 +120,7 @@ impl Emit<'_> {
     pub(super) fn leave(&mut self, line: u64) {
         self.retract(line);
         if self.smoothed.take().is_some() {
-            self.writer.push(line, Event::SmoothingOff);
+            self.set_smoothing(line, None);
         }
     }
 
@@ -129,16 +130,25 @@ impl Emit<'_> {
             return;
         }
         self.smoothed = self.smoothing;
-        self.writer.push(
-            line,
-            match self.smoothing {
-                Some(smoothing) => Event::Smoothing {
+        self.set_smoothing(line, self.smoothing);
+    }
+
+    /// Smoothing on or off, by the machine file's own lines if it has any.
+    fn set_smoothing(&mut self, line: u64, smoothing: Option<Smoothing>) {
+        self.texts.smoothing(smoothing);
+        let (at, event) = match smoothing {
+            Some(smoothing) => (
+                TextPlace::SmoothingOn,
+                Event::Smoothing {
                     tolerance: smoothing.tolerance,
                     axis_tolerance: smoothing.axis_tolerance,
                 },
-                None => Event::SmoothingOff,
-            },
-        );
+            ),
+            None => (TextPlace::SmoothingOff, Event::SmoothingOff),
+        };
+        if !self.say(line, at) {
+            self.writer.push(line, event);
+        }
     }
 
     /// The control keeps the tip from here on, or no longer; for a dialect that is told so by itself.

@@ -66,15 +66,18 @@ struct Native {
     drift: f64,
 }
 
-/// The place of the word along which the cycles of a control drill: the linear axis Z, if the tool stands along it with
-/// every rotary axis at zero, or the control keeps the tip.
-pub(super) fn depth_word(machine: &Machine) -> Option<usize> {
+/// The place of the word Z of the linear axis along which the cycles of a control drill.
+pub(super) fn z_word(machine: &Machine) -> Option<usize> {
     let order = axis_words::order(machine);
-    let place = order
+    order
         .iter()
-        .position(|joint| machine.axes[*joint].name == "Z")?;
-    let along = axis_words::depth(machine) == Some(order[place]);
-    (along || machine.control.tcp == Tcp::Control).then_some(place)
+        .position(|joint| machine.axes[*joint].name == "Z")
+}
+
+/// The same, if the tool stands along that axis with every rotary axis at zero.
+pub(super) fn depth_word(machine: &Machine) -> Option<usize> {
+    let joint = |place: usize| axis_words::order(machine)[place];
+    z_word(machine).filter(|place| axis_words::depth(machine) == Some(joint(*place)))
 }
 
 impl Emit<'_> {
@@ -229,9 +232,13 @@ impl Emit<'_> {
     fn native(&self, hole: &Hole, findings: &Findings) -> Option<Native> {
         let machine = self.machine;
         let (point, drilling) = (hole.at?, &hole.drilling);
-        let place = self.depth_word?;
         // Where the control keeps the tip, and where the plane is tilted, it must have said so.
-        if machine.control.tcp == Tcp::Control && !self.writer.knows(Capabilities::CYCLE_TCP) {
+        let (place, needs) = match (self.plane_on || self.plane.is_some(), machine.control.tcp) {
+            (true, _) => (self.z_word?, Capabilities::CYCLE_IN_PLANE),
+            (false, Tcp::Control) => (self.z_word?, Capabilities::CYCLE_TCP),
+            (false, Tcp::Post) => (self.depth_word?, Capabilities::NONE),
+        };
+        if !self.writer.knows(needs) {
             return None;
         }
         let level = points(&hole.above).last()?;
@@ -263,6 +270,7 @@ impl Emit<'_> {
             ]
         } else {
             let any = machine.control.tcp == Tcp::Control
+                && self.plane.is_none()
                 && self.writer.knows(Capabilities::CYCLE_ANY_AXIS);
             if !any {
                 return None;

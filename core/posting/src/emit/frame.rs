@@ -1,9 +1,10 @@
 //! The frame around the moves: retracts, positions of the machine, the way to a first position.
 
 use post_machine::axis_words::{self, WordValues, Words};
-use post_machine::description::{Machine, Tcp};
+use post_machine::description::{Machine, Tcp, TextPlace};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
+use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
 use super::{Emit, across, chain, cycles, stands};
@@ -16,6 +17,9 @@ const TURN: f64 = 360.0;
 
 /// Directions and angles that differ by less are the same, radians.
 const SAME: f64 = 1e-9;
+
+/// One less the cosine of an angle that the rounding of a plane's angles can make.
+const SAME_WAY: f64 = 1e-8;
 
 /// What an axis does for the tool on its way to the part.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -49,11 +53,15 @@ impl Emit<'_> {
             return;
         }
         self.keep_tip(line, false);
+        self.instead(line, TextPlace::Retract);
         let machine = self.machine;
         self.go(line, &machine.frame.retract, |axes, words| Event::Retract {
             axes,
             words,
         });
+        if std::mem::take(&mut self.plane_on) {
+            self.writer.push(line, Event::PlaneOff);
+        }
         if !machine.frame.aside.is_empty() {
             self.go(line, &machine.frame.aside, parks);
         }
@@ -178,8 +186,12 @@ impl Emit<'_> {
         self.leave(line);
         self.rest(line);
         self.changed = true;
+        if self.texts.any_tool() {
+            self.say(line, TextPlace::BetweenTools);
+        }
         let machine = self.machine;
         self.park(line, &machine.frame.change, findings);
+        self.texts.tool(tool);
         self.writer.tool_known();
         if tool.register != tool.number && self.writer.knows(Capabilities::TOOL_TABLE) {
             findings.at(
@@ -194,6 +206,7 @@ impl Emit<'_> {
                 .help("the length of the tool must stand in its own line of the table"),
             );
         }
+        self.instead(line, TextPlace::ToolChange);
         self.writer.push(
             line,
             Event::ToolChange {
@@ -207,6 +220,11 @@ impl Emit<'_> {
         );
         // A changer may leave the depth axis anywhere.
         self.clear = false;
+        self.say(line, TextPlace::AfterToolChange);
+        let next = self.texts.next_tool();
+        if let Some(number) = next.filter(|_| self.texts.preselects()) {
+            self.writer.push(line, Event::Preselect { number });
+        }
     }
 
     /// Another head: the machine is that of the head from here on.
@@ -222,6 +240,7 @@ impl Emit<'_> {
         self.machine = &head.machine;
         self.words = Words::new(self.machine, self.writer.format());
         self.chain = chain(self.machine);
+        self.z_word = cycles::z_word(self.machine);
         self.depth_word = cycles::depth_word(self.machine);
         self.across = across(self.machine);
         match &head.word {
@@ -248,6 +267,7 @@ impl Emit<'_> {
         self.rest(line);
         self.go_home(line, findings);
         self.tell_wound(line, findings);
+        self.say(line, TextPlace::Footer);
         self.writer.push(line, Event::End);
     }
 
@@ -280,6 +300,19 @@ impl Emit<'_> {
             self.go(line, &across, parks);
         }
         self.keep_tip(line, true);
+        if let Some(plane) = &self.plane {
+            self.plane_on = true;
+            self.writer.push(
+                line,
+                Event::Plane {
+                    origin: plane.origin.into(),
+                    x: plane.axes.column(0).into_owned().into(),
+                    z: plane.normal().into(),
+                    angles: plane.angles,
+                    words,
+                },
+            );
+        }
         self.writer.push(
             line,
             Event::Position {
@@ -300,13 +333,16 @@ impl Emit<'_> {
     /// dialect writes them.
     fn plane_first(&self, joints: &Joints) -> bool {
         let machine = self.machine;
-        let (Tcp::Control, Some(depth), Some(chain)) = (
-            machine.control.tcp,
-            axis_words::depth(self.base),
-            &self.chain,
-        ) else {
+        let (Some(depth), Some(chain)) = (axis_words::depth(self.base), &self.chain) else {
             return true;
         };
+        if let Some(plane) = &self.plane {
+            // Along its normal, and not into the part.
+            return 1.0 - chain.way_of(depth, joints).dot(&plane.normal()) < SAME_WAY;
+        }
+        if machine.control.tcp == Tcp::Post {
+            return true;
+        }
         // Ahead of a block that switches it on with a move, words are axis positions: the same where nothing is turned.
         let mut axes = machine.axes.iter().zip(joints);
         let turned = axes.any(|(axis, joint)| {
@@ -317,6 +353,15 @@ impl Emit<'_> {
         }
         let word = axis_words::coordinate(&machine.axes[depth].name);
         1.0 - libm::fabs(chain.way_of(depth, joints)[word]) < SAME
+    }
+
+    /// The words behind it are those of a plane, or of none: what the control was told before ends, the tool clear of the
+    /// part.
+    pub(super) fn set_plane(&mut self, line: u64, plane: Option<Box<TiltedPlane>>) {
+        if self.plane_on {
+            self.retract(line);
+        }
+        self.plane = plane;
     }
 
     /// Where the linear axes across the spindle stand.

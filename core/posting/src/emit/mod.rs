@@ -4,21 +4,25 @@ mod control;
 mod cycles;
 mod extremes;
 mod frame;
+mod texts;
 mod writer;
 
 use post_machine::axis_words::{self, Words};
-use post_machine::description::{Machine, Smoothing};
+use post_machine::description::{Machine, Smoothing, TextPlace};
 use post_machine::kinematics::{Chain, Joints};
+use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, DialectSession, Event, List, ToolPose};
 
 use crate::blocks::{Block, MotionKind};
 use crate::curve::{CurveWords, PrintedCurve};
 use crate::findings::Findings;
+use crate::job_facts::JobFacts;
 use crate::observer::Output;
 use crate::program::Command;
 use crate::stream::Flow;
 use cycles::{Hole, InForce};
 pub(crate) use extremes::Extremes;
+use texts::Texts;
 use writer::Writer;
 
 /// The last stage.
@@ -27,6 +31,7 @@ pub(crate) struct Emit<'a> {
     /// The machine with the head that it starts with.
     base: &'a Machine,
     writer: Writer<'a>,
+    texts: Texts<'a>,
     extremes: Extremes,
     /// Where the axes stand behind the last block.
     last: Joints,
@@ -50,11 +55,16 @@ pub(crate) struct Emit<'a> {
     coolant_due: bool,
     /// What is printed of the next block, if it goes along a curve.
     curve: Option<Box<PrintedCurve>>,
+    /// The tilted plane of the words.
+    plane: Option<Box<TiltedPlane>>,
+    /// The control was told it.
+    plane_on: bool,
     /// The hole whose moves are coming.
     hole: Option<Box<Hole>>,
     /// The cycle in force.
     cycle: Option<InForce>,
-    /// Place of the word that cycles drill along.
+    /// Place of the word that cycles drill along, and the same where it is that of the axis along the tool.
+    z_word: Option<usize>,
     depth_word: Option<usize>,
     /// Places of the words that move the tool across it.
     across: Vec<usize>,
@@ -76,6 +86,7 @@ pub(crate) struct Emit<'a> {
 impl<'a> Emit<'a> {
     pub(crate) fn new(
         machine: &'a Machine,
+        job: &JobFacts,
         dialect: &'a mut dyn DialectSession,
         output: &'a mut dyn Output,
     ) -> Self {
@@ -86,6 +97,7 @@ impl<'a> Emit<'a> {
             machine,
             base: machine,
             writer,
+            texts: Texts::new(machine, job),
             extremes: Extremes::new(),
             last: Joints::default(),
             clamped: 0,
@@ -97,8 +109,11 @@ impl<'a> Emit<'a> {
             coolant: None,
             coolant_due: false,
             curve: None,
+            plane: None,
+            plane_on: false,
             hole: None,
             cycle: None,
+            z_word: cycles::z_word(machine),
             depth_word: cycles::depth_word(machine),
             across: across(machine),
             changed: false,
@@ -110,6 +125,7 @@ impl<'a> Emit<'a> {
             smoothed: None,
             keeps_tip: None,
         };
+        emit.say(0, TextPlace::Header);
         // Nothing is known of where the tool stands, nor of what is in force.
         emit.retract(0);
         emit
@@ -154,6 +170,7 @@ impl<'a> Emit<'a> {
     }
 
     fn flush(&mut self, findings: &Findings) {
+        self.texts.tell(findings);
         self.writer.flush(&mut self.extremes, findings);
     }
 
@@ -249,26 +266,23 @@ impl<'a> Emit<'a> {
             | Command::Index { .. }
             | Command::Along(_)
             | Command::AlongEnd
-            | Command::Hole(_) => return,
+            | Command::Hole(_)
+            | Command::Still(_) => return,
+            Command::Plane(plane) => return self.set_plane(line, plane.clone()),
             Command::Curve(curve) => {
                 self.curve = Some(curve.clone());
                 return;
             }
             Command::Tool(tool) => return self.change(line, tool, findings),
             Command::Head(name) => return self.swap_head(line, name),
+            Command::Operation(name) => return self.operation(line, name),
+            Command::OperationEnd => return self.operation_end(line),
+            Command::Preselect(_) if self.texts.preselects() => return,
             Command::Preselect(number) => Event::Preselect { number: *number },
             Command::Spindle(spindle) => return self.spindle(line, *spindle),
             Command::Coolant(coolant) => return self.coolant(line, *coolant),
             Command::Compensate(compensation) => Event::Compensate(*compensation),
-            // Of a dialect that does not know operations the name is a remark.
-            Command::Operation(name) if self.writer.knows(Capabilities::OPERATION) => {
-                Event::Operation { name }
-            }
-            Command::OperationEnd if self.writer.knows(Capabilities::OPERATION) => {
-                Event::OperationEnd
-            }
-            Command::OperationEnd => return,
-            Command::Operation(text) | Command::Comment(text) => Event::Comment { text },
+            Command::Comment(text) => Event::Comment { text },
             Command::Literal(text) => {
                 // Nobody knows what it does.
                 self.clear = false;
@@ -293,6 +307,25 @@ impl<'a> Emit<'a> {
             Command::Home => return self.go_home(line, findings),
         };
         self.writer.push(line, event);
+    }
+
+    /// An operation begins: of a dialect that does not know operations its name is a remark.
+    fn operation(&mut self, line: u64, name: &str) {
+        self.texts.operation(Some(name));
+        let event = match self.writer.knows(Capabilities::OPERATION) {
+            true => Event::Operation { name },
+            false => Event::Comment { text: name },
+        };
+        self.writer.push(line, event);
+        self.say(line, TextPlace::BeforeOperation);
+    }
+
+    fn operation_end(&mut self, line: u64) {
+        self.say(line, TextPlace::AfterOperation);
+        self.texts.operation(None);
+        if self.writer.knows(Capabilities::OPERATION) {
+            self.writer.push(line, Event::OperationEnd);
+        }
     }
 
     /// Lets go the axes that this block moves, and clamps the others before the tool cuts.
@@ -320,9 +353,9 @@ impl<'a> Emit<'a> {
     }
 }
 
-/// Places of the words of the linear axes that move in cuts, but for that of the depth.
+/// Places of the words of the linear axes that move in cuts, but for Z.
 fn across(machine: &Machine) -> Vec<usize> {
-    let depth = cycles::depth_word(machine);
+    let depth = cycles::z_word(machine);
     let order = axis_words::order(machine).into_iter().enumerate();
     order
         .filter(|(place, joint)| {

@@ -4,20 +4,24 @@
 //! commands; the moves of a curve that the dialect may write stand between two commands, the first of which has the
 //! curve (see [`crate::curve`]).
 
+mod planes;
 mod tangential;
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::description::{Cycles, Machine};
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_plugin::{Capabilities, Cycle};
 
+use crate::ahead::Ahead;
 use crate::curve::{Course, Curve, Keeps};
 use crate::findings::Findings;
 use crate::program::limits::MOST_CHORDS;
 use crate::program::{ArcStep, Command, CycleStep, HoleMark, Leg, Motion, Pace, SplineStep, Step};
 use crate::stream::{Flow, Outlet};
+use planes::Planes;
 use tangential::Tangential;
 
 /// A straight move of the path, from its line of the CL file.
@@ -42,6 +46,8 @@ pub(crate) struct Expand {
     keeps: Option<Keeps>,
     /// The cycles that the dialect has words for, as far as the machine file wants them.
     cycles: Capabilities,
+    /// Where the tool axis stays, if the control is to be told planes.
+    planes: Option<Planes>,
 }
 
 /// The moves and commands of `steps`, each with its line, chords straying by no more than `chord_tolerance` mm; and
@@ -54,6 +60,7 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
         tangential: None,
         keeps: None,
         cycles: Capabilities::NONE,
+        planes: None,
     };
     let mut all = Vec::new();
     let mut next = |batch: &mut Vec<Flow<Line>>| all.append(batch);
@@ -68,11 +75,17 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
 type Out<'o> = Outlet<'o, Flow<Line>>;
 
 impl Expand {
-    /// For a machine and a dialect that declares what it `writes`.
-    pub(crate) fn new(machine: &Machine, chord_tolerance: f64, writes: Capabilities) -> Self {
+    /// For a machine and a dialect that declares what it `writes`; `ahead` where the control is to be told planes.
+    pub(crate) fn new(
+        machine: &Machine,
+        chord_tolerance: f64,
+        writes: Capabilities,
+        ahead: Option<Arc<Ahead>>,
+    ) -> Self {
         let tangential = Tangential::new(machine);
         let keeps = Keeps::new(machine, writes);
         Self {
+            planes: ahead.map(Planes::new),
             cycles: match machine.control.cycles {
                 Cycles::Native => writes,
                 Cycles::Moves => Capabilities::NONE,
@@ -99,6 +112,13 @@ impl Expand {
     pub(crate) fn take(&mut self, steps: &[(u64, Step)], out: &mut Out<'_>, findings: &Findings) {
         for (line, step) in steps {
             let line = *line;
+            let change = self
+                .planes
+                .as_mut()
+                .and_then(|planes| planes.change(line, step));
+            if let Some(still) = change {
+                self.command(line, Command::Still(still), out, findings);
+            }
             match step {
                 Step::Move(motion) => self.go(line, *motion, out, findings),
                 Step::Arc(arc) => self.arc(line, arc, out, findings),

@@ -3,6 +3,7 @@
 
 use nalgebra::Vector3;
 use post_machine::description::{Retract, Rewind, Smoothing};
+use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
 use super::{Arc, DrillCycle, Drilling, Spline};
@@ -97,6 +98,11 @@ pub enum Command {
     AlongEnd,
     /// What is printed of the next block, which goes along a curve.
     Curve(Box<PrintedCurve>),
+    /// The tool axis stays from here on until the next of these, and the control is to be told a tilted plane for it,
+    /// with this origin (mm, part frame); none: no plane.
+    Still(Option<Vector3<f64>>),
+    /// The words behind it are those of this tilted plane, the tool having left the part; none: of no plane.
+    Plane(Option<Box<TiltedPlane>>),
     /// The moves from here on are those of a hole, which the control may have a cycle for.
     Hole(HoleMark),
 }
@@ -130,6 +136,7 @@ impl Command {
                 | Self::WorkOffset(_)
                 | Self::Subprogram(_)
                 | Self::Smoothing(_)
+                | Self::Still(_)
         )
     }
 }

@@ -2,11 +2,11 @@
 
 use nalgebra::Matrix3;
 use post_machine::axis_words::unit_length;
-use post_machine::description::{FeedLength, FeedMode, Machine, Tcp};
+use post_machine::description::{FeedLength, FeedMode, InverseTime, Machine, Tcp};
 use post_machine::kinematics::Joints;
 use post_plugin::{Feed, Format};
 
-use crate::blocks::{Block, Kinds, MotionKind, STILL, Travels};
+use crate::blocks::{Block, Kinds, MotionKind, STILL};
 use crate::program::Pace;
 
 /// What a length of the control's may differ from the way of the tip to be the same.
@@ -15,7 +15,10 @@ const SAME: f64 = 1e-9;
 /// Writes feeds for one machine and dialect.
 #[derive(Clone, Debug)]
 pub(super) struct FeedWriter {
+    /// Ways as the control counts them.
     kinds: Kinds,
+    /// Ways in mm and degrees.
+    degrees: Kinds,
     tcp: Tcp,
     inverse_time: bool,
     length: FeedLength,
@@ -56,7 +59,8 @@ impl FeedWriter {
         }
         let (tcp, length) = (machine.control.tcp, machine.control.feed_length);
         Some(Self {
-            kinds: Kinds::new(machine),
+            degrees: Kinds::new(machine),
+            kinds: Kinds::counted(machine, unit_length(machine.control.units)),
             tcp,
             inverse_time: wanted,
             length,
@@ -68,7 +72,12 @@ impl FeedWriter {
                 FeedMode::PerMinute => None,
                 _ => format.inverse_time.map(|decimals| {
                     let most = format.most_inverse_time.unwrap_or(f64::INFINITY);
-                    Printed::new(decimals).up_to(most)
+                    Printed::new(decimals)
+                        .up_to(most)
+                        .per(match machine.control.inverse_time {
+                            InverseTime::Minutes => 1.0,
+                            InverseTime::Seconds => 60.0,
+                        })
                 }),
             },
         })
@@ -103,7 +112,7 @@ impl FeedWriter {
         let length = if plain {
             tip / self.unit
         } else {
-            self.measured(&self.kinds.travels(from, &block.joints), tip)
+            self.measured(from, &block.joints, tip)
         };
         if let Pace::PerMinute(feed) = block.pace
             && block.nominal.moves
@@ -159,13 +168,15 @@ impl FeedWriter {
         }
     }
 
-    /// The length that the control will divide by F, in the units of the program or degrees.
-    fn measured(&self, travels: &Travels, tip: f64) -> f64 {
+    /// The length that the control will divide by F, in the units of the program or degrees. A control that keeps the
+    /// tip counts turns in degrees.
+    fn measured(&self, from: &Joints, to: &Joints, tip: f64) -> f64 {
+        let travels = self.kinds.travels(from, to);
         let tip = tip / self.unit;
         let linear = travels.linear / self.unit;
         match (self.tcp, self.length) {
             (Tcp::Control, _) if tip > SAME => tip,
-            (Tcp::Control, _) => travels.rotary_longest,
+            (Tcp::Control, _) => self.degrees.travels(from, to).rotary_longest,
             (Tcp::Post, FeedLength::Linear) if linear > SAME => linear,
             (Tcp::Post, FeedLength::Linear) => travels.rotary,
             (Tcp::Post, FeedLength::Combined) => {
@@ -222,6 +233,8 @@ struct Printed {
     per_scale: f64,
     /// The largest of them.
     most: f64,
+    /// So many of the units that F counts, of those that it is one over, in a minute.
+    per_minute: f64,
 }
 
 impl Printed {
@@ -231,7 +244,13 @@ impl Printed {
             scale,
             per_scale: 1.0 / scale,
             most: f64::INFINITY,
+            per_minute: 1.0,
         }
+    }
+
+    /// One over a time of which a minute has so many.
+    fn per(self, per_minute: f64) -> Self {
+        Self { per_minute, ..self }
     }
 
     /// None above `most`.
@@ -249,13 +268,14 @@ impl Printed {
     /// `value` blocks a minute; the least printed number if it is below that.
     #[inline]
     fn inverse(&self, value: f64) -> Written {
-        let printed = self.floor(value.min(self.most));
+        let asked = value / self.per_minute;
+        let printed = self.floor(asked.min(self.most));
         let feed = printed.max(self.per_scale);
         Written {
             feed: Feed::InverseTime(feed),
-            minutes: 1.0 / feed,
-            raised_from: (printed <= 0.0).then_some(value),
-            capped: value > self.most,
+            minutes: 1.0 / (feed * self.per_minute),
+            raised_from: (printed <= 0.0).then_some(asked),
+            capped: asked > self.most,
         }
     }
 }

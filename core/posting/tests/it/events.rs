@@ -4,7 +4,7 @@ use std::fs;
 
 use post_machine::description::{Machine, Source, load};
 use post_plugin::Capabilities;
-use post_posting::Job;
+use post_posting::{Job, JobFacts, LookedAhead};
 use post_testkit::posted::{Recorder, Run, Samples, watched};
 use post_testkit::repository;
 
@@ -14,22 +14,28 @@ fn machine(name: &str, more: &str) -> Machine {
         name: "mine.toml".to_owned(),
         text: format!("extends = {name:?}\n{more}"),
     };
-    let find = &mut |name: &str| {
-        let path = repository().join(format!("machines/{name}.toml"));
-        Ok(Source {
-            text: fs::read_to_string(&path).unwrap(),
-            name: path.display().to_string(),
-        })
-    };
-    load(source, &[], find).unwrap_or_else(|faults| panic!("{faults:#?}"))
+    load(source, &[], &mut library).unwrap_or_else(|faults| panic!("{faults:#?}"))
+}
+
+fn library(name: &str) -> Result<Source, String> {
+    let path = repository().join(format!("machines/{name}.toml"));
+    Ok(Source {
+        text: fs::read_to_string(&path).unwrap(),
+        name: path.display().to_string(),
+    })
 }
 
 /// Posts for a dialect that declares `writes`. `;` ends a line.
 fn posted(machine: &Machine, writes: Capabilities, cl: &str) -> Run {
+    posted_as(machine, writes, cl, JobFacts::default())
+}
+
+fn posted_as(machine: &Machine, writes: Capabilities, cl: &str, facts: JobFacts) -> Run {
     let mut dialect = Recorder::new(machine, 3);
     dialect.capabilities = writes;
     let job = Job {
         tool_length: Some(100.0),
+        facts,
         ..Job::default()
     };
     let cl = format!("UNITS/MM;{cl};FINI;").replace(';', "\n");
@@ -335,6 +341,134 @@ fn pprint_is_a_message_where_the_machine_file_says_so() {
         assert_eq!(
             event(&run, kind),
             format!("{kind} {{ text: \"TURN THE PART\" }}")
+        );
+    }
+}
+
+/// Text of one's own: before and behind what it names, filled with what is known there.
+#[test]
+fn texts_of_the_machine_file_stand_where_they_belong() {
+    let more = r#"[program]
+header = ["({{ program.name }} FOR {{ program.cl_file }})", "{% for tool in program.tools %}", "(T{{ tool.number }})", "{% endfor %}"]
+footer = "(END)"
+between_tools = "M1"
+tool_change = "T{{ tool.number }} M16"
+after_tool_change = "(BEHIND {% if last_tool is none %}NONE{% else %}{{ last_tool.number }}{% endif %})"
+before_operation = "(OP {{ operation.number }} {{ operation.name }})"
+after_operation = "(/OP {{ operation.name }})"
+retract = ["G91 G28 Z0", "G90"]
+smoothing_on = "G187 E{{ tolerance|fixed(3) }}"
+smoothing_off = "G187"
+preselect = true
+[program.smoothing]
+tolerance = 0.02
+"#;
+    let vmc = machine("vmc", more);
+    let tool = |number| post_posting::program::Tool {
+        number,
+        register: number,
+        ..Default::default()
+    };
+    let facts = JobFacts {
+        program: "PART".to_owned(),
+        cl_file: "part.cls".to_owned(),
+        ahead: Some(LookedAhead {
+            changes: vec![tool(3), tool(5)],
+            ..LookedAhead::default()
+        }),
+    };
+    let of = |name: &str| format!("TOOL PATH/{name},TOOL,T;{CUT};END-OF-PATH");
+    let cl = format!(
+        "LOADTL/3;{};SELECT/TOOL,9;LOADTL/5;{}",
+        of("A"),
+        of("B) M30 (")
+    );
+    let run = posted_as(&vmc, Capabilities::INSTEAD, &cl, facts).good("texts");
+    let told: Vec<String> = run
+        .asked
+        .iter()
+        .filter(|asked| !matches!(asked.kind, "Linear" | "Rapid" | "Spindle"))
+        .map(|asked| match asked.kind {
+            "Word" | "Instead" => asked.event.split('"').nth(1).unwrap().to_owned(),
+            kind => kind.to_owned(),
+        })
+        .collect();
+    assert_eq!(
+        told.join("; "),
+        "Start; (PART FOR part.cls); (T3); (T5); G91 G28 Z0\\nG90; Retract; \
+         T3 M16; ToolChange; (BEHIND NONE); Preselect; Comment; (OP 1 A); \
+         G91 G28 Z0\\nG90; Retract; G187 E0.020; Position; (/OP A); \
+         G91 G28 Z0\\nG90; Retract; G187; M1; T5 M16; ToolChange; (BEHIND 3); Comment; (OP 2 B  M30  ); \
+         G91 G28 Z0\\nG90; Retract; G187 E0.020; Position; (/OP B  M30  ); \
+         G91 G28 Z0\\nG90; Retract; G187; (END); End"
+    );
+    assert_eq!(event(&run, "Preselect"), "Preselect { number: 5 }");
+}
+
+/// What a template asks for and nobody knows is told with its place in the machine file, and there is no program.
+#[test]
+fn a_fact_that_nobody_knows_is_an_error() {
+    let vmc = machine(
+        "vmc",
+        "[program]\nafter_tool_change = \"G43 Z{{ tool.diameter }}\"\n",
+    );
+    let run = posted(&vmc, Capabilities::NONE, &format!("LOADTL/3;{CUT}"));
+    assert!(run.report.is_none());
+    let fault = &run.findings[0];
+    assert_eq!(fault.code, "program-text");
+    assert_eq!(fault.place.as_ref().unwrap().file, "mine.toml");
+    assert!(
+        fault.message.contains("after_tool_change"),
+        "{}",
+        fault.message
+    );
+}
+
+#[test]
+#[should_panic(expected = "cannot write other lines in the place of its own")]
+fn lines_in_the_place_of_an_event_s_need_a_dialect_that_leaves_its_own_out() {
+    let vmc = machine("vmc", "[program]\nretract = \"G28\"\n");
+    posted(&vmc, Capabilities::NONE, CUT);
+}
+
+/// A template is read, and filled once, when the machine is loaded.
+#[test]
+fn a_slip_in_a_template_is_shown_at_its_place() {
+    for (line, at, why) in [
+        ("header = \"({{ program.nme }})\"", 14..25, "undefined"),
+        ("header = \"({{ tool.number }})\"", 14..25, "undefined"),
+        (
+            "footer = [\"(A)\", \"{{ program.name \"]",
+            18..36,
+            "syntax error",
+        ),
+        (
+            "between_tools = \"{% set x = 1 %}\"",
+            19..30,
+            "there is no `set` here",
+        ),
+        ("smoothing_on = \"G187\"", 15..21, "no smoothing_off"),
+    ] {
+        let source = Source {
+            name: "mine.toml".to_owned(),
+            text: format!("extends = \"vmc\"\n[program]\n{line}\n"),
+        };
+        let faults = load(source, &[], &mut library).unwrap_err();
+        let place = faults[0].place.clone().unwrap();
+        assert!(
+            faults[0].message.contains(why),
+            "{line}: {}",
+            faults[0].message
+        );
+        assert_eq!(
+            (place.line, place.file.as_str()),
+            (3, "mine.toml"),
+            "{line}"
+        );
+        let told = &place.span;
+        assert!(
+            told.start >= at.start && told.end <= at.end,
+            "{line}: {told:?}"
         );
     }
 }

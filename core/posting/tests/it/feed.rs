@@ -9,7 +9,7 @@ mod cases;
 use std::fmt::Write as _;
 
 use nalgebra::Vector3;
-use post_machine::description::Tcp;
+use post_machine::description::{InverseTime, Tcp};
 use post_machine::kinematics::{Joints, MAX_AXES};
 use post_plugin::Feed;
 use post_testkit::posted::{Asked, Bench, Run};
@@ -37,7 +37,13 @@ fn length(bench: &Bench, kind: &str, from: &Joints, to: &Joints, tip: f64) -> f6
         .map(|place| {
             let way = (to[place] - from[place]).abs();
             let rotary = bench.reference.joints[place].rotary;
-            (rotary, if rotary { way.to_degrees() } else { way })
+            let diameter = bench.machine.axes[place].feed_diameter;
+            let turn = match (diameter, bench.machine.control.tcp) {
+                // Along its circle.
+                (Some(diameter), Tcp::Post) => way * diameter / 2.0,
+                _ => way.to_degrees(),
+            };
+            (rotary, if rotary { turn } else { way })
         })
         .collect();
     let of = |rotary: bool| {
@@ -92,7 +98,10 @@ fn drive(bench: &Bench, run: &Run, kind: &str, count: u32) -> Vec<Driven> {
             line: asked.line,
             rapid: asked.feed.is_none(),
             minutes: match asked.feed {
-                Some(Feed::InverseTime(feed)) => 1.0 / feed,
+                Some(Feed::InverseTime(feed)) => match bench.machine.control.inverse_time {
+                    InverseTime::Minutes => 1.0 / feed,
+                    InverseTime::Seconds => 1.0 / feed / 60.0,
+                },
                 Some(Feed::PerMinute(feed)) => length(bench, kind, &from, &to, tip) / feed,
                 Some(other) => panic!("{other:?}"),
                 None => 0.0,
@@ -156,6 +165,8 @@ fn made(rng: &mut Rng) -> Made {
     ][rng.pick(5)];
     let feed = ["auto", "per-minute", "inverse-time"][rng.pick(3)];
     let rapid = ["rapid", "linear"][rng.pick(2)];
+    let time = ["minutes", "minutes", "seconds"][rng.pick(3)];
+    let circle = ["", "", "feed_diameter = 80\n"][rng.pick(3)];
     let reduce = rng.pick(2) == 0;
     let list = |v: V| format!("[{}, {}, {}]", v.x, v.y, v.z);
     let mut text = format!(
@@ -169,7 +180,7 @@ fn made(rng: &mut Rng) -> Made {
         let direction = list(direction);
         writeln!(
             text,
-            "[axis.{name}]\nrotary = {direction}\npoint = {point}\ncyclic = true\nmax_feed = {most}"
+            "[axis.{name}]\nrotary = {direction}\npoint = {point}\ncyclic = true\nmax_feed = {most}\n{circle}"
         )
         .unwrap();
     }
@@ -183,7 +194,7 @@ fn made(rng: &mut Rng) -> Made {
     }
     writeln!(
         text,
-        "[control]\ndialect = \"recorder\"\ntcp = \"{tcp}\"\nfeed = \"{feed}\"\nfeed_length = \"{kind}\"\nrapid = \"{rapid}\"\n\
+        "[control]\ndialect = \"recorder\"\ntcp = \"{tcp}\"\nfeed = \"{feed}\"\nfeed_length = \"{kind}\"\ninverse_time = \"{time}\"\nrapid = \"{rapid}\"\n\
          [accuracy]\ntolerance = 0.02\naxis_tolerance = 2.0\nrapid_tolerance = 1000\nreduce = {reduce}"
     )
     .unwrap();

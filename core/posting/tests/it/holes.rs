@@ -8,7 +8,7 @@ use post_posting::program::{Reading, ToldSpindle};
 use post_testkit::posted::{Asked, Recorder, Run, Samples, watched};
 use post_testkit::{Rng, randomised};
 
-const LINEAR: &str = "
+pub(crate) const LINEAR: &str = "
 [axis.X]
 linear = [1, 0, 0]
 travel = [-5000, 5000]
@@ -27,7 +27,7 @@ axis_tolerance = 0.05
 rapid_tolerance = 0.5
 ";
 
-const TABLE: &str = "
+pub(crate) const TABLE: &str = "
 [axis.C]
 rotary = [0, 0, 1]
 point = [0, 0, 0]
@@ -40,7 +40,7 @@ travel = [-100, 100]
 max_feed = 9000
 ";
 
-fn machine(chain: &str, axes: &str, control: &str) -> Machine {
+pub(crate) fn machine(chain: &str, axes: &str, control: &str) -> Machine {
     let text = format!(
         "name = \"test\"\nchain = \"{chain}\"\n[workpiece]\nmount = [3, 5, 60]\n[tool]\ngauge = [0, 0, 400]\naxis = [0, 0, 1]\n\
          [control]\ndialect = \"none\"\n{control}\n{axes}{LINEAR}"
@@ -77,6 +77,7 @@ fn run(machine: &Machine, capabilities: Capabilities, cl: &str) -> Run {
     let job = Job {
         reading: Reading {
             spindle: ToldSpindle::On(500.0),
+            tool_from_cutter: true,
             ..Reading::default()
         },
         tool_length: Some(50.0),
@@ -638,8 +639,48 @@ fn a_thread_is_cut_by_a_cycle_that_fits_it_or_not_at_all() {
     let cl = "UNITS/MM\nMULTAX/ON\nRAPID\nGOTO/0,0,100,0,0.6,0.8\nCYCLE/TAP,DEPTH,10,CLEAR,3,PITCH,1.5\nGOTO/1,2,0\n";
     let refused = run(&trunnion("control"), CYCLES, cl);
     assert!(
-        refused.told().contains("planes = true"),
+        refused.told().contains("must be the control's own"),
         "{}",
         refused.told()
     );
+}
+
+/// Blocks of the real files with holes, as moves and as cycles.
+#[test]
+fn real_files_need_fewer_blocks_with_cycles() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/cl");
+    for (file, least) in [
+        ("nx_HumMan_standart_drill.clsf", 1),
+        ("nx_HumMan_deep_drill.clsf", 1),
+        ("creo3x_MichaHofft_bohren_1.ncl", 1),
+        ("swcam_aamorim_basemach.apt", 1),
+        ("swcam_aamorim_Interface-glue.clt", 0),
+        ("camworks_neMoguta_UniSource.clt", 2),
+    ] {
+        let Ok(cl) = std::fs::read(format!("{folder}/{file}")) else {
+            println!("{file} is not here");
+            continue;
+        };
+        let cl = String::from_utf8_lossy(&cl);
+        let machine = trunnion("post");
+        let moves = run(&machine, Capabilities::NONE, &cl).good(file);
+        let native = run(&machine, CYCLES, &cl).good(file);
+        let count = |kind| {
+            native
+                .asked
+                .iter()
+                .filter(|asked| asked.kind == kind)
+                .count()
+        };
+        println!(
+            "{file}: {} blocks as moves, {} with {} cycles at {} points",
+            moves.motions().len(),
+            native.motions().len(),
+            count("Cycle"),
+            count("CyclePoint")
+        );
+        assert!(count("CyclePoint") >= least, "{file}");
+        let (moved, drilled) = (swept(&acts(&moves.asked)), swept(&acts(&native.asked)));
+        assert!(alike(&moved, &drilled), "{file}");
+    }
 }

@@ -11,5 +11,6 @@ mod events;
 mod feed;
 mod holes;
 mod path;
+mod planes;
 mod program;
 mod route;

@@ -2,14 +2,16 @@
 //! whole lines of finite numbers, the same however the program is cut into batches, and that nothing of it is left
 //! out, is the kit's.
 
-use post_plugin::{
-    Batch, Capabilities, Coolant, DialectSession, Event, Feed, Format, Spindle, Units, quantise,
-};
+use post_plugin::{Batch, Coolant, DialectSession, Event, Feed, Format, Spindle, Units, quantise};
 
 use super::Case;
 use super::commands::commands;
+use super::declared::declared;
+use super::options::options_of;
 use super::pen::{Pen, TURNING};
-use super::print::moves;
+use super::print::{edges, moves};
+use super::sessions::{after_a_refusal, two_at_once, two_threads};
+use super::texts::remarks;
 use crate::{GivenValue, Plugin, PluginFault, ProgramSetup, ProgramWord};
 
 /// A kind of event that no version of the contract has.
@@ -27,6 +29,7 @@ type Written = Result<String, (usize, String)>;
 pub(super) fn test(
     plugin: &Plugin,
     options: &[(String, GivenValue)],
+    most: usize,
 ) -> Result<Vec<Case>, PluginFault> {
     let mut setup = ProgramSetup {
         program: "kit".to_owned(),
@@ -36,6 +39,7 @@ pub(super) fn test(
                 name: name.to_owned(),
                 rotary: name == "A" || name == "C",
                 depth: name == "Z",
+                carries_part: name == "A" || name == "C",
                 ..ProgramWord::default()
             })
             .to_vec(),
@@ -67,8 +71,19 @@ pub(super) fn test(
     let mut case = Case::named("words and feeds");
     moves(&pen, &mut case)?;
     cases.push(case);
+    let mut case = Case::named("rounding edges");
+    edges(&pen, &mut case)?;
+    cases.push(case);
     let mut case = Case::named("commands");
     commands(&pen, &mut case)?;
+    cases.push(case);
+    let mut case = Case::named("remarks");
+    if !left_out.contains(&"Comment") {
+        remarks(&pen, &mut case)?;
+    }
+    cases.push(case);
+    let mut case = Case::named("declared");
+    declared(&pen, &mut case)?;
     cases.push(case);
     cases.push(axis_names(&pen)?);
     let plain = begin(&pen)?;
@@ -84,6 +99,11 @@ pub(super) fn test(
     cases.push(case);
 
     cases.push(every_event(plugin, &setup)?);
+    cases.push(vocabulary(plugin, &setup)?);
+    cases.push(options_of(&pen)?);
+    cases.push(after_a_refusal(plugin, &setup, UNKNOWN)?);
+    cases.push(two_at_once(plugin, &setup)?);
+    cases.push(two_threads(plugin, &setup, most)?);
 
     for (name, tcp, units) in [
         ("with TCP", true, Units::Millimetre),
@@ -111,6 +131,7 @@ pub(super) fn test(
                     }
                     moves(&pen, &mut case)?;
                     commands(&pen, &mut case)?;
+                    declared(&pen, &mut case)?;
                     let told =
                         |sentence: &String| cases.iter().any(|case| case.wrong.contains(sentence));
                     case.wrong.retain(|sentence| !told(sentence));
@@ -163,10 +184,23 @@ fn axis_names(pen: &Pen<'_>) -> Result<Case, PluginFault> {
     Ok(case)
 }
 
+/// The words that it tells hold together; none are told by many.
+fn vocabulary(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFault> {
+    let mut case = Case::named("vocabulary");
+    match plugin.dialect(setup)?.vocabulary() {
+        Ok(words) if words.is_empty() => {
+            case.note("it tells none: its programs cannot be read back".to_owned());
+        }
+        Ok(words) => case.facts.push(format!("{} words", words.len())),
+        Err(fault) => case.wrong(fault),
+    }
+    Ok(case)
+}
+
 /// Each kind of event by itself, behind the start: written or refused in words, never passed over.
 fn every_event(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFault> {
     let mut case = Case::named("every event");
-    let declares = plugin.dialect(setup)?.capabilities() != Capabilities::NONE;
+    let declares = plugin.dialect(setup)?.capabilities();
     let start = match write(plugin, setup, &[Event::Start], usize::MAX)? {
         Ok(text) => text.len(),
         Err((_, fault)) => {
@@ -179,7 +213,11 @@ fn every_event(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFaul
         match write(plugin, setup, &[Event::Start, event], usize::MAX)? {
             Err((_, fault)) if fault.contains("the plugin panicked") => case.wrong(fault),
             Err(_) => {}
-            Ok(text) if !declares && event.kind() > LAST && text.len() == start => {
+            Ok(text)
+                if declares.bits() & event.sent_under().bits() == 0
+                    && event.kind() > LAST
+                    && text.len() == start =>
+            {
                 case.wrong(format!(
                     "it takes {name} and writes nothing, without having declared it: it must refuse it"
                 ));

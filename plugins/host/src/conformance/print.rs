@@ -149,6 +149,66 @@ fn kind_alone(pen: &Pen<'_>, format: &Format, kind: Kind) -> Result<Text, Plugin
     })
 }
 
+/// Cuts and rapids alone, for a second look under another option.
+pub(super) fn plain_moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    let format = pen.format()?;
+    for kind in [Rapid, Cut] {
+        for word in 0..format.words.len() {
+            if let Some(fault) = word_fault(pen, &format, kind, word)? {
+                case.wrong(format!("{}: {fault}", kind.name()));
+            }
+        }
+        if let Some(fault) = feed_fault(pen, &format, kind)? {
+            case.wrong(format!("{}: {fault}", kind.name()));
+        }
+    }
+    Ok(())
+}
+
+/// Words where a digit more begins, where a rounding carries over, about zero and at the ends of what axes reach: each
+/// differs from both of its neighbours in the last declared decimal.
+pub(super) fn edges(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    const EDGES: [f64; 12] = [
+        0.0, 0.1, 0.3, 0.5, 1.0, 9.5, 10.0, 99.5, 100.0, 1000.0, 8191.75, 99_999.5,
+    ];
+    let format = pen.format()?;
+    let text = |word: usize, value: f64| {
+        let mut words = rounded(PLACE, &format);
+        if let Some(own) = words.get_mut(word) {
+            *own = value;
+        }
+        pen.write(&|program| {
+            program.begin();
+            program.push(Event::position(&ELSEWHERE, None));
+            program.look_at(Event::linear(&words, Feed::PerMinute(500.0)));
+        })
+    };
+    for (word, decimals) in format.words.iter().enumerate() {
+        let (name, unit) = (&pen.setup.words[word].name, unit(*decimals));
+        for edge in EDGES.into_iter().flat_map(|edge| [edge, -edge]) {
+            let values = [edge - unit, edge, edge + unit].map(|value| quantise(value, *decimals));
+            let mut texts = Vec::with_capacity(values.len());
+            for value in values {
+                match text(word, value)? {
+                    Ok((_, text)) => texts.push(text),
+                    Err(fault) => case.wrong(format!("{name} {value} is refused: {fault}")),
+                }
+            }
+            for (pair, values) in texts.windows(2).zip(values.windows(2)) {
+                if pair[0] == pair[1] {
+                    case.wrong(format!(
+                        "{name} {} and {} are written alike: `{}`",
+                        values[0],
+                        values[1],
+                        pair[0].trim_end()
+                    ));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
 /// What is wrong with a word of a kind of move.
 fn word_fault(
     pen: &Pen<'_>,

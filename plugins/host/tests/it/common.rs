@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use post_host::{ProgramSetup, ProgramWord};
+use post_host::{GivenValue, ProgramSetup, ProgramWord};
 use post_plugin::Linked;
 
 /// The folder of this test's executable, where cargo also puts the libraries of its dependencies.
@@ -71,4 +71,16 @@ pub fn setup(words: &[&str]) -> ProgramSetup {
             .collect(),
         ..ProgramSetup::default()
     }
+}
+
+/// What a stock dialect must be told before it writes a program of five axes.
+pub fn needed(name: &str) -> Vec<(String, GivenValue)> {
+    let needed = match name {
+        // GRBL 1.1 has three.
+        "grbl" => ("hal", GivenValue::Flag(true)),
+        // Nothing is written in a unit that nobody has named.
+        "okuma" => ("unit_system", GivenValue::Text("1 mm".to_owned())),
+        _ => return Vec::new(),
+    };
+    vec![(needed.0.to_owned(), needed.1)]
 }

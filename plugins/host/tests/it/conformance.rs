@@ -9,7 +9,8 @@ use post_host::conformance::{self, Report, Verdict};
 use post_host::{GivenValue, Kind, Plugin};
 use post_plugin::Linked;
 
-use crate::sloppy;
+use crate::common::needed;
+use crate::{boastful, sloppy};
 
 /// A plugin that is part of the product.
 fn stock(name: &str) -> Linked {
@@ -39,7 +40,10 @@ fn example(name: &str) -> Plugin {
 #[test]
 fn the_stock_plugins_are_good() {
     let number = GivenValue::Integer;
-    let plain = post_stock::plugins().iter().map(|plugin| run(*plugin, &[]));
+    let plain = post_stock::plugins().iter().map(|plugin| {
+        let needed = needed(plugin.name());
+        conformance::test(&Plugin::linked(*plugin).unwrap(), &needed).unwrap()
+    });
     let with_options = [
         run(stock("harmonic"), &[("order", number(2))]),
         run(stock("harmonic"), &[("order", number(3))]),
@@ -209,6 +213,30 @@ fn dialects_are_run_too() {
             .any(|wrong| wrong.contains("the plugin panicked")),
         "{panics}"
     );
+}
+
+/// What is declared is written with all of its numbers; sessions do not disturb one another.
+#[test]
+fn what_is_declared_and_not_done_is_found() {
+    let boastful = |fault: &str| {
+        let fault = GivenValue::Text(fault.to_owned());
+        run(boastful::plugin(), &[("fault", fault)])
+    };
+    let good = boastful("");
+    assert!(good.is_good(), "{good}");
+    assert!(
+        good.table().contains("two threads: 8192 events, "),
+        "{good}"
+    );
+    assert!(good.table().contains("vocabulary: 1 words"), "{good}");
+    let mut missed = Vec::new();
+    for (fault, sentence) in boastful::FAULTS {
+        let report = boastful(fault);
+        if !report.wrong().any(|found| found.contains(sentence)) {
+            missed.push(format!("{fault}: {sentence}\n{report}"));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
 }
 
 /// What a certificate speaks of must be in the text: each of these dialects leaves some of it out.

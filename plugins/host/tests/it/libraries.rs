@@ -3,7 +3,7 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-use crate::common::{compile, deps, example, library, setup, stock};
+use crate::common::{compile, deps, example, library, needed, setup, stock};
 
 use std::path::Path;
 
@@ -15,6 +15,14 @@ use post_plugin::{
 
 fn five_axes() -> ProgramSetup {
     setup(&["X", "Y", "Z", "A", "C"])
+}
+
+/// Five axes, and the options without which this dialect does not open.
+fn setup_of(plugin: &Plugin) -> ProgramSetup {
+    ProgramSetup {
+        options: needed(plugin.name()),
+        ..five_axes()
+    }
 }
 
 fn job() -> Batch {
@@ -56,7 +64,7 @@ fn job() -> Batch {
 }
 
 fn write(plugin: &Plugin, batch: &Batch) -> (String, Vec<usize>) {
-    let mut session = plugin.dialect(&five_axes()).unwrap();
+    let mut session = plugin.dialect(&setup_of(plugin)).unwrap();
     let (mut out, mut ends) = (String::new(), Vec::new());
     session.write_batch(batch, &mut out, &mut ends).unwrap();
     (out, ends)
@@ -89,7 +97,7 @@ fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
             batch.push(1, Event::Start);
             batch.push(2, event);
             let [by_contract, straight] = [&opened, &linked].map(|plugin| {
-                let mut session = plugin.dialect(&five_axes()).unwrap();
+                let mut session = plugin.dialect(&setup_of(plugin)).unwrap();
                 let (mut out, mut ends) = (String::new(), Vec::new());
                 let written = session.write_batch(&batch, &mut out, &mut ends);
                 let words = session.vocabulary();
@@ -98,7 +106,7 @@ fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
             assert_eq!(by_contract, straight, "{}", event.name());
         }
         // Cut into single events it is the same program.
-        let mut session = opened.dialect(&five_axes()).unwrap();
+        let mut session = opened.dialect(&setup_of(&opened)).unwrap();
         let mut out = String::new();
         for event in batch.iter() {
             let mut single = Batch::default();

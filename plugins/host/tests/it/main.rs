@@ -1,5 +1,6 @@
 //! Tests of the host, with plugins linked in, opened as libraries, and hostile ones.
 
+mod boastful;
 mod common;
 mod conformance;
 mod guide;

@@ -4,8 +4,8 @@
 use post_iso::{Control, Iso, Table, Tcp};
 use post_plugin::export::Exported;
 use post_plugin::{
-    AxisNames, Compensation, Coolant, Dialect, Event, Feed, Format, Linked, OptionSpec, Setup,
-    Spindle, SpindleSense, Units, quantise,
+    AxisNames, Capabilities, Compensation, Coolant, Dialect, Event, Feed, Format, Linked,
+    OptionSpec, Setup, Spindle, SpindleSense, Units, quantise,
 };
 
 /// What is wrong, and a part of the sentence that says so.
@@ -204,6 +204,10 @@ impl Dialect for Sloppy {
             words: Vec::new(),
             last: vec![0.0; setup.words.len()],
         })
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        self.inner.capabilities()
     }
 
     fn format(&self) -> Format {

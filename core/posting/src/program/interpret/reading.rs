@@ -2,7 +2,7 @@
 
 use post_grammar::{MajorWord, Units};
 use post_machine::description::{
-    CompensationOnCentre, Insert, Print, SmoothingRules, ToolLength, WordRule,
+    CompensationOnCentre, Insert, Machine, Print, SmoothingRules, ToolLength, WordRule,
 };
 
 use crate::program::Unknown;
@@ -74,6 +74,22 @@ impl ToldSpindle {
 }
 
 impl Reading {
+    /// With what the machine's file says of it.
+    pub(crate) fn on(mut self, machine: &Machine) -> Self {
+        // Half of the tolerance goes to chords of arcs and splines, half is left for the axes.
+        self.chord_tolerance = machine.accuracy.tolerance / 2.0;
+        self.turn = machine.turn;
+        self.insert = machine.control.insert;
+        self.compensation_on_centre = machine.control.compensation_on_centre;
+        self.tool_length = machine.control.tool_length;
+        self.rules.clone_from(&machine.word_rules);
+        self.knife = machine.edge.is_some();
+        self.print = machine.control.print;
+        self.surface_speed = machine.spindle.surface_speed;
+        self.smoothing.clone_from(&machine.smoothing);
+        self
+    }
+
     /// The user takes upon himself what becomes of the word, in any of its spellings.
     pub(super) fn allows(&self, word: &str) -> bool {
         let same = |allowed: &String| {

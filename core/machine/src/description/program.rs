@@ -1,0 +1,390 @@
+//! Text of the program and what is done of itself: `[program]`.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::ops::Range;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use toml::Spanned;
+
+use super::Machine;
+use super::build::Builder;
+use super::smoothing::{SmoothingFile, SmoothingRules};
+use crate::diagnostic::{Diagnostic, Place};
+use crate::program_text::{
+    Extents, Facts, OperationFacts, ProgramFacts, TemplateFault, TextTemplate, ToolFacts,
+};
+
+/// Text of the program, and what the control does to it. Texts are templates: `{{ tool.number }}` stands for a fact, and
+/// each is a line or a list of lines.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ProgramFile {
+    /// By how much the control may leave the path; without it it keeps the path as it does by default.
+    pub smoothing: Option<SmoothingFile>,
+    /// Lines behind the program's start.
+    #[schemars(with = "Option<TextLines>")]
+    pub header: Option<Spanned<TextLines>>,
+    /// Lines before the program's end.
+    #[schemars(with = "Option<TextLines>")]
+    pub footer: Option<Spanned<TextLines>>,
+    /// Lines in the place of those that the dialect writes for a tool change.
+    #[schemars(with = "Option<TextLines>")]
+    pub tool_change: Option<Spanned<TextLines>>,
+    /// Lines behind a tool change.
+    #[schemars(with = "Option<TextLines>")]
+    pub after_tool_change: Option<Spanned<TextLines>>,
+    /// Lines before a tool change but the first, the tool retracted, such as M1.
+    #[schemars(with = "Option<TextLines>")]
+    pub between_tools: Option<Spanned<TextLines>>,
+    /// Lines at the start of an operation.
+    #[schemars(with = "Option<TextLines>")]
+    pub before_operation: Option<Spanned<TextLines>>,
+    /// Lines at the end of an operation.
+    #[schemars(with = "Option<TextLines>")]
+    pub after_operation: Option<Spanned<TextLines>>,
+    /// Lines in the place of those that the dialect writes to retract the tool.
+    #[schemars(with = "Option<TextLines>")]
+    pub retract: Option<Spanned<TextLines>>,
+    /// Lines that switch smoothing on, in the place of the dialect's.
+    #[schemars(with = "Option<TextLines>")]
+    pub smoothing_on: Option<Spanned<TextLines>>,
+    /// Lines that switch smoothing off, in the place of the dialect's.
+    #[schemars(with = "Option<TextLines>")]
+    pub smoothing_off: Option<Spanned<TextLines>>,
+    /// The next tool is made ready behind each tool change; what the CL file says of it is left out.
+    #[serde(default)]
+    pub preselect: bool,
+    /// Ending of the program's file, without a dot; the dialect's if not said.
+    #[schemars(with = "Option<String>", extend("pattern" = "^[A-Za-z0-9_]{1,16}$"))]
+    pub extension: Option<Spanned<String>>,
+}
+
+/// The lines of one template, each with its place where it is one of a list.
+#[derive(Debug)]
+pub(crate) struct TextLines(Vec<(String, Option<Range<usize>>)>);
+
+impl<'de> Deserialize<'de> for TextLines {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct Lines;
+        impl<'de> Visitor<'de> for Lines {
+            type Value = TextLines;
+
+            fn expecting(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+                to.write_str("a line of the program or a list of lines")
+            }
+
+            fn visit_str<E>(self, line: &str) -> Result<TextLines, E> {
+                Ok(TextLines(vec![(line.to_owned(), None)]))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<TextLines, A::Error> {
+                let mut lines = Vec::new();
+                while let Some(line) = items.next_element::<Spanned<String>>()? {
+                    let span = line.span();
+                    lines.push((line.into_inner(), Some(span)));
+                }
+                Ok(TextLines(lines))
+            }
+        }
+        from.deserialize_any(Lines)
+    }
+}
+
+impl JsonSchema for TextLines {
+    fn schema_name() -> Cow<'static, str> {
+        "TextLines".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "A line of the program, or several, as one template.",
+            "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" }, "minItems": 1 }]
+        })
+    }
+}
+
+/// A place of the program that a machine file has text for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextPlace {
+    /// Behind the start.
+    Header,
+    /// Before the end.
+    Footer,
+    /// A tool change.
+    ToolChange,
+    /// Behind a tool change.
+    AfterToolChange,
+    /// Before a tool change but the first.
+    BetweenTools,
+    /// The start of an operation.
+    BeforeOperation,
+    /// The end of an operation.
+    AfterOperation,
+    /// A retract.
+    Retract,
+    /// Smoothing on.
+    SmoothingOn,
+    /// Smoothing off.
+    SmoothingOff,
+}
+
+impl TextPlace {
+    /// As a machine file writes it.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Header => "header",
+            Self::Footer => "footer",
+            Self::ToolChange => "tool_change",
+            Self::AfterToolChange => "after_tool_change",
+            Self::BetweenTools => "between_tools",
+            Self::BeforeOperation => "before_operation",
+            Self::AfterOperation => "after_operation",
+            Self::Retract => "retract",
+            Self::SmoothingOn => "smoothing_on",
+            Self::SmoothingOff => "smoothing_off",
+        }
+    }
+
+    /// The lines stand in the place of the dialect's.
+    pub fn replaces(self) -> bool {
+        matches!(self, Self::ToolChange | Self::Retract)
+    }
+
+    /// Facts of the kind that its templates are filled with: all that may be known is.
+    fn sample(self) -> Facts {
+        let tool = ToolFacts {
+            number: 1,
+            register: 1,
+            name: "MILL".to_owned(),
+            length: Some(100.0),
+            diameter: Some(10.0),
+            corner_radius: Some(1.0),
+        };
+        let some = |whether: bool| whether.then(|| tool.clone());
+        let operation = matches!(self, Self::BeforeOperation | Self::AfterOperation);
+        let smooth = self == Self::SmoothingOn;
+        Facts {
+            program: ProgramFacts {
+                name: "PART".to_owned(),
+                cl_file: "part.cls".to_owned(),
+                machine: "MILL".to_owned(),
+                dialect: "DIALECT".to_owned(),
+                units: "mm".to_owned(),
+                tolerance: 0.01,
+                axis_tolerance: 0.05,
+                tools: Some(vec![tool.clone()]),
+                extents: Some(Extents::default()),
+                time: Some(60.0),
+            },
+            tool: some(self != Self::Header),
+            last_tool: some(matches!(
+                self,
+                Self::ToolChange | Self::AfterToolChange | Self::BetweenTools
+            )),
+            next_tool: (self != Self::Header).then_some(2),
+            operation: operation.then(|| OperationFacts {
+                name: "ROUGH".to_owned(),
+                number: 1,
+            }),
+            tolerance: smooth.then_some(0.01),
+            axis_tolerance: smooth.then_some(0.05),
+            line: 1,
+        }
+    }
+}
+
+/// A template of a machine file.
+#[derive(Clone, Debug)]
+pub struct ProgramText {
+    /// Where its lines come.
+    pub at: TextPlace,
+    template: TextTemplate,
+    /// Where each of its lines begins and ends, and where that stands in the file.
+    places: Vec<(Range<usize>, Option<Place>)>,
+}
+
+impl ProgramText {
+    /// Its lines with these facts.
+    ///
+    /// # Errors
+    /// What is wrong, with its place in the machine file.
+    pub fn lines(&self, facts: &Facts) -> Result<Vec<String>, Box<Diagnostic>> {
+        self.template.lines(facts).map_err(|fault| {
+            let at = fault.span.map_or(0, |span| span.start);
+            let place = self.places.iter().find(|(line, _)| at <= line.end);
+            let place = place
+                .or(self.places.first())
+                .and_then(|(_, place)| place.clone());
+            Diagnostic::error(
+                "program-text",
+                format!("[program] {}: {}", self.at.key(), fault.message),
+            )
+            .at(place)
+            .boxed()
+        })
+    }
+}
+
+/// What the machine file says of the program's text.
+#[derive(Clone, Debug, Default)]
+pub struct ProgramRules {
+    /// Its templates.
+    pub texts: Vec<ProgramText>,
+    /// The next tool is made ready behind each tool change.
+    pub preselect: bool,
+    /// Ending of the program's file, without a dot.
+    pub extension: Option<String>,
+    /// Some template speaks of what is known ahead alone: tools, extents, time, the next tool.
+    pub looks_ahead: bool,
+}
+
+impl ProgramRules {
+    /// The text for a place.
+    pub fn text(&self, at: TextPlace) -> Option<&ProgramText> {
+        self.texts.iter().find(|text| text.at == at)
+    }
+}
+
+/// Facts that a first pass over the CL file finds.
+const AHEAD: [&str; 4] = [
+    "program.tools",
+    "program.extents",
+    "program.time",
+    "next_tool",
+];
+
+impl Machine {
+    /// The machine without text of its own: for a pass whose program nobody reads, and in which not all is known that a
+    /// template asks for.
+    pub fn without_text(&self) -> Self {
+        let mut plain = self.clone();
+        if self.program.text(TextPlace::SmoothingOn).is_some() {
+            plain.smoothing = SmoothingRules::default();
+        }
+        plain.program = ProgramRules::default();
+        plain
+    }
+}
+
+impl Builder<'_> {
+    pub(super) fn program(&mut self, file: &ProgramFile) -> ProgramRules {
+        let mut rules = ProgramRules {
+            preselect: file.preselect,
+            looks_ahead: file.preselect,
+            ..ProgramRules::default()
+        };
+        for (at, lines) in [
+            (TextPlace::Header, &file.header),
+            (TextPlace::Footer, &file.footer),
+            (TextPlace::ToolChange, &file.tool_change),
+            (TextPlace::AfterToolChange, &file.after_tool_change),
+            (TextPlace::BetweenTools, &file.between_tools),
+            (TextPlace::BeforeOperation, &file.before_operation),
+            (TextPlace::AfterOperation, &file.after_operation),
+            (TextPlace::Retract, &file.retract),
+            (TextPlace::SmoothingOn, &file.smoothing_on),
+            (TextPlace::SmoothingOff, &file.smoothing_off),
+        ] {
+            let Some(lines) = lines else { continue };
+            let source: Vec<&str> = lines
+                .get_ref()
+                .0
+                .iter()
+                .map(|(line, _)| line.as_str())
+                .collect();
+            let source = source.join("\n");
+            rules.looks_ahead |= AHEAD.iter().any(|fact| source.contains(fact));
+            rules.texts.extend(self.text(at, lines, &source));
+        }
+        for (on, off) in [
+            (TextPlace::SmoothingOn, TextPlace::SmoothingOff),
+            (TextPlace::SmoothingOff, TextPlace::SmoothingOn),
+        ] {
+            if let (Some(text), None) = (rules.text(on), rules.text(off)) {
+                let place = text.places.first().and_then(|(_, place)| place.clone());
+                let message = format!("[program] has {} and no {}", on.key(), off.key());
+                self.faults
+                    .push(Diagnostic::error("program-text", message).at(place));
+            }
+        }
+        if let Some(extension) = &file.extension {
+            let name = extension.get_ref();
+            let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+            if name.is_empty() || name.len() > 16 || !name.chars().all(plain) {
+                let message = format!("{name:?} is no ending of a file");
+                self.fault(
+                    "machine-program",
+                    extension.span(),
+                    message,
+                    "letters and digits, without a dot: \"nc\"",
+                );
+            }
+            rules.extension = Some(name.clone());
+        }
+        rules
+    }
+
+    /// A template, filled once with facts of the kind that it will be filled with.
+    fn text(
+        &mut self,
+        at: TextPlace,
+        lines: &Spanned<TextLines>,
+        source: &str,
+    ) -> Option<ProgramText> {
+        let mut begin = 0;
+        let spans: Vec<(Range<usize>, Range<usize>)> = lines
+            .get_ref()
+            .0
+            .iter()
+            .map(|(line, span)| {
+                let part = begin..begin + line.len();
+                begin = part.end + 1;
+                (part, span.clone().unwrap_or(lines.span()))
+            })
+            .collect();
+        let read = TextTemplate::parse(source);
+        let read = read.and_then(|template| template.lines(&at.sample()).map(|_| template));
+        match read {
+            Ok(template) => Some(ProgramText {
+                at,
+                template,
+                places: spans
+                    .into_iter()
+                    .map(|(part, span)| (part, self.sources.place(span)))
+                    .collect(),
+            }),
+            Err(TemplateFault { message, span }) => {
+                let span = span.map_or(lines.span(), |span| file_span(&spans, &span, lines.span()));
+                self.fault(
+                    "program-text",
+                    span,
+                    format!("[program] {}: {message}", at.key()),
+                    "machines/README.md lists the facts that a template can speak of",
+                );
+                None
+            }
+        }
+    }
+}
+
+/// The bytes of the file that are those of a template, where its line is written as it is read, without escapes.
+fn file_span(
+    lines: &[(Range<usize>, Range<usize>)],
+    fault: &Range<usize>,
+    whole: Range<usize>,
+) -> Range<usize> {
+    let Some((line, raw)) = lines.iter().find(|(line, _)| fault.start <= line.end) else {
+        return whole;
+    };
+    // A quote at both ends.
+    if raw.len() != line.len() + 2 {
+        return raw.clone();
+    }
+    let start = raw.start + 1 + (fault.start - line.start.min(fault.start));
+    let end =
+        raw.start + 1 + (fault.end.clamp(fault.start, line.end) - line.start.min(fault.start));
+    start..end.max(start + 1).min(raw.end)
+}

@@ -1,0 +1,181 @@
+//! Tilted planes of the control: while the rotary axes stand, the words are those of a plane that is turned with them.
+
+use std::rc::Rc;
+
+use nalgebra::Vector3;
+use post_machine::axis_words;
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Joints;
+use post_machine::kinematics::orientation::angle;
+use post_machine::tilted_plane::TiltedPlane;
+use post_plugin::Format;
+
+use super::{Blocks, Surroundings, TURN};
+use crate::accuracy::{PlacedBatch, Placer};
+use crate::configuration::{Chosen, pose};
+use crate::program::Command;
+
+/// The plane in force.
+#[derive(Debug)]
+pub(super) struct Planes {
+    format: Format,
+    /// What solves points outside.
+    outside: Option<Rc<Placer>>,
+    /// Origin of the planes that are wanted here, mm, part frame.
+    wanted: Option<Vector3<f64>>,
+    /// Where the rotary axes stand in the present one, or where none is needed, as printed.
+    stands: Option<Joints>,
+    /// A plane was told.
+    told: bool,
+}
+
+impl Planes {
+    pub(super) fn new(format: &Format) -> Self {
+        Self {
+            format: format.clone(),
+            outside: None,
+            wanted: None,
+            stands: None,
+            told: false,
+        }
+    }
+
+    /// The rotary values of a point: in a plane those of the plane. What the choice held or turned early close to a pole
+    /// does not count there, for the tool stands upright on the plane.
+    #[inline]
+    pub(super) fn standing<'j>(&'j self, chosen: &'j Chosen) -> &'j Joints {
+        match &self.stands {
+            Some(stands) if self.stays(stands, chosen) => stands,
+            _ => &chosen.joints,
+        }
+    }
+
+    /// Another branch or another full turn of the axes is another plane.
+    #[inline]
+    fn stays(&self, stands: &Joints, chosen: &Chosen) -> bool {
+        let alike = |placer: &Rc<Placer>| {
+            let joints = placer.solver().chain().joints().iter().enumerate();
+            joints
+                .filter(|(_, joint)| joint.rotary)
+                .all(|(place, _)| (stands[place] - chosen.joints[place]).abs() <= TURN)
+        };
+        !chosen.changed || self.outside.as_ref().is_some_and(alike)
+    }
+}
+
+impl Blocks<'_> {
+    /// Another placer comes; the tool leaves a plane with the one that it is in it with.
+    pub(super) fn take_placer(&mut self, placer: &Rc<Placer>) {
+        self.planes.outside = Some(Rc::clone(placer));
+        if !self.planes.told {
+            self.placer = Some(Rc::clone(placer));
+        }
+        self.planes.stands = None;
+    }
+
+    /// The tool axis stays from here on, or does not any more.
+    pub(super) fn still(
+        &mut self,
+        line: u64,
+        wanted: Option<Vector3<f64>>,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        self.depart(line, to);
+        self.leave_plane(line, to);
+        self.planes.wanted = wanted;
+    }
+
+    /// No plane is in force any more; the tool has left the part.
+    fn leave_plane(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
+        self.planes.stands = None;
+        self.placer.clone_from(&self.planes.outside);
+        self.keeps.tilted = false;
+        if std::mem::take(&mut self.planes.told) {
+            to.out.command(line, Command::Plane(None));
+        }
+    }
+
+    /// The plane that a point lies in, if planes are wanted: the present one, or the tool leaves the part and comes back in
+    /// another.
+    #[inline]
+    pub(super) fn enter_plane(
+        &mut self,
+        chosen: &Chosen,
+        placed: &mut PlacedBatch,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        if let Some(origin) = self.planes.wanted {
+            let planes = &self.planes;
+            let stays = self.last.is_some()
+                && (planes.stands.as_ref()).is_some_and(|stands| planes.stays(stands, chosen));
+            if !stays {
+                placed.forget();
+                self.change_plane(chosen, origin, to);
+            }
+            if chosen.rewind.is_some() {
+                to.findings.at(chosen.line, turns_in_plane());
+            }
+        }
+    }
+
+    fn change_plane(
+        &mut self,
+        chosen: &Chosen,
+        origin: Vector3<f64>,
+        to: &mut Surroundings<'_, '_>,
+    ) {
+        let line = chosen.line;
+        self.end_run(to);
+        self.depart(line, to);
+        self.leave_plane(line, to);
+        let Some(outside) = self.planes.outside.clone() else {
+            return;
+        };
+        // Upright, whatever the choice held close to a pole.
+        let Ok(node) = outside.place(pose(&chosen.motion), 1.0, &chosen.joints) else {
+            return;
+        };
+        let stands = node.trace.joints;
+        self.planes.stands = Some(stands);
+        let machine = self.machine;
+        let turned = machine
+            .axes
+            .iter()
+            .zip(&stands)
+            .any(|(axis, value)| axis.joint.rotary && axis.reading(*value).abs() > 1e-9);
+        let order = axis_words::order(machine);
+        let x = order
+            .into_iter()
+            .find(|joint| machine.axes[*joint].name == "X");
+        let (Some(x), true) = (x, turned) else {
+            return;
+        };
+        let chain = outside.solver().chain();
+        let plane = TiltedPlane::of(chain, &stands, x, origin, &self.planes.format);
+        // Angles with few decimals would lean the tool.
+        if angle(plane.normal(), chosen.motion.axis) > machine.accuracy.axis_tolerance {
+            return;
+        }
+        let Some(inside) = outside.in_plane(plane) else {
+            return;
+        };
+        self.placer = Some(Rc::new(inside));
+        self.planes.told = true;
+        self.keeps.tilted = true;
+        to.out.command(line, Command::Plane(Some(Box::new(plane))));
+    }
+
+    /// The words are those of a tilted plane.
+    pub(super) fn in_plane(&self) -> bool {
+        self.planes.told
+    }
+}
+
+/// A rewind in a plane: its turn would take the plane with it.
+fn turns_in_plane() -> Diagnostic {
+    Diagnostic::error(
+        "plane",
+        "in a tilted plane the axes would have to be turned to another solution within a cut",
+    )
+    .help("[control] planes = false, or --mount")
+}

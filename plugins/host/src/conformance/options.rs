@@ -1,0 +1,97 @@
+//! Every option that a dialect declares, at every value that is worth a look: it writes with it, or says why not.
+
+use post_plugin::{Event, Feed, OptionKind, OptionSpec};
+
+use super::Case;
+use super::pen::Pen;
+use super::print::{ELSEWHERE, plain_moves};
+use crate::{GivenValue, PluginFault};
+
+/// Runs them.
+pub(super) fn options_of(pen: &Pen<'_>) -> Result<Case, PluginFault> {
+    let mut case = Case::named("options");
+    let mut tried = 0;
+    for spec in pen.plugin.options() {
+        if spec.help.is_empty() {
+            case.note(format!("`{}` says nothing about itself", spec.key));
+        }
+        for value in values(spec) {
+            tried += 1;
+            let shown = format!("`{} = {}`", spec.key, shown(&value));
+            let mut setup = pen.setup.clone();
+            setup.options.retain(|(key, _)| key != spec.key);
+            setup.options.push((spec.key.to_owned(), value));
+            let pen = Pen {
+                setup: &setup,
+                ..*pen
+            };
+            // A text has a meaning, which the kit cannot know; what is refused, is.
+            let of_text = matches!(spec.kind, OptionKind::Text | OptionKind::Lines);
+            match pen.plugin.dialect(&setup) {
+                Ok(_) => {}
+                Err(fault) if of_text && !fault.to_string().contains("panicked") => continue,
+                Err(fault) => {
+                    case.note(format!("with {shown} it refuses to open: {fault}"));
+                    continue;
+                }
+            }
+            let mut own = Case::named("");
+            match program(&pen)? {
+                Err(fault) if of_text && !fault.contains("panicked") => {}
+                Err(fault) => own.wrong(fault),
+                Ok(()) => plain_moves(&pen, &mut own)?,
+            }
+            let wrong = own.wrong.into_iter();
+            case.wrong
+                .extend(wrong.map(|sentence| format!("with {shown}: {sentence}")));
+        }
+    }
+    case.facts.push(format!(
+        "{tried} values of {} options",
+        pen.plugin.options().len()
+    ));
+    Ok(case)
+}
+
+/// A program with a little of everything that moves.
+fn program(pen: &Pen<'_>) -> Result<Result<(), String>, PluginFault> {
+    let written = pen.write(&|program| {
+        program.begin();
+        program.push(Event::Comment { text: "ALPHA" });
+        program.push(Event::Turn { words: &ELSEWHERE });
+        program.push(Event::position(&ELSEWHERE, None));
+        program.push(Event::linear(
+            &[2.0, 4.0, 80.0, 5.0, 6.0],
+            Feed::PerMinute(500.0),
+        ));
+        program.push(Event::Dwell { seconds: 1.5 });
+        program.push(Event::Stop);
+        program.push(Event::rapid(&ELSEWHERE));
+        program.end();
+    })?;
+    Ok(written.map(|_| ()))
+}
+
+/// Both ends of a range, each of a choice, a text that could be a block.
+fn values(spec: &OptionSpec) -> Vec<GivenValue> {
+    let text = |text: &str| GivenValue::Text(text.to_owned());
+    match spec.kind {
+        OptionKind::Flag => vec![GivenValue::Flag(false), GivenValue::Flag(true)],
+        OptionKind::Integer { min, max } => {
+            vec![GivenValue::Integer(min), GivenValue::Integer(max)]
+        }
+        OptionKind::Number { min, max } => vec![GivenValue::Number(min), GivenValue::Number(max)],
+        OptionKind::Choice(choices) => choices.iter().map(|choice| text(choice)).collect(),
+        OptionKind::Text => vec![text(""), text("M88"), text("ø, 孔 (\"x\")")],
+        OptionKind::Lines => vec![text(""), text("M88"), text("M88\nM89")],
+    }
+}
+
+fn shown(value: &GivenValue) -> String {
+    match value {
+        GivenValue::Flag(flag) => flag.to_string(),
+        GivenValue::Integer(integer) => integer.to_string(),
+        GivenValue::Number(number) => number.to_string(),
+        GivenValue::Text(text) => format!("{text:?}"),
+    }
+}

@@ -1,0 +1,108 @@
+//! Spindle, coolant, and the stops that switch them off.
+
+use post_plugin::{Coolant, NumberStyle, Spindle, SpindleSense};
+
+use super::{Engine, one_by_one};
+
+/// Coolants in the order of [`Table::coolant`], with the options that say what switches them on and off.
+pub(super) const COOLANTS: [(Coolant, &str, &str); 5] = [
+    (Coolant::Off, "coolant_off", "coolant_off"),
+    (Coolant::Flood, "coolant_flood", "coolant_off"),
+    (Coolant::Mist, "coolant_mist", "coolant_mist_off"),
+    (Coolant::Through, "coolant_through", "coolant_through_off"),
+    (Coolant::Air, "coolant_air", "coolant_air_off"),
+];
+
+impl Engine {
+    /// The spindle turns again behind a rigid tap, which has stopped it.
+    pub(crate) fn turn_again(&mut self, out: &mut String) -> Result<(), String> {
+        match self.turning {
+            Some(spindle) if std::mem::take(&mut self.tapped) => self.turn(spindle, out),
+            _ => Ok(()),
+        }
+    }
+
+    pub(crate) fn turn(&mut self, spindle: Spindle, out: &mut String) -> Result<(), String> {
+        let [clockwise, counter, off, orient] = self.table.spindle;
+        let on = matches!(spindle, Spindle::On { .. });
+        self.spindle.set(on);
+        self.turning = on.then_some(spindle);
+        self.tapped = false;
+        let fixed = self.settings.end_surface_speed(self.table);
+        match spindle {
+            Spindle::Off => self.line(off, out),
+            Spindle::Orient if orient.is_empty() => {
+                return Err("this dialect has no words for an oriented stop".to_owned());
+            }
+            Spindle::Orient => self.line(orient, out),
+            Spindle::On { rpm, sense } => {
+                let block = &mut self.motion.block;
+                if let Some(fixed) = fixed {
+                    block.word(fixed);
+                }
+                block.number("S", rpm, 0, NumberStyle::default());
+                block.word(match sense {
+                    SpindleSense::Clockwise => clockwise,
+                    SpindleSense::CounterClockwise => counter,
+                });
+                block.end(out);
+            }
+        }
+        Ok(())
+    }
+
+    /// The spindle turns by a command other than [`Event::Spindle`].
+    pub(crate) fn spindle_turns(&mut self) {
+        self.spindle.set(true);
+        self.turning = None;
+    }
+
+    pub(super) fn cool(&mut self, coolant: Coolant, out: &mut String) -> Result<(), String> {
+        let known = COOLANTS.iter().position(|(known, ..)| *known == coolant);
+        let place = known.unwrap_or_default();
+        if coolant == Coolant::Off {
+            self.end_coolant(out);
+            return Ok(());
+        }
+        if self.coolant_codes[place].is_empty() {
+            let option = COOLANTS[place].1;
+            let offered = self.table.options.iter().any(|spec| spec.key == option);
+            return Err(match offered {
+                true => format!(
+                    "the M code of this coolant is the machine builder's: set the option `{option}`"
+                ),
+                false => "this control has no such coolant".to_owned(),
+            });
+        }
+        if self.flowing.is_some_and(|flowing| flowing != place) {
+            // One coolant takes the place of another.
+            self.end_coolant(out);
+        }
+        self.coolant.set(true);
+        self.flowing = Some(place);
+        one_by_one(&self.coolant_codes[place], &mut self.motion, out);
+        Ok(())
+    }
+
+    /// What ends the coolant that is on; where nobody knows, all of them.
+    pub(super) fn end_coolant(&mut self, out: &mut String) {
+        let flowing = self.flowing.take().unwrap_or_default();
+        one_by_one(&self.coolant_ends[flowing], &mut self.motion, out);
+        self.coolant.set(false);
+    }
+
+    /// A stop, and behind it what it has switched off, before the tool moves on.
+    pub(super) fn stop(&mut self, word: &str, out: &mut String) -> Result<(), String> {
+        self.line(word, out);
+        if self.table.stops.spindle {
+            match self.turning {
+                Some(spindle) => self.turn(spindle, out)?,
+                None => self.surface_speed_again(out)?,
+            }
+        }
+        if let (true, Some(flowing)) = (self.table.stops.coolant, self.flowing) {
+            one_by_one(&self.coolant_codes[flowing], &mut self.motion, out);
+        }
+        Ok(())
+    }
+}

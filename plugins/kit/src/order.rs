@@ -1,0 +1,328 @@
+//! The order in which a dialect is sent events: what the host promises, as a table to read and a watch that holds it.
+
+use post_plugin::{Compensation, Event, Spindle};
+
+/// When each kind of event comes, by its name. *Away* is from the start, a retract or a tool change to the first
+/// position behind it; *at the part* is from there to the next retract.
+pub const ORDER: &[(&str, &str)] = &[
+    ("Start", "first, once"),
+    ("Comment", "anywhere"),
+    ("Literal", "anywhere but in a cycle"),
+    (
+        "ToolChange",
+        "away, spindle and coolant off; no plane, no cycle, no compensation",
+    ),
+    ("Preselect", "anywhere but in a cycle"),
+    ("Spindle", "anywhere but in a cycle"),
+    ("Coolant", "anywhere but in a cycle"),
+    ("Compensate", "anywhere but in a cycle"),
+    ("Position", "away: ends it"),
+    (
+        "Retract",
+        "at the part, or behind the start or a tool change; not in a cycle",
+    ),
+    ("Rapid", "at the part, not in a cycle"),
+    ("Linear", "at the part, not in a cycle"),
+    ("Dwell", "anywhere but in a cycle"),
+    ("Stop", "anywhere but in a cycle"),
+    ("OptionalStop", "anywhere but in a cycle"),
+    ("Park", "away, no plane"),
+    ("End", "last, once: away, no plane"),
+    ("Turn", "away, no plane"),
+    ("Word", "anywhere but in a cycle"),
+    ("Operation", "anywhere but in a cycle; none is open"),
+    ("OperationEnd", "behind its `Operation`, not in a cycle"),
+    ("Message", "anywhere but in a cycle"),
+    ("Units", "away, no plane"),
+    ("WorkOffset", "away, no plane"),
+    ("Offsets", "anywhere but in a cycle"),
+    ("SurfaceSpeed", "anywhere but in a cycle"),
+    ("Tcp", "away, no plane"),
+    ("Plane", "away, no plane before it"),
+    ("PlaneOff", "away, behind its `Plane`"),
+    ("Smoothing", "anywhere but in a cycle"),
+    ("SmoothingOff", "behind a `Smoothing`, not in a cycle"),
+    ("Clamp", "anywhere but in a cycle"),
+    ("Arc", "at the part, not in a cycle"),
+    ("Spline", "at the part, not in a cycle"),
+    ("Cycle", "at the part, no compensation"),
+    ("CyclePoint", "in a cycle, at least one"),
+    ("CycleOff", "in a cycle, behind its points"),
+    ("Surface", "at the part, not in a cycle"),
+    ("Compensate3d", "anywhere but in a cycle"),
+    ("Subprogram", "away, no plane"),
+    ("Probe", "at the part, not in a cycle"),
+    ("Instead", "in front of the event that it stands for"),
+];
+
+/// Follows a program, and says where it breaks the promised order.
+#[derive(Clone, Debug, Default)]
+pub struct Order {
+    started: bool,
+    ended: bool,
+    at_part: bool,
+    /// A retract has been sent since the last motion, and no tool change behind it.
+    retracted: bool,
+    turning: bool,
+    flowing: bool,
+    compensated: bool,
+    plane: bool,
+    /// A cycle is in force, and has so many points.
+    cycle: Option<u32>,
+    operation: bool,
+    smoothing: bool,
+    instead: bool,
+}
+
+impl Order {
+    /// The next event.
+    ///
+    /// # Errors
+    /// What it may not come before or behind, in a sentence.
+    pub fn next(&mut self, event: &Event<'_>) -> Result<(), String> {
+        self.check(event)
+            .map_err(|lack| format!("{} comes {lack}", event.name()))?;
+        self.take(event);
+        Ok(())
+    }
+
+    fn check(&self, event: &Event<'_>) -> Result<(), &'static str> {
+        let unless = |fault: bool, lack: &'static str| if fault { Err(lack) } else { Ok(()) };
+        let away = || unless(self.at_part, "at the part, before a retract");
+        let no_plane = || unless(self.plane, "inside a tilted plane");
+        match event {
+            Event::Start => return unless(self.started, "a second time"),
+            _ => unless(!self.started, "before the start")?,
+        }
+        unless(self.ended, "behind the end")?;
+        let of_cycle = matches!(
+            event,
+            Event::Cycle { .. }
+                | Event::CyclePoint { .. }
+                | Event::CycleOff
+                | Event::Comment { .. }
+                | Event::Instead { .. }
+        );
+        unless(
+            self.cycle.is_some() && !of_cycle,
+            "while a cycle is in force",
+        )?;
+        match event {
+            Event::ToolChange { .. } => {
+                away()?;
+                no_plane()?;
+                unless(self.turning, "while the spindle turns")?;
+                unless(self.flowing, "while the coolant flows")?;
+                unless(self.compensated, "under cutter compensation")
+            }
+            Event::Position { .. } => unless(self.at_part, "without a retract since the last move"),
+            Event::Retract { .. } => unless(self.retracted, "twice without a move between"),
+            Event::Rapid { .. }
+            | Event::Linear { .. }
+            | Event::Arc { .. }
+            | Event::Spline { .. }
+            | Event::Surface { .. }
+            | Event::Probe { .. } => unless(!self.at_part, "before a first position"),
+            Event::Park { .. }
+            | Event::Turn { .. }
+            | Event::Units(_)
+            | Event::WorkOffset { .. }
+            | Event::Tcp { .. }
+            | Event::Subprogram { .. }
+            | Event::End => {
+                away()?;
+                no_plane()
+            }
+            Event::Plane { .. } => {
+                away()?;
+                unless(self.plane, "inside another plane")
+            }
+            Event::PlaneOff => {
+                away()?;
+                unless(!self.plane, "without a plane")
+            }
+            Event::Cycle { .. } => {
+                unless(!self.at_part, "before a first position")?;
+                unless(self.cycle == Some(0), "behind a cycle without a point")?;
+                unless(self.compensated, "under cutter compensation")
+            }
+            Event::CyclePoint { .. } => unless(self.cycle.is_none(), "without a cycle"),
+            Event::CycleOff => {
+                unless(self.cycle.is_none(), "without a cycle")?;
+                unless(self.cycle == Some(0), "behind a cycle without a point")
+            }
+            Event::Operation { .. } => unless(self.operation, "inside another operation"),
+            Event::OperationEnd => unless(!self.operation, "without an operation"),
+            Event::SmoothingOff => unless(!self.smoothing, "without smoothing"),
+            Event::Instead { .. } => unless(self.instead, "in front of another one"),
+            _ => Ok(()),
+        }
+    }
+
+    fn take(&mut self, event: &Event<'_>) {
+        self.instead = matches!(event, Event::Instead { .. });
+        match event {
+            Event::Start => self.started = true,
+            Event::End => self.ended = true,
+            Event::Retract { .. } => (self.at_part, self.retracted) = (false, true),
+            Event::ToolChange { .. } => (self.at_part, self.retracted) = (false, false),
+            Event::Position { .. } => (self.at_part, self.retracted) = (true, false),
+            Event::Spindle(spindle) => self.turning = matches!(spindle, Spindle::On { .. }),
+            Event::SurfaceSpeed { .. } => self.turning = true,
+            Event::Coolant(coolant) => self.flowing = *coolant != post_plugin::Coolant::Off,
+            Event::Compensate(side) => self.compensated = *side != Compensation::Off,
+            Event::Plane { .. } => self.plane = true,
+            Event::PlaneOff => self.plane = false,
+            Event::Cycle { .. } => self.cycle = Some(0),
+            Event::CyclePoint { .. } => self.cycle = self.cycle.map(|points| points + 1),
+            Event::CycleOff => self.cycle = None,
+            Event::Operation { .. } => self.operation = true,
+            Event::OperationEnd => self.operation = false,
+            Event::Smoothing { .. } => self.smoothing = true,
+            Event::SmoothingOff => self.smoothing = false,
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use post_plugin::{Coolant, Cycle, EVENTS, Feed};
+
+    use super::*;
+    use crate::{ASIDE, P1, P2, TOOL, TOP, at, cut, job, rapid, turn, turning};
+
+    const CYCLE: Event<'static> = Event::Cycle {
+        cycle: Cycle::Drill,
+        feed: Feed::PerMinute(100.0),
+        depth: 10.0,
+        clearance: 2.0,
+        retract: 2.0,
+        step: None,
+        dwell: None,
+        pitch: None,
+    };
+    const POINT: Event<'static> = Event::CyclePoint {
+        tool: None,
+        words: P2,
+    };
+    const PLANE: Event<'static> = Event::Plane {
+        origin: [0.0; 3],
+        x: [1.0, 0.0, 0.0],
+        z: [0.0, 0.0, 1.0],
+        angles: [0.0; 3],
+        words: P1,
+    };
+
+    fn follow(events: &[Event<'_>]) -> Result<(), String> {
+        let mut order = Order::default();
+        events.iter().try_for_each(|event| order.next(event))
+    }
+
+    #[test]
+    fn every_kind_of_event_has_its_place() {
+        let names: Vec<&str> = ORDER.iter().map(|(name, _)| *name).collect();
+        let kinds: Vec<&str> = EVENTS.iter().map(|event| event.name).collect();
+        assert_eq!(names, kinds);
+    }
+
+    #[test]
+    fn a_program_in_order_passes() {
+        let hole = [CYCLE, POINT, CYCLE, POINT, POINT, Event::CycleOff];
+        let plane = [
+            TOP,
+            turn(P1),
+            PLANE,
+            at(P1),
+            CYCLE,
+            POINT,
+            Event::CycleOff,
+            TOP,
+        ];
+        let mut events = vec![
+            Event::Start,
+            TOP,
+            TOOL,
+            turning(3000.0),
+            TOP,
+            turn(P1),
+            at(P1),
+        ];
+        events.extend(hole);
+        events.extend(plane);
+        events.extend([Event::PlaneOff, ASIDE, Event::End]);
+        follow(&events).unwrap();
+        follow(&job(true)).unwrap();
+    }
+
+    #[test]
+    fn what_comes_where_it_must_not_is_said() {
+        let start = [Event::Start, TOP, TOOL, TOP, turn(P1), at(P1)];
+        let on = turning(3000.0);
+        for (behind, lack) in [
+            (&[Event::Start] as &[Event<'_>], "Start comes a second time"),
+            (&[TOOL], "ToolChange comes at the part, before a retract"),
+            (&[on, TOP, TOOL], "ToolChange comes while the spindle turns"),
+            (
+                &[Event::Coolant(Coolant::Mist), TOP, TOOL],
+                "while the coolant flows",
+            ),
+            (
+                &[at(P1)],
+                "Position comes without a retract since the last move",
+            ),
+            (&[TOP, rapid(P1)], "Rapid comes before a first position"),
+            (&[TOP, TOP], "Retract comes twice without a move between"),
+            (&[turn(P1)], "Turn comes at the part, before a retract"),
+            (&[TOP, PLANE, ASIDE], "Park comes inside a tilted plane"),
+            (
+                &[TOP, PLANE, TOOL],
+                "ToolChange comes inside a tilted plane",
+            ),
+            (&[TOP, PLANE, PLANE], "Plane comes inside another plane"),
+            (
+                &[
+                    TOP,
+                    PLANE,
+                    Event::WorkOffset {
+                        number: 2,
+                        name: "",
+                    },
+                ],
+                "WorkOffset comes inside",
+            ),
+            (&[PLANE], "Plane comes at the part"),
+            (&[TOP, Event::PlaneOff], "PlaneOff comes without a plane"),
+            (
+                &[CYCLE, cut(P1, 1.0)],
+                "Linear comes while a cycle is in force",
+            ),
+            (
+                &[CYCLE, Event::CycleOff],
+                "CycleOff comes behind a cycle without a point",
+            ),
+            (&[POINT], "CyclePoint comes without a cycle"),
+            (
+                &[CYCLE, POINT, TOP],
+                "Retract comes while a cycle is in force",
+            ),
+            (
+                &[Event::SmoothingOff],
+                "SmoothingOff comes without smoothing",
+            ),
+            (
+                &[Event::OperationEnd],
+                "OperationEnd comes without an operation",
+            ),
+            (&[Event::End], "End comes at the part"),
+            (&[TOP, Event::End, Event::Stop], "Stop comes behind the end"),
+        ] {
+            let fault = follow(&[&start, behind].concat()).unwrap_err();
+            assert!(fault.contains(lack), "{lack}: {fault}");
+        }
+        assert_eq!(
+            follow(&[TOP]).unwrap_err(),
+            "Retract comes before the start"
+        );
+    }
+}

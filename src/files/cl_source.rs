@@ -1,0 +1,62 @@
+//! A CL file that is read more than once: a file as often as it is asked for, a stream from a copy.
+
+use std::io::{self, Seek, SeekFrom};
+
+use super::temporary::Temporary;
+use super::{ClInput, FileFault, PathArg};
+
+/// Where a CL file is read from, as often as it takes.
+pub struct ClSource {
+    argument: PathArg,
+    /// What a pipe or standard input held.
+    copy: Option<Temporary>,
+    name: String,
+}
+
+impl ClSource {
+    /// Of an argument; what is no file is read to its end if `again` says that it will be read more than once.
+    pub fn new(argument: &PathArg, again: bool) -> Result<Self, FileFault> {
+        let mut source = Self {
+            argument: argument.clone(),
+            copy: None,
+            name: String::new(),
+        };
+        if !again {
+            return Ok(source);
+        }
+        let mut input = ClInput::open(argument)?;
+        if input.length.is_some() {
+            return Ok(source);
+        }
+        let folder = std::env::temp_dir();
+        let fault = |error: io::Error| FileFault::NoWaiting {
+            name: input.name.clone(),
+            folder: folder.clone(),
+            error,
+        };
+        let mut copy = Temporary::private(&folder).map_err(|error| fault(error.kind().into()))?;
+        io::copy(&mut input.bytes, &mut copy).map_err(fault)?;
+        source.name = input.name;
+        source.copy = Some(copy);
+        Ok(source)
+    }
+
+    /// From its start.
+    pub fn open(&mut self) -> Result<ClInput, FileFault> {
+        let Some(copy) = &mut self.copy else {
+            return ClInput::open(&self.argument);
+        };
+        let name = self.name.clone();
+        let again = || -> io::Result<ClInput> {
+            copy.seek(SeekFrom::Start(0))?;
+            let bytes = copy.as_file()?.try_clone()?;
+            Ok(ClInput {
+                name: name.clone(),
+                length: Some(bytes.metadata()?.len()),
+                bytes: Box::new(bytes),
+            })
+        };
+        let mut again = again;
+        again().map_err(|error| FileFault::Read { name, error })
+    }
+}

@@ -1,0 +1,58 @@
+//! `--split`: one CL file, several programs.
+
+use std::ops::Range;
+use std::path::Path;
+
+use clap::ValueEnum;
+use post_machine::diagnostic::Diagnostic;
+use post_posting::LookedAhead;
+
+use crate::failure::Failure;
+use crate::files::PathArg;
+
+/// Where a new program begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Split {
+    /// At each operation.
+    Operations,
+    /// At each further tool.
+    Tools,
+}
+
+/// The lines of the CL file that each program is made of: the first begins with the file, the last ends with it.
+pub fn lines(split: Split, ahead: &LookedAhead) -> Result<Vec<Range<u64>>, Failure> {
+    let (begins, what) = match split {
+        // What stands before the first operation is part of it.
+        Split::Operations => (ahead.operations.get(1..), "operation (TOOL PATH)"),
+        Split::Tools => (Some(&ahead.parts[..]), "tool"),
+    };
+    let Some(begins) = begins else {
+        let message = format!("--split: the CL file has no {what}");
+        return Err(Diagnostic::error("split", message)
+            .help("--split tools goes by its tool changes; without it there is one program")
+            .into());
+    };
+    let mut starts = vec![0];
+    starts.extend_from_slice(begins);
+    starts.dedup();
+    let ends = starts[1..].iter().copied().chain([u64::MAX]);
+    Ok(starts
+        .iter()
+        .zip(ends)
+        .map(|(start, end)| *start..end)
+        .collect())
+}
+
+/// The target of program `number` (from 1) of `count`: `part.nc` becomes `part-03.nc`.
+pub fn target(whole: &PathArg, number: usize, count: usize) -> PathArg {
+    let digits = count.to_string().len();
+    whole.map(|path: &Path| {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let mut name = format!("{stem}-{number:0digits$}");
+        if let Some(extension) = path.extension() {
+            name.push('.');
+            name.push_str(&extension.to_string_lossy());
+        }
+        path.with_file_name(name)
+    })
+}

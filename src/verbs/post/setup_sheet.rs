@@ -1,0 +1,275 @@
+//! The sheet for whoever sets the machine up: Markdown, or HTML.
+
+use std::fmt::Write as _;
+
+use post_machine::description::{Machine, OptionValue, OutputUnits};
+use post_posting::LookedAhead;
+use post_posting::program::Tool;
+use post_posting::report::{LengthSource, Report};
+
+use crate::files::PathArg;
+use crate::terminal::{clock, number};
+
+/// A table of the sheet.
+struct Section {
+    title: String,
+    head: Vec<&'static str>,
+    rows: Vec<Vec<String>>,
+}
+
+/// The sheet of programs that were made of one CL file.
+pub fn text(
+    sheet: &PathArg,
+    machine: &Machine,
+    cl_file: &PathArg,
+    ahead: &LookedAhead,
+    programs: &[(&PathArg, &Report)],
+) -> String {
+    let title = match cl_file.path().and_then(|path| path.file_name()) {
+        Some(name) => format!("Setup: {}", name.to_string_lossy()),
+        None => "Setup".to_owned(),
+    };
+    let sections = [
+        the_machine(machine, ahead, programs),
+        the_programs(programs),
+        the_tools(ahead, programs),
+        the_axes(programs),
+        the_options(machine),
+    ];
+    let html = sheet.path().and_then(|path| path.extension());
+    let html = html.is_some_and(|ending| ending == "html" || ending == "htm");
+    match html {
+        true => as_html(&title, &sections),
+        false => as_markdown(&title, &sections),
+    }
+}
+
+fn the_machine(
+    machine: &Machine,
+    ahead: &LookedAhead,
+    programs: &[(&PathArg, &Report)],
+) -> Section {
+    let mut rows = Vec::new();
+    let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
+    row("Machine", machine.name.clone());
+    row(
+        "Control",
+        format!(
+            "{}, {} keeps the tip",
+            machine.control.dialect,
+            machine.control.tcp.name()
+        ),
+    );
+    let units = match machine.control.units {
+        OutputUnits::Mm => "mm",
+        OutputUnits::Inch => "inch",
+    };
+    row("Units of the program", units.to_owned());
+    let [x, y, z] =
+        [machine.mount.x, machine.mount.y, machine.mount.z].map(|value| number(value, 3));
+    row(
+        "Part origin, all axes at zero",
+        format!("X {x}, Y {y}, Z {z} mm in the machine frame"),
+    );
+    if machine.turn != 0.0 {
+        row(
+            "Part turned about its Z",
+            format!("{}°", number(machine.turn.to_degrees(), 3)),
+        );
+    }
+    if let Some([least, most]) = ahead.extents {
+        let range =
+            |axis: usize| format!("{} to {}", number(least[axis], 3), number(most[axis], 3));
+        row(
+            "Tip in the part frame",
+            format!("X {}, Y {}, Z {} mm", range(0), range(1), range(2)),
+        );
+    }
+    if let Some(time) = ahead.time_s {
+        row("Time without tool changes", clock(time));
+    }
+    if let Some((_, report)) = programs.first() {
+        row(
+            "Certified",
+            format!(
+                "tip within {} mm, tool axis within {}° of the CL file",
+                report.tolerance_mm,
+                number(report.axis_tolerance_deg, 4)
+            ),
+        );
+        for plugin in &report.plugins {
+            let origin = match &plugin.hash {
+                Some(hash) => format!(", {hash}"),
+                None => String::new(),
+            };
+            row(
+                "Plugin",
+                format!("{} {}{origin}", plugin.name, plugin.version),
+            );
+        }
+    }
+    Section {
+        title: "Machine and part".to_owned(),
+        head: vec!["", ""],
+        rows,
+    }
+}
+
+fn the_programs(programs: &[(&PathArg, &Report)]) -> Section {
+    let rows = programs.iter().map(|(target, report)| {
+        let name = target.path().and_then(|path| path.file_name());
+        let tools: Vec<String> = report
+            .tools
+            .iter()
+            .filter_map(|tool| Some(tool.number?.to_string()))
+            .collect();
+        vec![
+            name.map_or("standard output".to_owned(), |name| {
+                name.to_string_lossy().into_owned()
+            }),
+            report.nc_lines.to_string(),
+            tools.join(", "),
+            clock(report.time_s),
+            clock(report.cutting_time_s),
+        ]
+    });
+    Section {
+        title: "Programs".to_owned(),
+        head: vec!["File", "Lines", "Tools", "Time", "Cutting"],
+        rows: rows.collect(),
+    }
+}
+
+fn the_tools(ahead: &LookedAhead, programs: &[(&PathArg, &Report)]) -> Section {
+    let size = |value: Option<f64>| value.map_or("?".to_owned(), |value| number(value, 3));
+    let used = |tool: &Tool| {
+        let tools = programs.iter().flat_map(|(_, report)| &report.tools);
+        tools
+            .into_iter()
+            .find(|used| used.number == Some(tool.number))
+    };
+    let rows = ahead.tools().into_iter().map(|tool| {
+        let length = match used(tool) {
+            Some(used) if used.source != LengthSource::Unknown => number(used.length_mm, 3),
+            _ => "?".to_owned(),
+        };
+        vec![
+            tool.number.to_string(),
+            tool.register.to_string(),
+            tool.name.clone(),
+            length,
+            size(tool.diameter),
+            size(tool.corner_radius),
+        ]
+    });
+    Section {
+        title: "Tools".to_owned(),
+        head: vec![
+            "T",
+            "Length register",
+            "Name",
+            "Length, mm",
+            "Diameter, mm",
+            "Corner, mm",
+        ],
+        rows: rows.collect(),
+    }
+}
+
+fn the_axes(programs: &[(&PathArg, &Report)]) -> Section {
+    let mut rows: Vec<(String, f64, f64, Option<[f64; 2]>)> = Vec::new();
+    for axis in programs.iter().flat_map(|(_, report)| &report.axes) {
+        if axis.min > axis.max {
+            continue;
+        }
+        match rows.iter_mut().find(|(name, ..)| *name == axis.name) {
+            Some((_, min, max, _)) => (*min, *max) = (min.min(axis.min), max.max(axis.max)),
+            None => rows.push((axis.name.clone(), axis.min, axis.max, axis.travel)),
+        }
+    }
+    let rows = rows.into_iter().map(|(name, min, max, travel)| {
+        let travel = match travel {
+            Some([min, max]) => format!("{} to {}", number(min, 3), number(max, 3)),
+            None => "endless".to_owned(),
+        };
+        vec![
+            name,
+            format!("{} to {}", number(min, 3), number(max, 3)),
+            travel,
+        ]
+    });
+    Section {
+        title: "Axes, in machine coordinates".to_owned(),
+        head: vec!["Axis", "Used", "Travel"],
+        rows: rows.collect(),
+    }
+}
+
+fn the_options(machine: &Machine) -> Section {
+    let rows = machine.control.options.iter().map(|option| {
+        let value = match &option.value {
+            OptionValue::Flag(flag) => flag.to_string(),
+            OptionValue::Integer(number) => number.to_string(),
+            OptionValue::Number(number) => number.to_string(),
+            OptionValue::Text(text) => text.replace('\n', " / "),
+        };
+        vec![option.key.clone(), value]
+    });
+    Section {
+        title: format!(
+            "What the machine file says of its control ({})",
+            machine.control.dialect
+        ),
+        head: vec!["Option", "Value"],
+        rows: rows.collect(),
+    }
+}
+
+/// Pipes would end a cell.
+fn as_markdown(title: &str, sections: &[Section]) -> String {
+    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let plain = |text: &str| text.replace('|', "\\|").replace('<', "&lt;");
+    let mut text = format!("# {}\n", plain(title));
+    for section in sections.iter().filter(|section| !section.rows.is_empty()) {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "\n## {}\n\n", plain(&section.title));
+        text += &line(section.head.iter().map(|cell| (*cell).to_owned()).collect());
+        text += &line(section.head.iter().map(|_| "---".to_owned()).collect());
+        for row in &section.rows {
+            text += &line(row.iter().map(|cell| plain(cell)).collect());
+        }
+    }
+    text
+}
+
+fn as_html(title: &str, sections: &[Section]) -> String {
+    let plain = |text: &str| {
+        text.replace('&', "&amp;")
+            .replace('<', "&lt;")
+            .replace('>', "&gt;")
+            .replace('"', "&quot;")
+    };
+    let row = |cells: &mut dyn Iterator<Item = &str>, kind: &str| {
+        let cells: String = cells
+            .map(|cell| format!("<{kind}>{}</{kind}>", plain(cell)))
+            .collect();
+        format!("<tr>{cells}</tr>\n")
+    };
+    let title = plain(title);
+    let mut text = format!(
+        "<!doctype html>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>body {{ font-family: sans-serif }} table {{ border-collapse: collapse }} \
+         td, th {{ border: 1px solid #999; padding: .2em .6em; text-align: left }}</style>\n<h1>{title}</h1>\n"
+    );
+    for section in sections.iter().filter(|section| !section.rows.is_empty()) {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "<h2>{}</h2>\n<table>\n", plain(&section.title));
+        if section.head.iter().any(|cell| !cell.is_empty()) {
+            text += &row(&mut section.head.iter().copied(), "th");
+        }
+        for cells in &section.rows {
+            text += &row(&mut cells.iter().map(String::as_str), "td");
+        }
+        text += "</table>\n";
+    }
+    text
+}

@@ -109,7 +109,7 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
     OptionSpec::flag(
         "tool_names",
         false,
-        "TOOL CALL \"NAME\" for a tool that has a name, in the place of its number.",
+        "TOOL CALL \"NAME\" for a tool that has a name, in the place of its number; `_` for what its names cannot have.",
     ),
     OptionSpec::flag(
         "blk_form",

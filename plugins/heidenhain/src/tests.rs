@@ -66,7 +66,15 @@ fn what_cannot_be_written_is_refused() {
     };
     assert!(refused(&[speed]).contains("constant cutting speed"));
     let named = bench().with("tool_names", Value::Flag(true));
-    assert!(named.write(&[TOOL]).unwrap_err().contains("tool_names"));
+    let long = Event::tool_change(1, 1, "a name of more than thirty-two characters");
+    assert!(
+        named
+            .write(&[long, turning(1.0)])
+            .unwrap_err()
+            .contains("tool_names")
+    );
+    let text = named.write(&[TOOL, turning(1.0)]).unwrap();
+    assert!(text.contains("TOOL CALL \"BALL_D10__R5_\" Z S1"), "{text}");
 }
 
 #[test]

@@ -113,11 +113,19 @@ pub(crate) fn tool_call(number: u32, name: &str, names: bool) -> Result<String, 
     if !names || name.is_empty() {
         return Ok(number.to_string());
     }
-    let plain = ascii(name).to_ascii_uppercase();
-    let known = |letter: char| letter.is_ascii_alphanumeric() || "#$%&.,-_".contains(letter);
-    if plain.len() > 32 || !plain.chars().all(known) {
+    // Names of the control have no blanks and few signs.
+    let allowed = |letter: char| match letter {
+        letter if letter.is_ascii_alphanumeric() || "#$%&.,-_".contains(letter) => letter,
+        _ => '_',
+    };
+    let plain: String = ascii(name)
+        .to_ascii_uppercase()
+        .chars()
+        .map(allowed)
+        .collect();
+    if plain.len() > 32 {
         return Err(format!(
-            "`{name}` is no name of a tool of this control (32 letters, digits and #$%&.,-_): rename it, or leave out \
+            "the tool's name `{name}` is longer than the 32 characters that this control has: shorten it, or leave out \
              tool_names"
         ));
     }

@@ -5,45 +5,33 @@ use post_plugin::Capabilities;
 use crate::Siemens;
 
 impl Siemens {
-    /// All of them.
+    /// All of them. Arcs and cycles lie across Z.
     pub(crate) fn declared(&self) -> Capabilities {
         use Capabilities as C;
-        let always = [
-            C::TCP_STILL,
-            C::TOOL_TABLE,
-            C::OPERATION,
-            C::MESSAGE,
-            C::WORK_OFFSET,
-        ];
-        let always = always
-            .into_iter()
-            .chain([C::SURFACE_SPEED, C::SUBPROGRAM, C::PROBE]);
-        let linear = [
-            C::ARC_XY,
-            // Under TRAORI there are G2 and G3 too (6FC5398-2BP20, 06/2009, p. 361).
-            C::ARC_TCP,
-            C::HELIX,
-            C::ARC_RADIUS,
-            C::CYCLE_IN_PLANE,
-            C::CYCLE_DRILL,
-        ];
-        let linear = linear
-            .into_iter()
-            .chain([C::CYCLE_DEEP, C::CYCLE_BREAK_CHIP, C::CYCLE_REAM]);
-        let some = |yes: bool, set: Capabilities| if yes { set } else { C::NONE };
-        let linear = linear.chain([
-            C::CYCLE_BORE,
-            some(self.cycles.fine(), C::CYCLE_BORE_FINE),
-            some(self.cycles.taps(), C::CYCLE_TAP.and(C::CYCLE_TAP_LEFT)),
-            some(self.arcs_off_xy, C::ARC_ZX.and(C::ARC_YZ)),
-        ]);
-        let all = always
-            .chain(linear.filter(|_| self.linear.is_some()))
-            .chain([
-                some(self.swivels, C::PLANE),
-                some(self.smoothing.known(), C::SMOOTHING),
-                some(self.vectors, C::TOOL_VECTOR),
-            ]);
-        all.fold(C::NONE, |all, one| all | one)
+        let upright = self.linear.is_some();
+        let commands = C::MESSAGE.and(C::SUBPROGRAM).and(C::PROBE);
+        // Under TRAORI there are G2 and G3 too (6FC5398-2BP20, 06/2009, p. 361).
+        let arcs = C::ARC_XY.and(C::ARC_TCP).and(C::ARC_RADIUS).and(C::HELIX);
+        let drills = C::CYCLE_DRILL.and(C::CYCLE_DEEP).and(C::CYCLE_BREAK_CHIP);
+        let cycles = drills
+            .and(C::CYCLE_REAM)
+            .and(C::CYCLE_BORE)
+            .and(C::CYCLE_IN_PLANE);
+        [
+            (true, C::TCP_STILL.and(C::TOOL_TABLE).and(commands)),
+            (upright, arcs.and(cycles)),
+            (upright && self.cycles.fine(), C::CYCLE_BORE_FINE),
+            (
+                upright && self.cycles.taps(),
+                C::CYCLE_TAP.and(C::CYCLE_TAP_LEFT),
+            ),
+            (upright && self.arcs_off_xy, C::ARC_ZX.and(C::ARC_YZ)),
+            (self.swivels, C::PLANE),
+            (self.smoothing.known(), C::SMOOTHING),
+            (self.vectors, C::TOOL_VECTOR),
+        ]
+        .into_iter()
+        .filter(|(has, _)| *has)
+        .fold(C::NONE, |all, (_, set)| all | set)
     }
 }

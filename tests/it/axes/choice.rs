@@ -100,3 +100,32 @@ fn no_look_ahead_is_refused() {
         .with("solution.look_ahead", "1")
         .made(&turning_cuts());
 }
+
+/// The table of solutions in the manual of the iTNC 530 (PLANE SPATIAL, SEQ): the spatial angle B+45 on a machine whose
+/// table turns about A and carries C, from A0 C0. SEQ+ and SEQ- ask for a side of A.
+#[test]
+fn the_choice_is_that_of_the_itnc_530_for_a_plane_at_b_45() {
+    let tilted = cl().rapid(V::new(0.0, 0.0, 60.0), lean(45.0, 0.0)).end();
+    for (travel, side, wanted) in [
+        ("[-120, 120]", None, Some([45.0, 90.0])),
+        ("[-120, 120]", Some("positive"), Some([45.0, 90.0])),
+        ("[-120, 120]", Some("negative"), Some([-45.0, -90.0])),
+        ("[-90, 10]", None, Some([-45.0, -90.0])),
+        ("[-90, 10]", Some("positive"), None),
+    ] {
+        let mut setup = on("ac-trunnion")
+            .with("control.tcp", "control")
+            .with("axis.A.travel", travel);
+        if let Some(side) = side {
+            setup = setup.with("solution.require.A", &format!("\"{side}\""));
+        }
+        let Some(wanted) = wanted else {
+            let said = setup.refused(&tilted);
+            assert!(said.contains('A'), "{said}");
+            continue;
+        };
+        let made = setup.made(&tilted);
+        let found = ["A", "C"].map(|name| made.words(name)[0]);
+        assert_eq!(found, wanted, "{travel} {side:?}");
+    }
+}

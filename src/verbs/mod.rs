@@ -49,6 +49,7 @@ use study::StudyArguments;
   post study part.cls --machine ac-trunnion
   post place part.cls --machine dmu50 --svg travel.svg
   post plugin show fanuc
+  post plugin new mine --iso
   post plugin test target/release/libpost_mine.so
 
 Exit codes: 0 the program is written; 1 refused, the messages say why, and what was written nevertheless;

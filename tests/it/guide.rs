@@ -80,6 +80,7 @@ fn rust(name: &str, form: &str) {
     let (_parent, folder) = new(name, form);
     let tests = tool(&folder, &[env!("CARGO"), "test", "--quiet"]);
     assert!(tests.contains("2 passed"), "{tests}");
+    tool(&folder, &[env!("CARGO"), "build", "--quiet"]);
     is_good(&folder, name, "target/debug");
     let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
     assert!(!manifest.contains(root().to_str().unwrap()), "{manifest}");

@@ -504,7 +504,8 @@ typedef struct {
 #define POST_POSITION_WORDS 9u
 /* The tool leaves the part: axes go at rapid to where the machine file proves it to be clear, and what
  * Event::Position put in force (TCP, length) is cancelled, in the order that the control needs. Sent behind the
- * start too, when nothing is known of what is in force; never twice without a motion or a tool change between. */
+ * start too, when nothing is known of what is in force; never twice without a motion, a tool change or an
+ * Event::Word between. */
 #define POST_EVENT_RETRACT 10u
 /* Which words: bit n is word n. */
 #define POST_RETRACT_AXES 0u

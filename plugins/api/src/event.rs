@@ -233,8 +233,8 @@ events! { <'a>
     };
     /// The tool leaves the part: axes go at rapid to where the machine file proves it to be clear, and what
     /// [`Event::Position`] put in force (TCP, length) is cancelled, in the order that the control needs. Sent behind
-    /// the start too, when nothing is known of what is in force; never twice without a motion or a tool change
-    /// between.
+    /// the start too, when nothing is known of what is in force; never twice without a motion, a tool
+    /// change or an [`Event::Word`] between.
     10 RETRACT "a retract" Retract {
         /// Which words: bit n is word n.
         axes: u32,

@@ -19,7 +19,7 @@ pub const ORDER: &[(&str, &str)] = &[
     ("Position", "away: ends it"),
     (
         "Retract",
-        "at the part, or behind the start or a tool change; not in a cycle",
+        "at the part, or behind the start, a tool change or a `Word`; not in a cycle",
     ),
     ("Rapid", "at the part, not in a cycle"),
     ("Linear", "at the part, not in a cycle"),
@@ -61,7 +61,7 @@ pub struct Order {
     started: bool,
     ended: bool,
     at_part: bool,
-    /// A retract has been sent since the last motion, and no tool change behind it.
+    /// A retract has been sent since the last motion, and no tool change or line of the machine's own behind it.
     retracted: bool,
     turning: bool,
     flowing: bool,
@@ -167,6 +167,8 @@ impl Order {
             Event::Retract { .. } => (self.at_part, self.retracted) = (false, true),
             Event::ToolChange { .. } => (self.at_part, self.retracted) = (false, false),
             Event::Position { .. } => (self.at_part, self.retracted) = (true, false),
+            // Another head may have moved the depth.
+            Event::Word { .. } => self.retracted = false,
             Event::Spindle(spindle) => self.turning = matches!(spindle, Spindle::On { .. }),
             Event::SurfaceSpeed { .. } => self.turning = true,
             Event::Coolant(coolant) => self.flowing = *coolant != post_plugin::Coolant::Off,

@@ -101,7 +101,7 @@ fn writes(opened: &OpenedDialect) -> String {
 }
 
 /// The words in the order of what they mean.
-fn vocabulary(opened: &mut OpenedDialect) -> Result<String, Diagnostic> {
+fn vocabulary(opened: &mut OpenedDialect) -> Result<String, Failure> {
     let words = opened.vocabulary();
     let words = words.map_err(|fault| Diagnostic::error("plugin", fault))?;
     if words.is_empty() {

@@ -78,8 +78,11 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
 }
 
 /// The name of the dialect, which becomes that of a crate, of a file, of a symbol and of a table of machine files.
-fn name(folder: &Path) -> Result<&str, Diagnostic> {
-    let refused = |message: String, help: &str| Err(Diagnostic::error("new", message).help(help));
+fn name(folder: &Path) -> Result<&str, Failure> {
+    let refused = |message: String, help: &str| {
+        let finding = Diagnostic::error("new", message);
+        Err(finding.help(help).into())
+    };
     let shown = folder.display();
     let Some(name) = folder.file_name().and_then(|name| name.to_str()) else {
         return refused(format!("{shown} is no name"), "name it after the control");

@@ -51,9 +51,9 @@ pub(crate) fn takes_number(line: &str) -> bool {
     let mut letters = line.trim_start().bytes();
     match letters.next() {
         None | Some(b'(' | b';' | b'%' | b':' | b'/') => false,
-        Some(b'N' | b'n' | b'O' | b'o') => {
-            !letters.next().is_some_and(|next| next.is_ascii_digit())
-        }
+        Some(b'N' | b'n' | b'O' | b'o') => !letters
+            .next()
+            .is_some_and(|next| next.is_ascii_digit() || next == b'<'),
         Some(_) => true,
     }
 }
@@ -75,6 +75,7 @@ mod tests {
             "/M77",
             "N10 M77",
             "O100 CALL",
+            "O<pocket> CALL",
             ":1",
         ] {
             assert!(!takes_number(line), "{line}");

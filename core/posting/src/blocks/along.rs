@@ -270,7 +270,7 @@ impl Blocks<'_> {
         };
         let printed = PrintedArc::new(about, ends, centre)?;
         let (length, rise) = (printed.length(), printed.rise());
-        if !self.keeps.about(axis, rise != 0.0)
+        if !self.keeps.about(axis, rise != 0.0, self.in_plane())
             || !printed
                 .radii
                 .iter()

@@ -166,7 +166,8 @@ impl Expand {
         let turns = libm::ceil(arc.sweep / TAU - 1e-9).max(1.0);
         let turn = arc.piece(0.0, 1.0 / turns);
         let (count, _) = turn.chords(self.chord_tolerance);
-        let keeps = |keeps: &Keeps| keeps.arc(arc, end, count);
+        let planes = self.planes.as_ref().is_some();
+        let keeps = |keeps: &Keeps| keeps.arc(arc, end, count, planes);
         if step.start_axis != end.axis
             || count.saturating_mul(turns as u64) > MOST_CHORDS
             || !self.keeps.as_ref().is_some_and(keeps)

@@ -34,6 +34,7 @@ pub const LIBRARY: &[Row] = &[
     row("ab-trunnion", "apt", 100.0, "over-travel"),
     row("ac-cantilever", "cls", 100.0, "over-travel"),
     row("ac-trunnion", "cls", 100.0, "over-travel"),
+    row("ac-trunnion-840d", "cls", 100.0, "over-travel"),
     row("bc-fork", "apt", 100.0, "over-travel"),
     row("bc-trunnion", "ncl", 100.0, "over-travel"),
     row("boring-mill", "apt", 150.0, "out-of-reach"),
@@ -86,6 +87,9 @@ fn make(row: &Row, file: &str) -> (common::Run, Option<serde_json::Value>) {
         row.machine,
         "--tool-length",
         &length,
+        // The reader of this test knows moves.
+        "--set",
+        "control.cycles=moves",
         "-o",
         "-",
         "--summary",

@@ -3,7 +3,7 @@
 //! Some of the programs are read back here by a reader and a kinematics of this test's own, which share no
 //! code with the command: the machine's numbers are written out again, as matrices.
 
-mod posted;
+pub mod posted;
 mod read_back;
 mod reduced;
 

@@ -3,7 +3,7 @@
 //! After a change of the output, read each new snapshot as the machine's operator would, then accept it:
 //! `cargo insta review`, or `INSTA_UPDATE=always cargo test --test it snapshots`.
 
-use crate::common;
+use crate::{common, dialects};
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -82,7 +82,8 @@ fn every_sample_is_posted() {
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
-    let samples = CASES.iter().map(|case| case.sample.to_owned());
+    let samples = CASES.iter().map(|case| case.sample);
+    let samples = samples.chain(dialects::samples()).map(str::to_owned);
     assert_eq!(samples.collect::<BTreeSet<_>>(), listed);
 }
 

@@ -297,7 +297,12 @@ fn cycles_of_other_systems_are_read() {
         let text = file(&format!(
             "FEDRAT/100,MMPM\nCYCLE/{kind},FEDTO,5,MMPM,80,STEP,2,RAPTO,3\nGOTO/5,5,0\nCYCLE/OFF"
         ));
-        let done = posted(&[], &text);
+        let native = posted(&[], &text);
+        told(&native, 0, &[]);
+        let code = if kind == "CHIP" { "G99 G73" } else { "G99 G83" };
+        let cycle = format!("{code} X5.000 Y5.000 Z-5.000 R3.000 Q2000 F80.");
+        assert!(native.out.contains(&cycle), "{kind}\n{}", native.out);
+        let done = posted(&["--set", "control.cycles=moves"], &text);
         told(&done, 0, &[]);
         for depth in ["Z-2.", "Z-4.", "Z-5."] {
             assert!(done.out.contains(depth), "{kind}: {depth}\n{}", done.out);

@@ -179,9 +179,13 @@ impl<'a> Post<'a> {
             observers: Observers::default(),
             emit: Emit::new(machine, &job.facts, dialect, output),
         };
+        let findings = Findings::new(&job.reading.file);
+        if machine.control.planes && !planes {
+            findings.add(refusal::no_planes(machine));
+        }
         Ok(Self {
             machine,
-            findings: Findings::new(&job.reading.file),
+            findings,
             interpreter: Interpreter::new(job.reading),
             window: job.lines.map(Window::new),
             steps: Vec::with_capacity(BATCH),

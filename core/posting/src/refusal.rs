@@ -29,6 +29,16 @@ pub(crate) fn depth_counts_down(machine: &Machine) -> Option<Diagnostic> {
     })
 }
 
+/// `[control] planes` asks for planes that the dialect does not write.
+pub(crate) fn no_planes(machine: &Machine) -> Diagnostic {
+    let dialect = &machine.control.dialect;
+    Diagnostic::warning(
+        "planes",
+        format!("[control] planes = true, and dialect `{dialect}` writes no tilted planes here: the rotary words are those of index axes"),
+    )
+    .help(format!("`post plugin show {dialect}` lists its options, which may switch them on"))
+}
+
 /// Retracts go along linear axes. Without one nothing leads the tool off the part before a tool change and at the end,
 /// unless the machine file says where every axis stands then.
 pub(crate) fn no_way_off(machine: &Machine) -> Option<Diagnostic> {

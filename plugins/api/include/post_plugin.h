@@ -584,15 +584,15 @@ typedef struct {
 #define POST_SURFACE_SPEED_MOST 1u
 /* POST_SENSE_…. */
 #define POST_SURFACE_SPEED_SENSE 2u
-/* Tool centre point control on or off by itself, under TCP_SWITCH; else Event::Position and Event::Retract do
- * it. */
+/* Tool centre point control on or off by itself, under TCP_SWITCH: on ahead of Event::Position, off ahead of
+ * Event::Retract; else these two do it, in the order that the control needs. */
 #define POST_EVENT_TCP 27u
 /* On, else off. */
 #define POST_TCP_ON 0u
 /* A tilted plane begins, under PLANE: until Event::PlaneOff linear words are in its frame, and Event::Position
  * puts the length in force, no tool centre point control. The tool was retracted before. */
 #define POST_EVENT_PLANE 28u
-/* 3 numbers: Origin of the plane's frame, mm, part frame. */
+/* 3 numbers: Origin of the plane's frame, mm, part frame; a number that the linear words can print. */
 #define POST_PLANE_ORIGIN 0u
 /* 3 numbers: Its first direction, unit vector, part frame: that of the machine's X as it runs against the part
  * at words, laid across z. */
@@ -608,7 +608,8 @@ typedef struct {
 #define POST_PLANE_WORDS 12u
 /* The tilted plane ends. The tool was retracted before. */
 #define POST_EVENT_PLANE_OFF 29u
-/* The control may leave the path by so much, under SMOOTHING (G187, CYCLE832, CYCL DEF 32, G61.1). */
+/* The control may leave the path by so much, under SMOOTHING (G187, CYCLE832, CYCL DEF 32, G61.1). The tool was
+ * retracted before; so it was before its end. */
 #define POST_EVENT_SMOOTHING 30u
 /* Of the tip, mm. */
 #define POST_SMOOTHING_TOLERANCE 0u
@@ -665,7 +666,7 @@ typedef struct {
 #define POST_CYCLE_RETRACT 5u
 /* Into the part in one go; none if it goes in one. */
 #define POST_CYCLE_STEP 6u
-/* At the bottom, seconds; none if it does not wait. */
+/* At the bottom, seconds; none if it does not wait. Never of Deep, BreakChip and Bore. */
 #define POST_CYCLE_DWELL 7u
 /* A thread's way a turn; none if the feed says it. */
 #define POST_CYCLE_PITCH 8u
@@ -709,7 +710,8 @@ typedef struct {
 /* how many there are, and behind it as many: All axis words of its end. */
 #define POST_PROBE_WORDS 8u
 /* Lines of the user's own in the place of those that the event behind this one would write, under INSTEAD. What
- * that event puts in force is in force all the same. */
+ * that event puts in force is in force all the same. In front of a Event::Retract they stand for the way alone:
+ * what the control must cancel is cancelled around them. */
 #define POST_EVENT_INSTEAD 42u
 /* texts[0], text: One or more lines, each ended by a line feed but the last. */
 POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");

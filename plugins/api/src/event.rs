@@ -330,8 +330,8 @@ events! { <'a>
         /// POST_SENSE_….
         sense: SpindleSense,
     };
-    /// Tool centre point control on or off by itself, under `TCP_SWITCH`; else [`Event::Position`] and
-    /// [`Event::Retract`] do it.
+    /// Tool centre point control on or off by itself, under `TCP_SWITCH`: on ahead of [`Event::Position`], off ahead of
+    /// [`Event::Retract`]; else these two do it, in the order that the control needs.
     27 TCP "a switch of tool centre point control" Tcp {
         /// On, else off.
         on: bool,
@@ -339,7 +339,7 @@ events! { <'a>
     /// A tilted plane begins, under `PLANE`: until [`Event::PlaneOff`] linear words are in its frame, and
     /// [`Event::Position`] puts the length in force, no tool centre point control. The tool was retracted before.
     28 PLANE "a tilted plane" Plane {
-        /// Origin of the plane's frame, mm, part frame.
+        /// Origin of the plane's frame, mm, part frame; a number that the linear words can print.
         origin: [f64; 3],
         /// Its first direction, unit vector, part frame: that of the machine's X as it runs against the part at
         /// `words`, laid across `z`.
@@ -355,7 +355,8 @@ events! { <'a>
     };
     /// The tilted plane ends. The tool was retracted before.
     29 PLANE_OFF "the end of a tilted plane" PlaneOff;
-    /// The control may leave the path by so much, under `SMOOTHING` (G187, CYCLE832, CYCL DEF 32, G61.1).
+    /// The control may leave the path by so much, under `SMOOTHING` (G187, CYCLE832, CYCL DEF 32, G61.1). The tool was
+    /// retracted before; so it was before its end.
     30 SMOOTHING "smoothing" Smoothing {
         /// Of the tip, mm.
         tolerance: f64,
@@ -418,7 +419,7 @@ events! { <'a>
         retract: f64,
         /// Into the part in one go; none if it goes in one.
         step: Option<f64>,
-        /// At the bottom, seconds; none if it does not wait.
+        /// At the bottom, seconds; none if it does not wait. Never of `Deep`, `BreakChip` and `Bore`.
         dwell: Option<f64>,
         /// A thread's way a turn; none if the feed says it.
         pitch: Option<f64>,
@@ -469,7 +470,8 @@ events! { <'a>
         words: &'a [f64],
     };
     /// Lines of the user's own in the place of those that the event behind this one would write, under `INSTEAD`. What
-    /// that event puts in force is in force all the same.
+    /// that event puts in force is in force all the same. In front of a [`Event::Retract`] they stand for the way alone:
+    /// what the control must cancel is cancelled around them.
     42 INSTEAD "lines in the place of an event's" Instead {
         /// One or more lines, each ended by a line feed but the last.
         text: &'a str,

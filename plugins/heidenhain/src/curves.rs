@@ -33,6 +33,8 @@ impl Heidenhain {
         let sense = if turn > 0.0 { "DR+" } else { "DR-" };
         let rise = words[z] - self.at[z];
         let place = 1 << x | 1 << y;
+        // A helix has a centre alone.
+        let radius = radius.filter(|_| rise == 0.0);
         let trim = NumberStyle {
             trim: true,
             ..SIGNED
@@ -56,12 +58,11 @@ impl Heidenhain {
                 self.block.word("C");
                 self.axes.write_machine(&mut self.block, place, words);
             }
-            Some(radius) if rise == 0.0 => {
+            Some(radius) => {
                 self.block.word("CR");
                 self.axes.write_machine(&mut self.block, place, words);
                 self.block.number("R", radius, self.decimals, SIGNED);
             }
-            Some(_) => return Err("a helix has a centre, no radius".to_owned()),
         }
         self.block.word(sense);
         self.finish_move(Some(feed), true, out)?;
@@ -87,7 +88,9 @@ impl Heidenhain {
             self.block.word("R0");
         }
         self.block.line("FMAX M99", out);
+        // It has come back to the level between the holes.
         self.stand(words);
+        self.at[z] += drilling.retract;
         Ok(())
     }
 

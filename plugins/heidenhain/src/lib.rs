@@ -220,6 +220,13 @@ impl Dialect for Heidenhain {
         let Some(lines) = self.instead.take() else {
             return self.put(event, out);
         };
+        if let Event::Retract { .. } = event {
+            // For the way alone: what the control must cancel is cancelled around them.
+            let own = std::mem::replace(&mut self.retract, lines);
+            let written = self.put(event, out);
+            self.retract = own;
+            return written;
+        }
         // As if it were written, but for the numbers of the blocks.
         let block = self.block.clone();
         self.put(event, &mut String::new())?;

@@ -87,6 +87,10 @@ impl Heidenhain {
         }
         let plain = normal.is_none() && vector.is_none();
         self.block.word(if plain { "L" } else { "LN" });
+        if let (false, true, Some([x, y, z])) = (plain, length, self.linear) {
+            // A block with vectors has all three, changed or not.
+            self.axes.forget_some(1 << x | 1 << y | 1 << z);
+        }
         if vector.is_some() {
             for group in linear {
                 self.axes.write_group(&mut self.block, words, group);

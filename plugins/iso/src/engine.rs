@@ -101,9 +101,6 @@ impl Engine {
         if self.vector.is_some() {
             writes |= Capabilities::TOOL_VECTOR;
         }
-        if self.tcp && matches!(table.tcp, Tcp::Blocks { .. }) {
-            writes |= Capabilities::TCP_SWITCH;
-        }
         if table.units_inside {
             writes |= Capabilities::UNITS;
         }
@@ -140,13 +137,21 @@ impl Engine {
     /// Words that the options name, for reading back.
     pub(crate) fn own_words(&self, add: &mut dyn FnMut(&str, Meaning)) {
         if matches!(self.table.tcp, Tcp::Blocks { .. }) {
-            add(&self.tcp_on, Meaning::TcpOn);
-            add(&self.tcp_off, Meaning::TcpOff);
+            // Of several lines the last switches it.
+            let last = |lines: &'_ str| lines.lines().last().unwrap_or("").to_owned();
+            let on = last(&self.tcp_on);
+            add(on.split('{').next().unwrap_or(""), Meaning::TcpOn);
+            add(&last(&self.tcp_off), Meaning::TcpOff);
         }
         let [off, on @ ..] = &self.coolant_codes;
         add(off, Meaning::CoolantOff);
         on.iter().for_each(|word| add(word, Meaning::CoolantOn));
         self.settings.words(add);
+    }
+
+    /// Lines that take the place of a retract in machine coordinates from here on, empty: none; gives those before.
+    pub(crate) fn retract_by(&mut self, lines: String) -> String {
+        std::mem::replace(&mut self.retract, lines)
     }
 
     pub(crate) fn start(&mut self, out: &mut String) {
@@ -322,12 +327,6 @@ impl Engine {
                 self.own_offset = false;
                 self.offset_active.forget();
                 self.offset_in_force(out);
-            }
-            Event::Tcp { on } if self.tcp && matches!(self.table.tcp, Tcp::Blocks { .. }) => {
-                let words = if on { &self.tcp_on } else { &self.tcp_off };
-                self.motion.line(&words.replace("{h}", &self.h()), out);
-                self.tcp_active.set(on);
-                self.motion.axes.forget();
             }
             Event::Units(units) if self.table.units_inside => {
                 self.inch = units == Units::Inch;

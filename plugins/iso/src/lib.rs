@@ -74,8 +74,8 @@ pub trait Control: Sized + Send + 'static {
 pub struct Iso<C> {
     control: C,
     engine: Engine,
-    /// Lines of the user's own have been written in the place of those of the next event.
-    instead: bool,
+    /// Lines of the user's own that take the place of those of the next event.
+    instead: Option<String>,
 }
 
 impl<C: Control> Iso<C> {
@@ -96,14 +96,21 @@ impl<C: Control> Iso<C> {
     }
 
     /// Lines of the user's own, and the event that they stand for: what it writes is dropped, what it puts in force is
-    /// in force.
-    fn write_instead(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
-        if let Event::Instead { text } = *event {
-            self.engine.own_lines(text, out)?;
-            self.instead = true;
-            return Ok(());
+    /// in force. For a retract they stand for the way alone: what the control must cancel is cancelled around them, in
+    /// its order.
+    fn write_instead(
+        &mut self,
+        lines: String,
+        event: &Event<'_>,
+        out: &mut String,
+    ) -> Result<(), String> {
+        if let Event::Retract { .. } = event {
+            let own = self.engine.retract_by(lines);
+            let written = self.write_plain(event, out);
+            self.engine.retract_by(own);
+            return written;
         }
-        self.instead = false;
+        self.engine.own_lines(&lines, out)?;
         let block = self.engine.motion.block.clone();
         self.write_plain(event, &mut String::new())?;
         self.engine.motion.block = block;
@@ -123,7 +130,7 @@ impl<C: Control> Dialect for Iso<C> {
         Ok(Iso {
             control,
             engine,
-            instead: false,
+            instead: None,
         })
     }
 
@@ -142,8 +149,12 @@ impl<C: Control> Dialect for Iso<C> {
     #[inline]
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
         let start = out.len();
-        if self.instead || matches!(event, Event::Instead { .. }) {
-            return self.write_instead(event, out);
+        if let Event::Instead { text } = *event {
+            self.instead = Some(text.to_owned());
+            return Ok(());
+        }
+        if let Some(lines) = self.instead.take() {
+            return self.write_instead(lines, event, out);
         }
         self.write_plain(event, out)?;
         let own = matches!(event, Event::Literal { .. } | Event::Word { .. });

@@ -37,11 +37,11 @@ pub const ORDER: &[(&str, &str)] = &[
     ("WorkOffset", "away, no plane"),
     ("Offsets", "anywhere but in a cycle"),
     ("SurfaceSpeed", "anywhere but in a cycle"),
-    ("Tcp", "away, no plane"),
+    ("Tcp", "on: away; off: in front of a retract; no plane"),
     ("Plane", "away, no plane before it"),
     ("PlaneOff", "away, behind its `Plane`"),
-    ("Smoothing", "anywhere but in a cycle"),
-    ("SmoothingOff", "behind a `Smoothing`, not in a cycle"),
+    ("Smoothing", "away, no plane"),
+    ("SmoothingOff", "away, no plane, behind a `Smoothing`"),
     ("Clamp", "anywhere but in a cycle"),
     ("Arc", "at the part, not in a cycle"),
     ("Spline", "at the part, not in a cycle"),
@@ -127,7 +127,6 @@ impl Order {
             | Event::Turn { .. }
             | Event::Units(_)
             | Event::WorkOffset { .. }
-            | Event::Tcp { .. }
             | Event::Subprogram { .. }
             | Event::End => {
                 away()?;
@@ -153,7 +152,19 @@ impl Order {
             }
             Event::Operation { .. } => unless(self.operation, "inside another operation"),
             Event::OperationEnd => unless(!self.operation, "without an operation"),
-            Event::SmoothingOff => unless(!self.smoothing, "without smoothing"),
+            Event::Tcp { on } => {
+                unless(*on && self.at_part, "at the part, before a retract")?;
+                no_plane()
+            }
+            Event::Smoothing { .. } => {
+                away()?;
+                no_plane()
+            }
+            Event::SmoothingOff => {
+                away()?;
+                no_plane()?;
+                unless(!self.smoothing, "without smoothing")
+            }
             Event::Instead { .. } => unless(self.instead, "in front of another one"),
             _ => Ok(()),
         }
@@ -309,7 +320,7 @@ mod tests {
                 "Retract comes while a cycle is in force",
             ),
             (
-                &[Event::SmoothingOff],
+                &[TOP, Event::SmoothingOff],
                 "SmoothingOff comes without smoothing",
             ),
             (

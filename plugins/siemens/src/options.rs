@@ -98,12 +98,12 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         "swivel_direction",
         (-1, 1),
         -1,
-        "_DIR where swivel_reference is empty: -1, the lower value of the reference axis.",
+        "_DIR where no axis gives its sign: -1, the lower value of the reference axis.",
     ),
     OptionSpec::text(
         "swivel_reference",
         "",
-        "Reference axis of _DIR, which takes the sign of its word, so that the control finds the same solution.",
+        "Reference axis of the record, whose sign _DIR takes, so that the control finds the same solution; empty: A, else B.",
     ),
     OptionSpec::text(
         "swivel_axes",

@@ -54,7 +54,8 @@ impl Swivel {
             );
         }
         let reference = match setup.text("swivel_reference") {
-            "" => None,
+            // The axis that tilts, as records mostly have it: the control finds the solution that stands already.
+            "" => place("A").or_else(|_| place("B")).ok(),
             name => Some(place(name).map_err(|lack| format!("swivel_reference: {lack}"))?),
         };
         Ok(Swivel {

@@ -1,5 +1,7 @@
 //! The angles of tilted planes, turned back into frames by products of rotations that take no line from the code.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use post_machine::tilted_plane::{angles, rotation};
 use post_plugin::PlaneAngles;
@@ -46,8 +48,8 @@ fn angles_of_every_convention_turn_back_into_their_frame() {
             assert!((back - frame).norm() < 1e-7, "{convention:?} {found:?}");
             assert!((rotation(order, found) - back).norm() < 1e-12);
             let range = match order[0] == order[2] {
-                true => 0.0..=3.1416,
-                false => -1.5708..=1.5708,
+                true => 0.0..=PI + 1e-9,
+                false => -FRAC_PI_2 - 1e-9..=FRAC_PI_2 + 1e-9,
             };
             assert!(range.contains(&found[1]), "{convention:?} {found:?}");
             // The other solution is the same frame: which of the two is printed makes no difference to the plane.

@@ -241,6 +241,11 @@ impl Emit<'_> {
         if !self.writer.knows(needs) {
             return None;
         }
+        // No control waits at the bottom in these.
+        let waits = drilling.dwell.is_some_and(|dwell| dwell > 0.0);
+        if waits && matches!(drilling.kind, Cycle::Deep | Cycle::BreakChip | Cycle::Bore) {
+            return None;
+        }
         let level = points(&hole.above).last()?;
         let moves = points(&hole.into).all(|block| {
             matches!(block.kind, MotionKind::Rapid | MotionKind::Linear)

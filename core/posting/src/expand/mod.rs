@@ -71,6 +71,9 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
     (all, findings.sorted())
 }
 
+/// Points that are farther from one another are two, mm.
+const APART: f64 = 1e-6;
+
 /// What leaves this stage.
 type Out<'o> = Outlet<'o, Flow<Line>>;
 
@@ -163,6 +166,17 @@ impl Expand {
     /// An arc. One that may stay an arc goes turn by turn, its moves between the commands that say so.
     fn arc(&mut self, line: u64, step: &ArcStep, out: &mut Out<'_>, findings: &Findings) {
         let ArcStep { arc, end, .. } = step;
+        // Behind a hole the tool stands above the point that the arc begins on.
+        let start = arc.at(0.0);
+        if self.tip.is_some_and(|tip| (tip - start).norm() > APART) {
+            let to_start = Motion {
+                tip: start,
+                axis: step.start_axis,
+                chord: 0.0,
+                ..*end
+            };
+            self.go(line, to_start, out, findings);
+        }
         let turns = libm::ceil(arc.sweep / TAU - 1e-9).max(1.0);
         let turn = arc.piece(0.0, 1.0 / turns);
         let (count, _) = turn.chords(self.chord_tolerance);

@@ -266,9 +266,10 @@ fn settings() -> Vec<Trial> {
             .but("another axis", [clamp(4, true)])
             .but("its release", [clamp(3, false)])
             .away(),
+        // Which tolerances a control tells apart is its own affair: many have a few levels, some one.
         Trial::new(Capabilities::SMOOTHING, "smoothing", [smoothing(0.002)])
-            .but("another tolerance", [smoothing(0.2)])
-            .but("its end", [smoothing(0.002), Event::SmoothingOff]),
+            .but("its end", [smoothing(0.002), Event::SmoothingOff])
+            .away(),
         Trial::new(
             Capabilities::COMPENSATE_3D,
             "compensation in space",
@@ -314,7 +315,8 @@ fn plane(angles: PlaneAngles) -> Trial {
     let other = plane(0.0, 11.5);
     trial
         .but("another angle", other)
-        .but("another origin", plane(1.5, 10.5))
+        // A number in either unit.
+        .but("another origin", plane(25.4, 10.5))
 }
 
 /// Lines of the user's own in the place of a tool change: they stand there, the change's own do not, and the tool is

@@ -68,10 +68,6 @@ pub const FAULTS: &[(&str, &str)] = &[
         "declared: a drilling cycle: a dwell makes no difference",
     ),
     (
-        "one smoothing",
-        "declared: smoothing: another tolerance makes no difference",
-    ),
-    (
         "refuses clamps",
         "declared: it declares a clamp, and refuses it: dialect `boastful`, event Clamp: this dialect has no words for a clamp",
     ),
@@ -282,7 +278,6 @@ impl Boastful {
             Event::CyclePoint { words, .. } if fault == "one hole" && words[0] > 10.0 => {
                 return Ok(());
             }
-            Event::Smoothing { tolerance, .. } if fault == "one smoothing" => *tolerance = 0.01,
             Event::Clamp { .. } if fault == "refuses clamps" => return Err(event.refusal()),
             Event::Surface { normal, .. } if fault == "no normals" => *normal = [0.0, 0.0, 1.0],
             Event::Subprogram { times, .. } if fault == "one subprogram" => *times = 1,

@@ -1,0 +1,145 @@
+//! Every dialect that is built in: its programs under review, linked in and from its library, and on the files of CAM
+//! systems.
+//!
+//! A snapshot has the program, or what the dialect refuses. After a change read each new one against the facts of its
+//! control.
+
+use crate::common::{self, Run, command, root, run, sample};
+use crate::plugins::libraries;
+use crate::real_files;
+
+use std::path::Path;
+
+use post_testkit::shared;
+
+/// What a job shows, its machine, sample and further arguments.
+const JOBS: &[(&str, &str, &str, &[&str])] = &[
+    // Arcs in all planes, a helix, cycles of many kinds, tools, stops.
+    ("three-axis", "vmc", "flange.ncl", &[]),
+    // A tool axis that stays over an operation: the control's plane where it has one.
+    (
+        "planes",
+        "ac-trunnion",
+        "wedge.ncl",
+        &["--set", "control.planes=true"],
+    ),
+    // The same with plain index axes.
+    ("index", "ac-trunnion", "wedge.ncl", &[]),
+    ("tcp", "ac-trunnion", "facets.apt", &["--tcp", "control"]),
+    ("no-tcp", "ac-trunnion", "facets.apt", &["--tcp", "post"]),
+];
+
+/// The samples of the jobs.
+pub fn samples() -> impl Iterator<Item = &'static str> {
+    JOBS.iter().map(|(_, _, sample, _)| *sample)
+}
+
+/// What the machine file of a control must name, since its maker's default is beyond doubt nowhere.
+fn named(dialect: &str) -> &'static [&'static str] {
+    match dialect {
+        "grbl" => &["--set", "control.grbl.hal=true"],
+        "siemens" => &["--set", "control.siemens.swivel=true"],
+        "okuma" => &[
+            "--set",
+            "control.okuma.unit_system=\"1 mm\"",
+            "--set",
+            "control.okuma.tcp_on=\"G169 HL={h}\"",
+            "--set",
+            "control.okuma.tcp_off=\"G170\"",
+        ],
+        _ => &[],
+    }
+}
+
+/// The dialects that are built in.
+pub fn dialects() -> Vec<String> {
+    let list = common::post(&["plugin", "list"]).out;
+    let rows = list.lines().filter(|row| row.ends_with(" built in"));
+    let rows = rows.map(str::split_whitespace);
+    rows.filter_map(|mut row| Some((row.next()?, row.next()?)))
+        .filter(|(_, kind)| *kind == "dialect")
+        .map(|(name, _)| name.to_owned())
+        .collect()
+}
+
+fn post(dialect: &str, machine: &str, file: &Path, with: &[&str]) -> Run {
+    run(
+        command()
+            .args(["-q", "-m", machine, "-o", "-", "--dialect", dialect])
+            .args(named(dialect))
+            .args(with)
+            .arg(file),
+        b"",
+    )
+}
+
+const LENGTH: &[&str] = &["--tool-length", "100"];
+
+#[test]
+fn the_programs_are_those_that_were_read() {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(root().join("tests/snapshots/dialects"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| {
+        for dialect in dialects() {
+            for (job, machine, file, with) in JOBS {
+                let with = [LENGTH, with].concat();
+                let linked = post(&dialect, machine, &sample(file), &with);
+                let from = ["--plugins", libraries().to_str().unwrap()];
+                let opened = post(
+                    &dialect,
+                    machine,
+                    &sample(file),
+                    &[&with[..], &from].concat(),
+                );
+                assert_eq!(linked.out, opened.out, "{dialect} {job}");
+                insta::assert_snapshot!(
+                    format!("{job}_{dialect}"),
+                    format!("{}{}", linked.err, linked.out)
+                );
+            }
+        }
+    });
+}
+
+/// Files of CAM systems: what a dialect refuses, by a part of its message. Nothing else may be.
+const REFUSED: &[(&str, &str, &str)] = &[
+    ("grbl", "nx_HumMan_cutcom.clsf", COMPENSATION),
+    ("grbl", "camworks_neMoguta_UniSource.clt", COMPENSATION),
+    ("grbl", "swcam_aamorim_Interface-glue.clt", COMPENSATION),
+    ("grbl", "swcam_aamorim_Teste-Metrologia.apt", COMPENSATION),
+    ("grbl", "swcam_aamorim_basemach.apt", COMPENSATION),
+];
+
+/// GRBL has no G41.
+const COMPENSATION: &str = "no words for cutter radius compensation";
+
+#[test]
+fn every_file_is_posted_in_every_dialect() {
+    let Some(data) = shared("data/cl") else {
+        return;
+    };
+    let mut failed = Vec::new();
+    for dialect in dialects() {
+        let mut posted = 0;
+        for (file, machine, with) in real_files::posted::one_each() {
+            let mut all = vec!["--spindle", "6000"];
+            if !with.contains("--tool-length") {
+                all.extend(["--tool-length", "0"]);
+            }
+            all.extend(with.split_whitespace());
+            let done = post(&dialect, machine, &data.join(file), &all);
+            let refused = REFUSED
+                .iter()
+                .find(|(name, of, _)| *name == dialect && *of == file);
+            match (done.code, refused) {
+                (0, None) => posted += 1,
+                (1, Some((.., why))) if done.err.contains(why) => {}
+                _ => failed.push(format!("{file} in {dialect}:\n{}", done.err)),
+            }
+        }
+        assert!(posted > 5, "{dialect}");
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}

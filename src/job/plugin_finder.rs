@@ -10,7 +10,7 @@ use post_host::{
 use post_machine::axis_words;
 use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
 use post_machine::diagnostic::{self, Diagnostic, Place, nearest};
-use post_plugin::{Accuracy, Tolerance, Units};
+use post_plugin::{Accuracy, Tolerance, Units, Value};
 use post_posting::LookedAhead;
 use post_posting::report::PluginUse;
 
@@ -47,6 +47,23 @@ pub fn by_name_or_file(plugin: &Path, named: &[PathBuf]) -> Result<Plugin, Vec<D
         finder(named)?.find(&text)
     };
     found.map_err(|fault| vec![diagnostic(&fault, &[], None)])
+}
+
+/// The number of the program, of a dialect whose programs have one.
+pub fn program_number(finder: &Finder, machine: &Machine) -> Option<i64> {
+    const KEY: &str = "program_number";
+    let plugin = finder.find(&machine.control.dialect).ok()?;
+    let declared = plugin.options().iter().find(|spec| spec.key == KEY)?;
+    let given = machine
+        .control
+        .options
+        .iter()
+        .find(|given| given.key == KEY);
+    match (given.map(|given| &given.value), declared.default) {
+        (Some(OptionValue::Integer(number)), _) => Some(*number),
+        (None, Value::Integer(number)) => Some(number),
+        _ => None,
+    }
 }
 
 /// Opens the dialect of a machine for the program `program`, made from the CL file `cl_file`.

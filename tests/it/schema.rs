@@ -161,3 +161,21 @@ fn what_is_right_passes() {
     }
     assert!(!validator.is_valid(&json!({ "extends": "vmc", "chains": "" })));
 }
+
+/// The options of a dialect that is built in are known to an editor, with what they take.
+#[test]
+fn options_of_dialects_are_in_it() {
+    let validator = validator();
+    let file = |options: &str| format!("extends = \"vmc\"\n[control.fanuc]\n{options}\n");
+    let good =
+        "block_numbers = \"tools\"\nprogram_number = 12\nretract = [\"G91 G28 Z0.\", \"G90\"]";
+    assert_eq!(faults(&validator, &file(good)), [] as [&str; 0]);
+    for bad in [
+        "program_numbr = 12",
+        "program_number = 12345678",
+        "block_numbers = true",
+        "retract = 3",
+    ] {
+        assert_eq!(faults(&validator, &file(bad)).len(), 1, "{bad}");
+    }
+}

@@ -78,7 +78,7 @@ struct Part {
 
 /// Posts as the arguments say.
 pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
-    let machine = numbered(arguments, 0)?;
+    let machine = numbered(arguments, arguments.number.map(i64::from))?;
     let finder = plugin_finder::finder(&arguments.job.plugins)?;
     job::say_what_is_left(&arguments.job, &machine, &finder);
     let looks_ahead =
@@ -174,13 +174,13 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The machine of the command line; the program `index` of several has its number.
-fn numbered(arguments: &PostArguments, index: u32) -> Result<Machine, Failure> {
-    let Some(number) = arguments.number else {
-        return job::machine(&arguments.job, &[]);
+/// The machine of the command line, its program so numbered if a number is given.
+fn numbered(arguments: &PostArguments, number: Option<i64>) -> Result<Machine, Failure> {
+    let machine = job::machine(&arguments.job, &[])?;
+    let Some(number) = number else {
+        return Ok(machine);
     };
-    let dialect = job::machine(&arguments.job, &[])?.control.dialect;
-    let number = u64::from(number) + u64::from(index);
+    let dialect = machine.control.dialect;
     let setting = Setting::Written(format!("control.{dialect}.program_number={number}"));
     job::machine(&arguments.job, &[setting])
 }
@@ -217,6 +217,8 @@ fn the_parts(
     }
     let lines = parts::lines(split, ahead)?;
     let count = lines.len();
+    // Programs of one number would take each other's place in the control.
+    let number = plugin_finder::program_number(finder, &machine);
     lines
         .into_iter()
         .enumerate()
@@ -224,7 +226,7 @@ fn the_parts(
             Ok(Part {
                 lines: Some(lines),
                 target: parts::target(&target, index + 1, count),
-                machine: numbered(arguments, u32::try_from(index).unwrap_or(u32::MAX))?,
+                machine: numbered(arguments, number.map(|first| first + index as i64))?,
             })
         })
         .collect()

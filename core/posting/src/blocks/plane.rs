@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use nalgebra::Vector3;
 use post_machine::axis_words;
+use post_machine::description::Tcp;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::orientation::angle;
@@ -146,7 +147,10 @@ impl Blocks<'_> {
         let x = order
             .into_iter()
             .find(|joint| machine.axes[*joint].name == "X");
-        let (Some(x), true) = (x, turned) else {
+        // Upright under tool centre point control there is a plane too: a control has its cycles and its radius
+        // compensation there.
+        let told = turned || machine.control.tcp == Tcp::Control;
+        let (Some(x), true) = (x, told) else {
             return;
         };
         let chain = outside.solver().chain();

@@ -110,7 +110,7 @@ const SLIPS: &[(&str, &str, &str)] = &[
     (
         "[accuracy]",
         "[control.fanuc]\ndecimals = [3]\n[accuracy]",
-        "/control/fanuc/decimals/0",
+        "/control/fanuc/decimals",
     ),
 ];
 

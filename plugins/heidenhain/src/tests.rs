@@ -337,20 +337,21 @@ fn vectors_of_tool_and_surface() {
     insta::assert_snapshot!(vectors.write(&events).unwrap());
     // By rotary words where vectors are not asked for.
     let text = kept.write(&[at(P1), surface(P3, [0.0, 0.6, 0.8])]).unwrap();
-    let wanted = "LN X+12.500 Z+2.000 A-30.125 NX+0.0000000 NY+0.0000000 NZ+1.0000000 F500\n";
+    let wanted =
+        "LN X+12.500 Y-20.500 Z+2.000 A-30.125 NX+0.0000000 NY+0.0000000 NZ+1.0000000 F500\n";
     assert!(text.ends_with(wanted), "{text}");
     let refused = bench().write(&[at(P1), surface(P3, [0.0, 0.6, 0.8])]);
     assert!(refused.unwrap_err().contains("M128"));
 }
 
-/// Lines in the place of an event's have its effect: here the retract switches TCP off.
+/// Lines in the place of a retract stand for its way alone: TCP is off ahead of them.
 #[test]
 fn lines_in_the_place_of_an_event_are_numbered_like_any_other() {
     let events = [
         turning(3000.0),
         at(P1),
         Event::Instead {
-            text: "M129\nL M140 MB MAX",
+            text: "L M140 MB MAX",
         },
         TOP,
         TOP,

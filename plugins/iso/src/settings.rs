@@ -206,7 +206,9 @@ impl Engine {
                 self.spindle_turns();
                 self.surface_speed_again(out)?;
             }
-            Event::Offsets { length, radius } if !table.length.on.is_empty() => {
+            Event::Offsets { length, radius }
+                if !table.length.on.is_empty() && !table.length.by_itself =>
+            {
                 self.registers(length, radius)?;
             }
             Event::Subprogram {

@@ -483,13 +483,13 @@ fn lines_of_the_users_own_stand_for_an_event() {
     ]);
     assert_eq!(
         text,
-        "G28 G91 Z0.\nG90\nM6 T7\nG54\nG0 A0.000 C0.000\nX10.000 Y-20.000\nG43 H17 Z50.000\n"
+        "G28 G91 Z0.\nG90\nG49\nM6 T7\nG54\nG0 A0.000 C0.000\nX10.000 Y-20.000\nG43 H17 Z50.000\n"
     );
     let numbered = whole().with("block_numbers", Value::Text("all"));
     let text = numbered.write(&[Event::Start, Event::Instead { text: "M77" }, TOP, TOOL]);
     let text = text.unwrap();
     assert!(
-        text.contains("N30 M77\n") && text.contains("N40 T1 M6\n"),
+        text.contains("N30 M77\n") && text.contains("N40 G49\n") && text.contains("N50 T1 M6\n"),
         "{text}"
     );
 }

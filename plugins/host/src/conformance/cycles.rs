@@ -1,6 +1,6 @@
 //! Cycles to be tried, each of two points.
 
-use post_plugin::{Capabilities, Cycle, Event, Feed};
+use post_plugin::{Capabilities, Cycle, Event, Feed, Spindle, SpindleSense};
 
 use super::declared::{Events, Trial};
 
@@ -143,8 +143,12 @@ impl Hole {
             pitch,
         } = self;
         let point = |words| Event::CyclePoint { tool: None, words };
-        let mut events = vec![
-            Event::rapid(ABOVE),
+        let mut events = vec![Event::rapid(ABOVE)];
+        if cycle == Cycle::TapLeft {
+            let sense = SpindleSense::CounterClockwise;
+            events.push(Event::Spindle(Spindle::On { rpm: 3000.0, sense }));
+        }
+        events.extend([
             Event::Cycle {
                 cycle,
                 feed: Feed::PerMinute(feed),
@@ -156,7 +160,7 @@ impl Hole {
                 pitch,
             },
             point(first),
-        ];
+        ]);
         if second != first {
             events.push(point(second));
         }

@@ -283,11 +283,15 @@ fn job(rng: &mut Rng, tilt: f64) -> String {
             0 => String::new(),
             _ => format!(",RTRCTO,{:.3}", clearance + rng.range(0.0, 20.0)),
         };
-        let dwell = pick(rng, &["", ",DWELL,0.5"]);
         let kind = pick(
             rng,
             &["DRILL", "DEEP", "BRKCHP", "REAM", "BORE", "FACE", "CSINK"],
         );
+        // No control waits at the bottom of a hole in pecks.
+        let dwell = match kind {
+            "DEEP" | "BRKCHP" => "",
+            _ => pick(rng, &["", ",DWELL,0.5"]),
+        };
         let step = match kind {
             "DEEP" | "BRKCHP" => format!(",STEP,{:.3}", rng.range(0.6, 6.0)),
             _ => String::new(),

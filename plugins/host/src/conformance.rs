@@ -88,7 +88,7 @@ pub enum Verdict {
     Wrong,
 }
 
-/// Events of the longest program that [`test`] has a dialect write.
+/// Events of the longest program that [`test()`] has a dialect write.
 pub const EVENTS: usize = 8_000;
 
 /// Runs the kit on a plugin that is opened with `options`.
@@ -99,7 +99,7 @@ pub fn test(plugin: &Plugin, options: &[(String, GivenValue)]) -> Result<Report,
     test_long(plugin, options, EVENTS)
 }
 
-/// As [`test`], with so many events in a dialect's longest program.
+/// As [`test()`], with so many events in a dialect's longest program.
 ///
 /// # Errors
 /// If it cannot be opened with the options.

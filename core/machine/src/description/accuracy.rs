@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::GivenOption;
 use super::build::Builder;
-use super::file::{AccuracyFile, ControlPointFile, Method, Placement, Quantity};
+use super::file::{AccuracyFile, ControlPointFile, Method, Placement};
+use super::quantity::Quantity;
 use crate::diagnostic::{Place, Short};
 
 /// Of the tool axis' tolerance so much may be used close to a pole; the rest is for what happens between points.

@@ -1,7 +1,8 @@
 //! What a machine file says of arcs: which stay arcs, and how they are written.
 
 use super::build::Builder;
-use super::file::{ArcForm, ArcSplit, ArcsFile, Quantity};
+use super::file::{ArcForm, ArcSplit, ArcsFile};
+use super::quantity::Quantity;
 use crate::diagnostic::Short;
 
 /// Which curves the program has as curves.

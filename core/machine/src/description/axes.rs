@@ -7,8 +7,9 @@ use post_grammar::{LinkKind, parse_chain};
 use toml::Spanned;
 
 use super::build::Builder;
-use super::file::{AxisFile, MachineFile, Quantity};
+use super::file::{AxisFile, MachineFile};
 use super::limits::MOST_ENTRIES;
+use super::quantity::Quantity;
 use super::{Axis, Clamp, Indexed, Positions};
 use crate::diagnostic::Short;
 use crate::kinematics::travel::{AT_END, passed};

@@ -8,13 +8,14 @@ use nalgebra::Vector3;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::file::{MachineFile, Quantity, Rapid, Tcp};
+use super::file::{MachineFile, Rapid, Tcp};
 use super::keys::typed;
 use super::layers::{Source, Sources, overlay};
 use super::limits::{
     MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_PARAMETERS, MOST_TURNS,
 };
 use super::options::take_options;
+use super::quantity::Quantity;
 use super::setting::Setting;
 use super::{Axis, Control, Frame, GivenOption, Head, Machine, UnusedOptions};
 use crate::diagnostic::{Diagnostic, Place, Short};

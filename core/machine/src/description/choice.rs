@@ -4,8 +4,9 @@ use toml::Spanned;
 
 use super::Axis;
 use super::build::Builder;
-use super::file::{EdgeSource, MachineFile, Pole, Quantity, RewindFile, Side};
+use super::file::{EdgeSource, MachineFile, Pole, RewindFile, Side};
 use super::keys::axes_are;
+use super::quantity::Quantity;
 use crate::diagnostic::Short;
 use crate::kinematics::Joints;
 use crate::kinematics::travel::passed;

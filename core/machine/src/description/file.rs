@@ -2,26 +2,14 @@
 //!
 //! The JSON Schema is made from these types, and their doc comments are what an editor shows.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fmt;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error, Visitor};
-use serde::{Deserialize, Deserializer};
+use schemars::JsonSchema;
+use serde::Deserialize;
 use toml::Spanned;
 
-use super::program::ProgramFile;
-
-/// A number, or an expression of the file's parameters.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Number {
-    Value(f64),
-    Expression(String),
-}
-
-/// A number or expression and where it stands.
-pub(crate) type Quantity = Spanned<Number>;
+use super::program_file::ProgramFile;
+use super::quantity::{Number, Quantity};
 
 /// A machine tool as `post` knows it. Positions are in mm in the machine frame with every axis at zero;
 /// directions are those of the tool as seen from the part (ISO 841). Any number may be an expression of the
@@ -655,44 +643,4 @@ pub(crate) struct AccuracyFile {
     /// Where the path turns by more than this, degrees, a CL point is a corner: it is never dropped; 10 if not said.
     #[schemars(with = "Option<Number>", extend("minimum" = 0, "maximum" = 180))]
     pub corner: Option<Quantity>,
-}
-
-impl<'de> Deserialize<'de> for Number {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct NumberVisitor;
-        impl Visitor<'_> for NumberVisitor {
-            type Value = Number;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a number, or an expression of parameters in quotes")
-            }
-
-            fn visit_f64<E: Error>(self, value: f64) -> Result<Number, E> {
-                Ok(Number::Value(value))
-            }
-
-            fn visit_i64<E: Error>(self, value: i64) -> Result<Number, E> {
-                Ok(Number::Value(value as f64))
-            }
-
-            fn visit_str<E: Error>(self, text: &str) -> Result<Number, E> {
-                Ok(Number::Expression(text.to_owned()))
-            }
-        }
-        deserializer.deserialize_any(NumberVisitor)
-    }
-}
-
-impl JsonSchema for Number {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "Number".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": ["number", "string"] })
-    }
 }

@@ -14,6 +14,8 @@ mod limits;
 mod numbers;
 mod options;
 mod program;
+mod program_file;
+mod quantity;
 mod schema;
 mod setting;
 mod smoothing;

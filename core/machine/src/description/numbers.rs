@@ -5,8 +5,8 @@ use post_grammar::text::excerpt;
 use post_grammar::{Expression, parse_expression};
 
 use super::build::Builder;
-use super::file::{Number, Quantity};
 use super::limits::MOST_NUMBER;
+use super::quantity::{Number, Quantity};
 use crate::diagnostic::meant;
 
 /// So much of an expression is told in a message, in bytes.

@@ -1,31 +1,9 @@
 //! By how much the control may leave the path: `[program.smoothing]`.
 
-use std::collections::BTreeMap;
-
-use schemars::JsonSchema;
-use serde::Deserialize;
-use toml::Spanned;
-
 use super::build::Builder;
-use super::file::{Number, Quantity};
+use super::program_file::SmoothingFile;
+use super::quantity::Quantity;
 use crate::diagnostic::Short;
-
-/// By how much the control may leave the path between the points of the program, to go on evenly.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct SmoothingFile {
-    /// Of the tip, mm; without it only the operations below are smoothed.
-    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
-    pub tolerance: Option<Quantity>,
-    /// Of the tool axis, degrees, where it turns.
-    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
-    pub axis_tolerance: Option<Quantity>,
-    /// Of the tip, mm, in operations by their names: `{ "ROUGH*" = 0.05 }`; * stands for any text, capitals or not, and
-    /// of two that fit the longer one holds.
-    #[serde(default)]
-    #[schemars(with = "BTreeMap<String, Number>")]
-    pub operations: BTreeMap<Spanned<String>, Quantity>,
-}
 
 /// By how much the control may leave the path.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,9 @@
-//! Cutter-location files and the small languages of a machine file: text in, typed records out.
+//! Cutter-location files, NC programs and the small languages of a machine file: text in, typed records out.
 //!
 //! A cutter-location file goes through [`Reader`], which splits it into logical lines in one reused buffer.
 //! The language is that of the pest grammar `line.pest`; a hand-written scanner gives the same for every usual line
 //! and leaves the others to pest, which reads them or says what is wrong.
+//! An NC program becomes blocks ([`nc`]).
 //! The structural code of a machine ([`parse_chain`]), the expressions in its file ([`parse_expression`]) and the lines
 //! of a program that it has for words of the CL file ([`Template`]) have grammars of their own.
 
@@ -10,6 +11,7 @@ mod chain;
 mod cl;
 mod expression;
 mod fault;
+pub mod nc;
 mod template;
 pub mod text;
 

@@ -1,0 +1,1 @@
+//! Two programs, and what they do differently.

@@ -1,0 +1,86 @@
+//! What an NC program makes the machine do, and whether that is what the CL file asked for.
+//!
+//! | part | takes | hands on |
+//! |---|---|---|
+//! | [`lexicon`] | a dialect's words and meanings | which word switches what |
+//! | [`interpret`] | blocks of `post_grammar::nc` | [`Done`]: every motion of the machine, and what is told between them |
+//! | [`course`] | a CL file, or what a program did | [`course::Item`]: the path of the tool against the part, piece by piece |
+//! | [`verify`] | a program and a course | deviations, block by block |
+//! | [`diff`] | two programs | what they do differently |
+//! | [`convert`] | what a program did | the CL file that asks for it |
+//!
+//! This crate never stands on `post-posting`, and shares no code with the emitters: a check must not share the mistake
+//! of what it checks. The chain and its kinematics come from `post-machine`, where LinuxCNC's own kinematics and random
+//! chains prove them. There is no input or output here, no unsafe code and no dialect's name, and memory does not grow
+//! with the program.
+
+pub mod convert;
+pub mod course;
+pub mod diff;
+pub mod interpret;
+pub mod lexicon;
+mod motion;
+mod offsets;
+mod told;
+pub mod verify;
+
+pub use motion::{Motion, MotionKind, SplineWay, Stance, Way};
+pub use offsets::{Offsets, WorkOffset};
+pub use told::{Coolants, CycleCall, CycleKind, Spindle, Told};
+
+use std::sync::Arc;
+
+use post_machine::kinematics::Solver;
+use post_machine::tilted_plane::TiltedPlane;
+
+/// What a block of a program did, in the order in which it did it.
+#[derive(Clone, Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "most are motions, and they lie in a buffer that is filled again and again"
+)]
+pub enum Done {
+    /// The machine moved.
+    Motion(Motion),
+    /// Something else happened.
+    Told {
+        /// Line of the program.
+        line: u64,
+        /// What.
+        told: Told,
+    },
+    /// From here on this holds.
+    State(Arc<State>),
+}
+
+/// What holds while the machine moves: it changes seldom, and motions share it.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// The machine with the tool that the program's length compensation speaks of: `chain().forward` leads from axis
+    /// values to the tip and tool axis in the part frame.
+    pub solver: Arc<Solver>,
+    /// Length that is compensated, mm; zero where compensation is off.
+    pub length: f64,
+    /// Tool in the spindle.
+    pub tool: Option<u32>,
+    /// Length register in force.
+    pub length_register: Option<u32>,
+    /// Radius register in force.
+    pub radius_register: Option<u32>,
+    /// Side of the contour: -1 left (G41), 1 right (G42), 0 off.
+    pub compensation: i8,
+    /// The control keeps the tip.
+    pub tcp: bool,
+    /// The tilted plane in force.
+    pub plane: Option<TiltedPlane>,
+    /// Name of the work offset in force: `G54`.
+    pub work_offset: Option<String>,
+    /// The spindle.
+    pub spindle: Spindle,
+    /// Coolants that flow.
+    pub coolants: Coolants,
+    /// The operation, as a remark or a word of the program names it.
+    pub operation: Option<String>,
+    /// The control may leave the path by this much, mm; none: it keeps it, or nothing is said.
+    pub smoothing: Option<f64>,
+}

@@ -1,0 +1,113 @@
+//! What happens besides motion: told by programs and by CL files in the same words, so that they can be compared.
+
+/// Something that is no motion.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Told {
+    /// This tool is in the spindle now.
+    ToolChange {
+        /// Its number; none where only a name is given.
+        number: Option<u32>,
+        /// Its name.
+        name: Option<String>,
+    },
+    /// This tool is made ready.
+    Preselect(u32),
+    /// The spindle from here on.
+    Spindle(Spindle),
+    /// Coolants from here on.
+    Coolant(Coolants),
+    /// The program waits, seconds; for so many revolutions where `revolutions` is set.
+    Dwell {
+        /// How long.
+        time: f64,
+        /// In turns of the spindle.
+        revolutions: bool,
+    },
+    /// `M0`.
+    Stop,
+    /// `M1`.
+    OptionalStop,
+    /// An operation of this name begins.
+    Operation(String),
+    /// A remark.
+    Remark(String),
+    /// A message to the operator.
+    Message(String),
+    /// Radius compensation: -1 left, 1 right, 0 off; and its register.
+    Compensation {
+        /// The side.
+        side: i8,
+        /// The register.
+        register: Option<u32>,
+    },
+    /// Work offset of this name: `G54`, `G54.1 P3`; of a CL file its number as text.
+    WorkOffset(String),
+    /// A cycle was called whose motions follow, up to the next `CycleEnd`.
+    Cycle(CycleCall),
+    /// Its motions are done.
+    CycleEnd,
+    /// A word of the control that moves nothing and that we do not know what it does; once a word.
+    Unknown(String),
+    /// The program ends.
+    End,
+}
+
+/// The spindle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Spindle {
+    /// It stands.
+    #[default]
+    Off,
+    /// It turns clockwise, seen from the spindle to the part, revolutions a minute.
+    Clockwise(f64),
+    /// Counter-clockwise.
+    CounterClockwise(f64),
+    /// It stands at an angle.
+    Oriented,
+}
+
+/// Which coolants flow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Coolants {
+    /// Flood: M8.
+    pub flood: bool,
+    /// Mist: M7.
+    pub mist: bool,
+    /// Through the tool, air, or any other.
+    pub other: bool,
+}
+
+/// A cycle at one point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CycleCall {
+    /// What it does.
+    pub kind: CycleKind,
+    /// The bottom of the hole below the clearance level, mm, along the tool axis.
+    pub depth: f64,
+    /// The clearance level above the surface, where known, mm.
+    pub clearance: f64,
+    /// Peck, mm; zero for none.
+    pub peck: f64,
+    /// Dwell at the bottom, seconds.
+    pub dwell: f64,
+    /// Feed, mm/min; of a thread mm a revolution where `per_revolution` is set.
+    pub feed: f64,
+    /// The feed is a revolution.
+    pub per_revolution: bool,
+}
+
+/// What a cycle does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "their names say it")]
+pub enum CycleKind {
+    #[default]
+    Drill,
+    Deep,
+    BreakChip,
+    Tap,
+    TapLeft,
+    Ream,
+    Bore,
+    BoreFine,
+    BoreBack,
+}

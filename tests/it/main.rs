@@ -39,6 +39,7 @@ mod snapshots;
 mod strangers;
 mod study;
 mod summary;
+mod vocabularies;
 mod words;
 mod writable;
 

@@ -1,12 +1,45 @@
 //! Blocks become motions.
+//!
+//! | file | does |
+//! |---|---|
+//! | `state` | what a control remembers from block to block: `Control` |
+//! | `control` | how it begins; the solver, the zero and the frames that words count from |
+//! | `gathered` | the words of a block, by letter |
+//! | `block` | a block of words: modes first, then what moves |
+//! | `names` | names, calls and texts among the words |
+//! | `go`, `arcs`, `machine_moves` | from words to axis values, tip and tool axis |
+//! | `feed`, `tools` | time, tool lengths |
+//! | `frame` | frames within one another |
+//! | `flow`, `expression`, `variables` | what leads the program elsewhere, and numbers that are worked out |
+//! | `cycles`, `planes`, `frames`, `conversational` | cycles, tilted planes, shifts; Heidenhain's blocks |
+
+mod arcs;
+mod block;
+mod control;
+mod conversational;
+mod cycles;
+mod feed;
+mod frame;
+mod frames;
+mod gathered;
+mod go;
+mod machine_moves;
+mod names;
+mod planes;
+mod state;
+mod tools;
+mod variables;
 
 use std::io::{BufRead, Seek};
 
+use post_grammar::nc::{NcBlock, Notation};
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::lexicon::Lexicon;
 use crate::{Done, Offsets};
+use gathered::Gathered;
+use state::Control;
 
 /// How far a program may go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,11 +72,33 @@ pub struct ReadReport {
     pub notes: Vec<Diagnostic>,
 }
 
+/// Runs blocks one by one.
+#[derive(Debug)]
+struct Runner {
+    control: Control,
+    words: Gathered,
+    conversational: bool,
+}
+
+impl Runner {
+    /// Runs a block; what it did stands in `control.done`.
+    #[inline]
+    fn run(&mut self, block: &NcBlock) -> Result<(), Box<Diagnostic>> {
+        self.control.line = block.line;
+        self.control.number = block.number;
+        if self.conversational {
+            conversational::run(&mut self.control, block)
+        } else {
+            block::run(&mut self.control, block, &mut self.words)
+        }
+    }
+}
+
 /// Runs a program block by block.
 #[derive(Debug)]
 pub struct Interpreter<R> {
     input: R,
-    report: ReadReport,
+    runner: Runner,
 }
 
 impl<R: BufRead + Seek> Interpreter<R> {
@@ -59,11 +114,13 @@ impl<R: BufRead + Seek> Interpreter<R> {
         file: &str,
         input: R,
     ) -> Result<Self, Box<Diagnostic>> {
-        let _ = (machine, lexicon, offsets, limits, file);
-        Ok(Self {
-            input,
-            report: ReadReport::default(),
-        })
+        let _ = limits;
+        let runner = Runner {
+            control: Control::new(machine, lexicon, offsets, file)?,
+            words: Gathered::default(),
+            conversational: lexicon.syntax().notation == Notation::Conversational,
+        };
+        Ok(Self { input, runner })
     }
 
     /// Runs the next block and puts what it did behind what `done` holds; false at the end. It can be called again after
@@ -72,12 +129,12 @@ impl<R: BufRead + Seek> Interpreter<R> {
     /// # Errors
     /// What stands there that cannot be understood, or is not run, with its place.
     pub fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
-        let _ = (&mut self.input, done);
+        let _ = (&mut self.input, done, self.runner.run(&NcBlock::default()));
         todo!()
     }
 
     /// What was found so far.
     pub fn report(&self) -> &ReadReport {
-        &self.report
+        &self.runner.control.report
     }
 }

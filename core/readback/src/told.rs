@@ -42,6 +42,10 @@ pub enum Told {
     },
     /// Work offset of this name: `G54`, `G54.1 P3`; of a CL file its number as text.
     WorkOffset(String),
+    /// The head of this name is swapped in.
+    Head(String),
+    /// A subprogram of the control runs, by its number: where the tool stands behind it nobody knows.
+    Subprogram(u32),
     /// A cycle was called whose motions follow, up to the next `CycleEnd`.
     Cycle(CycleCall),
     /// Its motions are done.
@@ -64,6 +68,15 @@ pub enum Spindle {
     CounterClockwise(f64),
     /// It stands at an angle.
     Oriented,
+    /// It turns the part at a cutting speed that the control keeps.
+    Surface {
+        /// m/min.
+        speed: f64,
+        /// Revolutions a minute that it does not exceed, if that is said.
+        most: Option<f64>,
+        /// Its sense.
+        clockwise: bool,
+    },
 }
 
 /// Which coolants flow.

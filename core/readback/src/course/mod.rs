@@ -1,4 +1,20 @@
 //! The path of the tool against the part, piece by piece, whoever asked for it.
+//!
+//! | source | what it is |
+//! |---|---|
+//! | [`cl::ClCourse`] | a CL file, every modal word settled here and not by the stages that post it |
+//! | [`done::DoneCourse`] | what a program did |
+//!
+//! Points, axes and edges are in mm in the part frame of the machine file, the part as it sits (`machine.turn` is
+//! applied). A piece begins where the one before it ends; where that is not known (behind a tool change, at the beginning,
+//! behind a way in machine coordinates) the tool [reaches](Item::Reach) a pose, and how it comes there is nobody's
+//! business.
+
+pub mod cl;
+pub mod done;
+mod facts;
+mod piece;
+mod spline;
 
 use std::sync::Arc;
 
@@ -6,12 +22,14 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 
-use crate::Told;
 use crate::motion::SplineWay;
+use crate::{MotionKind, Told};
+
+pub use facts::{CourseFacts, Operation};
 
 /// A path that is handed out in order.
 pub trait Course {
-    /// The next item; none at its end.
+    /// The next item; none at its end. It can be called again after an error, and goes on behind what was wrong.
     ///
     /// # Errors
     /// What its source says that cannot be understood, with its place.
@@ -19,10 +37,21 @@ pub trait Course {
 }
 
 /// What a course says.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "nearly all are pieces, and they are handed on one by one"
+)]
 pub enum Item {
-    /// The tool goes.
+    /// The tool goes from where it stands.
     Piece(Piece),
+    /// The tool comes to a pose from wherever it was.
+    Reach(Reach),
+    /// The tool leaves the part, and the axes go where the machine parks them: `GOHOME`, ways in machine coordinates.
+    Away {
+        /// Line of the source.
+        line: u64,
+    },
     /// Something else.
     Told {
         /// Line of the source.
@@ -32,37 +61,54 @@ pub enum Item {
     },
 }
 
+/// A pose that is reached, by whatever way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Line of the source that asks for it.
+    pub line: u64,
+    /// As the source has it: a first point may come at feed, and does harm by that to nobody.
+    pub kind: MotionKind,
+    /// mm, part frame.
+    pub to: Pose,
+    /// Feed of the tip, mm/min, if the source states one.
+    pub feed: Option<f64>,
+    /// It is the level above a cycle's hole.
+    pub hole: bool,
+}
+
 /// A piece of the path.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
     /// Line of the source that asks for it.
     pub line: u64,
     /// At rapid, at feed, or along a thread.
-    pub kind: crate::MotionKind,
+    pub kind: MotionKind,
     /// How the tip goes.
     pub curve: Curve,
     /// Where it begins: mm, part frame.
     pub from: Pose,
     /// Where it ends.
     pub to: Pose,
-    /// Feed of the tip, mm/min; none where the source states none, or states it otherwise.
+    /// Feed of the tip, mm/min; none for a rapid, and where the source states none.
     pub feed: Option<f64>,
-    /// It is part of a cycle's hole: approach, feed, dwell and return of it.
+    /// It is part of a cycle's hole: approach, feed, dwell and return of it. Pecks are the control's business: a hole is
+    /// one piece down at feed and one up.
     pub hole: bool,
 }
 
-/// How the tip goes; the tool axis goes on the great circle from one end to the other.
+/// How the tip goes; the tool axis goes on the great circle from one end to the other, evenly.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curve {
-    /// Straight.
+    /// Straight. Where the machine file names a control point above the tip, that point goes straight: [`Piece::at`].
     Straight,
-    /// On an arc or helix.
+    /// On an arc, a helix, or a spiral where the ends differ in their distance from the axis: both distance and height
+    /// change evenly with the turn.
     Arc {
         /// A point of its axis, mm.
         centre: Vector3<f64>,
         /// Its axis, unit vector.
         normal: Vector3<f64>,
-        /// Turn about it, right-handed, radians.
+        /// Turn about it, right-handed, radians; more than a turn where the source says so.
         sweep: f64,
     },
     /// On a spline.

@@ -1,0 +1,88 @@
+//! A CL file as a course: what a CAM programmer means by it.
+//!
+//! Everything modal is settled here, apart from the stages that post the file: units, tool axis, feed, frames, cycles,
+//! radius compensation and tools. Memory does not grow with the file: records are taken one by one.
+//!
+//! What the CAM systems mean where they differ (samples of each; the numbers of NX are those of its CLSF documentation):
+//! NX's `CIRCLE` of eleven numbers goes clockwise about its axis, all others right-handed unless a word says otherwise;
+//! CAMWorks states index angles in radians and from zero; NX repeats `LOAD` for the same tool, and every `TOOL PATH`
+//! begins with the tool along Z; `NURBS` of NX is cubic, clamped, its first pole where the tool stands.
+
+mod curves;
+mod feed;
+mod frame;
+mod hole;
+mod holes;
+mod modal;
+mod settings;
+mod tools;
+
+use std::collections::VecDeque;
+use std::io::Read;
+
+use post_grammar::{ReadError, Reader};
+use post_machine::diagnostic::{Diagnostic, unreadable};
+
+use super::{Course, Item};
+use modal::Modal;
+pub use settings::Settings;
+pub use tools::ClTool;
+
+/// A CL file, read record by record.
+#[derive(Debug)]
+pub struct ClCourse<R> {
+    reader: Reader<R>,
+    modal: Modal,
+    waiting: VecDeque<Item>,
+    ended: bool,
+}
+
+impl<R: Read> ClCourse<R> {
+    /// The file from `input`, which need not be buffered.
+    pub fn new(settings: Settings, input: R) -> Self {
+        Self {
+            reader: Reader::new(input),
+            modal: Modal::new(settings),
+            waiting: VecDeque::new(),
+            ended: false,
+        }
+    }
+
+    /// The tools that the file has loaded so far, each number once, in order: after a first pass over it all of them.
+    pub fn tools(&self) -> &[ClTool] {
+        self.modal.tools()
+    }
+
+    /// Bytes of the file that were read so far, for a progress bar.
+    pub fn bytes_read(&self) -> u64 {
+        self.reader.bytes_read()
+    }
+}
+
+impl<R: Read> Course for ClCourse<R> {
+    fn next(&mut self) -> Result<Option<Item>, Box<Diagnostic>> {
+        loop {
+            if let Some(item) = self.waiting.pop_front() {
+                return Ok(Some(item));
+            }
+            if self.ended {
+                return Ok(None);
+            }
+            match self.reader.next_record() {
+                Ok(Some(record)) => self.modal.record(&record, &mut self.waiting)?,
+                Ok(None) => {
+                    self.ended = true;
+                    self.modal.finish(&mut self.waiting)?;
+                }
+                Err(ReadError::Syntax(fault)) => {
+                    return Err(unreadable(self.modal.file(), &fault).boxed());
+                }
+                Err(ReadError::Io(error)) => {
+                    self.ended = true;
+                    let message = format!("{} cannot be read: {error}", self.modal.file());
+                    return Err(Diagnostic::error("read", message).boxed());
+                }
+            }
+        }
+    }
+}

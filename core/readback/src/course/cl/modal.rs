@@ -1,0 +1,616 @@
+//! Records become items: what is modal is settled.
+
+use std::collections::VecDeque;
+
+use nalgebra::Vector3;
+use post_grammar::{
+    Argument, Coolant, Delay, Delta, Record, Rotate, Side, Statement, Units, Usage,
+};
+use post_machine::description::Print;
+use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::kinematics::Pose;
+
+use super::curves::Pending;
+use super::feed::FeedWord;
+use super::frame::Frames;
+use super::hole::Hole;
+use super::settings::Settings;
+use super::tools::Tools;
+use crate::course::{Curve, Item, Piece, Reach};
+use crate::{Coolants, MotionKind, Told};
+
+/// No machine reaches a coordinate beyond this: ten kilometres, mm.
+const FARTHEST: f64 = 1e7;
+
+/// What a record means, or what is wrong with it.
+pub(super) type Meant = Result<(), Box<Diagnostic>>;
+
+/// Items that a record means, in order.
+pub(super) type Out = VecDeque<Item>;
+
+/// What is modal in a CL file.
+#[derive(Debug)]
+pub(super) struct Modal {
+    pub(super) settings: Settings,
+    /// Units that the file names.
+    pub(super) units: Option<Units>,
+    /// mm in one unit of the file.
+    pub(super) scale: f64,
+    /// A number that the units gave its meaning was read.
+    pub(super) measured: bool,
+    pub(super) frames: Frames,
+    /// Tool axis, frame of the file.
+    axis: Vector3<f64>,
+    /// Leading edge, frame of the file; zero until the file gives one.
+    edge: Vector3<f64>,
+    /// `TLAXIS`, part frame.
+    told_axis: Option<Vector3<f64>>,
+    /// An index move came since the last point.
+    indexed: bool,
+    /// Where the tool stands, part frame; none if nobody knows.
+    pub(super) stands: Option<Pose>,
+    /// It was said to stand there (`FROM`), and has not come there by the file's own points.
+    only_said: bool,
+    /// `RAPID`: the next point.
+    rapid: bool,
+    /// `FEDRAT/RAPID`: all points until the next feed.
+    rapid_feed: bool,
+    pub(super) feed: Option<FeedWord>,
+    pub(super) pending: Option<Pending>,
+    pub(super) cycle: Option<(Hole, Option<FeedWord>)>,
+    pub(super) last_cycle: Option<(Hole, Option<FeedWord>)>,
+    pub(super) tools: Tools,
+    coolant: Coolants,
+    side: Option<Side>,
+    register: Option<u32>,
+    pub(super) compensated: bool,
+    offset: Option<u32>,
+    finished: bool,
+}
+
+impl Modal {
+    pub(super) fn new(settings: Settings) -> Self {
+        Self {
+            scale: settings.units.map_or(1.0, millimetres),
+            frames: Frames::new(settings.turn),
+            settings,
+            units: None,
+            measured: false,
+            axis: Vector3::z(),
+            edge: Vector3::zeros(),
+            told_axis: None,
+            indexed: false,
+            stands: None,
+            only_said: false,
+            rapid: false,
+            rapid_feed: false,
+            feed: None,
+            pending: None,
+            cycle: None,
+            last_cycle: None,
+            tools: Tools::default(),
+            coolant: Coolants::default(),
+            side: None,
+            register: None,
+            compensated: false,
+            offset: None,
+            finished: false,
+        }
+    }
+
+    pub(super) fn file(&self) -> &str {
+        &self.settings.file
+    }
+
+    pub(super) fn tools(&self) -> &[super::ClTool] {
+        self.tools.all()
+    }
+
+    /// What is left open at the end of the file.
+    pub(super) fn finish(&mut self, _out: &mut Out) -> Meant {
+        match self.pending.take() {
+            None => Ok(()),
+            Some(pending) => {
+                let what = match pending {
+                    Pending::Arc(_) => "a CIRCLE that no GOTO ends",
+                    Pending::Spline { .. } => "a NURBS that nothing ends",
+                };
+                Err(Diagnostic::error("course", format!("the file ends in {what}")).boxed())
+            }
+        }
+    }
+
+    /// What one record means.
+    pub(super) fn record(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
+        if self.finished {
+            return Ok(());
+        }
+        match &record.statement {
+            Statement::Goto { point, axis } => self.goto(record, *point, *axis, out),
+            Statement::GotoEdge { point, axis, edge } => {
+                self.edge = self.unit(record, *edge, "the leading edge")?;
+                self.goto(record, *point, Some(*axis), out)
+            }
+            Statement::Godlta(delta) => self.godlta(record, *delta, out),
+            Statement::From { point, axis } => {
+                self.set_axis(record, *axis)?;
+                self.stands = Some(self.pose(record, *point)?);
+                self.only_said = true;
+                Ok(())
+            }
+            Statement::Gohome(home) => self.gohome(record, *home, out),
+            Statement::Rapid => {
+                self.rapid = true;
+                Ok(())
+            }
+            Statement::Feed(feed) => {
+                self.rapid_feed = feed.unit == Some(post_grammar::FeedUnit::Rapid);
+                if !self.rapid_feed {
+                    self.feed = self.feed_word(record, *feed)?.or(self.feed);
+                }
+                Ok(())
+            }
+            Statement::Spindle(spindle) => self.spindle(record, *spindle, out),
+            Statement::Coolant(word) => self.coolant(record, *word, out),
+            Statement::LoadTool(tool) => self.load_read(record, tool, out),
+            Statement::SelectTool(number) => {
+                if self.tools.loaded() != Some(*number) {
+                    self.tell(record, Told::Preselect(*number), out);
+                }
+                Ok(())
+            }
+            Statement::ToolData { numbers, .. } => self.cutter(numbers, 2),
+            Statement::Cutter(numbers) => self.cutter(numbers, 6),
+            Statement::Units(units) => self.set_units(record, *units),
+            Statement::Multax(on) => {
+                if !on {
+                    self.axis = Vector3::z();
+                }
+                Ok(())
+            }
+            Statement::Msys { origin, x, y } => {
+                let origin = self.file_point(record, *origin)?;
+                if !self.settings.apply_msys {
+                    return Ok(());
+                }
+                let directions = [Vector3::from(*x), Vector3::from(*y)];
+                let set = self.frames.set_msys(origin, directions);
+                set.map_err(|why| self.fault(record, format!("this MSYS is no frame: {why}")))
+            }
+            Statement::Circle(_)
+            | Statement::Nurbs
+            | Statement::Knot(_)
+            | Statement::Control { .. } => self.curve_word(record, out),
+            Statement::WorkOffset { number, set } => self.work_offset(record, (*number, *set), out),
+            Statement::Subprogram(number) => {
+                if !self.does_nothing(record, "CALSUB", &[Argument::Number((*number).into())]) {
+                    self.lost();
+                    self.tell(record, Told::Subprogram(*number), out);
+                }
+                Ok(())
+            }
+            Statement::Cycle(cycle) => self.cycle_word(record, cycle),
+            Statement::Cutcom(cutcom) => {
+                self.load_due(record, out)?;
+                match cutcom.side {
+                    None => {}
+                    Some(side) => self.side = Some(side).filter(|side| *side != Side::Off),
+                }
+                let side = match (cutcom.side, self.side) {
+                    (Some(Side::Off), _) => 0,
+                    (_, Some(Side::Left)) => -1,
+                    (_, Some(Side::Right)) => 1,
+                    // CAMWorks says ON first, and the side in the next record.
+                    _ => return Ok(()),
+                };
+                self.register = cutcom.register.or(self.register);
+                let register =
+                    (side != 0).then(|| self.register.or(self.tools.loaded()).unwrap_or(1));
+                self.compensated = side != 0;
+                self.tell(record, Told::Compensation { side, register }, out);
+                Ok(())
+            }
+            // Points stay where they are written: the tool's centre, or the contour.
+            Statement::CutcomOnCentre(_) => Ok(()),
+            Statement::Rotate(rotate) => self.rotate(record, rotate),
+            Statement::ToolAxis(axis) => {
+                let axis = self.unit(record, *axis, "the tool axis")?;
+                self.told_axis = Some(axis);
+                if self.frames.turned().is_none() {
+                    self.axis = axis;
+                }
+                Ok(())
+            }
+            Statement::Delay(delay) => {
+                let (time, revolutions) = match (*delay, self.tools.rpm()) {
+                    (Delay::Seconds(seconds), _) => (seconds, false),
+                    (Delay::Revolutions(turns), Some(rpm)) => (turns * 60.0 / rpm, false),
+                    (Delay::Revolutions(turns), None) => (turns, true),
+                };
+                self.tell(record, Told::Dwell { time, revolutions }, out);
+                Ok(())
+            }
+            Statement::Stop => {
+                self.tell(record, Told::Stop, out);
+                Ok(())
+            }
+            Statement::OptionalStop => {
+                self.tell(record, Told::OptionalStop, out);
+                Ok(())
+            }
+            Statement::Head(name) => {
+                self.lost();
+                self.tell(record, Told::Head(name.clone()), out);
+                Ok(())
+            }
+            Statement::ToolPath { name, tool } => {
+                self.end_spline(record, out)?;
+                self.axis = Vector3::z();
+                self.tools.name(tool.as_deref());
+                self.tell(record, Told::Operation(name.clone()), out);
+                Ok(())
+            }
+            Statement::EndOfPath => self.end_spline(record, out),
+            Statement::Print(text) if self.settings.print == Print::Message => {
+                self.tell(record, Told::Message(text.clone()), out);
+                Ok(())
+            }
+            Statement::PartName(text) | Statement::Print(text) => {
+                self.tell(record, Told::Remark(text.clone()), out);
+                Ok(())
+            }
+            // Lines and notes of the user's own: they move nothing that is known here.
+            Statement::Insert(_) | Statement::Remark(_) | Statement::Csys(_) => Ok(()),
+            Statement::Fini => {
+                self.finished = true;
+                self.end_spline(record, out)
+            }
+            Statement::Other {
+                word, arguments, ..
+            } => {
+                let refused = record.statement.usage() == Usage::Refused;
+                if !refused || self.does_nothing(record, word, arguments) {
+                    return Ok(());
+                }
+                let message = format!(
+                    "{word} changes where or whether metal is cut, and its meaning is not known"
+                );
+                Err(self.fault(record, message))
+            }
+        }
+    }
+
+    /// The machine file has lines for the word, or the user takes it upon himself.
+    fn does_nothing(&self, _record: &Record<'_>, word: &str, arguments: &[Argument]) -> bool {
+        let rules = &self.settings.rules;
+        rules
+            .iter()
+            .any(|rule| rule.fits(word, arguments).is_some())
+            || self.settings.allows(word)
+    }
+
+    /// Nobody knows where the tool stands from here on.
+    pub(super) fn lost(&mut self) {
+        self.stands = None;
+        self.only_said = false;
+    }
+
+    fn goto(
+        &mut self,
+        record: &Record<'_>,
+        point: [f64; 3],
+        axis: Option<[f64; 3]>,
+        out: &mut Out,
+    ) -> Meant {
+        if self.pending.is_some() {
+            self.end_spline(record, out)?;
+        }
+        self.set_axis(record, axis)?;
+        let to = self.pose(record, point)?;
+        self.arrive(record, to, out)
+    }
+
+    /// The tool goes to a pose of the part frame: along the curve that waits, into a hole, or straight.
+    fn arrive(&mut self, record: &Record<'_>, to: Pose, out: &mut Out) -> Meant {
+        self.before_move(record, out)?;
+        if let Some(Pending::Arc(circle)) = self.pending.take() {
+            return self.arc(record, &circle, to, out);
+        }
+        if let Some((hole, feed)) = self.cycle {
+            self.rapid = false;
+            return self.drill(record, hole, feed, to, out);
+        }
+        let (kind, feed) = self.pace(&Curve::Straight, to);
+        self.go(record.line, (kind, feed), Curve::Straight, to, false, out);
+        Ok(())
+    }
+
+    /// How fast the tool goes next, and its feed.
+    pub(super) fn pace(&mut self, curve: &Curve, to: Pose) -> (MotionKind, Option<f64>) {
+        if std::mem::take(&mut self.rapid) || self.rapid_feed {
+            return (MotionKind::Rapid, None);
+        }
+        if self.feed.is_none() && self.settings.feed.is_none() && self.stands.is_none() {
+            return (MotionKind::Rapid, None);
+        }
+        let feed = match self.feed {
+            Some(word) => self.per_minute(word, || self.way(curve, to)),
+            None => self.settings.feed,
+        };
+        (MotionKind::Feed, feed)
+    }
+
+    /// [`Modal::pace`] of a curve that ended before the record that a `RAPID` in front of it is meant for.
+    pub(super) fn pace_behind(&mut self, curve: &Curve, to: Pose) -> (MotionKind, Option<f64>) {
+        let rapid = std::mem::take(&mut self.rapid);
+        let pace = self.pace(curve, to);
+        self.rapid = rapid;
+        pace
+    }
+
+    /// Compensation begins anew with each tool.
+    pub(super) fn forget_register(&mut self) {
+        self.register = None;
+    }
+
+    /// The way to a pose, mm; of the first point of all none.
+    fn way(&self, curve: &Curve, to: Pose) -> Option<f64> {
+        let from = self.stands?;
+        let piece = Piece {
+            line: 0,
+            kind: MotionKind::Feed,
+            curve: curve.clone(),
+            from,
+            to,
+            feed: None,
+            hole: false,
+        };
+        Some(piece.length())
+    }
+
+    /// The tool goes along `curve` to a pose; from nowhere it reaches it.
+    pub(super) fn go(
+        &mut self,
+        line: u64,
+        (kind, feed): (MotionKind, Option<f64>),
+        curve: Curve,
+        to: Pose,
+        hole: bool,
+        out: &mut Out,
+    ) {
+        self.measured = true;
+        let known = !(self.only_said && curve == Curve::Straight);
+        let item = match self.stands.filter(|_| known) {
+            Some(from) => Item::Piece(Piece {
+                line,
+                kind,
+                curve,
+                from,
+                to,
+                feed,
+                hole,
+            }),
+            None => Item::Reach(Reach {
+                line,
+                kind,
+                to,
+                feed,
+                hole,
+            }),
+        };
+        self.stands = Some(to);
+        self.only_said = false;
+        out.push_back(item);
+    }
+
+    /// What is seen to before a point: index moves that disagree, a tool that is named outside the file.
+    fn before_move(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
+        if std::mem::take(&mut self.indexed)
+            && let (Some(turned), Some(told)) = (self.frames.turned(), self.told_axis)
+            && (turned * self.axis - told).norm() > 1e-3
+        {
+            return Err(self.fault(
+                record,
+                "ROTABL does not turn the tool to the axis that TLAXIS names".to_owned(),
+            ));
+        }
+        self.load_due(record, out)?;
+        self.spindle_due(record, out);
+        Ok(())
+    }
+
+    fn godlta(&mut self, record: &Record<'_>, delta: Delta, out: &mut Out) -> Meant {
+        let Some(from) = self.stands else {
+            let message = "GODLTA steps from the last point, and there is none";
+            return Err(self.fault(record, message.to_owned()));
+        };
+        if self.cycle.is_some() {
+            let message = "GODLTA while a cycle is on: from which of its heights?";
+            return Err(self.fault(record, message.to_owned()));
+        }
+        self.end_spline(record, out)?;
+        let axis = self.frames.direction(self.axis);
+        let step = match delta {
+            Delta::Step(step) => self.frames.direction(Vector3::from(step)),
+            Delta::AlongAxis(length) => axis * length,
+        };
+        let tip = from.tip + step * self.scale;
+        self.near(record, tip)?;
+        let edge = self.frames.direction(self.edge);
+        self.arrive(record, Pose { tip, axis, edge }, out)
+    }
+
+    fn gohome(
+        &mut self,
+        record: &Record<'_>,
+        home: Option<([f64; 3], Option<[f64; 3]>)>,
+        out: &mut Out,
+    ) -> Meant {
+        self.end_spline(record, out)?;
+        let Some((point, axis)) = home else {
+            self.rapid = false;
+            self.lost();
+            out.push_back(Item::Away { line: record.line });
+            return Ok(());
+        };
+        self.rapid = true;
+        // A cycle does not act at home.
+        let cycle = self.cycle.take();
+        let done = self.goto(record, point, axis, out);
+        self.cycle = cycle;
+        done
+    }
+
+    fn rotate(&mut self, record: &Record<'_>, rotate: &Rotate) -> Meant {
+        if self.frames.sits_turned() {
+            let message = "the angles of this index move are those of a part that is not turned, and here it sits turned about its Z";
+            return Err(self.fault(record, message.to_owned()));
+        }
+        let done = self.frames.rotate(rotate);
+        done.map_err(|why| self.fault(record, why.to_owned()))?;
+        self.axis = match (self.frames.turned(), self.told_axis) {
+            (None, Some(axis)) => axis,
+            _ => Vector3::z(),
+        };
+        self.indexed = self.frames.turned().is_some();
+        self.lost();
+        Ok(())
+    }
+
+    fn coolant(&mut self, record: &Record<'_>, word: Coolant, out: &mut Out) -> Meant {
+        self.load_due(record, out)?;
+        let none = Coolants::default();
+        let flood = Coolants {
+            flood: true,
+            ..none
+        };
+        let coolants = match word {
+            Coolant::Off => none,
+            Coolant::On if self.coolant == none => flood,
+            Coolant::On => self.coolant,
+            Coolant::Flood => flood,
+            Coolant::Mist => Coolants { mist: true, ..none },
+            Coolant::Through | Coolant::Air => Coolants {
+                other: true,
+                ..none
+            },
+        };
+        // ON means the kind before, through an OFF.
+        if coolants != none {
+            self.coolant = coolants;
+        }
+        self.tell(record, Told::Coolant(coolants), out);
+        Ok(())
+    }
+
+    fn set_units(&mut self, record: &Record<'_>, units: Units) -> Meant {
+        let scale = millimetres(self.settings.units.unwrap_or(units));
+        self.units = Some(units);
+        if scale != self.scale && self.measured {
+            self.scale = scale;
+            let message = "UNITS comes after points or feeds that were read in other units";
+            return Err(self.fault(record, message.to_owned()));
+        }
+        self.scale = scale;
+        Ok(())
+    }
+
+    fn work_offset(
+        &mut self,
+        record: &Record<'_>,
+        (number, set): (u32, bool),
+        out: &mut Out,
+    ) -> Meant {
+        let value = Argument::Number(number.into());
+        let nothing = match set {
+            true => {
+                let arguments = [Argument::Word("OFSETL".to_owned()), value];
+                self.does_nothing(record, "SET", &arguments)
+            }
+            false => self.does_nothing(record, "OFSETL", &[value]),
+        };
+        if !nothing && self.offset.replace(number) != Some(number) {
+            self.lost();
+            self.tell(record, Told::WorkOffset(number.to_string()), out);
+        }
+        Ok(())
+    }
+
+    /// Takes the axis of a point of six numbers.
+    fn set_axis(&mut self, record: &Record<'_>, axis: Option<[f64; 3]>) -> Meant {
+        if let Some(axis) = axis {
+            self.axis = self.unit(record, axis, "the tool axis")?;
+        }
+        Ok(())
+    }
+
+    /// A direction of the file, made one long.
+    fn unit(
+        &self,
+        record: &Record<'_>,
+        direction: [f64; 3],
+        what: &str,
+    ) -> Result<Vector3<f64>, Box<Diagnostic>> {
+        let direction = Vector3::from(direction);
+        let length = direction.norm();
+        match (1e-6..1e9).contains(&length) {
+            true => Ok(direction / length),
+            false => Err(self.fault(record, format!("{what} has no direction"))),
+        }
+    }
+
+    /// A point of the file, mm.
+    pub(super) fn file_point(
+        &self,
+        record: &Record<'_>,
+        point: [f64; 3],
+    ) -> Result<Vector3<f64>, Box<Diagnostic>> {
+        let point = Vector3::from(point) * self.scale;
+        self.near(record, point)?;
+        Ok(point)
+    }
+
+    fn near(&self, record: &Record<'_>, point: Vector3<f64>) -> Meant {
+        if point.amax() <= FARTHEST {
+            return Ok(());
+        }
+        let message = format!(
+            "a coordinate of {:e} mm, which no machine reaches",
+            point.amax()
+        );
+        Err(self.fault(record, message))
+    }
+
+    /// A point with the axis and edge in force, part frame.
+    fn pose(&self, record: &Record<'_>, point: [f64; 3]) -> Result<Pose, Box<Diagnostic>> {
+        let point = self.file_point(record, point)?;
+        Ok(Pose {
+            tip: self.frames.point(point),
+            axis: self.frames.direction(self.axis),
+            edge: self.frames.direction(self.edge),
+        })
+    }
+
+    pub(super) fn tell(&self, record: &Record<'_>, told: Told, out: &mut Out) {
+        let line = record.line;
+        out.push_back(Item::Told { line, told });
+    }
+
+    #[cold]
+    pub(super) fn fault(&self, record: &Record<'_>, message: String) -> Box<Diagnostic> {
+        let text = record.text();
+        let place = Place::new(&self.settings.file, record.line, &text, 0..text.len());
+        Diagnostic::error("course", message).at(Some(place)).boxed()
+    }
+}
+
+/// mm in one unit.
+pub(super) fn millimetres(units: Units) -> f64 {
+    match units {
+        Units::Millimetre => 1.0,
+        Units::Centimetre => 10.0,
+        Units::Inch => 25.4,
+        Units::Foot => 304.8,
+        Units::Metre => 1000.0,
+    }
+}

@@ -1,0 +1,61 @@
+//! How a CL file is meant: what the machine file says of it, and what the user does.
+
+use post_grammar::{MajorWord, Units};
+use post_machine::description::{EdgeSource, Machine, Print, ToolLength, WordRule};
+
+/// How a CL file is meant. What `post` was told must be told here, so that the same job is judged.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// The file's name in messages.
+    pub file: String,
+    /// Units of its numbers, whatever it says (`--units`).
+    pub units: Option<Units>,
+    /// Points and axes are taken into the frame of `MSYS` (`--msys apply`).
+    pub apply_msys: bool,
+    /// The tool of a file that loads none (`--tool`).
+    pub tool: Option<u32>,
+    /// Tools are numbered from 1 in the order of their cutters (`--tool-from-cutter`).
+    pub tool_from_cutter: bool,
+    /// Feed where the file gives none, mm/min (`--feed`).
+    pub feed: Option<f64>,
+    /// What the spindle does at each tool for which the file does not say, clockwise, revolutions a minute (`--spindle`).
+    pub spindle: Option<f64>,
+    /// Words that the user takes upon himself, in capitals (`--allow`): they do nothing.
+    pub allowed: Vec<String>,
+    /// How the part sits turned about its Z, radians, right-handed: `machine.turn`.
+    pub turn: f64,
+    /// Which length of a tool counts: `control.tool_length`.
+    pub tool_length: ToolLength,
+    /// Words that the machine file has lines of the program for: they do what these lines do, and move nothing here.
+    pub rules: Vec<WordRule>,
+    /// What `PPRINT` is: a message or a remark.
+    pub print: Print,
+    /// Cutting speeds are kept by the control (the spindle turns the part): `spindle.surface_speed`.
+    pub surface_speed: bool,
+    /// Where the leading edge of a knife points; none for a tool that turns.
+    pub edge: Option<EdgeSource>,
+}
+
+impl Settings {
+    /// As the machine file has it, of a file that messages call `file`; what the user says is to be filled in.
+    pub fn of(machine: &Machine, file: &str) -> Self {
+        Self {
+            file: file.to_owned(),
+            turn: machine.turn,
+            tool_length: machine.control.tool_length,
+            rules: machine.word_rules.clone(),
+            print: machine.control.print,
+            surface_speed: machine.spindle.surface_speed,
+            edge: machine.edge.map(|_| machine.solution.edge),
+            ..Self::default()
+        }
+    }
+
+    /// The user takes upon himself what becomes of the word, in any of its spellings.
+    pub(super) fn allows(&self, word: &str) -> bool {
+        let row = MajorWord::find(word);
+        self.allowed.iter().any(|allowed| {
+            allowed == word || row.is_some_and(|row| row.spellings.contains(&allowed.as_str()))
+        })
+    }
+}

@@ -1,0 +1,270 @@
+//! Tools, their lengths and the spindle.
+
+use std::f64::consts::PI;
+
+use post_grammar::{LoadTool, Record, Sense, Spindle as SpindleWord, SpindleUnit};
+use post_machine::description::ToolLength;
+
+use super::modal::{Meant, Modal, Out};
+use crate::{Spindle, Told};
+
+/// No file has more tools.
+const MOST_TOOLS: usize = 1_000;
+
+/// A tool as the CL file has it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ClTool {
+    /// Its number.
+    pub number: u32,
+    /// Register of its length: that of the file, else the tool's number.
+    pub register: u32,
+    /// From the gauge line to the tip, mm, where the file gives it and the machine file lets it count
+    /// (`control.tool_length`).
+    pub length: Option<f64>,
+    /// Diameter of its cutter, mm, where the file describes it before it loads the tool.
+    pub diameter: Option<f64>,
+    /// Its name, empty if it has none.
+    pub name: String,
+    /// Line that loads it first.
+    pub line: u64,
+}
+
+/// The tool in the spindle, and the spindle.
+#[derive(Debug, Default)]
+pub(super) struct Tools {
+    all: Vec<ClTool>,
+    /// Number, register and length (as written) of the tool in the spindle.
+    loaded: Option<(u32, u32, Option<f64>)>,
+    /// The tool of the cutter that was described last, if the file loads none.
+    due: Option<u32>,
+    /// Cutters in the order of their tools: where their length stands, and their numbers.
+    cutters: Vec<(usize, Vec<f64>, String)>,
+    /// Of the cutter described last, mm.
+    diameter: Option<f64>,
+    /// Likewise, for the tool that is loaded next.
+    next_diameter: Option<f64>,
+    length: Option<f64>,
+    name: String,
+    rpm: Option<f64>,
+    /// m/min, and the most revolutions a minute.
+    surface: Option<(f64, Option<f64>)>,
+    counter: bool,
+    spindle: Spindle,
+    /// The file said what the spindle does since the tool came.
+    said: bool,
+}
+
+impl Tools {
+    pub(super) fn all(&self) -> &[ClTool] {
+        &self.all
+    }
+
+    /// Number of the tool in the spindle.
+    pub(super) fn loaded(&self) -> Option<u32> {
+        self.loaded.map(|(number, ..)| number)
+    }
+
+    /// Revolutions a minute, if they are known.
+    pub(super) fn rpm(&self) -> Option<f64> {
+        self.rpm.filter(|rpm| *rpm > 0.0)
+    }
+
+    pub(super) fn spindle(&self) -> Spindle {
+        self.spindle
+    }
+
+    /// The tool of the operation that begins.
+    pub(super) fn name(&mut self, name: Option<&str>) {
+        name.unwrap_or_default().clone_into(&mut self.name);
+    }
+}
+
+impl Modal {
+    /// A cutter's description; its length stands at `length` among the numbers.
+    pub(super) fn cutter(&mut self, numbers: &[f64], length: usize) -> Meant {
+        let of = |place: usize| numbers.get(place).map(|size| size * self.scale);
+        let (diameter, length_of) = (of(0), of(length));
+        self.tools.diameter = diameter;
+        self.tools.next_diameter = diameter;
+        self.tools.length = length_of;
+        if self.settings.tool_from_cutter {
+            let cutter = (length, numbers.to_vec(), self.tools.name.clone());
+            let known = self.tools.cutters.iter().position(|known| *known == cutter);
+            let place = known.unwrap_or(self.tools.cutters.len());
+            if known.is_none() && place < MOST_TOOLS {
+                self.tools.cutters.push(cutter);
+            }
+            self.tools.due = u32::try_from(place + 1).ok();
+        }
+        Ok(())
+    }
+
+    /// Loads the tool that the user names, or that belongs to the cutter, ahead of the first record that needs one.
+    pub(super) fn load_due(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
+        let told = match self.tools.loaded {
+            None => self.settings.tool.take(),
+            Some(_) => None,
+        };
+        let Some(number) = told.or(self.tools.due.take()) else {
+            return Ok(());
+        };
+        let tool = LoadTool {
+            number,
+            ..LoadTool::default()
+        };
+        self.load(record, &tool, out)
+    }
+
+    /// A `LOADTL` of the file, which goes before what the user names.
+    pub(super) fn load_read(
+        &mut self,
+        record: &Record<'_>,
+        tool: &LoadTool,
+        out: &mut Out,
+    ) -> Meant {
+        self.settings.tool = None;
+        self.tools.due = None;
+        self.end_spline(record, out)?;
+        self.load(record, tool, out)
+    }
+
+    fn load(&mut self, record: &Record<'_>, tool: &LoadTool, out: &mut Out) -> Meant {
+        let register = tool.register.unwrap_or(tool.number);
+        if tool.number == 0 || register == 0 {
+            let message = "tool 0 and length register 0 mean none";
+            return Err(self.fault(record, message.to_owned()));
+        }
+        // NX loads in every operation: the same tool stays in the spindle.
+        let loaded = Some((tool.number, register, tool.length));
+        if self.tools.loaded == loaded {
+            return Ok(());
+        }
+        let described = match self.settings.tool_length {
+            ToolLength::Cl => self.tools.length,
+            ToolLength::Assembly => None,
+        };
+        let length = tool.length.map(|length| length * self.scale);
+        self.measured |= tool.length.is_some();
+        self.tools.loaded = loaded;
+        self.tools.said = false;
+        if std::mem::take(&mut self.compensated) {
+            let (side, register) = (0, None);
+            self.tell(record, Told::Compensation { side, register }, out);
+        }
+        self.forget_register();
+        let known = self
+            .tools
+            .all
+            .iter()
+            .any(|known| known.number == tool.number);
+        if !known {
+            if self.tools.all.len() >= MOST_TOOLS {
+                let message = format!("more than {MOST_TOOLS} tools");
+                return Err(self.fault(record, message));
+            }
+            self.tools.all.push(ClTool {
+                number: tool.number,
+                register,
+                length: length.or(described),
+                diameter: self.tools.next_diameter,
+                name: self.tools.name.clone(),
+                line: record.line,
+            });
+        }
+        self.tools.next_diameter = None;
+        self.lost();
+        let name = Some(self.tools.name.clone()).filter(|name| !name.is_empty());
+        let number = Some(tool.number);
+        self.tell(record, Told::ToolChange { number, name }, out);
+        Ok(())
+    }
+
+    /// The spindle that the user names, ahead of the first point of a tool for which the file has none.
+    pub(super) fn spindle_due(&mut self, record: &Record<'_>, out: &mut Out) {
+        if self.tools.said {
+            return;
+        }
+        let Some(rpm) = self.settings.spindle else {
+            return;
+        };
+        self.tools.said = true;
+        self.tools.rpm = Some(rpm);
+        self.turns(record, out);
+    }
+
+    /// The spindle turns as is known of it.
+    fn turns(&mut self, record: &Record<'_>, out: &mut Out) {
+        let rpm = self.tools.rpm.unwrap_or(0.0);
+        let spindle = match self.tools.counter {
+            true => Spindle::CounterClockwise(rpm),
+            false => Spindle::Clockwise(rpm),
+        };
+        self.tools.spindle = spindle;
+        self.tell(record, Told::Spindle(spindle), out);
+    }
+
+    pub(super) fn spindle(
+        &mut self,
+        record: &Record<'_>,
+        word: SpindleWord,
+        out: &mut Out,
+    ) -> Meant {
+        self.load_due(record, out)?;
+        self.tools.said = true;
+        let (speed, unit, sense, most) = match word {
+            SpindleWord::Off | SpindleWord::Orient => {
+                self.tools.spindle = match word {
+                    SpindleWord::Off => Spindle::Off,
+                    _ => Spindle::Oriented,
+                };
+                self.tell(record, Told::Spindle(self.tools.spindle), out);
+                return Ok(());
+            }
+            SpindleWord::On {
+                speed,
+                unit,
+                sense,
+                most,
+            } => (speed, unit, sense, most),
+        };
+        if let Some(sense) = sense {
+            self.tools.counter = sense == Sense::CounterClockwise;
+        }
+        let metres = match (speed, unit) {
+            (Some(speed), SpindleUnit::SurfaceMetric) => Some(speed),
+            (Some(speed), SpindleUnit::SurfaceInch) => Some(speed * 0.3048),
+            (Some(_), SpindleUnit::Rpm) => None,
+            (None, _) => self.tools.surface.map(|(metres, _)| metres),
+        };
+        if let Some(metres) = metres.filter(|_| self.settings.surface_speed) {
+            let most = most.or(self.tools.surface.and_then(|(_, most)| most));
+            self.tools.surface = Some((metres, most));
+            self.tools.rpm = None;
+            let clockwise = !self.tools.counter;
+            self.tools.spindle = Spindle::Surface {
+                speed: metres,
+                most,
+                clockwise,
+            };
+            self.tell(record, Told::Spindle(self.tools.spindle), out);
+            return Ok(());
+        }
+        self.tools.surface = None;
+        match (speed, metres) {
+            (Some(_), Some(metres)) => {
+                let Some(diameter) = self.tools.diameter.filter(|diameter| *diameter > 0.0) else {
+                    let message = "a surface speed needs the cutter's diameter";
+                    return Err(self.fault(record, message.to_owned()));
+                };
+                let rpm = metres * 1000.0 / (PI * diameter);
+                self.tools.rpm = Some(most.map_or(rpm, |most| rpm.min(most)));
+            }
+            (Some(rpm), None) => self.tools.rpm = Some(rpm),
+            (None, _) => {}
+        }
+        // CAM systems write 0 where nobody gave a speed.
+        self.tools.rpm = self.tools.rpm().or(self.settings.spindle);
+        self.turns(record, out);
+        Ok(())
+    }
+}

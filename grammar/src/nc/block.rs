@@ -70,9 +70,9 @@ pub enum NcItem {
     /// A variable gets a value: `#1=5`, `R1=R2+1`, `_Z_HOME=610.`, `Q1 = +5`, `FN 0: Q1 = +5`.
     Assign {
         /// The variable, and of an array its index: in capitals, `#1` as `#1`, `R1` as `R1`.
-        variable: NcExpression,
+        variable: Box<NcExpression>,
         /// Its value.
-        value: NcExpression,
+        value: Box<NcExpression>,
     },
     /// A call with parentheses: `CYCLE81(50,0,2,-10)`, `MSG("TEXT")`; `MCALL` in front of one is a [`NcItem::Name`] of its
     /// own.
@@ -90,7 +90,7 @@ pub enum NcItem {
     /// A text alone: `TOOL CALL "D10"`, the dialogue text of `CYCL DEF 200 DRILLING`.
     Text(String),
     /// What leads the program elsewhere.
-    Flow(NcFlow),
+    Flow(Box<NcFlow>),
 }
 
 /// A letter and its value.

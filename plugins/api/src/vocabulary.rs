@@ -183,5 +183,169 @@ codes! {
         ReturnStart = 90 "RETURN_START",
         /// A cycle returns to where the feed begins: G99.
         ReturnClearance = 91 "RETURN_CLEARANCE",
+        /// To the reference position, over the point that the block names: G28.
+        ReferenceReturn = 100 "REFERENCE_RETURN",
+        /// To another position that the control keeps: G30, G75.
+        OtherReferenceReturn = 101 "OTHER_REFERENCE_RETURN",
+        /// Away from the part along the tool axis: M140.
+        Retract = 102 "RETRACT",
+        /// This block in coordinates from a point that the builder has set: M92.
+        BuilderCoordinates = 103 "BUILDER_COORDINATES",
+        /// This block ends with the axes at rest: G9.
+        ExactStop = 104 "EXACT_STOP",
+        /// A cut tied to the spindle: G33, G331.
+        Thread = 105 "THREAD",
+        /// A thread tied to the spindle, in and out again in one block: G33.1.
+        ThreadAndBack = 106 "THREAD_AND_BACK",
+        /// Out of a thread, the spindle turning back: G332.
+        ThreadBack = 107 "THREAD_BACK",
+        /// The program's zero is shifted by what the block names, from the work offset: G52, TRANS, CYCL DEF 7.0.
+        LocalOffset = 110 "LOCAL_OFFSET",
+        /// From where it is now: ATRANS.
+        LocalOffsetAdded = 111 "LOCAL_OFFSET_ADDED",
+        /// Not any more: TRANS DATUM RESET.
+        LocalOffsetOff = 112 "LOCAL_OFFSET_OFF",
+        /// Where the tool stands is called what the block names: G92.
+        SetPosition = 113 "SET_POSITION",
+        /// Not any more: G92.1, G92.2.
+        SetPositionOff = 114 "SET_POSITION_OFF",
+        /// Again as before that: G92.3.
+        SetPositionAgain = 115 "SET_POSITION_AGAIN",
+        /// No work offset: G500.
+        WorkOffsetOff = 116 "WORK_OFFSET_OFF",
+        /// A work offset for this block: G16 of Okuma.
+        WorkOffsetBlock = 117 "WORK_OFFSET_BLOCK",
+        /// The words of the block go to a table of the control, nothing moves: G10.
+        TableData = 118 "TABLE_DATA",
+        /// Not any more: G11.
+        TableDataOff = 119 "TABLE_DATA_OFF",
+        /// Coordinates are turned: G68, ROT, CYCL DEF 10.0.
+        Rotation = 120 "ROTATION",
+        /// From how they are turned now: AROT.
+        RotationAdded = 121 "ROTATION_ADDED",
+        /// Not any more: G69 where nothing else is meant by it.
+        RotationOff = 122 "ROTATION_OFF",
+        /// Coordinates are multiplied: G51, SCALE, CYCL DEF 11.0.
+        Scale = 123 "SCALE",
+        /// Not any more: G50.
+        ScaleOff = 124 "SCALE_OFF",
+        /// Coordinates are mirrored: G51.1, MIRROR, CYCL DEF 8.0.
+        Mirror = 125 "MIRROR",
+        /// Not any more: G50.1.
+        MirrorOff = 126 "MIRROR_OFF",
+        /// Positions are a radius and an angle: G16.
+        Polar = 130 "POLAR",
+        /// Not any more: G15.
+        PolarOff = 131 "POLAR_OFF",
+        /// A rotary axis replaces a linear one on an end face: G12.1, TRANSMIT.
+        FaceTransformation = 132 "FACE_TRANSFORMATION",
+        /// Not any more: G13.1.
+        FaceTransformationOff = 133 "FACE_TRANSFORMATION_OFF",
+        /// A rotary axis replaces a linear one on a cylinder: G7.1, TRACYL.
+        CylinderTransformation = 134 "CYLINDER_TRANSFORMATION",
+        /// Centres of arcs are positions: G90.1.
+        CentreAbsolute = 135 "CENTRE_ABSOLUTE",
+        /// They count from the start of the arc: G91.1.
+        CentreIncremental = 136 "CENTRE_INCREMENTAL",
+        /// X is a diameter: G7 of LinuxCNC, DIAMON.
+        Diameter = 137 "DIAMETER",
+        /// It is a radius: G8 of LinuxCNC, DIAMOF.
+        DiameterOff = 138 "DIAMETER_OFF",
+        /// Rotary axes go the shorter way: M126.
+        RotaryShortest = 139 "ROTARY_SHORTEST",
+        /// They go to the number that is written: M127.
+        RotaryAsWritten = 140 "ROTARY_AS_WRITTEN",
+        /// Tool centre point control, the tool axis a vector in the block: G43.5.
+        TcpVectorOn = 141 "TCP_VECTOR_ON",
+        /// Length compensation along the tool axis however it leans: G43.1 of Fanuc.
+        LengthAlongTool = 142 "LENGTH_ALONG_TOOL",
+        /// Length compensation by the lengths that the block names: G43.1 of LinuxCNC and GRBL.
+        LengthStated = 143 "LENGTH_STATED",
+        /// One more length is compensated: G43.2.
+        LengthAdded = 144 "LENGTH_ADDED",
+        /// Length compensation to the other side: G44.
+        LengthNegative = 145 "LENGTH_NEGATIVE",
+        /// The tool axis along X, from the tip to the spindle: A3, TX.
+        ToolAxisX = 146 "TOOL_AXIS_X",
+        /// Along Y: B3, TY.
+        ToolAxisY = 147 "TOOL_AXIS_Y",
+        /// Along Z: C3, TZ.
+        ToolAxisZ = 148 "TOOL_AXIS_Z",
+        /// The normal of the surface along X: NX.
+        NormalX = 149 "NORMAL_X",
+        /// Along Y: NY.
+        NormalY = 150 "NORMAL_Y",
+        /// Along Z: NZ.
+        NormalZ = 151 "NORMAL_Z",
+        /// The tool axis is interpolated against the part: ORIWKS.
+        OrientationPart = 152 "ORIENTATION_PART",
+        /// Against the machine: ORIMKS.
+        OrientationMachine = 153 "ORIENTATION_MACHINE",
+        /// By its rotary axes, linearly: ORIAXES.
+        OrientationAxes = 154 "ORIENTATION_AXES",
+        /// On the great circle: ORIVECT.
+        OrientationVector = 155 "ORIENTATION_VECTOR",
+        /// How angles of the tool axis are read: ORIEULER, ORIRPY.
+        OrientationAngles = 156 "ORIENTATION_ANGLES",
+        /// The tool that comes next is made ready: TOOL DEF.
+        Preselect = 160 "PRESELECT",
+        /// The spindle clockwise and coolant: M13.
+        SpindleClockwiseCoolant = 161 "SPINDLE_CLOCKWISE_COOLANT",
+        /// Counter-clockwise and coolant: M14.
+        SpindleCounterClockwiseCoolant = 162 "SPINDLE_COUNTER_CLOCKWISE_COOLANT",
+        /// The spindle's word is a speed of the surface: G96.
+        SurfaceSpeed = 163 "SURFACE_SPEED",
+        /// It is revolutions a minute: G97.
+        SurfaceSpeedOff = 164 "SURFACE_SPEED_OFF",
+        /// The spindle turns no faster: LIMS.
+        SpeedLimit = 165 "SPEED_LIMIT",
+        /// A rotary axis is clamped: M10.
+        Clamp = 166 "CLAMP",
+        /// And loosened: M11.
+        Unclamp = 167 "UNCLAMP",
+        /// A subprogram ends: M99, M17, RTS.
+        SubprogramEnd = 170 "SUBPROGRAM_END",
+        /// A subprogram within this program is called by the number of its block: M97.
+        LocalSubprogram = 171 "LOCAL_SUBPROGRAM",
+        /// A macro is called with arguments: G65.
+        Macro = 172 "MACRO",
+        /// After each motion from here on: G66.
+        MacroModal = 173 "MACRO_MODAL",
+        /// Not any more: G67.
+        MacroOff = 174 "MACRO_OFF",
+        /// The cycle that was defined works here: CYCL CALL, M99 of Heidenhain.
+        CycleCall = 175 "CYCLE_CALL",
+        /// And at the end of each motion from here on: M89, MCALL.
+        CycleCallModal = 176 "CYCLE_CALL_MODAL",
+        /// A cycle that moves in a way of its own: pockets, patterns, G12 of Haas.
+        CycleOther = 177 "CYCLE_OTHER",
+        /// A cycle returns to a level that the program names: G71 and M53 of Okuma.
+        ReturnLevel = 178 "RETURN_LEVEL",
+        /// The time of a wait in seconds: G4 F, CYCL DEF 9.1.
+        DwellSeconds = 180 "DWELL_SECONDS",
+        /// In milliseconds if written without a decimal point, else in seconds: G4 P of Fanuc.
+        DwellMilliseconds = 181 "DWELL_MILLISECONDS",
+        /// In turns of the spindle: G4 S.
+        DwellTurns = 182 "DWELL_TURNS",
+        /// An arc through a point: CIP.
+        ArcThrough = 183 "ARC_THROUGH",
+        /// An arc that goes on as the path before it: CT.
+        ArcTangent = 184 "ARC_TANGENT",
+        /// Turns of a helix: TURN.
+        Turns = 185 "TURNS",
+        /// The angle that an arc turns through: AR.
+        ArcAngle = 186 "ARC_ANGLE",
+        /// Feeds of rotary axes are lengths: M116.
+        RotaryFeedLength = 187 "ROTARY_FEED_LENGTH",
+        /// They are angles: M117.
+        RotaryFeedAngle = 188 "ROTARY_FEED_ANGLE",
+        /// Lengths in inches, feeds as before: G70 of Siemens.
+        InchLengths = 189 "INCH_LENGTHS",
+        /// Lengths in millimetres, feeds as before: G71 of Siemens.
+        MillimetreLengths = 190 "MILLIMETRE_LENGTHS",
+        /// The centre of the arcs that follow, or the pole of polar positions: CC.
+        Centre = 191 "CENTRE",
+        /// An arc whose direction another word gives: C, CR, CP.
+        Arc = 192 "ARC",
     }
 }

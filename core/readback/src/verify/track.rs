@@ -167,6 +167,9 @@ impl<C: Course> Track<C> {
             Item::Reach(reach) => {
                 self.line = reach.line;
                 self.end_hole();
+                if reach.hole {
+                    return;
+                }
                 let to = Place::new(&reach.to, self.along);
                 self.push(reach.line, What::Reach, (to, to), None);
             }
@@ -189,6 +192,8 @@ impl<C: Course> Track<C> {
         }
         self.end_hole();
         let what = match piece.kind {
+            // Between holes a control goes its own ways; where their feed begins is looked at.
+            MotionKind::Rapid if piece.hole => return,
             MotionKind::Rapid => {
                 self.push(piece.line, What::Way, (from, to), None);
                 return;

@@ -155,9 +155,10 @@ fn told(axis: &Axis, value: f64, limit: f64) -> String {
 fn slides(motion: &Motion, slowness: &Joints) -> Option<Slides> {
     let solver: &Solver = &motion.state.solver;
     let chain = solver.chain();
-    let turns = chain.joints().iter().enumerate().any(|(index, joint)| {
-        joint.rotary && motion.from.joints[index] != motion.to.joints[index]
-    });
+    let turns =
+        chain.joints().iter().enumerate().any(|(index, joint)| {
+            joint.rotary && motion.from.joints[index] != motion.to.joints[index]
+        });
     if !turns || motion.kind == MotionKind::Rapid && slowness.iter().any(|slow| *slow > 0.0) {
         return None;
     }

@@ -66,10 +66,7 @@ pub(super) fn motion(motion: &Motion, along: f64, sag: &Bound, places: &mut Vec<
 
 /// The way of a piece of a course behind its beginning.
 pub(super) fn piece(piece: &Piece, along: f64, sag: &Bound, places: &mut Vec<Place>) {
-    let (from, to) = (
-        Place::new(&piece.from, along),
-        Place::new(&piece.to, along),
-    );
+    let (from, to) = (Place::new(&piece.from, along), Place::new(&piece.to, along));
     let turn = from.apart(&to).axis;
     let first = match &piece.curve {
         Curve::Straight if turn == 0.0 => {
@@ -80,7 +77,12 @@ pub(super) fn piece(piece: &Piece, along: f64, sag: &Bound, places: &mut Vec<Pla
         Curve::Arc { sweep, .. } => pieces_of(turn.max(sweep.abs())),
         Curve::Spline(way) => 2 * way.poles.len() + pieces_of(turn),
     };
-    chop(|t| Place::new(&piece.at(t, along), along), first, sag, places);
+    chop(
+        |t| Place::new(&piece.at(t, along), along),
+        first,
+        sag,
+        places,
+    );
 }
 
 fn pieces_of(turn: f64) -> usize {

@@ -21,8 +21,8 @@ pub(super) struct HoleRun {
     /// The bottom was reached.
     bottom: bool,
     dwelt: bool,
-    /// The tool was moved aside at the bottom, as the cycle asks.
-    aside: bool,
+    /// How far it is off its axis as a whole, mm: told once.
+    shift: Vector3<f64>,
 }
 
 /// The axis of a hole, from the level where the feed begins.
@@ -62,7 +62,7 @@ impl Axis {
 
 impl<C: Course> Verifier<'_, C> {
     /// The hole that is due begins with this motion, if it goes down its axis.
-    pub(super) fn begins_hole(&mut self, places: &[Place]) -> bool {
+    pub(super) fn begins_hole(&mut self, motion: &Motion, places: &[Place]) -> bool {
         let Some(index) = self.next else {
             return false;
         };
@@ -74,6 +74,7 @@ impl<C: Course> Verifier<'_, C> {
             return false;
         }
         let axis = Axis::of(element);
+        let cl_line = element.line;
         let (from, off) = axis.split(&places[0]);
         let (to, _) = axis.split(&places[places.len() - 1]);
         // Off its axis it is a hole in the wrong place, if it is one.
@@ -81,13 +82,31 @@ impl<C: Course> Verifier<'_, C> {
         if to <= from || !near {
             return false;
         }
+        let mut shift = Vector3::zeros();
+        if off.point > bound.point {
+            let offset = places[0].point - axis.top.point;
+            shift = offset - axis.down * offset.dot(&axis.down);
+            let message = format!("a hole is {:.3} mm off its place", off.point);
+            self.fault(
+                "deviation",
+                message,
+                Some(motion),
+                Some(cl_line),
+                Some(off.point),
+            );
+        }
+        if from > bound.point {
+            let message =
+                format!("a rapid goes {from:.3} mm below where the feed of a hole begins");
+            self.fault("hole", message, Some(motion), Some(cl_line), Some(from));
+        }
         self.hole = Some(HoleRun {
             index,
             deepest: from.max(0.0),
             at: from,
             bottom: false,
             dwelt: false,
-            aside: false,
+            shift,
         });
         true
     }
@@ -105,7 +124,8 @@ impl<C: Course> Verifier<'_, C> {
             self.hole = None;
             return;
         };
-        let axis = Axis::of(&element);
+        let mut axis = Axis::of(&element);
+        axis.top.point += run.shift;
         let bound = self.bound;
         let cl_line = Some(element.line);
         let rapid = motion.kind == MotionKind::Rapid;
@@ -113,17 +133,12 @@ impl<C: Course> Verifier<'_, C> {
             self.set_kind("hole");
         }
         self.block.cl_line = cl_line;
-        if run.deepest > bound.point && !run.bottom && run.at == run.deepest && places.len() == 2 {
-            let (from, _) = axis.split(&places[0]);
-            if from > run.deepest + bound.point {
-                run.deepest = from;
-            }
-        }
         let mut worst = Apart::default();
         let mut down = false;
         for ends in places.windows(2) {
             let ((from, _), (to, off)) = (axis.split(&ends[0]), axis.split(&ends[1]));
-            let on_axis = off.point <= bound.point && super::place::Bound::new(1.0, off.axis).axis <= bound.axis;
+            let on_axis = off.point <= bound.point
+                && super::place::Bound::new(1.0, off.axis).axis <= bound.axis;
             let above = from <= bound.point && to <= bound.point;
             if rapid {
                 if !on_axis && !above {
@@ -137,13 +152,18 @@ impl<C: Course> Verifier<'_, C> {
                         );
                         self.fault("hole", message, Some(motion), cl_line, None);
                     }
-                    run.aside = true;
                 } else if to > run.deepest + bound.point && on_axis {
                     let message = format!(
                         "a rapid goes {:.3} mm into a hole that is cut {:.3} mm deep",
                         to, run.deepest
                     );
-                    self.fault("hole", message, Some(motion), cl_line, Some(to - run.deepest));
+                    self.fault(
+                        "hole",
+                        message,
+                        Some(motion),
+                        cl_line,
+                        Some(to - run.deepest),
+                    );
                 } else if to < from
                     && run.bottom
                     && from > bound.point
@@ -163,7 +183,13 @@ impl<C: Course> Verifier<'_, C> {
                         to,
                         axis.depth
                     );
-                    self.fault("hole", message, Some(motion), cl_line, Some(to - axis.depth));
+                    self.fault(
+                        "hole",
+                        message,
+                        Some(motion),
+                        cl_line,
+                        Some(to - axis.depth),
+                    );
                 }
                 run.deepest = run.deepest.max(to);
                 run.bottom |= run.deepest >= axis.depth - bound.point;
@@ -171,13 +197,21 @@ impl<C: Course> Verifier<'_, C> {
             run.at = to;
         }
         if !rapid {
-            if worst.point > bound.point || super::place::Bound::new(1.0, worst.axis).axis > bound.axis {
+            if worst.point > bound.point
+                || super::place::Bound::new(1.0, worst.axis).axis > bound.axis
+            {
                 let message = format!(
                     "a hole is {:.3} mm or {:.3}° off its axis",
                     worst.point,
                     worst.axis.to_degrees()
                 );
-                self.fault("deviation", message, Some(motion), cl_line, Some(worst.point));
+                self.fault(
+                    "deviation",
+                    message,
+                    Some(motion),
+                    cl_line,
+                    Some(worst.point),
+                );
             } else {
                 self.note_deviation(worst, motion.line, element.line);
             }
@@ -206,14 +240,22 @@ impl<C: Course> Verifier<'_, C> {
         self.hole = None;
         self.next = Some(run.index + 1);
         self.apart = true;
-        self.reach.iter_mut().for_each(|span| *span = super::place::Span::EMPTY);
+        self.reach
+            .iter_mut()
+            .for_each(|span| *span = super::place::Span::EMPTY);
         let cl_line = Some(element.line);
         if !run.bottom {
             let message = format!(
                 "a hole is {:.3} mm deep, counted from where its feed begins, and the CL file asks for {depth:.3} mm",
                 run.deepest
             );
-            self.fault("hole", message, Some(motion), cl_line, Some(depth - run.deepest));
+            self.fault(
+                "hole",
+                message,
+                Some(motion),
+                cl_line,
+                Some(depth - run.deepest),
+            );
             return;
         }
         self.found.holes += 1;
@@ -226,7 +268,10 @@ impl<C: Course> Verifier<'_, C> {
             && let Some(dwell) = &hole.dwell
             && !run.dwelt
         {
-            let message = format!("{} at the bottom of a hole is left out", state::event_name(dwell));
+            let message = format!(
+                "{} at the bottom of a hole is left out",
+                state::event_name(dwell)
+            );
             self.fault("event", message, Some(motion), cl_line, None);
         }
     }

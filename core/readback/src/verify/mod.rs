@@ -231,7 +231,11 @@ impl<'m, C: Course> Verifier<'m, C> {
     }
 
     fn axis_fault(&mut self, motion: &Motion, (code, message, by): (&'static str, String, f64)) {
-        let key = message.split(" would ").next().unwrap_or_default().to_owned();
+        let key = message
+            .split(" would ")
+            .next()
+            .unwrap_or_default()
+            .to_owned();
         self.limit_fault(code, key, message, motion, 0, by);
     }
 
@@ -329,7 +333,8 @@ impl<'m, C: Course> Verifier<'m, C> {
             };
             if let What::Event(told, false) = &element.what {
                 let message = format!("{} is left out", state::event_name(told));
-                let place = (self.block.nc_line > 0).then_some((self.block.nc_line, self.block.block));
+                let place =
+                    (self.block.nc_line > 0).then_some((self.block.nc_line, self.block.block));
                 self.fault_at("event", message, place, Some(element.line), None);
             }
             if element.is_cut() && element.near.point.is_finite() && self.stray.is_none() {

@@ -148,7 +148,12 @@ pub(super) fn angle_of(chord: f64) -> f64 {
 #[inline]
 pub(super) fn free(place: &Place, a: &Place, b: &Place, bound: &Bound) -> Span {
     let mut span = Span::WHOLE;
-    narrow(&mut span, a.point - place.point, b.point - a.point, bound.point);
+    narrow(
+        &mut span,
+        a.point - place.point,
+        b.point - a.point,
+        bound.point,
+    );
     // Most pieces keep their tool axis, and lie on one that is kept.
     if !span.is_empty() && (a.axis != place.axis || b.axis != a.axis) {
         narrow(&mut span, a.axis - place.axis, b.axis - a.axis, bound.axis);

@@ -1,7 +1,5 @@
 //! Between the cuts: rapids past the points of the course, and where the next cut begins.
 
-use post_machine::kinematics::Pose;
-
 use super::place::{Place, Span, free, nearest};
 use super::sweep::Stray;
 use super::track::{MOST, What};
@@ -145,6 +143,9 @@ impl<C: Course> Verifier<'_, C> {
     pub(super) fn begin_cut(&mut self, motion: &Motion, place: &Place) {
         let (bound, rapid) = (self.bound, self.rapid_bound);
         let mut reach = std::mem::take(&mut self.reach);
+        // Behind what was cut so far.
+        let stood = reach.iter().rposition(|span| !span.is_empty());
+        let stood = stood.map_or(0, |index| index + usize::from(reach[index].to >= 1.0));
         let mut goes_on = false;
         for (span, element) in reach.iter_mut().zip(self.track.kept()) {
             if !span.is_empty() && element.is_cut() {
@@ -177,7 +178,7 @@ impl<C: Course> Verifier<'_, C> {
             self.found.excursions += 1;
         }
         if self.reach.iter().all(Span::is_empty) {
-            self.find_cut(motion, place);
+            self.find_cut(motion, place, self.next.unwrap_or(stood));
         }
         self.next = None;
         self.apart = false;
@@ -206,9 +207,8 @@ impl<C: Course> Verifier<'_, C> {
 
     /// No cut of the course is due here. Looks for it farther on, and tells what was left out; else takes the nearest that
     /// is due, and tells how far that is.
-    fn find_cut(&mut self, motion: &Motion, place: &Place) {
+    fn find_cut(&mut self, motion: &Motion, place: &Place, first: usize) {
         let bound = self.bound;
-        let first = self.next.unwrap_or(0);
         let mut found = None;
         let mut index = first;
         while found.is_none() && index < AHEAD.min(MOST) {
@@ -229,13 +229,14 @@ impl<C: Course> Verifier<'_, C> {
             index += 1;
         }
         if let Some((index, span)) = found {
-            self.tell_left_out(first, index, motion);
+            // Its beginning too, if that is farther.
+            self.tell_left_out(first, index + usize::from(span.from > 0.0), motion);
             self.reach.clear();
             self.reach.resize(index + 1, Span::EMPTY);
             self.reach[index] = span;
             return;
         }
-        self.begin_astray(motion, place);
+        self.begin_astray(motion, place, first);
     }
 
     /// Tells what lies between two elements of the course.
@@ -267,9 +268,8 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// A cut begins off the course: at the nearest place where one could.
-    fn begin_astray(&mut self, motion: &Motion, place: &Place) {
+    fn begin_astray(&mut self, motion: &Motion, place: &Place, first: usize) {
         let mut best: Option<(f64, usize, Span)> = None;
-        let first = self.next.unwrap_or(0);
         let mut index = first;
         while index < first + AHEAD {
             let Some(element) = self.track.get(index) else {
@@ -286,7 +286,11 @@ impl<C: Course> Verifier<'_, C> {
         let Some((factor, index, span)) = best else {
             return;
         };
-        let line = self.track.kept().get(index).map_or(0, |element| element.line);
+        let line = self
+            .track
+            .kept()
+            .get(index)
+            .map_or(0, |element| element.line);
         self.reach.clear();
         self.reach.resize(index + 1, Span::EMPTY);
         self.reach[index] = span;
@@ -316,37 +320,40 @@ impl<C: Course> Verifier<'_, C> {
             }
             if let What::Event(asked, met @ false) = &mut element.what {
                 let cl_line = element.line;
-                if state::same_event(asked, told) {
-                    *met = true;
-                    self.stand_behind(index);
-                } else {
-                    let message = format!(
-                        "{} in place of {}",
-                        state::event_name(told),
-                        state::event_name(asked)
-                    );
-                    *met = true;
+                *met = true;
+                let same = state::same_event(asked, told);
+                let name = state::event_name(told);
+                let asked = state::event_name(asked);
+                if !same {
+                    let message = format!("{name} in place of {asked}");
+                    self.fault_at("event", message, place, Some(cl_line), None);
+                } else if self.next.is_none() && !self.stand_behind(index) {
+                    let message = format!("{name} before the CL file asks for it");
                     self.fault_at("event", message, place, Some(cl_line), None);
                 }
                 return;
             }
             index += 1;
         }
-        let message = format!("{} that the CL file does not ask for", state::event_name(told));
+        let message = format!(
+            "{} that the CL file does not ask for",
+            state::event_name(told)
+        );
         self.fault_at("event", message, place, None, None);
     }
 
-    /// What lies before an event cannot be cut behind it.
-    fn stand_behind(&mut self, index: usize) {
-        let cuts_before = index > 0
-            && self.reach.get(index - 1).is_some_and(|span| !span.is_empty());
-        if !cuts_before || self.reach.get(index - 1).is_some_and(|span| span.to < 1.0) {
-            return;
+    /// What lies before an event cannot be cut behind it. False if the program is not there yet.
+    fn stand_behind(&mut self, index: usize) -> bool {
+        let last = self.reach.iter().rposition(|span| !span.is_empty());
+        let Some(last) = last.filter(|last| *last < index) else {
+            return true;
+        };
+        if self.reach[last].to < 1.0 {
+            return false;
         }
-        for span in &mut self.reach[..index - 1] {
-            *span = Span::EMPTY;
-        }
-        self.reach[index - 1] = Span { from: 1.0, to: 1.0 };
+        self.reach[..last].fill(Span::EMPTY);
+        self.reach[last] = Span { from: 1.0, to: 1.0 };
+        true
     }
 
     /// The program is at its end; is the course?
@@ -396,10 +403,5 @@ impl<C: Course> Verifier<'_, C> {
                 self.fault_at("missing", message, None, Some(from), None);
             }
         }
-    }
-
-    /// A pose as places are compared.
-    pub(super) fn place(&self, pose: &Pose) -> Place {
-        Place::new(pose, self.along)
     }
 }

@@ -33,7 +33,9 @@ impl<C: Course> Verifier<'_, C> {
     /// The element of the course that a motion follows: where all that it may follow ask for the same, any of them; else
     /// that at the middle of its way.
     fn element_of(&mut self, places: &[Place]) -> Option<Element> {
-        let bound = self.bound.times(self.stray.map_or(1.0, |stray| stray.factor));
+        let bound = self
+            .bound
+            .times(self.stray.map_or(1.0, |stray| stray.factor));
         let last = self.reach.iter().rposition(|span| !span.is_empty())?;
         let middle = match places.len() {
             2 => places[0].between(&places[1], 0.5),
@@ -104,7 +106,8 @@ impl<C: Course> Verifier<'_, C> {
             && let (Some(has), Some(wants)) = (state.radius_register, asked.register)
             && has != wants
         {
-            let message = format!("cuts with radius register {has}, and the CL file asks for {wants}");
+            let message =
+                format!("cuts with radius register {has}, and the CL file asks for {wants}");
             self.fault("register", message, Some(motion), cl_line, None);
         }
         if let Some(tool) = asked.tool.or(state.tool) {
@@ -115,8 +118,9 @@ impl<C: Course> Verifier<'_, C> {
                 .map_or(tool, |(_, register)| *register);
             match state.length_register {
                 Some(has) if has != wants => {
-                    let message =
-                        format!("cuts with length register {has}, and tool {tool} has register {wants}");
+                    let message = format!(
+                        "cuts with length register {has}, and tool {tool} has register {wants}"
+                    );
                     self.fault("register", message, Some(motion), cl_line, None);
                 }
                 None if self.rules.registers => {
@@ -161,10 +165,13 @@ impl<C: Course> Verifier<'_, C> {
                 }
                 _ => {
                     self.found.slower += 1;
-                    self.block.limited_by.get_or_insert_with(|| "the program".to_owned());
+                    self.block
+                        .limited_by
+                        .get_or_insert_with(|| "the program".to_owned());
                     if motion.feed > 0.0 && motion.minutes < self.rules.longest_minutes {
-                        let message =
-                            format!("the feed is below that of the CL file, {asked} mm/min, and no axis asks for that");
+                        let message = format!(
+                            "the feed is below that of the CL file, {asked} mm/min, and no axis asks for that"
+                        );
                         let told = format!("{message}: {feed:.1} mm/min");
                         self.limit_fault("feed", message, told, motion, element.line, asked - feed);
                     }

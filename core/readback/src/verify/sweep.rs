@@ -54,7 +54,7 @@ impl<C: Course> Verifier<'_, C> {
         self.come_back_to_the_course(&places[0]);
         if self.apart {
             // Where a hole is due, a feed motion is its business unless the tool is elsewhere.
-            if self.hole_is_due() && self.begins_hole(places) {
+            if self.hole_is_due() && self.begins_hole(motion, places) {
                 return self.hole_motion(motion, places);
             }
             if self.reaches_at_feed(motion, places) {
@@ -115,10 +115,12 @@ impl<C: Course> Verifier<'_, C> {
             .reach
             .iter()
             .zip(kept)
-            .map(|(span, element)| match span.is_empty() || !element.is_cut() {
-                true => Span::EMPTY,
-                false => span.meet(&free(place, &element.from, &element.to, &bound)),
-            })
+            .map(
+                |(span, element)| match span.is_empty() || !element.is_cut() {
+                    true => Span::EMPTY,
+                    false => span.meet(&free(place, &element.from, &element.to, &bound)),
+                },
+            )
             .collect();
         if narrowed.iter().any(|span| !span.is_empty()) {
             self.reach = narrowed;
@@ -139,7 +141,9 @@ impl<C: Course> Verifier<'_, C> {
         let message = format!(
             "off the CL path by {:.3} mm or {:.3}° in {} of the program, {} of the CL file; allowed are {} mm and {:.3}°",
             point,
-            (self.rules.axis_tolerance * stray.factor).to_degrees().min(180.0),
+            (self.rules.axis_tolerance * stray.factor)
+                .to_degrees()
+                .min(180.0),
             lines(stray.line, stray.last),
             lines(stray.asked[0], stray.asked[1]),
             self.rules.tolerance,
@@ -341,9 +345,9 @@ impl<C: Course> Verifier<'_, C> {
         }
     }
 
-    /// The line of the course at which the program stands, as far back as it may.
+    /// The line of the course at which the program stands, as far on as it may.
     pub(super) fn stands_at(&self) -> u64 {
-        let index = self.reach.iter().position(|span| !span.is_empty());
+        let index = self.reach.iter().rposition(|span| !span.is_empty());
         let index = index.or(self.next).unwrap_or(0);
         let element = self.track.kept().get(index);
         element.map_or(self.track.line(), |element| element.line)
@@ -364,7 +368,7 @@ impl<C: Course> Verifier<'_, C> {
             }
             What::Hole(_) => {
                 self.next = Some(index);
-                if !self.begins_hole(places) {
+                if !self.begins_hole(motion, places) {
                     self.next = None;
                     return false;
                 }
@@ -414,7 +418,6 @@ impl<C: Course> Verifier<'_, C> {
         let bound = self.bound;
         if to.within(&left, &bound) {
             self.drawn_back = None;
-            self.found.excursions += 1;
             self.apart = true;
             return true;
         }

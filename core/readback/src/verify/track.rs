@@ -61,7 +61,6 @@ pub(super) enum What {
 #[derive(Clone, Debug)]
 pub(super) struct Hole {
     pub kind: CycleKind,
-    pub thread: bool,
     /// At the bottom.
     pub dwell: Option<Told>,
     /// How the tool comes back.
@@ -223,7 +222,6 @@ impl<C: Course> Track<C> {
             None if down => {
                 let hole = Hole {
                     kind: self.cycle.unwrap_or_default(),
-                    thread: piece.kind == MotionKind::Thread,
                     dwell: None,
                     back: None,
                 };
@@ -306,7 +304,10 @@ impl<C: Course> Track<C> {
             }
             Told::Dwell { .. } | Told::Stop | Told::OptionalStop => {
                 self.end_hole();
-                let at = self.elements.back().map_or_else(Place::default, |last| last.to);
+                let at = self
+                    .elements
+                    .back()
+                    .map_or_else(Place::default, |last| last.to);
                 self.push(line, What::Event(told, false), (at, at), None);
             }
             _ => {}

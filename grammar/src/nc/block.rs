@@ -248,7 +248,7 @@ pub enum NcFlow {
 }
 
 /// Where a jump looks for its target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// From here to the end, then from the beginning.
     Anywhere,

@@ -14,11 +14,15 @@
 //! | `cycles`, `planes`, `frames`, `conversational` | cycles, tilted planes, shifts; Heidenhain's blocks |
 
 mod arcs;
+mod assigned;
 mod block;
+mod calls;
 mod control;
 mod conversational;
 mod cycles;
+mod expression;
 mod feed;
+mod flow;
 mod frame;
 mod frames;
 mod gathered;
@@ -30,14 +34,15 @@ mod state;
 mod tools;
 mod variables;
 
-use std::io::{BufRead, Seek};
+use std::io::{Read, Seek};
 
-use post_grammar::nc::{NcBlock, Notation};
+use post_grammar::nc::{NcBlock, NcReader, Notation};
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::lexicon::Lexicon;
 use crate::{Done, Offsets};
+use flow::Flow;
 use gathered::Gathered;
 use state::Control;
 
@@ -97,11 +102,12 @@ impl Runner {
 /// Runs a program block by block.
 #[derive(Debug)]
 pub struct Interpreter<R> {
-    input: R,
+    flow: Flow<R>,
+    block: NcBlock,
     runner: Runner,
 }
 
-impl<R: BufRead + Seek> Interpreter<R> {
+impl<R: Read + Seek> Interpreter<R> {
     /// A program from `input`, which messages call `file`, on `machine`.
     ///
     /// # Errors
@@ -114,13 +120,17 @@ impl<R: BufRead + Seek> Interpreter<R> {
         file: &str,
         input: R,
     ) -> Result<Self, Box<Diagnostic>> {
-        let _ = limits;
+        let reader = NcReader::new(input, lexicon.syntax().clone());
         let runner = Runner {
             control: Control::new(machine, lexicon, offsets, file)?,
             words: Gathered::default(),
             conversational: lexicon.syntax().notation == Notation::Conversational,
         };
-        Ok(Self { input, runner })
+        Ok(Self {
+            flow: Flow::new(reader, lexicon.language(), limits, file),
+            block: NcBlock::default(),
+            runner,
+        })
     }
 
     /// Runs the next block and puts what it did behind what `done` holds; false at the end. It can be called again after
@@ -128,9 +138,22 @@ impl<R: BufRead + Seek> Interpreter<R> {
     ///
     /// # Errors
     /// What stands there that cannot be understood, or is not run, with its place.
+    #[inline]
     pub fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
-        let _ = (&mut self.input, done, self.runner.run(&NcBlock::default()));
-        todo!()
+        let Self { flow, block, runner } = self;
+        if runner.control.ended {
+            return Ok(false);
+        }
+        let more = flow.next(&mut runner.control.variables, block);
+        runner.control.report.header = flow.reader().header_lines();
+        runner.control.line = block.line;
+        if !more.map_err(|finding| runner.control.placed(*finding).boxed())? {
+            return Ok(false);
+        }
+        runner.control.report.blocks += 1;
+        let ran = runner.run(block);
+        done.append(&mut runner.control.done);
+        ran.map(|()| true)
     }
 
     /// What was found so far.

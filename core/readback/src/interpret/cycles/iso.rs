@@ -8,7 +8,7 @@ use super::hole::{Hole, Out, Pecks, Wait};
 use super::{drill, feed_a_minute};
 use crate::interpret::gathered::{Gathered, bit};
 use crate::interpret::go::{Path, Target};
-use crate::interpret::state::{Control, MotionMode};
+use crate::interpret::state::Control;
 use crate::lexicon::Language;
 use crate::{CycleKind, MotionKind};
 
@@ -91,7 +91,6 @@ pub(super) fn hole(
         return Err(control.refuse("nc-cycle", "a cycle without its levels R and Z"));
     }
     control.cycles.iso = Some(running);
-    control.modal.motion = MotionMode::Cycle;
     if count > MOST {
         return Err(control.refuse("nc-limit", format!("{count} holes by one block: no more than {MOST} are made")));
     }

@@ -18,7 +18,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
 use super::gathered::Gathered;
-use super::state::{Control, FeedMode, MotionMode};
+use super::state::{Control, FeedMode};
 use crate::{MotionKind, Told};
 use hole::{Hole, Stroke};
 
@@ -67,9 +67,6 @@ pub(super) fn hole(
 pub(super) fn end(control: &mut Control) {
     control.cycles.iso = None;
     control.cycles.modal = None;
-    if control.modal.motion == MotionMode::Cycle {
-        control.modal.motion = MotionMode::None;
-    }
 }
 
 /// `CYCLE81(…)`: called where the tool stands, or in force behind each motion where `modal` (MCALL).

@@ -9,6 +9,7 @@ mod expression;
 mod fault;
 mod lines;
 mod number;
+mod pairs;
 mod reader;
 mod remarks;
 mod search;

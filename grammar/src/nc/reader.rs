@@ -111,7 +111,7 @@ impl<R: Read + Seek> NcReader<R> {
             if is_percent(line) && self.syntax.notation == Notation::Words {
                 self.lines.consume(&physical)?;
                 if self.percent()? {
-                    block.items.push(NcItem::Name("%".to_owned()));
+                    block.items.push(NcItem::Name("%".into()));
                     return Ok(true);
                 }
                 continue;
@@ -298,6 +298,7 @@ impl Scratch {
         if let Some(body) = code.strip_suffix('~') {
             let at = body.len();
             self.code.replace_range(at..=at, " ");
+            self.text.replace_range(at..=at, " ");
             return true;
         }
         let blank = code.trim_start_matches(|each: char| each.is_ascii_digit() || each == ' ');

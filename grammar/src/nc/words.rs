@@ -9,6 +9,7 @@ use super::block::{Approach, Direction, NcBlock, NcFlow, NcItem, NcNumber, NcVal
 use super::expression::{NcExpression, UnaryOperator};
 use super::fault::Unreadable;
 use super::number;
+use super::pairs::{due, only};
 use super::tree::{Rules, Tree};
 
 #[derive(Parser)]
@@ -90,7 +91,7 @@ impl Builder<'_> {
             Rule::define => return self.define(pair, block),
             Rule::hash_word | Rule::word => self.word(pair)?,
             Rule::hash_named | Rule::named => self.named(pair)?,
-            Rule::name => NcItem::Name(pair.as_str().to_owned()),
+            Rule::name => NcItem::Name(pair.as_str().to_owned().into()),
             Rule::call => self.call(pair)?,
             Rule::hash_assign | Rule::assign => {
                 let mut parts = pair.into_inner();
@@ -114,7 +115,7 @@ impl Builder<'_> {
         }
         let value = self.value(due(&mut parts)?)?;
         if comma {
-            let name = format!(",{}", first.as_str());
+            let name = format!(",{}", first.as_str()).into();
             return Ok(NcItem::Named { name, value });
         }
         let (incremental, value) = match value {
@@ -131,7 +132,7 @@ impl Builder<'_> {
     fn named(&self, pair: Pair<'_, Rule>) -> Answer<NcItem> {
         let mut parts = pair.into_inner();
         Ok(NcItem::Named {
-            name: due(&mut parts)?.as_str().to_owned(),
+            name: due(&mut parts)?.as_str().to_owned().into(),
             value: self.value(due(&mut parts)?)?,
         })
     }
@@ -157,12 +158,12 @@ impl Builder<'_> {
             match part.as_rule() {
                 Rule::r#type => block
                     .items
-                    .push(NcItem::Name(format!("DEF {}", part.as_str()))),
+                    .push(NcItem::Name(format!("DEF {}", part.as_str()).into())),
                 Rule::definition => {
                     let mut parts = part.into_inner().peekable();
                     let name = due(&mut parts)?.as_str().to_owned();
                     block.items.push(match parts.next() {
-                        None => NcItem::Name(name),
+                        None => NcItem::Name(name.into()),
                         Some(value) if value.as_rule() == Rule::first_value => NcItem::Assign {
                             variable: Box::new(NcExpression::Variable(name)),
                             value: Box::new(self.expression(only(value))?),
@@ -171,7 +172,7 @@ impl Builder<'_> {
                             return Err(Unreadable::new("a field with first values is not read"));
                         }
                         Some(size) => NcItem::Named {
-                            name,
+                            name: name.into(),
                             value: NcValue::Expression(Box::new(self.expression(size)?)),
                         },
                     });
@@ -530,18 +531,6 @@ impl Builder<'_> {
 
 /// `#` in a row.
 const MOST_HASHES: usize = 8;
-
-/// The next part of a rule that has one.
-fn due<'t>(parts: &mut impl Iterator<Item = Pair<'t, Rule>>) -> Answer<Pair<'t, Rule>> {
-    parts
-        .next()
-        .ok_or_else(|| Unreadable::new("something is missing here"))
-}
-
-/// The one thing that a rule holds; itself where it holds nothing.
-fn only(pair: Pair<'_, Rule>) -> Pair<'_, Rule> {
-    pair.clone().into_inner().next().unwrap_or(pair)
-}
 
 /// `<NAME>`, without blanks.
 fn angled(pair: Pair<'_, Rule>) -> String {

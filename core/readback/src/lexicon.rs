@@ -32,32 +32,6 @@ pub(crate) enum Sense {
     Unknown,
     /// What the dialect says, or all controls of the language.
     Means(Meaning),
-    /// By way of a point to the first or second reference position: G28, G30.
-    Reference(u8),
-    /// A shift of the program's zero: G52.
-    LocalZero,
-    /// The position is given other coordinates, or has them back: G92, G92.1.
-    Preset,
-    /// The control's tables are written: G10.
-    Table,
-    /// Centres of arcs are positions: G90.1.
-    CentresAbsolute,
-    /// Centres of arcs count from their start: G91.1.
-    CentresIncremental,
-    /// S is the speed of the cut: G96.
-    SurfaceSpeed,
-    /// S is the speed of the spindle: G97.
-    SpindleSpeed,
-    /// Coordinates turned in the plane: G68; in front of a tilted plane's own word.
-    Turned,
-    /// And no more: G69.
-    TurnedOff,
-    /// A thread, or a tap without a cycle: G33, G33.1.
-    Thread,
-    /// Length by the words of the block: G43.1, G43.2.
-    LengthByWords,
-    /// A subprogram's end: M99.
-    Return,
     /// It makes something else of the words behind it than we do: it is refused.
     Refused,
 }

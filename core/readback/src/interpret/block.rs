@@ -9,7 +9,7 @@ use post_plugin::Meaning;
 
 use super::gathered::{Gathered, bit, which};
 use super::go::{Path, Target};
-use super::state::{ArcPlane, Control, FeedMode, MotionMode};
+use super::state::{ArcPlane, Control, FeedMode, MotionMode, Orientation};
 use super::{cycles, frames, names, planes};
 use crate::lexicon::{Language, Sense};
 use crate::{MotionKind, Spindle, Told};
@@ -33,8 +33,8 @@ pub(super) struct Asked {
     pub plane_turn: Option<u16>,
     /// It ends.
     pub plane_off: bool,
-    /// A shift or a turn of the coordinates.
-    pub frame: Option<(u16, Sense)>,
+    /// A shift or a turn of the coordinates: ten times the number of its word, and its meaning.
+    pub frame: Option<(u16, Meaning)>,
     /// A work offset: ten times its number.
     pub work: Option<u16>,
     /// Length compensation on: ten times the number of its word, or 0 of a word without one.
@@ -43,6 +43,8 @@ pub(super) struct Asked {
     pub length_off: bool,
     /// Tool centre point control on: ten times the number of its word, 0 of a word without G.
     pub tcp_on: Option<u16>,
+    /// With vectors.
+    pub vectors: bool,
     /// And off.
     pub tcp_off: bool,
     /// The tool is changed.
@@ -172,36 +174,27 @@ impl Control {
     ) -> Result<(), Box<Diagnostic>> {
         let name = f64::from(code) / 10.0;
         match sense {
+            Sense::Means(meaning) => self.meant(code, meaning, words, asked),
+            Sense::Refused => Err(self.not_followed(code)),
             Sense::Unknown => {
                 let help = "a G code may change where the machine goes, so none is passed over";
                 let message = format!("G{name} is no word that is known of this control");
-                return Err(self
-                    .placed(Diagnostic::error("nc-word", message).help(help))
-                    .boxed());
-            }
-            Sense::Refused => {
-                return Err(self.refuse(
-                    "nc-word",
-                    format!("G{name} is not run: what the machine does then is not followed"),
-                ));
-            }
-            Sense::Means(meaning) => return self.meant(code, meaning, words, asked),
-            Sense::Reference(which) => asked.reference = Some(which),
-            Sense::LocalZero | Sense::Preset | Sense::Table | Sense::Turned => {
-                asked.frame = Some((code, sense))
-            }
-            Sense::TurnedOff => asked.frame = Some((code, sense)),
-            Sense::CentresAbsolute => self.modal.centres_absolute = true,
-            Sense::CentresIncremental => self.modal.centres_absolute = false,
-            Sense::SurfaceSpeed => self.modal.surface_speed = true,
-            Sense::SpindleSpeed => self.modal.surface_speed = false,
-            Sense::Thread => asked.thread = Some(code),
-            Sense::LengthByWords => asked.length_on = Some(code),
-            Sense::Return => {
-                return Err(self.refuse("nc-flow", format!("G{name} ends no subprogram")));
+                let finding = Diagnostic::error("nc-word", message).help(help);
+                Err(self.placed(finding).boxed())
             }
         }
-        Ok(())
+    }
+
+    /// A word whose meaning is known and that is not run; `code` is ten times the number behind G, 0 of other words.
+    #[cold]
+    fn not_followed(&self, code: u16) -> Box<Diagnostic> {
+        let word = if code == 0 {
+            "a word of this block".to_owned()
+        } else {
+            format!("G{}", f64::from(code) / 10.0)
+        };
+        let message = format!("{word} is not run: what the machine does then is not followed");
+        self.refuse("nc-word", message)
     }
 
     /// A code or name whose meaning the lexicon knows; `code` is ten times the number behind G, or 0.
@@ -235,6 +228,10 @@ impl Control {
             Meaning::CompensationLeft => self.compensate(-1, words)?,
             Meaning::CompensationRight => self.compensate(1, words)?,
             Meaning::TcpOn => asked.tcp_on = Some(code),
+            Meaning::TcpVectorOn => {
+                asked.tcp_on = Some(code);
+                asked.vectors = true;
+            }
             Meaning::TcpOff => asked.tcp_off = true,
             Meaning::TiltedPlane => asked.plane = Some(code),
             Meaning::TiltedPlaneTurn => asked.plane_turn = Some(code),
@@ -272,12 +269,74 @@ impl Control {
             Meaning::CycleOff => asked.cycle_off = true,
             Meaning::ReturnStart => self.modal.return_start = true,
             Meaning::ReturnClearance => self.modal.return_start = false,
-            Meaning::Spline => {
-                return Err(self.refuse("nc-spline", "splines of this control are not run"));
+            Meaning::ReferenceReturn => asked.reference = Some(1),
+            Meaning::OtherReferenceReturn => asked.reference = Some(2),
+            Meaning::LocalOffset
+            | Meaning::LocalOffsetAdded
+            | Meaning::LocalOffsetOff
+            | Meaning::SetPosition
+            | Meaning::SetPositionOff
+            | Meaning::SetPositionAgain
+            | Meaning::TableData
+            | Meaning::TableDataOff
+            | Meaning::Rotation
+            | Meaning::RotationAdded
+            | Meaning::RotationOff => asked.frame = Some((code, meaning)),
+            Meaning::WorkOffsetOff => self.use_work_offset(&format!("G{}", code / 10))?,
+            Meaning::WorkOffsetBlock => asked.machine = true,
+            Meaning::CentreAbsolute => self.modal.centres_absolute = true,
+            Meaning::CentreIncremental => self.modal.centres_absolute = false,
+            Meaning::SurfaceSpeed => self.modal.surface_speed = true,
+            Meaning::SurfaceSpeedOff => self.modal.surface_speed = false,
+            Meaning::SpeedLimit => {}
+            Meaning::RotaryShortest => self.modal.shortest = Some(true),
+            Meaning::RotaryAsWritten => self.modal.shortest = Some(false),
+            Meaning::InchLengths => self.modal.unit = 25.4,
+            Meaning::MillimetreLengths => self.modal.unit = 1.0,
+            Meaning::SpindleClockwiseCoolant => {
+                asked.spindle = Some(Turning::Clockwise);
+                asked.coolant = Some(8);
             }
-            Meaning::Subprogram => {
-                return Err(self.refuse("nc-flow", "this call of a subprogram is not run"));
+            Meaning::SpindleCounterClockwiseCoolant => {
+                asked.spindle = Some(Turning::CounterClockwise);
+                asked.coolant = Some(8);
             }
+            // The tool axis under tool centre point control: how it goes between two blocks.
+            Meaning::OrientationAxes | Meaning::OrientationMachine => {
+                self.modal.orientation = Orientation::Axes;
+            }
+            Meaning::OrientationVector => self.modal.orientation = Orientation::Circle,
+            Meaning::OrientationPart => self.modal.orientation = Orientation::Usual,
+            Meaning::Thread | Meaning::ThreadAndBack | Meaning::ThreadBack => {
+                asked.thread = Some(code);
+            }
+            Meaning::Subprogram
+            | Meaning::LocalSubprogram
+            | Meaning::SubprogramEnd
+            | Meaning::Macro
+            | Meaning::MacroModal => {
+                return Err(self.refuse(
+                    "nc-flow",
+                    "a subprogram begins or ends here in a way that is not run",
+                ));
+            }
+            Meaning::Spline
+            | Meaning::Scale
+            | Meaning::Mirror
+            | Meaning::Polar
+            | Meaning::FaceTransformation
+            | Meaning::CylinderTransformation
+            | Meaning::Diameter
+            | Meaning::LengthNegative
+            | Meaning::LengthStated
+            | Meaning::LengthAdded
+            | Meaning::LengthAlongTool
+            | Meaning::OrientationAngles
+            | Meaning::CycleOther
+            | Meaning::BuilderCoordinates
+            | Meaning::ArcThrough
+            | Meaning::ArcTangent
+            | Meaning::Retract => return Err(self.not_followed(code)),
             // Letters, remarks and what does nothing.
             _ => {}
         }
@@ -337,7 +396,6 @@ impl Control {
                 "nc-word",
                 format!("M{code} is not run: it may change what the words behind it mean"),
             )),
-            Sense::Return => Err(self.refuse("nc-flow", format!("M{code} ends no subprogram"))),
             _ => {
                 if !self.swap_head(code)? && !self.clamps(code) {
                     self.unknown(&format!("M{code}"));
@@ -457,6 +515,11 @@ impl Control {
         match self.state.spindle {
             Spindle::Clockwise(_) => self.turn_spindle(Turning::Clockwise),
             Spindle::CounterClockwise(_) => self.turn_spindle(Turning::CounterClockwise),
+            Spindle::Surface { clockwise, .. } => self.turn_spindle(if clockwise {
+                Turning::Clockwise
+            } else {
+                Turning::CounterClockwise
+            }),
             Spindle::Off | Spindle::Oriented => {}
         }
     }
@@ -464,6 +527,13 @@ impl Control {
     /// What the spindle does from here on.
     pub(super) fn turn_spindle(&mut self, turning: Turning) {
         let spindle = match turning {
+            Turning::Clockwise | Turning::CounterClockwise if self.modal.surface_speed => {
+                Spindle::Surface {
+                    speed: self.modal.speed,
+                    most: self.modal.most_speed,
+                    clockwise: turning == Turning::Clockwise,
+                }
+            }
             Turning::Clockwise => Spindle::Clockwise(self.modal.speed),
             Turning::CounterClockwise => Spindle::CounterClockwise(self.modal.speed),
             Turning::Off => Spindle::Off,
@@ -552,20 +622,20 @@ impl Control {
             self.state_changed();
         }
         if asked.tcp_off && self.state.tcp {
-            self.set_tcp(false, 0);
+            self.set_tcp(false, 0, false);
         }
         if asked.length_off {
             words.used |= bit(b'H');
             self.tools.length_on = false;
             self.state.length_register = None;
             if self.state.tcp && self.modal.tcp_by_length {
-                self.set_tcp(false, 0);
+                self.set_tcp(false, 0, false);
             }
             self.length_changed()?;
         }
         let on = asked.length_on.or(asked.tcp_on.filter(|code| *code != 0));
-        if let Some(code) = on {
-            self.length_by(code, words)?;
+        if on.is_some() {
+            self.length_by(words)?;
         } else if self.tools.length_on
             && !self.tools.by_tool
             && asked.work.is_none()
@@ -576,19 +646,13 @@ impl Control {
             self.length_changed()?;
         }
         if let Some(code) = asked.tcp_on {
-            self.set_tcp(true, code);
+            self.set_tcp(true, code, asked.vectors);
         }
         Ok(())
     }
 
     /// Length compensation by a register.
-    fn length_by(&mut self, code: u16, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
-        if let Sense::LengthByWords = self.lexicon.g(code) {
-            return Err(self.refuse(
-                "nc-length",
-                "a length that the words of the block give is not run",
-            ));
-        }
+    fn length_by(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
         let register = match words.take_number(b'H', self)? {
             Some(register) => Some(register),
             // `HL=1` was taken among the names.
@@ -606,10 +670,10 @@ impl Control {
     }
 
     /// Tool centre point control on or off; `code` is ten times the number of its G word, 0 of any other.
-    pub(super) fn set_tcp(&mut self, on: bool, code: u16) {
+    pub(super) fn set_tcp(&mut self, on: bool, code: u16, vectors: bool) {
         self.modal.tcp_by_length = on && code != 0;
-        // The second type of a word names vectors: G43.5.
-        self.modal.vectors = on && code % 10 == 5;
+        // Some vocabularies have one meaning for both types: the second names vectors, G43.5.
+        self.modal.vectors = on && (vectors || code % 10 == 5);
         if self.state.tcp != on {
             self.state.tcp = on;
             self.state_changed();
@@ -661,8 +725,8 @@ impl Control {
         words: &mut Gathered,
         asked: &Asked,
     ) -> Result<(), Box<Diagnostic>> {
-        if let Some((code, sense)) = asked.frame {
-            return frames::code(self, code, sense, words);
+        if let Some((code, meaning)) = asked.frame {
+            return frames::code(self, code, meaning, words);
         }
         if let Some(code) = asked.plane {
             return planes::begin(self, code, words);

@@ -337,6 +337,7 @@ impl Modal {
             feed: None,
             speed: 0.0,
             surface_speed: false,
+            most_speed: None,
             return_start: true,
             shortest: None,
             orientation: Orientation::Usual,

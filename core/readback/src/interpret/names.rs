@@ -6,10 +6,16 @@ use post_plugin::Meaning;
 
 use super::block::Asked;
 use super::gathered::{Gathered, which};
-use super::state::{Control, Orientation};
+use super::state::Control;
 use super::{cycles, frames, planes};
 use crate::Told;
 use crate::lexicon::Sense;
+
+/// Names whose value changes a motion, also from a block without axes on.
+const SHAPES: &[&str] = &[
+    "LEAD", "TILT", "A2", "B2", "C2", "A4", "B4", "C4", "A5", "B5", "C5", "THETA", "AR", "RP",
+    "AP", "CHF", "CHR", "RND", "RNDM", "ANG",
+];
 
 /// Takes what `gather` left.
 pub(super) fn take(
@@ -71,46 +77,45 @@ impl Control {
                 .worth(value)
                 .map_err(|finding| control.placed(*finding).boxed())
         };
-        if let Some(row) = ["A3", "B3", "C3"].iter().position(|known| *known == name) {
-            let part = worth(self)?;
-            words.vector.get_or_insert_default()[row] = part;
-            return Ok(());
-        }
-        match name {
-            "TURN" => words.turns = Some(worth(self)?),
-            "HL" => {
+        let mut part = |row: usize| -> Result<(), Box<Diagnostic>> {
+            words.vector.get_or_insert_default()[row] = worth(self)?;
+            Ok(())
+        };
+        match self.lexicon.name(name) {
+            Sense::Means(Meaning::ToolAxisX) => part(0)?,
+            Sense::Means(Meaning::ToolAxisY) => part(1)?,
+            Sense::Means(Meaning::ToolAxisZ) => part(2)?,
+            Sense::Means(Meaning::Radius) => words.radius = Some(worth(self)? * self.modal.unit),
+            Sense::Means(Meaning::Turns) => words.turns = Some(worth(self)?),
+            Sense::Means(Meaning::LengthRegister) => {
                 let value = worth(self)?;
                 self.modal.named_register = Some(which(b'H', value, self)?);
             }
-            "LEAD" | "TILT" | "A2" | "B2" | "C2" | "A4" | "B4" | "C4" | "A5" | "B5" | "C5"
-            | "THETA" | "AR" | "RP" | "AP" | "CHF" | "CHR" | "RND" | "RNDM" | "ANG" => {
+            Sense::Means(Meaning::SpeedLimit) => self.modal.most_speed = Some(worth(self)?),
+            Sense::Means(Meaning::Nothing | Meaning::Smoothing) => {}
+            Sense::Means(Meaning::SmoothingOff) => self.smooth(None),
+            Sense::Means(Meaning::Probe) => {
                 return Err(self.refuse(
-                    "nc-word",
-                    format!("{name}= is not run, and changes the motion"),
+                    "nc-probe",
+                    "a probing move ends where it touches, which the program does not say",
                 ));
             }
-            _ => match self.lexicon.name(name) {
-                Sense::Means(Meaning::Radius) => {
-                    words.radius = Some(worth(self)? * self.modal.unit)
-                }
-                Sense::Means(Meaning::Nothing | Meaning::Smoothing) => {}
-                Sense::Means(Meaning::SmoothingOff) => self.smooth(None),
-                Sense::Means(Meaning::Probe) => {
-                    return Err(self.refuse(
-                        "nc-probe",
-                        "a probing move ends where it touches, which the program does not say",
-                    ));
-                }
-                _ => {
-                    if words.present & self.axes.mask != 0 {
-                        let message = format!(
-                            "{name}= is not known, and might change the motion of its block"
-                        );
-                        return Err(self.refuse("nc-word", message));
-                    }
-                    self.unknown(name);
-                }
-            },
+            Sense::Unknown if name == "HL" => {
+                let value = worth(self)?;
+                self.modal.named_register = Some(which(b'H', value, self)?);
+            }
+            Sense::Unknown
+                if words.present & self.axes.mask == 0
+                    && words.named_axes == 0
+                    && !SHAPES.contains(&name) =>
+            {
+                self.unknown(name);
+            }
+            _ => {
+                let message =
+                    format!("{name}= is not run, and might change the motion of its block");
+                return Err(self.refuse("nc-word", message));
+            }
         }
         Ok(())
     }
@@ -167,35 +172,21 @@ impl Control {
         words: &mut Gathered,
         asked: &mut Asked,
     ) -> Result<(), Box<Diagnostic>> {
-        match name {
-            // The tool axis under TRAORI: how it goes between two blocks.
-            "ORIAXES" | "ORIMKS" => self.modal.orientation = Orientation::Axes,
-            "ORIVECT" | "ORIPLANE" => self.modal.orientation = Orientation::Circle,
-            "ORIWKS" => self.modal.orientation = Orientation::Usual,
-            "ORIRESET" | "ORICONCW" | "ORICONCCW" | "ORICURVE" | "ORIEULER" | "ORIRPY"
-            | "ORIRPY2" => {
-                return Err(self.refuse(
-                    "nc-word",
-                    format!("{name} is not run: how the tool axis goes then is not followed"),
-                ));
+        if frames::name(self, name, words)? {
+            return Ok(());
+        }
+        match self.lexicon.name(name) {
+            Sense::Means(meaning) => self.meant(0, meaning, words, asked),
+            Sense::Unknown if words.present & self.axes.mask == 0 => {
+                self.unknown(name);
+                Ok(())
             }
-            _ => {
-                if frames::name(self, name, words)? {
-                    return Ok(());
-                }
-                match self.lexicon.name(name) {
-                    Sense::Means(meaning) => return self.meant(0, meaning, words, asked),
-                    _ if words.present & self.axes.mask != 0 => {
-                        let message = format!(
-                            "{name} is not known, and might change the motion of its block"
-                        );
-                        return Err(self.refuse("nc-word", message));
-                    }
-                    _ => self.unknown(name),
-                }
+            Sense::Unknown | Sense::Refused => {
+                let message =
+                    format!("{name} is not run, and might change the motion of its block");
+                Err(self.refuse("nc-word", message))
             }
         }
-        Ok(())
     }
 
     /// A call with parentheses.

@@ -115,6 +115,8 @@ pub(super) struct Modal {
     pub speed: f64,
     /// The speed is that of the cut, m/min: G96.
     pub surface_speed: bool,
+    /// The spindle turns no faster than this, revolutions a minute: LIMS.
+    pub most_speed: Option<f64>,
     /// A cycle returns to the level where it began: G98.
     pub return_start: bool,
     /// Rotary axes go the shorter way (M126) or as written (M127); none: as the machine file says of each axis.

@@ -2,43 +2,30 @@
 //!
 //! A dialect lists what it writes; programs of others hold more. Only what moves and what changes the meaning of words
 //! stands here, and what is known to do neither. What differs from control to control (planes, tool centre point
-//! control, smoothing, units) is for the dialect alone.
+//! control, smoothing) is for the dialect alone.
 
 use post_plugin::Meaning as M;
 
 use super::{Language, Sense};
 
+/// A table of words.
+type Words = &'static [(&'static str, M)];
+
 /// The words of a language that dialects need not name.
-pub(super) fn words(language: Language) -> Vec<(&'static str, Sense)> {
-    let means = |list: &'static [(&'static str, M)]| {
-        list.iter()
-            .map(|(word, meaning)| (*word, Sense::Means(*meaning)))
+pub(super) fn words(language: Language) -> impl Iterator<Item = (&'static str, Sense)> {
+    let (tables, refused): (&[Words], &[&str]) = match language {
+        Language::Macro => (&[SHARED, LETTERS, MACRO], &[]),
+        Language::Rs274 => (&[SHARED, LETTERS, RS274], REFUSED_RS274),
+        Language::Names => (&[SHARED, NAMES], REFUSED_NAMES),
+        Language::Conversational => (&[SHARED, CONVERSATIONAL], &[]),
     };
-    let mut words: Vec<(&'static str, Sense)> = means(SHARED).collect();
-    match language {
-        Language::Macro => {
-            words.extend(means(LETTERS));
-            words.extend_from_slice(LETTER_SENSES);
-            words.extend(means(MACRO));
-            words.extend_from_slice(MACRO_SENSES);
-        }
-        Language::Rs274 => {
-            words.extend(means(LETTERS));
-            words.extend_from_slice(LETTER_SENSES);
-            words.extend(means(RS274));
-            words.extend_from_slice(RS274_SENSES);
-        }
-        Language::Names => {
-            words.extend(means(NAMES));
-            words.extend_from_slice(NAME_SENSES);
-        }
-        Language::Conversational => words.extend(means(CONVERSATIONAL)),
-    }
-    words
+    let known = tables.iter().flat_map(|table| table.iter());
+    let known = known.map(|(word, meaning)| (*word, Sense::Means(*meaning)));
+    known.chain(refused.iter().map(|word| (*word, Sense::Refused)))
 }
 
 /// Of all languages.
-const SHARED: &[(&str, M)] = &[
+const SHARED: Words = &[
     ("M0", M::Stop),
     ("M1", M::OptionalStop),
     ("M2", M::End),
@@ -54,22 +41,28 @@ const SHARED: &[(&str, M)] = &[
 ];
 
 /// Of controls whose words are letters.
-const LETTERS: &[(&str, M)] = &[
+const LETTERS: Words = &[
     ("G0", M::Rapid),
     ("G1", M::Linear),
     ("G2", M::ArcClockwise),
     ("G3", M::ArcCounterClockwise),
     ("G4", M::Dwell),
+    ("G10", M::TableData),
     ("G17", M::PlaneXy),
     ("G18", M::PlaneZx),
     ("G19", M::PlaneYz),
     ("G20", M::Inch),
     ("G21", M::Millimetre),
+    ("G28", M::ReferenceReturn),
+    ("G30", M::OtherReferenceReturn),
     ("G40", M::CompensationOff),
     ("G41", M::CompensationLeft),
     ("G42", M::CompensationRight),
     ("G43", M::LengthOn),
     ("G49", M::LengthOff),
+    ("G50", M::ScaleOff),
+    ("G51", M::Scale),
+    ("G52", M::LocalOffset),
     ("G53", M::MachineCoordinates),
     ("G54", M::WorkOffset),
     ("G55", M::WorkOffset),
@@ -93,85 +86,88 @@ const LETTERS: &[(&str, M)] = &[
     ("G89", M::CycleReam),
     ("G90", M::Absolute),
     ("G91", M::Incremental),
+    ("G92", M::SetPosition),
     ("G93", M::InverseTime),
     ("G94", M::FeedPerMinute),
     ("G95", M::FeedPerRevolution),
+    ("G96", M::SurfaceSpeed),
+    ("G97", M::SurfaceSpeedOff),
     ("G98", M::ReturnStart),
     ("G99", M::ReturnClearance),
     ("M98", M::Subprogram),
+    ("M99", M::SubprogramEnd),
 ];
 
-const LETTER_SENSES: &[(&str, Sense)] = &[
-    ("G28", Sense::Reference(1)),
-    ("G30", Sense::Reference(2)),
-    ("G52", Sense::LocalZero),
-    ("G92", Sense::Preset),
-    ("G10", Sense::Table),
-    ("G96", Sense::SurfaceSpeed),
-    ("G97", Sense::SpindleSpeed),
-    ("M99", Sense::Return),
-];
-
-const MACRO: &[(&str, M)] = &[
-    ("G9", M::Nothing),
+const MACRO: Words = &[
+    ("G9", M::ExactStop),
+    ("G11", M::TableDataOff),
+    ("G15", M::PolarOff),
+    ("G16", M::Polar),
     ("G22", M::Nothing),
     ("G23", M::Nothing),
     ("G25", M::Nothing),
     ("G26", M::Nothing),
-    ("G50.1", M::Nothing),
+    ("G44", M::LengthNegative),
+    ("G50.1", M::MirrorOff),
+    ("G51.1", M::Mirror),
     ("G62", M::Nothing),
-    ("G67", M::Nothing),
-    ("M97", M::Subprogram),
+    ("G65", M::Macro),
+    ("G66", M::MacroModal),
+    ("G67", M::MacroOff),
+    ("G68", M::Rotation),
+    ("G69", M::RotationOff),
+    ("G92.1", M::SetPositionOff),
+    ("M29", M::Nothing),
+    ("M97", M::LocalSubprogram),
 ];
 
-const MACRO_SENSES: &[(&str, Sense)] = &[
-    ("G68", Sense::Turned),
-    ("G69", Sense::TurnedOff),
-    ("G92.1", Sense::Preset),
-];
-
-const RS274: &[(&str, M)] = &[
+const RS274: Words = &[
+    ("G7", M::Diameter),
+    ("G8", M::DiameterOff),
+    ("G33", M::Thread),
+    ("G33.1", M::ThreadAndBack),
     ("G38.2", M::Probe),
     ("G38.3", M::Probe),
     ("G38.4", M::Probe),
     ("G38.5", M::Probe),
+    ("G43.1", M::LengthStated),
+    ("G43.2", M::LengthAdded),
     ("G59.1", M::WorkOffset),
     ("G59.2", M::WorkOffset),
     ("G59.3", M::WorkOffset),
     ("G61.1", M::SmoothingOff),
+    ("G90.1", M::CentreAbsolute),
+    ("G91.1", M::CentreIncremental),
+    ("G92.1", M::SetPositionOff),
+    ("G92.2", M::SetPositionOff),
+    ("G92.3", M::SetPositionAgain),
     ("M48", M::Nothing),
     ("M49", M::Nothing),
     ("M50", M::Nothing),
     ("M51", M::Nothing),
     ("M52", M::Nothing),
     ("M53", M::Nothing),
+    // What is switched there by a remap is the usual name for it; our own machines say the same.
+    ("M428", M::TcpOn),
+    ("M429", M::TcpOff),
 ];
 
-const RS274_SENSES: &[(&str, Sense)] = &[
-    ("G43.1", Sense::LengthByWords),
-    ("G43.2", Sense::Refused),
-    ("G92.1", Sense::Preset),
-    ("G92.2", Sense::Preset),
-    ("G92.3", Sense::Preset),
-    ("G90.1", Sense::CentresAbsolute),
-    ("G91.1", Sense::CentresIncremental),
-    ("G33", Sense::Thread),
-    ("G33.1", Sense::Thread),
-    // An analogue output may be wired to what switches the kinematics.
-    ("M67", Sense::Refused),
-    ("M68", Sense::Refused),
-];
+/// An output may be wired to what switches the kinematics.
+const REFUSED_RS274: &[&str] = &["M62", "M63", "M64", "M65", "M67", "M68"];
 
-const NAMES: &[(&str, M)] = &[
+const NAMES: Words = &[
     ("G0", M::Rapid),
     ("G1", M::Linear),
     ("G2", M::ArcClockwise),
     ("G3", M::ArcCounterClockwise),
     ("G4", M::Dwell),
-    ("G9", M::Nothing),
+    ("G9", M::ExactStop),
     ("G17", M::PlaneXy),
     ("G18", M::PlaneZx),
     ("G19", M::PlaneYz),
+    ("G33", M::Thread),
+    ("G331", M::Thread),
+    ("G332", M::ThreadBack),
     ("G40", M::CompensationOff),
     ("G41", M::CompensationLeft),
     ("G42", M::CompensationRight),
@@ -182,7 +178,7 @@ const NAMES: &[(&str, M)] = &[
     ("G55", M::WorkOffset),
     ("G56", M::WorkOffset),
     ("G57", M::WorkOffset),
-    ("G500", M::WorkOffset),
+    ("G500", M::WorkOffsetOff),
     ("G60", M::SmoothingOff),
     ("G601", M::Nothing),
     ("G602", M::Nothing),
@@ -193,15 +189,41 @@ const NAMES: &[(&str, M)] = &[
     ("G643", M::Smoothing),
     ("G644", M::Smoothing),
     ("G645", M::Smoothing),
-    ("G70", M::Inch),
-    ("G71", M::Millimetre),
+    ("G70", M::InchLengths),
+    ("G71", M::MillimetreLengths),
     ("G700", M::Inch),
     ("G710", M::Millimetre),
+    ("G74", M::ReferenceReturn),
+    ("G75", M::OtherReferenceReturn),
     ("G90", M::Absolute),
     ("G91", M::Incremental),
     ("G93", M::InverseTime),
     ("G94", M::FeedPerMinute),
     ("G95", M::FeedPerRevolution),
+    ("G96", M::SurfaceSpeed),
+    ("G97", M::SurfaceSpeedOff),
+    ("CR", M::Radius),
+    ("AR", M::ArcAngle),
+    ("TURN", M::Turns),
+    ("CIP", M::ArcThrough),
+    ("CT", M::ArcTangent),
+    ("A3", M::ToolAxisX),
+    ("B3", M::ToolAxisY),
+    ("C3", M::ToolAxisZ),
+    ("ORIMKS", M::OrientationMachine),
+    ("ORIWKS", M::OrientationPart),
+    ("ORIAXES", M::OrientationAxes),
+    ("ORIVECT", M::OrientationVector),
+    ("ORIPLANE", M::OrientationVector),
+    ("ORIEULER", M::OrientationAngles),
+    ("ORIRPY", M::OrientationAngles),
+    ("ORIRPY2", M::OrientationAngles),
+    ("TRANSMIT", M::FaceTransformation),
+    ("TRACYL", M::CylinderTransformation),
+    ("DIAMON", M::Diameter),
+    ("DIAMOF", M::DiameterOff),
+    ("TRAORI", M::TcpOn),
+    ("TRAFOOF", M::TcpOff),
     ("COMPOF", M::SmoothingOff),
     ("COMPON", M::Smoothing),
     ("COMPCAD", M::Smoothing),
@@ -209,6 +231,7 @@ const NAMES: &[(&str, M)] = &[
     ("COMPSURF", M::Smoothing),
     ("M17", M::End),
     ("MCALL", M::CycleOff),
+    ("LIMS", M::SpeedLimit),
     ("BRISK", M::Nothing),
     ("SOFT", M::Nothing),
     ("DRIVE", M::Nothing),
@@ -231,7 +254,6 @@ const NAMES: &[(&str, M)] = &[
     ("DYNSEMIFIN", M::Nothing),
     ("DYNROUGH", M::Nothing),
     ("DYNPOS", M::Nothing),
-    ("LIMS", M::Nothing),
     ("CTOL", M::Nothing),
     ("OTOL", M::Nothing),
     ("ADIS", M::Nothing),
@@ -239,18 +261,10 @@ const NAMES: &[(&str, M)] = &[
     ("WORKPIECE", M::Nothing),
 ];
 
-const NAME_SENSES: &[(&str, Sense)] = &[
-    ("G96", Sense::SurfaceSpeed),
-    ("G97", Sense::SpindleSpeed),
-    ("G74", Sense::Reference(1)),
-    ("G75", Sense::Refused),
-    ("G33", Sense::Refused),
-    ("G63", Sense::Refused),
-    ("G331", Sense::Refused),
-    ("G332", Sense::Refused),
-];
+const REFUSED_NAMES: &[&str] = &["G63"];
 
-const CONVERSATIONAL: &[(&str, M)] = &[
-    ("M13", M::SpindleClockwise),
-    ("M14", M::SpindleCounterClockwise),
+const CONVERSATIONAL: Words = &[
+    ("M13", M::SpindleClockwiseCoolant),
+    ("M14", M::SpindleCounterClockwiseCoolant),
+    ("M17", M::End),
 ];

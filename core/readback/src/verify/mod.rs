@@ -1,1 +1,352 @@
-//! A program held against a course.
+//! A program held against a course: does the machine do what was asked?
+//!
+//! Both are chains of short straight pieces ([`chop`]) in the space of tip and tool axis. A program keeps to a course if
+//! one can go along both, never back, and never be farther apart than the tolerance: their Fréchet distance. That is
+//! decided block by block ([`sweep`]): what is kept is where on the course one can stand now. It empties at the first
+//! block that strays, that has no place on the course, or that comes out of turn. This proves more than a comparison of
+//! end points or of nearest distances: neither sees that a path is cut twice, backwards, or not at all.
+//!
+//! Rapids are free but for what matters of them ([`rapid`]): they lead from where a cut ends to where the next begins,
+//! past the points that the course asks for, in their order. A cut may be left for a while, if it goes on where it was
+//! left. In a hole the control pecks as it likes ([`hole`]): the bottom is reached at feed, and no rapid goes where
+//! nothing was cut.
+//!
+//! Memory does not grow with the program: of the course only what the program may stand at is kept.
+
+mod axes;
+mod chop;
+mod hole;
+mod place;
+mod rapid;
+mod report;
+mod state;
+mod sweep;
+mod track;
+
+use std::f64::consts::PI;
+
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+
+use crate::course::Course;
+use crate::{Done, Motion, MotionKind, Told};
+use axes::Axes;
+use hole::HoleRun;
+use place::{Apart, Bound, Place, Span};
+pub use report::{BlockReport, Fault, Verification, Worst};
+use sweep::Stray;
+use track::{Track, What};
+
+/// What is held to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rules {
+    /// Largest deviation of the tip in a cut, mm.
+    pub tolerance: f64,
+    /// Largest deviation of the tool axis in a cut, radians.
+    pub axis_tolerance: f64,
+    /// Largest distance at which a rapid passes a point that it is to pass, mm.
+    pub rapid_tolerance: f64,
+    /// The dialect compensates lengths by registers: one must be in force in every cut.
+    pub registers: bool,
+    /// Length register that belongs to a tool where it is not the tool's number.
+    pub tool_registers: Vec<(u32, u32)>,
+    /// A block by time takes no longer than this, minutes: slower ones say nothing of the feed.
+    pub longest_minutes: f64,
+    /// So many faults are told apart; then it is given up.
+    pub most_faults: usize,
+}
+
+impl Rules {
+    /// As the machine file has them.
+    pub fn of(machine: &Machine) -> Self {
+        Self {
+            tolerance: machine.accuracy.tolerance,
+            axis_tolerance: machine.accuracy.axis_tolerance,
+            rapid_tolerance: machine.accuracy.rapid_tolerance,
+            registers: false,
+            tool_registers: Vec::new(),
+            longest_minutes: f64::INFINITY,
+            most_faults: 50,
+        }
+    }
+}
+
+/// Ways are cut into pieces that stray by no more than this share of the tolerance from straight ones.
+const SAG: f64 = 1.0 / 64.0;
+
+/// Numbers of two programs come out of different computations: mm and radians.
+const COMPUTED: f64 = 1e-6;
+
+/// Where a rapid passes a point of the course the tool axis may be off by so much, radians.
+const RAPID_TURN: f64 = 1.0 / 180.0 * PI;
+
+/// Holds a program against a course, motion by motion.
+#[derive(Debug)]
+pub struct Verifier<'m, C> {
+    machine: &'m Machine,
+    rules: Rules,
+    /// How far the guided point stands above the tip, mm.
+    along: f64,
+    sag: Bound,
+    bound: Bound,
+    rapid_bound: Bound,
+    track: Track<C>,
+    /// For each element of the track the places on it where the program may stand.
+    reach: Vec<Span>,
+    /// The element that a rapid may come to next; all before it were passed.
+    next: Option<usize>,
+    /// The tool has moved at rapid since the last cut, or not cut yet.
+    apart: bool,
+    stray: Option<Stray>,
+    hole: Option<HoleRun>,
+    /// Where the tool left a cut at feed along its own axis.
+    drawn_back: Option<Place>,
+    /// Ends of the pieces of the motion at hand, its beginning first.
+    places: Vec<Place>,
+    spare: Vec<Span>,
+    axes: Axes,
+    block: BlockReport,
+    found: Verification,
+}
+
+impl<'m, C: Course> Verifier<'m, C> {
+    /// A program of `machine` against `course`.
+    pub fn new(machine: &'m Machine, rules: Rules, course: C) -> Self {
+        let along = machine.control_point.along;
+        let sag = Bound::new(rules.tolerance * SAG, rules.axis_tolerance * SAG);
+        let widened = |mm: f64, angle: f64| {
+            let bound = Bound::new(mm + COMPUTED, angle + COMPUTED);
+            // Both sides are cut into pieces.
+            Bound {
+                point: bound.point + 2.0 * sag.point,
+                axis: bound.axis + 2.0 * sag.axis,
+            }
+        };
+        Self {
+            machine,
+            along,
+            sag,
+            bound: widened(rules.tolerance, rules.axis_tolerance),
+            rapid_bound: widened(
+                rules.rapid_tolerance.max(rules.tolerance),
+                RAPID_TURN.max(rules.axis_tolerance),
+            ),
+            track: Track::new(course, along, sag),
+            reach: Vec::new(),
+            next: Some(0),
+            apart: true,
+            stray: None,
+            hole: None,
+            drawn_back: None,
+            places: Vec::new(),
+            spare: Vec::new(),
+            axes: Axes::new(machine),
+            block: BlockReport::default(),
+            found: Verification::default(),
+            rules,
+        }
+    }
+
+    /// Takes what the program did next. `listen` hears of each line of the program once it is done.
+    pub fn take(&mut self, done: &Done, listen: &mut dyn FnMut(&BlockReport)) {
+        if self.found.gave_up {
+            return;
+        }
+        match done {
+            Done::Motion(motion) => {
+                if self.block.nc_line != motion.line {
+                    self.end_block(listen);
+                    self.block.nc_line = motion.line;
+                    self.block.block = motion.number;
+                }
+                self.motion(motion);
+            }
+            Done::Told { line, told } => match told {
+                Told::Dwell { .. } | Told::Stop | Told::OptionalStop => self.event(*line, told),
+                _ => {}
+            },
+            Done::State(_) => {}
+        }
+        self.drop_behind();
+    }
+
+    /// The program is at its end: what was found.
+    pub fn finish(mut self, listen: &mut dyn FnMut(&BlockReport)) -> Verification {
+        self.end_block(listen);
+        if !self.found.gave_up {
+            self.flush_stray();
+            self.look_at_the_rest();
+        }
+        self.found
+    }
+
+    /// What is wrong with the course itself, so far.
+    pub fn course_faults(&self) -> &[Diagnostic] {
+        &self.track.faults
+    }
+
+    /// What was found so far.
+    pub fn found(&self) -> &Verification {
+        &self.found
+    }
+
+    fn end_block(&mut self, listen: &mut dyn FnMut(&BlockReport)) {
+        if self.block.nc_line != 0 {
+            listen(&self.block);
+            self.block = BlockReport::default();
+        }
+    }
+
+    fn motion(&mut self, motion: &Motion) {
+        self.found.motions += 1;
+        self.found.time_s += motion.minutes * 60.0;
+        let mut places = std::mem::take(&mut self.places);
+        places.clear();
+        places.push(Place::new(&motion.from.pose, self.along));
+        chop::motion(motion, self.along, &self.sag, &mut places);
+        if let Some(fault) = self.axes.over_travel(self.machine, motion) {
+            self.axis_fault(motion, fault);
+        }
+        match motion.kind {
+            MotionKind::Rapid => {
+                self.found.rapids += 1;
+                self.set_kind("rapid");
+                self.rapid(motion, &places);
+            }
+            MotionKind::Feed | MotionKind::Thread => {
+                if let Some(fault) = self.axes.too_fast(self.machine, motion) {
+                    self.axis_fault(motion, fault);
+                }
+                self.feed(motion, &places);
+            }
+        }
+        self.places = places;
+    }
+
+    /// A line of the program that cuts is told as a cut.
+    fn set_kind(&mut self, kind: &'static str) {
+        if self.block.kind.is_empty() || kind != "rapid" {
+            self.block.kind = kind;
+        }
+    }
+
+    fn axis_fault(&mut self, motion: &Motion, (code, message, by): (&'static str, String, f64)) {
+        let key = message
+            .split(" would ")
+            .next()
+            .unwrap_or_default()
+            .to_owned();
+        self.limit_fault(code, key, message, motion, 0, by);
+    }
+
+    /// Notes that a limit is passed: of those with the same key the farthest is told.
+    fn limit_fault(
+        &mut self,
+        code: &'static str,
+        key: String,
+        message: String,
+        motion: &Motion,
+        cl_line: u64,
+        by: f64,
+    ) {
+        let cl_line = (cl_line > 0).then_some(cl_line);
+        let same = |fault: &&mut Fault| fault.code == code && fault.key == key;
+        if let Some(known) = self.found.faults.iter_mut().find(same) {
+            known.count += 1;
+            if known.by.is_none_or(|most| by > most) {
+                (known.message, known.by) = (message, Some(by));
+                (known.nc_line, known.block) = (Some(motion.line), motion.number);
+                known.cl_line = cl_line;
+            }
+            return;
+        }
+        let place = Some((motion.line, motion.number));
+        self.fault_at(code, message, place, cl_line, Some(by));
+        if let Some(fault) = self.found.faults.last_mut() {
+            fault.key = key;
+        }
+    }
+
+    /// Notes what is wrong. The same at other places is counted.
+    fn fault(
+        &mut self,
+        code: &'static str,
+        message: String,
+        motion: Option<&Motion>,
+        cl_line: Option<u64>,
+        by: Option<f64>,
+    ) {
+        let place = motion.map(|motion| (motion.line, motion.number));
+        self.fault_at(code, message, place, cl_line, by);
+    }
+
+    fn fault_at(
+        &mut self,
+        code: &'static str,
+        message: String,
+        place: Option<(u64, Option<u64>)>,
+        cl_line: Option<u64>,
+        by: Option<f64>,
+    ) {
+        let same = |fault: &&mut Fault| fault.code == code && fault.message == message;
+        if let Some(known) = self.found.faults.iter_mut().find(same) {
+            known.count += 1;
+            return;
+        }
+        if self.found.faults.len() >= self.rules.most_faults {
+            self.found.gave_up = true;
+            return;
+        }
+        self.found.faults.push(Fault {
+            code,
+            key: message.clone(),
+            message,
+            nc_line: place.map(|(line, _)| line),
+            block: place.and_then(|(_, number)| number),
+            cl_line,
+            count: 1,
+            by,
+        });
+    }
+
+    /// Notes how far the motion at hand is off, within the tolerance.
+    fn note_deviation(&mut self, apart: Apart, nc_line: u64, cl_line: u64) {
+        let angle = apart.axis.to_degrees();
+        self.found.tip.take(apart.point, nc_line, cl_line);
+        self.found.axis.take(angle, nc_line, cl_line);
+        self.block.tip_deviation_mm = self.block.tip_deviation_mm.max(apart.point);
+        self.block.axis_deviation_deg = self.block.axis_deviation_deg.max(angle);
+    }
+
+    /// Drops elements that the program can no longer stand at.
+    fn drop_behind(&mut self) {
+        let reached = self.reach.iter().position(|span| !span.is_empty());
+        let behind = match (reached, self.next) {
+            (Some(reached), Some(next)) => reached.min(next),
+            (Some(reached), None) => reached,
+            (None, Some(next)) => next,
+            (None, None) => 0,
+        };
+        for _ in 0..behind {
+            let Some(element) = self.track.pop() else {
+                break;
+            };
+            if let What::Event(told, false) = &element.what {
+                let message = format!("{} is left out", state::event_name(told));
+                let place =
+                    (self.block.nc_line > 0).then_some((self.block.nc_line, self.block.block));
+                self.fault_at("event", message, place, Some(element.line), None);
+            }
+            if element.is_cut() && element.near.point.is_finite() && self.stray.is_none() {
+                self.note_deviation(element.near, self.block.nc_line, element.line);
+            }
+        }
+        self.reach.drain(..behind.min(self.reach.len()));
+        if let Some(next) = &mut self.next {
+            *next -= behind;
+        }
+        if let Some(hole) = &mut self.hole {
+            hole.index -= behind;
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! What a motion asks of the machine's axes: their travel, at its ends and on its way, and their largest feeds.
+
+use post_machine::description::{Axis, Machine};
+use post_machine::kinematics::travel::passed;
+use post_machine::kinematics::{Joints, KeptTip, MAX_AXES, Slides, Solver, Trace};
+
+use crate::{Motion, MotionKind, Way};
+
+/// Words are rounded: so far beyond an end of travel is on it, mm or degrees.
+const ROUNDED: f64 = 0.0015;
+
+/// Printed feeds are rounded: an axis may be so much faster than its largest feed.
+const SHARE: f64 = 0.01;
+
+/// Places of a curve at which its axis values are looked at.
+const LOOKS: u32 = 16;
+
+/// A fault: its code, what it is, and by how much a limit is passed.
+pub(super) type AxisFault = (&'static str, String, f64);
+
+/// What is known of the axes of a machine.
+#[derive(Clone, Debug)]
+pub(super) struct Axes {
+    /// Minutes that each axis needs for one mm or radian.
+    slowness: Joints,
+    /// Some axis has a largest feed.
+    limited: bool,
+}
+
+impl Axes {
+    pub fn new(machine: &Machine) -> Self {
+        let slowness = machine.slowness();
+        Self {
+            slowness,
+            limited: slowness.iter().any(|slowness| *slowness > 0.0),
+        }
+    }
+
+    /// An axis leaves its travel.
+    pub fn over_travel(&self, machine: &Machine, motion: &Motion) -> Option<AxisFault> {
+        let (mut least, mut most) = (motion.to.joints, motion.to.joints);
+        match &motion.way {
+            Way::Axes => {}
+            Way::Tip | Way::TipAndAxis => {
+                if let Some(slides) = slides(motion, &Joints::default()) {
+                    for joint in 0..machine.axes.len() {
+                        if slides.least[joint] <= slides.most[joint] {
+                            least[joint] = least[joint].min(slides.least[joint]);
+                            most[joint] = most[joint].max(slides.most[joint]);
+                        }
+                    }
+                }
+            }
+            Way::Arc { .. } | Way::Spline(_) => {
+                for look in 1..LOOKS {
+                    if let Some(joints) = joints_at(motion, f64::from(look) / f64::from(LOOKS)) {
+                        for joint in 0..machine.axes.len() {
+                            least[joint] = least[joint].min(joints[joint]);
+                            most[joint] = most[joint].max(joints[joint]);
+                        }
+                    }
+                }
+            }
+        }
+        for (joint, axis) in machine.axes.iter().enumerate() {
+            let slack = ROUNDED * axis.unit();
+            for value in [least[joint], most[joint]] {
+                if let Some(limit) = passed(axis.travel, value, slack) {
+                    let by = libm::fabs(value - limit) / axis.unit();
+                    return Some(("over-travel", told(axis, value, limit), by));
+                }
+            }
+        }
+        None
+    }
+
+    /// An axis passes its largest feed, if the control does what the program says.
+    pub fn too_fast(&self, machine: &Machine, motion: &Motion) -> Option<AxisFault> {
+        if !self.limited || motion.minutes <= 0.0 {
+            return None;
+        }
+        let (minutes, joint) = self.least_minutes(machine, motion)?;
+        let factor = minutes / motion.minutes;
+        if factor <= 1.0 + SHARE {
+            return None;
+        }
+        let axis = &machine.axes[joint];
+        let most = axis.max_feed / axis.unit();
+        let unit = match axis.joint.rotary {
+            true => "°/min",
+            false => "mm/min",
+        };
+        let message = format!(
+            "{} would go at {:.1} {unit}, and its max_feed is {most:.1}",
+            axis.name,
+            most * factor
+        );
+        Some(("max-feed", message, most * (factor - 1.0)))
+    }
+
+    /// The least time in which no axis passes its largest feed, minutes, and the axis that asks for it.
+    pub fn least_minutes(&self, machine: &Machine, motion: &Motion) -> Option<(f64, usize)> {
+        let mut slowest: Option<(f64, usize)> = None;
+        let mut take = |minutes: f64, joint: usize| {
+            if minutes > slowest.map_or(0.0, |(most, _)| most) {
+                slowest = Some((minutes, joint));
+            }
+        };
+        let follows = matches!(motion.way, Way::Tip | Way::TipAndAxis);
+        let curved = matches!(motion.way, Way::Arc { .. } | Way::Spline(_));
+        for joint in 0..machine.axes.len() {
+            let way = libm::fabs(motion.to.joints[joint] - motion.from.joints[joint]);
+            if !curved || machine.axes[joint].joint.rotary {
+                take(way * self.slowness[joint], joint);
+            }
+        }
+        if follows && let Some(slides) = slides(motion, &self.slowness) {
+            take(slides.minutes, slides.slowest);
+        }
+        if curved {
+            let mut last = motion.from.joints;
+            for look in 1..=LOOKS {
+                let joints = match look {
+                    LOOKS => motion.to.joints,
+                    _ => match joints_at(motion, f64::from(look) / f64::from(LOOKS)) {
+                        Some(joints) => joints,
+                        None => break,
+                    },
+                };
+                for joint in 0..machine.axes.len() {
+                    let way = libm::fabs(joints[joint] - last[joint]) * f64::from(LOOKS);
+                    take(way * self.slowness[joint], joint);
+                }
+                last = joints;
+            }
+        }
+        slowest
+    }
+}
+
+fn told(axis: &Axis, value: f64, limit: f64) -> String {
+    let unit = match axis.joint.rotary {
+        true => "°",
+        false => " mm",
+    };
+    format!(
+        "{} would be at {:.3}{unit}, its travel ends at {:.3}{unit}",
+        axis.name,
+        axis.reading(value),
+        axis.reading(limit)
+    )
+}
+
+/// How the linear axes go while the control keeps the tip; none if nothing turns, or nothing is known of it.
+fn slides(motion: &Motion, slowness: &Joints) -> Option<Slides> {
+    let solver: &Solver = &motion.state.solver;
+    let chain = solver.chain();
+    let turns =
+        chain.joints().iter().enumerate().any(|(index, joint)| {
+            joint.rotary && motion.from.joints[index] != motion.to.joints[index]
+        });
+    if !turns || motion.kind == MotionKind::Rapid && slowness.iter().any(|slow| *slow > 0.0) {
+        return None;
+    }
+    let trace = |joints: &Joints| {
+        let mut trace = Trace {
+            joints: *joints,
+            turns: chain.turns(joints),
+            ..Trace::default()
+        };
+        chain.trace(&mut trace);
+        trace
+    };
+    let (from, to) = (trace(&motion.from.joints), trace(&motion.to.joints));
+    KeptTip::new(solver, 0.0, &from, &to)?.slides(slowness, f64::INFINITY.min(motion.minutes))
+}
+
+/// Axis values at a share of a curve.
+fn joints_at(motion: &Motion, share: f64) -> Option<Joints> {
+    let solver = &motion.state.solver;
+    let mut joints = super::chop::joints_between(&motion.from.joints, &motion.to.joints, share);
+    debug_assert!(joints.len() == MAX_AXES);
+    let turns = solver.chain().turns(&joints);
+    let tip = motion.at(share).tip;
+    solver.place(tip, &mut joints, &turns).ok()?;
+    Some(joints)
+}

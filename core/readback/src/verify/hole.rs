@@ -1,0 +1,314 @@
+//! Holes of cycles: down the axis at feed to the bottom, and out again; the pecks are the control's business.
+
+use nalgebra::Vector3;
+
+use super::Verifier;
+use super::place::{Apart, Place};
+use super::state;
+use super::track::{Element, What};
+use crate::course::Course;
+use crate::{CycleKind, Motion, MotionKind, Told};
+
+/// A hole in the making.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HoleRun {
+    /// Its element.
+    pub index: usize,
+    /// How far below the level where its feed begins something was cut, mm.
+    deepest: f64,
+    /// Where the tool stands on its axis, mm, down positive.
+    at: f64,
+    /// The bottom was reached.
+    bottom: bool,
+    dwelt: bool,
+    /// How far it is off its axis as a whole, mm: told once.
+    shift: Vector3<f64>,
+}
+
+/// The axis of a hole, from the level where the feed begins.
+#[derive(Clone, Copy, Debug)]
+struct Axis {
+    top: Place,
+    down: Vector3<f64>,
+    depth: f64,
+}
+
+impl Axis {
+    fn of(element: &Element) -> Self {
+        let way = element.to.point - element.from.point;
+        let depth = way.norm();
+        let down = match depth > 0.0 {
+            true => way / depth,
+            false => -element.from.axis,
+        };
+        Self {
+            top: element.from,
+            down,
+            depth,
+        }
+    }
+
+    /// How far down a place is, mm, and how far it is off.
+    fn split(&self, place: &Place) -> (f64, Apart) {
+        let offset = place.point - self.top.point;
+        let depth = offset.dot(&self.down);
+        let apart = Apart {
+            point: (offset - self.down * depth).norm(),
+            axis: place.apart(&self.top).axis,
+        };
+        (depth, apart)
+    }
+}
+
+impl<C: Course> Verifier<'_, C> {
+    /// The hole that is due begins with this motion, if it goes down its axis.
+    pub(super) fn begins_hole(&mut self, motion: &Motion, places: &[Place]) -> bool {
+        let Some(index) = self.next else {
+            return false;
+        };
+        let bound = self.bound;
+        let Some(element) = self.track.get(index) else {
+            return false;
+        };
+        if !matches!(element.what, What::Hole(_)) {
+            return false;
+        }
+        let axis = Axis::of(element);
+        let cl_line = element.line;
+        let (from, off) = axis.split(&places[0]);
+        let (to, _) = axis.split(&places[places.len() - 1]);
+        // Off its axis it is a hole in the wrong place, if it is one.
+        let near = off.point <= bound.point.max(0.5 * axis.depth).max(1.0);
+        if to <= from || !near {
+            return false;
+        }
+        let mut shift = Vector3::zeros();
+        if off.point > bound.point {
+            let offset = places[0].point - axis.top.point;
+            shift = offset - axis.down * offset.dot(&axis.down);
+            let message = format!("a hole is {:.3} mm off its place", off.point);
+            self.fault(
+                "deviation",
+                message,
+                Some(motion),
+                Some(cl_line),
+                Some(off.point),
+            );
+        }
+        if from > bound.point {
+            let message =
+                format!("a rapid goes {from:.3} mm below where the feed of a hole begins");
+            self.fault("hole", message, Some(motion), Some(cl_line), Some(from));
+        }
+        self.hole = Some(HoleRun {
+            index,
+            deepest: from.max(0.0),
+            at: from,
+            bottom: false,
+            dwelt: false,
+            shift,
+        });
+        true
+    }
+
+    /// A motion while a hole is made.
+    pub(super) fn hole_motion(&mut self, motion: &Motion, places: &[Place]) {
+        let Some(mut run) = self.hole else {
+            return;
+        };
+        let Some(element) = self.track.get(run.index).map(|element| element.clone()) else {
+            self.hole = None;
+            return;
+        };
+        let What::Hole(asked) = &element.what else {
+            self.hole = None;
+            return;
+        };
+        let mut axis = Axis::of(&element);
+        axis.top.point += run.shift;
+        let bound = self.bound;
+        let cl_line = Some(element.line);
+        let rapid = motion.kind == MotionKind::Rapid;
+        if !rapid {
+            self.set_kind("hole");
+        }
+        self.block.cl_line = cl_line;
+        let mut worst = Apart::default();
+        let mut down = false;
+        for ends in places.windows(2) {
+            let ((from, _), (to, off)) = (axis.split(&ends[0]), axis.split(&ends[1]));
+            let on_axis = off.point <= bound.point
+                && super::place::Bound::new(1.0, off.axis).axis <= bound.axis;
+            let above = from <= bound.point && to <= bound.point;
+            if rapid {
+                if !on_axis && !above {
+                    let shifts = motion.hole
+                        && run.bottom
+                        && matches!(asked.kind, CycleKind::BoreFine | CycleKind::BoreBack);
+                    if !shifts {
+                        let message = format!(
+                            "a rapid leaves the axis of a hole {:.3} mm below where its feed begins",
+                            from.max(to)
+                        );
+                        self.fault("hole", message, Some(motion), cl_line, None);
+                    }
+                } else if to > run.deepest + bound.point && on_axis {
+                    let message = format!(
+                        "a rapid goes {:.3} mm into a hole that is cut {:.3} mm deep",
+                        to, run.deepest
+                    );
+                    self.fault(
+                        "hole",
+                        message,
+                        Some(motion),
+                        cl_line,
+                        Some(to - run.deepest),
+                    );
+                } else if to < from
+                    && run.bottom
+                    && from > bound.point
+                    && matches!(asked.back, Some(MotionKind::Feed | MotionKind::Thread))
+                {
+                    let message =
+                        "a hole is left at rapid, and the CL file asks for the feed".to_owned();
+                    self.fault("hole", message, Some(motion), cl_line, None);
+                }
+            } else {
+                down |= to > from;
+                worst = worst.larger(&off);
+                if to > axis.depth + bound.point {
+                    let message = format!(
+                        "a hole is {:.3} mm too deep: {:.3} mm below where its feed begins, and the CL file asks for {:.3} mm",
+                        to - axis.depth,
+                        to,
+                        axis.depth
+                    );
+                    self.fault(
+                        "hole",
+                        message,
+                        Some(motion),
+                        cl_line,
+                        Some(to - axis.depth),
+                    );
+                }
+                run.deepest = run.deepest.max(to);
+                run.bottom |= run.deepest >= axis.depth - bound.point;
+            }
+            run.at = to;
+        }
+        if !rapid {
+            if worst.point > bound.point
+                || super::place::Bound::new(1.0, worst.axis).axis > bound.axis
+            {
+                let message = format!(
+                    "a hole is {:.3} mm or {:.3}° off its axis",
+                    worst.point,
+                    worst.axis.to_degrees()
+                );
+                self.fault(
+                    "deviation",
+                    message,
+                    Some(motion),
+                    cl_line,
+                    Some(worst.point),
+                );
+            } else {
+                self.note_deviation(worst, motion.line, element.line);
+            }
+            if down {
+                self.compare_with(motion, &element);
+                self.compare_feed(motion, places, &element);
+            }
+        }
+        self.hole = Some(run);
+        let above = run.at <= bound.point;
+        // Out of it, or elsewhere.
+        if above && (run.bottom || rapid && self.goes_elsewhere(&axis, places)) {
+            self.end_hole(motion, run, &element, axis.depth);
+            if rapid {
+                self.pass(motion, places);
+            }
+        }
+    }
+
+    fn goes_elsewhere(&self, axis: &Axis, places: &[Place]) -> bool {
+        let (_, off) = axis.split(&places[places.len() - 1]);
+        off.point > self.rapid_bound.point
+    }
+
+    fn end_hole(&mut self, motion: &Motion, run: HoleRun, element: &Element, depth: f64) {
+        self.hole = None;
+        self.next = Some(run.index + 1);
+        self.apart = true;
+        self.reach
+            .iter_mut()
+            .for_each(|span| *span = super::place::Span::EMPTY);
+        let cl_line = Some(element.line);
+        if !run.bottom {
+            let message = format!(
+                "a hole is {:.3} mm deep, counted from where its feed begins, and the CL file asks for {depth:.3} mm",
+                run.deepest
+            );
+            self.fault(
+                "hole",
+                message,
+                Some(motion),
+                cl_line,
+                Some(depth - run.deepest),
+            );
+            return;
+        }
+        self.found.holes += 1;
+        let off = Apart {
+            point: libm::fabs(depth - run.deepest),
+            axis: 0.0,
+        };
+        self.note_deviation(off, motion.line, element.line);
+        if let What::Hole(hole) = &element.what
+            && let Some(dwell) = &hole.dwell
+            && !run.dwelt
+        {
+            let message = format!(
+                "{} at the bottom of a hole is left out",
+                state::event_name(dwell)
+            );
+            self.fault("event", message, Some(motion), cl_line, None);
+        }
+    }
+
+    /// The program waits in a hole. False if it is in none.
+    pub(super) fn hole_dwell(&mut self, told: &Told) -> bool {
+        let (Some(run), Told::Dwell { .. }) = (self.hole, told) else {
+            return false;
+        };
+        let Some(element) = self.track.get(run.index) else {
+            return false;
+        };
+        let What::Hole(hole) = &element.what else {
+            return false;
+        };
+        let same = hole
+            .dwell
+            .as_ref()
+            .is_some_and(|asked| state::same_event(asked, told));
+        let wrong = match &hole.dwell {
+            Some(asked) if run.bottom && !same => Some(format!(
+                "{} at the bottom of a hole in place of {}",
+                state::event_name(told),
+                state::event_name(asked)
+            )),
+            _ => None,
+        };
+        let line = element.line;
+        if let Some(run) = &mut self.hole
+            && run.bottom
+        {
+            run.dwelt = true;
+        }
+        if let Some(message) = wrong {
+            let place = Some((self.block.nc_line, self.block.block));
+            self.fault_at("event", message, place, Some(line), None);
+        }
+        true
+    }
+}

@@ -1,0 +1,124 @@
+//! What holding a program against a course has found.
+
+use post_machine::diagnostic::{Diagnostic, Place};
+use serde::Serialize;
+
+/// What was found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Verification {
+    /// Motions of the program.
+    pub motions: u64,
+    /// Of them cuts at feed that were held against the course.
+    pub cuts: u64,
+    /// Rapids.
+    pub rapids: u64,
+    /// Holes that were made.
+    pub holes: u64,
+    /// Motions at feed that the course asks for at rapid.
+    pub rapids_at_feed: u64,
+    /// Times that the tool left a cut and came back to where it left.
+    pub excursions: u64,
+    /// Cuts that are slower than the course asks, because an axis could not go faster.
+    pub limited: u64,
+    /// Cuts that are slower than the course asks, and no axis explains it.
+    pub slower: u64,
+    /// Largest deviation of the guided point from the course in a cut, mm, where the program is within the tolerance.
+    pub tip: Worst,
+    /// Largest deviation of the tool axis in a cut, degrees, likewise.
+    pub axis: Worst,
+    /// Largest distance at which a rapid passes a point of the course, mm.
+    pub rapid: Worst,
+    /// Time of the motions as the program states it, s; without rapids of machines whose file names no largest feeds.
+    pub time_s: f64,
+    /// What is wrong, in the order of the program; what is wrong in the same way again and again is one of them.
+    pub faults: Vec<Fault>,
+    /// It was given up: there are more faults.
+    pub gave_up: bool,
+}
+
+/// A deviation and where it stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Worst {
+    /// How large; the unit is told where it is used.
+    pub value: f64,
+    /// Line of the NC program.
+    pub nc_line: u64,
+    /// Line of the course.
+    pub cl_line: u64,
+}
+
+impl Worst {
+    pub(super) fn take(&mut self, value: f64, nc_line: u64, cl_line: u64) {
+        if value > self.value {
+            *self = Self {
+                value,
+                nc_line,
+                cl_line,
+            };
+        }
+    }
+}
+
+/// Something that the program does otherwise than it should.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fault {
+    /// A stable name for programs to read: `deviation`, `spindle`.
+    pub code: &'static str,
+    /// What is the same in faults of one kind.
+    #[serde(skip)]
+    pub(super) key: String,
+    /// What, with the value and the limit.
+    pub message: String,
+    /// Line of the NC program, if one has it.
+    pub nc_line: Option<u64>,
+    /// Number of the block, if it has one.
+    pub block: Option<u64>,
+    /// Line of the course, if one asks for it.
+    pub cl_line: Option<u64>,
+    /// How often the same was found.
+    pub count: u64,
+    /// By how much a limit is passed, in the unit of the message.
+    pub by: Option<f64>,
+}
+
+impl Fault {
+    /// As a message about a line of the program `file`, of which `text` is the line's text.
+    pub fn diagnostic(&self, file: &str, text: &str, course: &str) -> Diagnostic {
+        let mut message = self.message.clone();
+        if let Some(line) = self.cl_line {
+            message.push_str(&format!(" ({course}, line {line})"));
+        }
+        if self.count > 1 {
+            message.push_str(&format!("; so in {} places", self.count));
+        }
+        let place = self
+            .nc_line
+            .map(|line| Place::new(file, line, text, 0..text.trim_end().len()));
+        Diagnostic::error(self.code, message).at(place)
+    }
+}
+
+/// What became of one line of the program.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct BlockReport {
+    /// Line of the NC program.
+    pub nc_line: u64,
+    /// Number of the block, if it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block: Option<u64>,
+    /// Line of the course that asks for where it ends; none for a motion that nothing asks for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cl_line: Option<u64>,
+    /// `cut`, `rapid` or `hole`.
+    pub kind: &'static str,
+    /// Which of the machine's solutions it ends in: for each free rotary axis the side of its zero.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub solution: String,
+    /// Largest deviation of the guided point, mm.
+    pub tip_deviation_mm: f64,
+    /// Largest deviation of the tool axis, degrees.
+    pub axis_deviation_deg: f64,
+    /// What makes it slower than the course asks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limited_by: Option<String>,
+}

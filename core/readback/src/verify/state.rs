@@ -1,0 +1,283 @@
+//! What holds while the tool cuts: tool, registers, spindle, coolants, feed.
+
+use std::sync::Arc;
+
+use super::Verifier;
+use super::place::{Place, free};
+use super::track::Element;
+use crate::course::Course;
+use crate::{Coolants, Motion, MotionKind, Spindle, Told};
+
+/// Speeds and feeds are rounded as they are printed: so much of them, and so much besides.
+const SHARE: f64 = 0.005;
+
+/// Half of the last place of a feed or speed without decimals.
+const PLACE: f64 = 0.51;
+
+/// Times of dwells are rounded, s.
+const DWELL: f64 = 0.01;
+
+/// Ways shorter than this take no time that could be compared, mm.
+const SHORT: f64 = 1e-3;
+
+impl<C: Course> Verifier<'_, C> {
+    /// Compares what holds in a cut with what the course asks for where the motion has its place.
+    pub(super) fn compare(&mut self, motion: &Motion, places: &[Place]) {
+        let Some(element) = self.element_of(places) else {
+            return;
+        };
+        self.compare_with(motion, &element);
+        self.compare_feed(motion, places, &element);
+    }
+
+    /// The element of the course that a motion follows: where all that it may follow ask for the same, any of them; else
+    /// that at the middle of its way.
+    fn element_of(&mut self, places: &[Place]) -> Option<Element> {
+        let bound = self
+            .bound
+            .times(self.stray.map_or(1.0, |stray| stray.factor));
+        let last = self.reach.iter().rposition(|span| !span.is_empty())?;
+        let middle = match places.len() {
+            2 => places[0].between(&places[1], 0.5),
+            count => places[count / 2],
+        };
+        let mut best: Option<(f64, usize)> = None;
+        let mut differ = false;
+        let mut first: Option<&Element> = None;
+        for (index, element) in self.track.kept().iter().enumerate().take(last + 1) {
+            if !element.is_cut() {
+                continue;
+            }
+            let one = first.get_or_insert(element);
+            differ |= !Arc::ptr_eq(&one.asked, &element.asked) || one.feed != element.feed;
+            let span = free(&middle, &element.from, &element.to, &bound);
+            if span.is_empty() {
+                continue;
+            }
+            let near = super::place::nearest(&middle, &element.from, &element.to, &span).point;
+            // Of two that are as near the later: behind a corner the next holds.
+            if best.is_none_or(|(least, _)| near <= least + 1e-9) {
+                best = Some((near, index));
+            }
+        }
+        let index = match (differ, best) {
+            (_, Some((_, index))) => index,
+            (false, None) => last,
+            (true, None) => return None,
+        };
+        self.track.kept().get(index).cloned()
+    }
+
+    /// Compares tool, registers, spindle and coolants.
+    pub(super) fn compare_with(&mut self, motion: &Motion, element: &Element) {
+        let state = &motion.state;
+        let asked = &element.asked;
+        let cl_line = Some(element.line);
+        if state.tool != asked.tool
+            && let (Some(has), Some(wants)) = (state.tool, asked.tool)
+        {
+            let message = format!("cuts with tool {has}, and the CL file asks for tool {wants}");
+            self.fault("tool", message, Some(motion), cl_line, None);
+        }
+        if !same_spindle(state.spindle, asked.spindle) {
+            let message = format!(
+                "the spindle {} in a cut, and the CL file asks that it {}",
+                spindle_name(state.spindle),
+                spindle_name(asked.spindle)
+            );
+            self.fault("spindle", message, Some(motion), cl_line, None);
+        }
+        if state.coolants != asked.coolants {
+            let message = format!(
+                "cuts with {}, and the CL file asks for {}",
+                coolant_name(state.coolants),
+                coolant_name(asked.coolants)
+            );
+            self.fault("coolant", message, Some(motion), cl_line, None);
+        }
+        if state.compensation != asked.side {
+            let message = format!(
+                "cuts with radius compensation {}, and the CL file asks for {}",
+                side_name(state.compensation),
+                side_name(asked.side)
+            );
+            self.fault("compensation", message, Some(motion), cl_line, None);
+        } else if asked.side != 0
+            && let (Some(has), Some(wants)) = (state.radius_register, asked.register)
+            && has != wants
+        {
+            let message =
+                format!("cuts with radius register {has}, and the CL file asks for {wants}");
+            self.fault("register", message, Some(motion), cl_line, None);
+        }
+        if let Some(tool) = asked.tool.or(state.tool) {
+            let known = self.rules.tool_registers.iter();
+            let wants = known
+                .clone()
+                .find(|(number, _)| *number == tool)
+                .map_or(tool, |(_, register)| *register);
+            match state.length_register {
+                Some(has) if has != wants => {
+                    let message = format!(
+                        "cuts with length register {has}, and tool {tool} has register {wants}"
+                    );
+                    self.fault("register", message, Some(motion), cl_line, None);
+                }
+                None if self.rules.registers => {
+                    let message = format!("cuts without length compensation, tool {tool}");
+                    self.fault("register", message, Some(motion), cl_line, None);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Compares the feed: never faster than asked, and slower only where an axis could not go faster.
+    pub(super) fn compare_feed(&mut self, motion: &Motion, places: &[Place], element: &Element) {
+        let Some(asked) = element.feed else {
+            return;
+        };
+        if motion.kind == MotionKind::Thread || motion.minutes <= 0.0 {
+            return;
+        }
+        let way: f64 = places
+            .windows(2)
+            .map(|ends| (ends[1].point - ends[0].point).norm())
+            .sum();
+        if way < SHORT {
+            return;
+        }
+        let feed = way / motion.minutes;
+        let allowed = asked * (1.0 + SHARE) + PLACE;
+        if feed > allowed {
+            let message = format!("the feed is above that of the CL file, {asked} mm/min");
+            let told = format!("{message}: {feed:.1} mm/min");
+            self.limit_fault("feed", message, told, motion, element.line, feed - asked);
+            return;
+        }
+        if feed < asked * (1.0 - SHARE) - PLACE {
+            let needed = self.axes.least_minutes(self.machine, motion);
+            match needed {
+                Some((minutes, joint)) if motion.minutes <= minutes * 1.05 => {
+                    self.found.limited += 1;
+                    let name = &self.machine.axes[joint].name;
+                    self.block.limited_by = Some(format!("max_feed of {name}"));
+                }
+                _ => {
+                    self.found.slower += 1;
+                    self.block
+                        .limited_by
+                        .get_or_insert_with(|| "the program".to_owned());
+                    if motion.feed > 0.0 && motion.minutes < self.rules.longest_minutes {
+                        let message = format!(
+                            "the feed is below that of the CL file, {asked} mm/min, and no axis asks for that"
+                        );
+                        let told = format!("{message}: {feed:.1} mm/min");
+                        self.limit_fault("feed", message, told, motion, element.line, asked - feed);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// How an event is told.
+pub(super) fn event_name(told: &Told) -> String {
+    match told {
+        Told::Stop => "a stop".to_owned(),
+        Told::OptionalStop => "an optional stop".to_owned(),
+        Told::Dwell {
+            time,
+            revolutions: true,
+        } => format!("a dwell of {time} turns"),
+        Told::Dwell { time, .. } => format!("a dwell of {time} s"),
+        other => format!("{other:?}"),
+    }
+}
+
+/// The program does what is asked.
+pub(super) fn same_event(asked: &Told, done: &Told) -> bool {
+    match (asked, done) {
+        (
+            Told::Dwell {
+                time: asked,
+                revolutions: turns,
+            },
+            Told::Dwell { time, revolutions },
+        ) => turns != revolutions || libm::fabs(asked - time) <= DWELL + SHARE * asked,
+        (Told::Stop, Told::Stop) | (Told::OptionalStop, Told::OptionalStop) => true,
+        _ => false,
+    }
+}
+
+fn same_spindle(has: Spindle, wants: Spindle) -> bool {
+    let same = |a: f64, b: f64| libm::fabs(a - b) <= PLACE + SHARE * b;
+    match (has, wants) {
+        (Spindle::Clockwise(a), Spindle::Clockwise(b))
+        | (Spindle::CounterClockwise(a), Spindle::CounterClockwise(b)) => same(a, b),
+        (Spindle::Off | Spindle::Oriented, Spindle::Off | Spindle::Oriented) => true,
+        (
+            Spindle::Surface {
+                speed: a,
+                most: most_a,
+                clockwise: sense_a,
+            },
+            Spindle::Surface {
+                speed: b,
+                most: most_b,
+                clockwise: sense_b,
+            },
+        ) => {
+            let bounded = match (most_a, most_b) {
+                (Some(a), Some(b)) => same(a, b),
+                (_, None) => true,
+                (None, Some(_)) => false,
+            };
+            same(a, b) && bounded && sense_a == sense_b
+        }
+        _ => false,
+    }
+}
+
+fn spindle_name(spindle: Spindle) -> String {
+    match spindle {
+        Spindle::Off => "stands".to_owned(),
+        Spindle::Oriented => "stands at an angle".to_owned(),
+        Spindle::Clockwise(rpm) => format!("turns clockwise at {rpm}/min"),
+        Spindle::CounterClockwise(rpm) => format!("turns counter-clockwise at {rpm}/min"),
+        Spindle::Surface {
+            speed, clockwise, ..
+        } => {
+            let sense = match clockwise {
+                true => "clockwise",
+                false => "counter-clockwise",
+            };
+            format!("turns {sense} at {speed} m/min of cutting speed")
+        }
+    }
+}
+
+fn coolant_name(coolants: Coolants) -> String {
+    let names = [
+        (coolants.flood, "flood"),
+        (coolants.mist, "mist"),
+        (coolants.other, "another coolant"),
+    ];
+    let on: Vec<&str> = names
+        .iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| *name)
+        .collect();
+    match on.is_empty() {
+        true => "no coolant".to_owned(),
+        false => on.join(" and "),
+    }
+}
+
+fn side_name(side: i8) -> &'static str {
+    match side {
+        ..=-1 => "left",
+        0 => "off",
+        1.. => "right",
+    }
+}

@@ -1,0 +1,449 @@
+//! Cuts: one motion of the program along the course, never back (Alt and Godau 1995, swept motion by motion).
+//!
+//! A piece of the program against a piece of the course is a cell; where the two are within the bound is convex in it,
+//! so that what can be reached on its far sides follows from what can be reached on its near ones. Kept is the side at
+//! which the program stands now: one span for each element of the course.
+//!
+//! A motion that finds no way strays. Then the bound is widened until there is one, which says how far the program is off,
+//! and it stays wide until the program is back on the course.
+
+use super::place::{Apart, Bound, Place, Span, free, nearest};
+use super::track::What;
+use super::{Verifier, state};
+use crate::Motion;
+use crate::course::Course;
+
+/// A stretch of the program that is off the course.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stray {
+    /// The bound is so many times the tolerance.
+    pub factor: f64,
+    pub line: u64,
+    pub number: Option<u64>,
+    pub last: u64,
+    /// Lines of the course, from and to.
+    pub asked: [u64; 2],
+}
+
+/// A bound so wide that nothing is told apart by it.
+const WIDEST: f64 = 1e8;
+
+/// Steps in which it is found how far a motion is off: to a part in a thousand of twice as far.
+const STEPS: usize = 9;
+
+/// How a sweep ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Swept {
+    /// The whole motion has a place on the course.
+    Through,
+    /// None, and one reason is that this element was in the way.
+    Stopped(usize),
+    /// None.
+    Nowhere,
+}
+
+impl<C: Course> Verifier<'_, C> {
+    /// A motion at feed.
+    pub(super) fn feed(&mut self, motion: &Motion, places: &[Place]) {
+        if self.hole.is_some() {
+            return self.hole_motion(motion, places);
+        }
+        if self.drawn_back.is_some() && self.comes_back(motion, places) {
+            return;
+        }
+        self.come_back_to_the_course(&places[0]);
+        if self.apart {
+            // Where a hole is due, a feed motion is its business unless the tool is elsewhere.
+            if self.hole_is_due() && self.begins_hole(motion, places) {
+                return self.hole_motion(motion, places);
+            }
+            if self.reaches_at_feed(motion, places) {
+                return;
+            }
+            self.begin_cut(motion, &places[0]);
+        }
+        self.next = None;
+        let begun = self.reach.clone();
+        self.set_kind("cut");
+        loop {
+            let swept = self.sweep(motion, places, self.factor(), true);
+            match swept {
+                Swept::Through => break,
+                Swept::Stopped(index) => {
+                    self.reach.clone_from(&begun);
+                    if self.remove_obstacle(index, motion, places) {
+                        if self.hole.is_some() || self.apart {
+                            return;
+                        }
+                        continue;
+                    }
+                }
+                Swept::Nowhere => self.reach.clone_from(&begun),
+            }
+            if self.draws_back(places) {
+                return;
+            }
+            if !self.widen(motion, places, &begun) {
+                self.reach = begun;
+                self.fault(
+                    "added",
+                    "a motion at feed that the CL file does not ask for".to_owned(),
+                    Some(motion),
+                    None,
+                    None,
+                );
+                return;
+            }
+            break;
+        }
+        self.found.cuts += 1;
+        self.compare(motion, places);
+    }
+
+    fn factor(&self) -> f64 {
+        self.stray.map_or(1.0, |stray| stray.factor)
+    }
+
+    /// Behind a stretch that was off: within the tolerance again, where the program stands.
+    pub(super) fn come_back_to_the_course(&mut self, place: &Place) {
+        if self.stray.is_none() {
+            return;
+        }
+        let bound = self.bound;
+        let kept = self.track.kept();
+        let narrowed: Vec<Span> = self
+            .reach
+            .iter()
+            .zip(kept)
+            .map(
+                |(span, element)| match span.is_empty() || !element.is_cut() {
+                    true => Span::EMPTY,
+                    false => span.meet(&free(place, &element.from, &element.to, &bound)),
+                },
+            )
+            .collect();
+        if narrowed.iter().any(|span| !span.is_empty()) {
+            self.reach = narrowed;
+            self.flush_stray();
+        }
+    }
+
+    /// Tells of a stretch that was off.
+    pub(super) fn flush_stray(&mut self) {
+        let Some(stray) = self.stray.take() else {
+            return;
+        };
+        let point = self.rules.tolerance * stray.factor;
+        let lines = |from: u64, to: u64| match from == to {
+            true => format!("line {from}"),
+            false => format!("lines {from} to {to}"),
+        };
+        let message = format!(
+            "off the CL path by {:.3} mm or {:.3}° in {} of the program, {} of the CL file; allowed are {} mm and {:.3}°",
+            point,
+            (self.rules.axis_tolerance * stray.factor)
+                .to_degrees()
+                .min(180.0),
+            lines(stray.line, stray.last),
+            lines(stray.asked[0], stray.asked[1]),
+            self.rules.tolerance,
+            self.rules.axis_tolerance.to_degrees(),
+        );
+        self.fault_at(
+            "deviation",
+            message,
+            Some((stray.line, stray.number)),
+            Some(stray.asked[0]),
+            Some(point),
+        );
+    }
+
+    /// Carries what can be reached along a motion.
+    fn sweep(&mut self, motion: &Motion, places: &[Place], factor: f64, measured: bool) -> Swept {
+        let mut reach = std::mem::take(&mut self.reach);
+        let mut spare = std::mem::take(&mut self.spare);
+        let bounds = [self.bound.times(factor), self.rapid_bound.times(factor)];
+        let mut worst = Apart::default();
+        let mut asked = 0;
+        let mut swept = Swept::Through;
+        for ends in places.windows(2) {
+            spare.clear();
+            let column = self.column(&ends[0], &ends[1], &bounds, &reach, &mut spare);
+            std::mem::swap(&mut reach, &mut spare);
+            let Some((apart, line)) = column.here else {
+                swept = column.stopped.map_or(Swept::Nowhere, Swept::Stopped);
+                break;
+            };
+            (worst, asked) = (worst.larger(&apart), line);
+        }
+        (self.reach, self.spare) = (reach, spare);
+        if measured && swept == Swept::Through {
+            self.block.cl_line = Some(asked);
+            match &mut self.stray {
+                None => self.note_deviation(worst, motion.line, asked),
+                Some(stray) => {
+                    stray.last = motion.line;
+                    stray.asked[1] = stray.asked[1].max(asked);
+                    let angle = worst.axis.to_degrees();
+                    self.block.tip_deviation_mm = self.block.tip_deviation_mm.max(worst.point);
+                    self.block.axis_deviation_deg = self.block.axis_deviation_deg.max(angle);
+                }
+            }
+        }
+        swept
+    }
+
+    /// One straight piece of the program against the course.
+    fn column(
+        &mut self,
+        from: &Place,
+        to: &Place,
+        bounds: &[Bound; 2],
+        reach: &[Span],
+        out: &mut Vec<Span>,
+    ) -> Column {
+        let mut column = Column {
+            here: None,
+            stopped: None,
+        };
+        let mut apart: Option<Apart> = None;
+        let mut line = 0;
+        // What can be reached of the program's piece at the beginning of the element.
+        let mut below = Span::EMPTY;
+        let mut below_bound = bounds[0];
+        let mut index = 0;
+        while index < reach.len() || !below.is_empty() {
+            let left = reach.get(index).copied().unwrap_or(Span::EMPTY);
+            if left.is_empty() && below.is_empty() {
+                out.push(Span::EMPTY);
+                index += 1;
+                continue;
+            }
+            let Some(element) = self.track.get(index) else {
+                break;
+            };
+            let bound = match &element.what {
+                What::Cut | What::Thread => bounds[0],
+                What::Way => bounds[1],
+                // It was met: nothing of the way.
+                What::Event(_, true) => {
+                    out.push(Span::EMPTY);
+                    index += 1;
+                    continue;
+                }
+                What::Event(_, false) | What::Hole(_) | What::Reach => {
+                    column.stopped = Some(index);
+                    out.push(Span::EMPTY);
+                    below = Span::EMPTY;
+                    index += 1;
+                    continue;
+                }
+            };
+            if left.from <= 0.0 {
+                let tight = smaller(&bound, &below_bound);
+                let edge = free(&element.from, from, to, &tight);
+                if edge.from <= 0.0 && !edge.is_empty() {
+                    below = match below.is_empty() {
+                        true => edge,
+                        false => Span {
+                            from: 0.0,
+                            to: edge.to,
+                        },
+                    };
+                }
+            }
+            let right = free(to, &element.from, &element.to, &bound);
+            let right = match below.is_empty() {
+                false => right,
+                true => right.meet(&Span {
+                    from: left.from,
+                    to: 1.0,
+                }),
+            };
+            let top = free(&element.to, from, to, &bound);
+            let top = match left.is_empty() {
+                false => top,
+                true => top.meet(&Span {
+                    from: below.from,
+                    to: 1.0,
+                }),
+            };
+            if !right.is_empty() {
+                let near = nearest(to, &element.from, &element.to, &right);
+                if apart.is_none_or(|best| near.point < best.point) {
+                    line = element.line;
+                }
+                apart = Some(apart.map_or(near, |best| best.smaller(&near)));
+            }
+            if !top.is_empty() {
+                element.near = element.near.smaller(&nearest(&element.to, from, to, &top));
+            }
+            out.push(right);
+            (below, below_bound) = (top, bound);
+            index += 1;
+        }
+        column.here = apart.map(|apart| (apart, line));
+        column
+    }
+
+    /// Widens the bound until the motion has a place on the course; false if none is wide enough.
+    fn widen(&mut self, motion: &Motion, places: &[Place], begun: &[Span]) -> bool {
+        let mut low = self.factor();
+        let mut high = low;
+        loop {
+            (low, high) = (high, high * 2.0);
+            if high > WIDEST {
+                return false;
+            }
+            self.begin_from(begun, &places[0], high);
+            if self.sweep(motion, places, high, false) == Swept::Through {
+                break;
+            }
+        }
+        for _ in 0..STEPS {
+            let middle = 0.5 * (low + high);
+            self.begin_from(begun, &places[0], middle);
+            match self.sweep(motion, places, middle, false) {
+                Swept::Through => high = middle,
+                _ => low = middle,
+            }
+        }
+        self.begin_from(begun, &places[0], high);
+        let asked = self.stands_at();
+        let stray = self.stray.get_or_insert(Stray {
+            factor: high,
+            line: motion.line,
+            number: motion.number,
+            last: motion.line,
+            asked: [asked, asked],
+        });
+        stray.factor = high;
+        self.sweep(motion, places, high, true);
+        true
+    }
+
+    /// What can be reached with a wider bound where less could be with the narrower one: all around it that is free.
+    fn begin_from(&mut self, begun: &[Span], place: &Place, factor: f64) {
+        self.reach.clear();
+        self.reach.extend_from_slice(begun);
+        let bound = self.bound.times(factor);
+        for (index, span) in self.reach.iter_mut().enumerate() {
+            if span.is_empty() {
+                continue;
+            }
+            if let Some(element) = self.track.kept().get(index)
+                && element.is_cut()
+            {
+                let wide = free(place, &element.from, &element.to, &bound);
+                if !wide.is_empty() {
+                    *span = Span {
+                        from: span.from.min(wide.from.max(span.from)),
+                        to: span.to.max(wide.to),
+                    };
+                }
+            }
+        }
+    }
+
+    /// The line of the course at which the program stands, as far on as it may.
+    pub(super) fn stands_at(&self) -> u64 {
+        let index = self.reach.iter().rposition(|span| !span.is_empty());
+        let index = index.or(self.next).unwrap_or(0);
+        let element = self.track.kept().get(index);
+        element.map_or(self.track.line(), |element| element.line)
+    }
+
+    /// Something of the course stands between cuts. True if the motion can be tried again, or was dealt with.
+    fn remove_obstacle(&mut self, index: usize, motion: &Motion, places: &[Place]) -> bool {
+        let Some(element) = self.track.get(index) else {
+            return false;
+        };
+        let line = element.line;
+        match &mut element.what {
+            What::Event(told, met @ false) => {
+                *met = true;
+                let message = format!("{} is left out", state::event_name(told));
+                self.fault("event", message, Some(motion), Some(line), None);
+                true
+            }
+            What::Hole(_) => {
+                self.next = Some(index);
+                if !self.begins_hole(motion, places) {
+                    self.next = None;
+                    return false;
+                }
+                self.leave_cuts();
+                self.hole_motion(motion, places);
+                true
+            }
+            What::Reach => {
+                self.next = Some(index);
+                if !self.reaches_at_feed(motion, places) {
+                    self.next = None;
+                    return false;
+                }
+                self.leave_cuts();
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn leave_cuts(&mut self) {
+        self.reach.iter_mut().for_each(|span| *span = Span::EMPTY);
+        self.apart = true;
+    }
+
+    /// Drawn back along its own axis at feed, a tool leaves its cut for a while.
+    fn draws_back(&mut self, places: &[Place]) -> bool {
+        let (from, to) = (&places[0], &places[places.len() - 1]);
+        let way = to.point - from.point;
+        let along = way.dot(&from.axis);
+        let straight = (way - from.axis * along).norm() <= self.bound.point
+            && (to.axis - from.axis).norm() <= self.bound.axis;
+        if along > 0.0 && straight {
+            self.drawn_back = Some(*from);
+            self.set_kind("rapid");
+            return true;
+        }
+        false
+    }
+
+    /// Back where a cut was left, along the axis of the tool. False if the motion is none of that.
+    fn comes_back(&mut self, motion: &Motion, places: &[Place]) -> bool {
+        let Some(left) = self.drawn_back else {
+            return false;
+        };
+        let to = &places[places.len() - 1];
+        let bound = self.bound;
+        if to.within(&left, &bound) {
+            self.drawn_back = None;
+            self.apart = true;
+            return true;
+        }
+        let offset = to.point - left.point;
+        let above = offset.dot(&left.axis);
+        if above > -bound.point {
+            return true;
+        }
+        self.drawn_back = None;
+        let message = "the tool left its cut along its own axis, and cuts on elsewhere".to_owned();
+        self.fault("excursion", message, Some(motion), None, None);
+        false
+    }
+}
+
+/// What became of a piece.
+struct Column {
+    /// How near its end is to the course, and the line there; none if it has no place.
+    here: Option<(Apart, u64)>,
+    /// An element that no cut passes.
+    stopped: Option<usize>,
+}
+
+fn smaller(a: &Bound, b: &Bound) -> Bound {
+    Bound {
+        point: a.point.min(b.point),
+        axis: a.axis.min(b.axis),
+    }
+}

@@ -1,0 +1,322 @@
+//! The course, cut into what a program is held against: short straight pieces, points, holes and events.
+//!
+//! Only what the program may stand at is kept: what lies behind it is dropped, what lies ahead is not read yet.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use post_machine::diagnostic::Diagnostic;
+
+use super::chop;
+use super::place::{Apart, Bound, Place};
+use crate::course::{Course, Item, Piece};
+use crate::{Coolants, CycleKind, MotionKind, Spindle, Told};
+
+/// What a course asks to hold while the tool cuts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Asked {
+    pub tool: Option<u32>,
+    pub spindle: Spindle,
+    pub coolants: Coolants,
+    /// Side of the contour: -1 left, 1 right, 0 off.
+    pub side: i8,
+    /// Its register.
+    pub register: Option<u32>,
+}
+
+/// One thing that a course asks for.
+#[derive(Clone, Debug)]
+pub(super) struct Element {
+    pub line: u64,
+    pub what: What,
+    pub from: Place,
+    pub to: Place,
+    pub asked: Arc<Asked>,
+    /// mm/min.
+    pub feed: Option<f64>,
+    /// Its end is the end of what the course calls one piece.
+    pub ends: bool,
+    /// How near the program has come to its end while it might stand there.
+    pub near: Apart,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub(super) enum What {
+    /// A straight piece at feed.
+    Cut,
+    /// A straight piece along a thread.
+    Thread,
+    /// A point that is passed at rapid, and the straight way to it.
+    Way,
+    /// A point that is reached by whatever way.
+    Reach,
+    /// A hole of a cycle.
+    Hole(Box<Hole>),
+    /// The program stops or waits; it was met.
+    Event(Told, bool),
+}
+
+/// A hole: from the level where the feed begins to the bottom.
+#[derive(Clone, Debug)]
+pub(super) struct Hole {
+    pub kind: CycleKind,
+    /// At the bottom.
+    pub dwell: Option<Told>,
+    /// How the tool comes back.
+    pub back: Option<MotionKind>,
+}
+
+/// A course on its way to a program.
+#[derive(Debug)]
+pub(super) struct Track<C> {
+    course: C,
+    along: f64,
+    sag: Bound,
+    elements: VecDeque<Element>,
+    asked: Arc<Asked>,
+    cycle: Option<CycleKind>,
+    hole: Option<Element>,
+    places: Vec<Place>,
+    ended: bool,
+    /// Line of the item read last.
+    line: u64,
+    /// What cannot be understood.
+    pub faults: Vec<Diagnostic>,
+}
+
+/// More elements are not kept: a program that lingers over more of its path is lost.
+pub(super) const MOST: usize = 60_000;
+
+/// So many faults of a course are kept.
+const MOST_FAULTS: usize = 50;
+
+/// Infinitely far.
+const FAR: Apart = Apart {
+    point: f64::INFINITY,
+    axis: f64::INFINITY,
+};
+
+impl<C: Course> Track<C> {
+    pub fn new(course: C, along: f64, sag: Bound) -> Self {
+        Self {
+            course,
+            along,
+            sag,
+            elements: VecDeque::new(),
+            asked: Arc::default(),
+            cycle: None,
+            hole: None,
+            places: Vec::new(),
+            ended: false,
+            line: 0,
+            faults: Vec::new(),
+        }
+    }
+
+    /// The element at `index` of those that are kept; read if need be. None at the end, and where too many are kept.
+    pub fn get(&mut self, index: usize) -> Option<&mut Element> {
+        while self.elements.len() <= index {
+            if self.ended || index >= MOST {
+                return None;
+            }
+            self.read();
+        }
+        self.elements.get_mut(index)
+    }
+
+    /// The elements that are kept.
+    pub fn kept(&self) -> &VecDeque<Element> {
+        &self.elements
+    }
+
+    /// Drops the first.
+    pub fn pop(&mut self) -> Option<Element> {
+        self.elements.pop_front()
+    }
+
+    /// Line that was read last.
+    pub fn line(&self) -> u64 {
+        self.line
+    }
+
+    fn read(&mut self) {
+        match self.course.next() {
+            Ok(Some(item)) => self.take(item),
+            Ok(None) => {
+                self.end_hole();
+                self.ended = true;
+            }
+            Err(fault) => {
+                if self.faults.len() < MOST_FAULTS {
+                    self.faults.push(*fault);
+                } else {
+                    self.ended = true;
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, item: Item) {
+        match item {
+            Item::Piece(piece) => {
+                self.line = piece.line;
+                self.piece(&piece);
+            }
+            Item::Reach(reach) => {
+                self.line = reach.line;
+                self.end_hole();
+                if reach.hole {
+                    return;
+                }
+                let to = Place::new(&reach.to, self.along);
+                self.push(reach.line, What::Reach, (to, to), None);
+            }
+            Item::Away { line } => {
+                self.line = line;
+                self.end_hole();
+            }
+            Item::Told { line, told } => {
+                self.line = line;
+                self.told(line, told);
+            }
+        }
+    }
+
+    fn piece(&mut self, piece: &Piece) {
+        let from = Place::new(&piece.from, self.along);
+        let to = Place::new(&piece.to, self.along);
+        if piece.hole && self.of_hole(piece, from, to) {
+            return;
+        }
+        self.end_hole();
+        let what = match piece.kind {
+            // Between holes a control goes its own ways; where their feed begins is looked at.
+            MotionKind::Rapid if piece.hole => return,
+            MotionKind::Rapid => {
+                self.push(piece.line, What::Way, (from, to), None);
+                return;
+            }
+            MotionKind::Feed => What::Cut,
+            MotionKind::Thread => What::Thread,
+        };
+        let mut places = std::mem::take(&mut self.places);
+        places.clear();
+        chop::piece(piece, self.along, &self.sag, &mut places);
+        let mut last = from;
+        let count = places.len();
+        for (index, place) in places.iter().enumerate() {
+            self.push(piece.line, what.clone(), (last, *place), piece.feed);
+            if let Some(element) = self.elements.back_mut() {
+                element.ends = index + 1 == count;
+            }
+            last = *place;
+        }
+        self.places = places;
+    }
+
+    /// A piece of a hole; false if it is none of the way down and up.
+    fn of_hole(&mut self, piece: &Piece, from: Place, to: Place) -> bool {
+        let down = piece.kind != MotionKind::Rapid;
+        match &mut self.hole {
+            None if down => {
+                let hole = Hole {
+                    kind: self.cycle.unwrap_or_default(),
+                    dwell: None,
+                    back: None,
+                };
+                self.hole = Some(Element {
+                    line: piece.line,
+                    what: What::Hole(Box::new(hole)),
+                    from,
+                    to,
+                    asked: Arc::clone(&self.asked),
+                    feed: piece.feed,
+                    ends: true,
+                    near: FAR,
+                });
+                true
+            }
+            None => false,
+            Some(element) => {
+                // Up again; whatever else a control does at the bottom is its business.
+                let up = (to.point - element.from.point).norm() <= self.sag.point * 32.0;
+                match &mut element.what {
+                    What::Hole(hole) if hole.back.is_none() => {
+                        if up {
+                            hole.back = Some(piece.kind);
+                        }
+                        true
+                    }
+                    _ => false,
+                }
+            }
+        }
+    }
+
+    fn end_hole(&mut self) {
+        if let Some(hole) = self.hole.take() {
+            self.elements.push_back(hole);
+        }
+    }
+
+    fn push(&mut self, line: u64, what: What, ends: (Place, Place), feed: Option<f64>) {
+        self.elements.push_back(Element {
+            line,
+            what,
+            from: ends.0,
+            to: ends.1,
+            asked: Arc::clone(&self.asked),
+            feed,
+            ends: true,
+            near: FAR,
+        });
+    }
+
+    fn told(&mut self, line: u64, told: Told) {
+        match told {
+            Told::ToolChange { number, .. } => {
+                self.end_hole();
+                Arc::make_mut(&mut self.asked).tool = number;
+            }
+            Told::Spindle(spindle) => Arc::make_mut(&mut self.asked).spindle = spindle,
+            Told::Coolant(coolants) => Arc::make_mut(&mut self.asked).coolants = coolants,
+            Told::Compensation { side, register } => {
+                let asked = Arc::make_mut(&mut self.asked);
+                (asked.side, asked.register) = (side, register);
+            }
+            Told::Cycle(call) => {
+                self.end_hole();
+                self.cycle = Some(call.kind);
+            }
+            Told::CycleEnd => {
+                self.end_hole();
+                self.cycle = None;
+            }
+            Told::Dwell { .. } if self.hole.is_some() => {
+                if let Some(Element {
+                    what: What::Hole(hole),
+                    ..
+                }) = &mut self.hole
+                {
+                    hole.dwell = Some(told);
+                }
+            }
+            Told::Dwell { .. } | Told::Stop | Told::OptionalStop => {
+                self.end_hole();
+                let at = self
+                    .elements
+                    .back()
+                    .map_or_else(Place::default, |last| last.to);
+                self.push(line, What::Event(told, false), (at, at), None);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Element {
+    pub fn is_cut(&self) -> bool {
+        matches!(self.what, What::Cut | What::Thread)
+    }
+}

@@ -1,0 +1,3 @@
+//! Tests of reading back on hand-made programs and courses.
+
+mod verify;

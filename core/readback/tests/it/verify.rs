@@ -1,0 +1,625 @@
+//! Programs and courses made by hand: what is held against what, and what is told.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use post_machine::description::{Machine, Source, load};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Pose;
+use post_readback::course::{Course, Curve, Item, Piece, Reach};
+use post_readback::verify::{BlockReport, Rules, Verification, Verifier};
+use post_readback::{
+    Coolants, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State, Told, Way,
+};
+use post_testkit::frechet::frechet;
+use post_testkit::seeded;
+
+type V = Vector3<f64>;
+
+/// Items that were written down.
+struct Written(VecDeque<Item>);
+
+impl Course for Written {
+    fn next(&mut self) -> Result<Option<Item>, Box<Diagnostic>> {
+        Ok(self.0.pop_front())
+    }
+}
+
+fn machine() -> Machine {
+    let text = include_str!("../../../../machines/vmc.toml");
+    let source = Source {
+        name: "vmc".to_owned(),
+        text: text.to_owned(),
+    };
+    load(source, &[], &mut |_| Err(String::new())).unwrap()
+}
+
+fn pose(tip: V) -> Pose {
+    Pose {
+        tip,
+        axis: V::z(),
+        edge: V::zeros(),
+    }
+}
+
+fn v(x: f64, y: f64, z: f64) -> V {
+    V::new(x, y, z)
+}
+
+/// A course, written point by point.
+#[derive(Default)]
+struct Asks {
+    items: VecDeque<Item>,
+    at: Option<V>,
+    line: u64,
+    hole: bool,
+}
+
+impl Asks {
+    fn go(mut self, kind: MotionKind, to: V) -> Self {
+        self.line += 1;
+        let feed = (kind != MotionKind::Rapid).then_some(500.0);
+        let item = match self.at {
+            None => Item::Reach(Reach {
+                line: self.line,
+                kind,
+                to: pose(to),
+                feed,
+                hole: self.hole,
+            }),
+            Some(from) => Item::Piece(Piece {
+                line: self.line,
+                kind,
+                curve: Curve::Straight,
+                from: pose(from),
+                to: pose(to),
+                feed,
+                hole: self.hole,
+            }),
+        };
+        self.items.push_back(item);
+        self.at = Some(to);
+        self
+    }
+
+    fn rapid(self, x: f64, y: f64, z: f64) -> Self {
+        self.go(MotionKind::Rapid, v(x, y, z))
+    }
+
+    fn cut(self, x: f64, y: f64, z: f64) -> Self {
+        self.go(MotionKind::Feed, v(x, y, z))
+    }
+
+    fn tell(mut self, told: Told) -> Self {
+        self.line += 1;
+        self.items.push_back(Item::Told {
+            line: self.line,
+            told,
+        });
+        self
+    }
+
+    fn hole(mut self, depth: f64) -> Self {
+        let top = self.at.unwrap();
+        self = self.tell(Told::Cycle(CycleCall {
+            kind: CycleKind::Deep,
+            ..CycleCall::default()
+        }));
+        self.hole = true;
+        self = self.cut(top.x, top.y, top.z - depth);
+        self = self.rapid(top.x, top.y, top.z);
+        self.hole = false;
+        self.tell(Told::CycleEnd)
+    }
+}
+
+/// A program, written motion by motion.
+struct Does {
+    done: Vec<Done>,
+    state: Arc<State>,
+    at: V,
+    line: u64,
+}
+
+impl Does {
+    fn at(x: f64, y: f64, z: f64) -> Self {
+        let machine = machine();
+        let state = State {
+            solver: Arc::new(machine.solver(0.0).unwrap()),
+            length: 0.0,
+            tool: None,
+            length_register: None,
+            radius_register: None,
+            compensation: 0,
+            tcp: false,
+            plane: None,
+            work_offset: None,
+            spindle: Spindle::Off,
+            coolants: Coolants::default(),
+            operation: None,
+            smoothing: None,
+        };
+        Self {
+            done: Vec::new(),
+            state: Arc::new(state),
+            at: v(x, y, z),
+            line: 0,
+        }
+    }
+
+    fn go(mut self, kind: MotionKind, to: V) -> Self {
+        self.line += 1;
+        let stance = |tip: V| {
+            let mut joints = Default::default();
+            let solver = &self.state.solver;
+            let turns = solver.chain().turns(&joints);
+            solver.place(tip, &mut joints, &turns).unwrap();
+            Stance {
+                joints,
+                pose: solver.chain().forward(&joints),
+            }
+        };
+        let minutes = match kind {
+            MotionKind::Rapid => 0.0,
+            _ => (to - self.at).norm() / 500.0,
+        };
+        self.done.push(Done::Motion(Motion {
+            line: self.line,
+            number: None,
+            kind,
+            way: Way::Axes,
+            from: stance(self.at),
+            to: stance(to),
+            feed: 500.0,
+            minutes,
+            hole: false,
+            state: Arc::clone(&self.state),
+        }));
+        self.at = to;
+        self
+    }
+
+    fn rapid(self, x: f64, y: f64, z: f64) -> Self {
+        self.go(MotionKind::Rapid, v(x, y, z))
+    }
+
+    fn cut(self, x: f64, y: f64, z: f64) -> Self {
+        self.go(MotionKind::Feed, v(x, y, z))
+    }
+
+    fn tell(mut self, told: Told) -> Self {
+        self.line += 1;
+        self.done.push(Done::Told {
+            line: self.line,
+            told,
+        });
+        self
+    }
+
+    fn with(mut self, change: impl FnOnce(&mut State)) -> Self {
+        change(Arc::make_mut(&mut self.state));
+        self
+    }
+}
+
+fn verify(does: &Does, asks: Asks) -> (Verification, Vec<BlockReport>) {
+    let machine = machine();
+    let rules = Rules::of(&machine);
+    let mut verifier = Verifier::new(&machine, rules, Written(asks.items));
+    let mut rows = Vec::new();
+    for done in &does.done {
+        verifier.take(done, &mut |row| rows.push(row.clone()));
+    }
+    let found = verifier.finish(&mut |row| rows.push(row.clone()));
+    (found, rows)
+}
+
+/// The codes of the faults with their lines of program and course.
+fn codes(does: &Does, asks: Asks) -> Vec<(&'static str, u64, u64)> {
+    let (found, _) = verify(does, asks);
+    let row = |fault: &post_readback::verify::Fault| {
+        (
+            fault.code,
+            fault.nc_line.unwrap_or(0),
+            fault.cl_line.unwrap_or(0),
+        )
+    };
+    found.faults.iter().map(row).collect()
+}
+
+fn square() -> Asks {
+    Asks::default()
+        .rapid(0.0, 0.0, 10.0)
+        .rapid(0.0, 0.0, 1.0)
+        .cut(0.0, 0.0, -2.0)
+        .cut(20.0, 0.0, -2.0)
+        .cut(20.0, 20.0, -2.0)
+        .cut(0.0, 20.0, -2.0)
+        .cut(0.0, 0.0, -2.0)
+        .rapid(0.0, 0.0, 10.0)
+}
+
+fn begin() -> Does {
+    Does::at(100.0, 100.0, 15.0)
+        .rapid(0.0, 0.0, 15.0)
+        .rapid(0.0, 0.0, 10.0)
+        .rapid(0.0, 0.0, 1.0)
+        .cut(0.0, 0.0, -2.0)
+}
+
+#[test]
+fn a_program_that_does_what_is_asked_has_no_fault() {
+    let does = begin()
+        .cut(10.0, 0.002, -2.0)
+        .cut(20.0, 0.0, -2.0)
+        .cut(20.0, 20.0, -2.0)
+        .cut(0.0, 20.0, -2.0)
+        .cut(0.0, 0.0, -2.0)
+        .rapid(0.0, 0.0, 10.0);
+    let (found, rows) = verify(&does, square());
+    assert_eq!(found.faults, []);
+    assert_eq!((found.motions, found.cuts, found.rapids), (10, 6, 4));
+    assert!((found.tip.value - 0.002).abs() < 1e-9, "{:?}", found.tip);
+    assert_eq!((found.tip.nc_line, found.tip.cl_line), (5, 4));
+    assert_eq!(rows.len(), 10);
+    assert_eq!((rows[4].kind, rows[4].cl_line), ("cut", Some(4)));
+}
+
+#[test]
+fn what_is_off_is_told_once_with_both_places() {
+    let does = begin()
+        .cut(20.0, 0.0, -2.0)
+        .cut(20.0, 20.3, -2.0)
+        .cut(0.0, 20.0, -2.0)
+        .cut(0.0, 0.0, -2.0)
+        .rapid(0.0, 0.0, 10.0);
+    let (found, _) = verify(&does, square());
+    assert_eq!(found.faults.len(), 1, "{:#?}", found.faults);
+    let fault = &found.faults[0];
+    assert_eq!(
+        (fault.code, fault.nc_line, fault.cl_line),
+        ("deviation", Some(6), Some(5))
+    );
+    let by = fault.by.unwrap();
+    assert!((0.25..0.31).contains(&by), "{by}");
+}
+
+#[test]
+fn points_left_out_swapped_and_doubled_are_found() {
+    let left_out = begin()
+        .cut(20.0, 0.0, -2.0)
+        .cut(0.0, 20.0, -2.0)
+        .cut(0.0, 0.0, -2.0)
+        .rapid(0.0, 0.0, 10.0);
+    assert_eq!(codes(&left_out, square()), [("deviation", 6, 5)]);
+    let swapped = begin()
+        .cut(20.0, 20.0, -2.0)
+        .cut(20.0, 0.0, -2.0)
+        .cut(0.0, 20.0, -2.0)
+        .cut(0.0, 0.0, -2.0)
+        .rapid(0.0, 0.0, 10.0);
+    assert_eq!(codes(&swapped, square())[0].0, "deviation");
+    // The same path, gone along to and fro.
+    let doubled = begin()
+        .cut(20.0, 0.0, -2.0)
+        .cut(10.0, 0.0, -2.0)
+        .cut(20.0, 0.0, -2.0)
+        .cut(20.0, 20.0, -2.0)
+        .cut(0.0, 20.0, -2.0)
+        .cut(0.0, 0.0, -2.0)
+        .rapid(0.0, 0.0, 10.0);
+    assert_eq!(codes(&doubled, square())[0].0, "deviation");
+    let short = begin().cut(20.0, 0.0, -2.0).cut(20.0, 20.0, -2.0);
+    assert_eq!(codes(&short, square()).last().unwrap().0, "missing");
+}
+
+#[test]
+fn a_rapid_in_place_of_a_cut_is_found() {
+    let does = begin()
+        .cut(20.0, 0.0, -2.0)
+        .rapid(20.0, 20.0, -2.0)
+        .cut(0.0, 20.0, -2.0)
+        .cut(0.0, 0.0, -2.0)
+        .rapid(0.0, 0.0, 10.0);
+    let found = codes(&does, square());
+    assert_eq!(found, [("missing", 7, 5)]);
+}
+
+#[test]
+fn a_cut_may_be_left_and_gone_on_with() {
+    let does = begin()
+        .cut(20.0, 0.0, -2.0)
+        .cut(20.0, 10.0, -2.0)
+        .rapid(20.0, 10.0, 50.0)
+        .rapid(70.0, 10.0, 50.0)
+        .rapid(20.0, 10.0, 50.0)
+        .rapid(20.0, 10.0, -2.0)
+        .cut(20.0, 20.0, -2.0)
+        // At feed along its own axis.
+        .cut(20.0, 20.0, 30.0)
+        .rapid(0.0, 70.0, 30.0)
+        .rapid(20.0, 20.0, 30.0)
+        .cut(20.0, 20.0, -2.0)
+        .cut(0.0, 20.0, -2.0)
+        .cut(0.0, 0.0, -2.0)
+        .rapid(0.0, 0.0, 10.0);
+    let (found, _) = verify(&does, square());
+    assert_eq!(found.faults, []);
+    assert_eq!(found.excursions, 2);
+}
+
+fn holes() -> Asks {
+    Asks::default()
+        .rapid(0.0, 0.0, 2.0)
+        .hole(12.0)
+        .rapid(10.0, 0.0, 2.0)
+        .hole(12.0)
+        .rapid(10.0, 0.0, 50.0)
+}
+
+#[test]
+fn holes_are_pecked_as_the_control_likes() {
+    let does = Does::at(0.0, 0.0, 50.0)
+        .rapid(0.0, 0.0, 2.0)
+        .cut(0.0, 0.0, -5.0)
+        .rapid(0.0, 0.0, 2.0)
+        .rapid(0.0, 0.0, -4.5)
+        .cut(0.0, 0.0, -10.0)
+        .rapid(0.0, 0.0, 20.0)
+        .rapid(10.0, 0.0, 20.0)
+        .rapid(10.0, 0.0, 2.0)
+        .cut(10.0, 0.0, -10.0)
+        .rapid(10.0, 0.0, 50.0);
+    let (found, _) = verify(&does, holes());
+    assert_eq!(found.faults, []);
+    assert_eq!(found.holes, 2);
+}
+
+#[test]
+fn holes_that_are_not_made_so_are_told() {
+    let shallow = Does::at(0.0, 0.0, 50.0)
+        .rapid(0.0, 0.0, 2.0)
+        .cut(0.0, 0.0, -9.0)
+        .rapid(0.0, 0.0, 20.0)
+        .rapid(10.0, 0.0, 2.0)
+        .cut(10.0, 0.0, -10.0)
+        .rapid(10.0, 0.0, 50.0);
+    assert_eq!(codes(&shallow, holes()), [("hole", 4, 3)]);
+    let deep = Does::at(0.0, 0.0, 50.0)
+        .rapid(0.0, 0.0, 2.0)
+        .cut(0.0, 0.0, -10.1)
+        .rapid(0.0, 0.0, 20.0)
+        .rapid(10.0, 0.0, 2.0)
+        .cut(10.0, 0.0, -10.0)
+        .rapid(10.0, 0.0, 50.0);
+    assert_eq!(codes(&deep, holes()), [("hole", 2, 3)]);
+    let rapid_into = Does::at(0.0, 0.0, 50.0)
+        .rapid(0.0, 0.0, 2.0)
+        .cut(0.0, 0.0, -5.0)
+        .rapid(0.0, 0.0, 2.0)
+        .rapid(0.0, 0.0, -7.0)
+        .cut(0.0, 0.0, -10.0)
+        .rapid(0.0, 0.0, 20.0)
+        .rapid(10.0, 0.0, 2.0)
+        .cut(10.0, 0.0, -10.0)
+        .rapid(10.0, 0.0, 50.0);
+    assert_eq!(codes(&rapid_into, holes()), [("hole", 4, 3)]);
+    let one = Does::at(0.0, 0.0, 50.0)
+        .rapid(0.0, 0.0, 2.0)
+        .cut(0.0, 0.0, -10.0)
+        .rapid(0.0, 0.0, 20.0)
+        .rapid(10.0, 0.0, 2.0)
+        .rapid(10.0, 0.0, 50.0);
+    assert_eq!(codes(&one, holes())[0].0, "missing");
+    let elsewhere = Does::at(0.0, 0.0, 50.0)
+        .rapid(0.0, 0.0, 2.0)
+        .cut(0.0, 0.0, -10.0)
+        .rapid(0.0, 0.0, 20.0)
+        .rapid(10.0, 0.3, 2.0)
+        .cut(10.0, 0.3, -10.0)
+        .rapid(10.0, 0.3, 50.0);
+    assert_eq!(codes(&elsewhere, holes()), [("deviation", 5, 8)]);
+}
+
+#[test]
+fn what_holds_in_a_cut_is_compared() {
+    let asks = || {
+        let told = Asks::default()
+            .tell(Told::ToolChange {
+                number: Some(3),
+                name: None,
+            })
+            .tell(Told::Spindle(Spindle::Clockwise(8000.0)))
+            .tell(Told::Coolant(Coolants {
+                flood: true,
+                ..Coolants::default()
+            }));
+        let mut square = square();
+        for item in &mut square.items {
+            match item {
+                Item::Piece(piece) => piece.line += told.line,
+                Item::Reach(reach) => reach.line += told.line,
+                _ => {}
+            }
+        }
+        Asks {
+            items: told.items.into_iter().chain(square.items).collect(),
+            ..square
+        }
+    };
+    let does = |change: fn(&mut State)| {
+        let set = |state: &mut State| {
+            state.tool = Some(3);
+            state.length_register = Some(3);
+            state.spindle = Spindle::Clockwise(8000.0);
+            state.coolants.flood = true;
+        };
+        Does::at(0.0, 0.0, 15.0)
+            .with(set)
+            .rapid(0.0, 0.0, 10.0)
+            .rapid(0.0, 0.0, 1.0)
+            .cut(0.0, 0.0, -2.0)
+            .cut(20.0, 0.0, -2.0)
+            .with(change)
+            .cut(20.0, 20.0, -2.0)
+            .cut(0.0, 20.0, -2.0)
+            .cut(0.0, 0.0, -2.0)
+            .with(set)
+            .rapid(0.0, 0.0, 10.0)
+    };
+    assert_eq!(codes(&does(|_| {}), asks()), []);
+    for (change, code) in [
+        ((|state| state.tool = Some(4)) as fn(&mut State), "tool"),
+        (|state| state.length_register = Some(4), "register"),
+        (|state| state.spindle = Spindle::Off, "spindle"),
+        (
+            |state| state.spindle = Spindle::Clockwise(7000.0),
+            "spindle",
+        ),
+        (
+            |state| state.spindle = Spindle::CounterClockwise(8000.0),
+            "spindle",
+        ),
+        (|state| state.coolants.flood = false, "coolant"),
+        (|state| state.compensation = -1, "compensation"),
+    ] {
+        let found = codes(&does(change), asks());
+        assert_eq!(found[0], (code, 5, 8), "{found:?}");
+    }
+}
+
+#[test]
+fn stops_and_dwells_stand_where_they_are_asked_for() {
+    let asks = || {
+        Asks::default()
+            .rapid(0.0, 0.0, 0.0)
+            .cut(10.0, 0.0, 0.0)
+            .tell(Told::Dwell {
+                time: 2.0,
+                revolutions: false,
+            })
+            .cut(20.0, 0.0, 0.0)
+            .rapid(20.0, 0.0, 10.0)
+            .tell(Told::Stop)
+            .rapid(20.0, 0.0, 0.0)
+            .cut(30.0, 0.0, 0.0)
+    };
+    let wait = |time: f64| Told::Dwell {
+        time,
+        revolutions: false,
+    };
+    let good = Does::at(0.0, 0.0, 10.0)
+        .rapid(0.0, 0.0, 0.0)
+        .cut(10.0, 0.0, 0.0)
+        .tell(wait(2.0))
+        .cut(20.0, 0.0, 0.0)
+        .rapid(20.0, 0.0, 10.0)
+        .tell(Told::Stop)
+        .rapid(20.0, 0.0, 0.0)
+        .cut(30.0, 0.0, 0.0);
+    assert_eq!(codes(&good, asks()), []);
+    let none = Does::at(0.0, 0.0, 10.0)
+        .rapid(0.0, 0.0, 0.0)
+        .cut(10.0, 0.0, 0.0)
+        .cut(20.0, 0.0, 0.0)
+        .rapid(20.0, 0.0, 10.0)
+        .rapid(20.0, 0.0, 0.0)
+        .cut(30.0, 0.0, 0.0);
+    assert_eq!(codes(&none, asks()), [("event", 3, 3), ("event", 6, 6)]);
+    let elsewhere = Does::at(0.0, 0.0, 10.0)
+        .rapid(0.0, 0.0, 0.0)
+        .cut(5.0, 0.0, 0.0)
+        .tell(wait(2.0))
+        .cut(20.0, 0.0, 0.0)
+        .rapid(20.0, 0.0, 10.0)
+        .tell(Told::Stop)
+        .tell(Told::OptionalStop)
+        .rapid(20.0, 0.0, 0.0)
+        .cut(30.0, 0.0, 0.0);
+    assert_eq!(
+        codes(&elsewhere, asks()),
+        [("event", 3, 3), ("event", 7, 0)]
+    );
+}
+
+#[test]
+fn limits_of_the_axes_are_told_and_feeds_compared() {
+    let asks = || {
+        Asks::default()
+            .rapid(0.0, 0.0, 0.0)
+            .cut(600.0, 0.0, 0.0)
+            .rapid(0.0, 0.0, 0.0)
+    };
+    let does = Does::at(0.0, 0.0, 10.0)
+        .rapid(0.0, 0.0, 0.0)
+        .cut(600.0, 0.0, 0.0)
+        .rapid(0.0, 0.0, 0.0);
+    assert_eq!(codes(&does, asks()), [("over-travel", 2, 0)]);
+    for (minutes, code) in [(0.5, "feed"), (2.0, "feed"), (0.02, "max-feed")] {
+        let mut does = Does::at(0.0, 0.0, 10.0)
+            .rapid(0.0, 0.0, 0.0)
+            .cut(600.0, 0.0, 0.0)
+            .rapid(0.0, 0.0, 0.0);
+        if let Done::Motion(motion) = &mut does.done[1] {
+            motion.minutes = minutes;
+        }
+        let found = codes(&does, asks());
+        assert!(found.iter().any(|found| found.0 == code), "{found:?}");
+    }
+}
+
+/// Against the free-space diagram of the tests: what it lets through has no fault, what it does not has one, and the
+/// distance told is the Fréchet distance.
+#[test]
+fn strays_are_those_of_the_frechet_distance() {
+    let mut random = seeded(13);
+    let (mut off, mut on) = (0, 0);
+    for _ in 0..3000 {
+        let count = 2 + random.pick(5);
+        let path: Vec<V> = (0..=count)
+            .map(|_| v(random.range(-1.0, 1.0), random.range(-1.0, 1.0), 0.0))
+            .collect();
+        let size = 0.01 * libm::pow(10.0, random.range(-1.0, 0.5));
+        let mut curve: Vec<V> = Vec::new();
+        for (index, point) in path.iter().enumerate() {
+            if index > 0 && random.pick(3) == 0 {
+                curve.push((path[index - 1] + point) * 0.5);
+            }
+            if random.pick(12) > 0 {
+                curve.push(*point);
+            }
+        }
+        if curve.len() < 2 {
+            continue;
+        }
+        for point in &mut curve {
+            *point += v(random.range(-size, size), random.range(-size, size), 0.0);
+        }
+        let truth = frechet(&curve, &path, 8.0);
+        let mut asks = Asks::default().rapid(path[0].x, path[0].y, 0.0);
+        for point in &path[1..] {
+            asks = asks.cut(point.x, point.y, 0.0);
+        }
+        let mut does = Does::at(0.0, 0.0, 10.0).rapid(curve[0].x, curve[0].y, 0.0);
+        for point in &curve[1..] {
+            does = does.cut(point.x, point.y, 0.0);
+        }
+        let (found, _) = verify(&does, asks);
+        // The way to the beginning and times are no matter here.
+        let faults: Vec<_> = found
+            .faults
+            .iter()
+            .filter(|fault| ["deviation", "missing", "added"].contains(&fault.code))
+            .collect();
+        if truth < 0.005 {
+            on += 1;
+            assert!(faults.is_empty(), "{truth} {faults:#?}");
+            assert!(found.tip.value <= truth + 1e-6, "{truth} {:?}", found.tip);
+        } else if truth > 0.005 * 1.05 {
+            off += 1;
+            assert!(!faults.is_empty(), "{truth} {path:?} {curve:?} {:?}", found);
+        }
+    }
+    assert!(on > 300 && off > 300, "{on} {off}");
+}

@@ -18,6 +18,9 @@ const SAME_DIRECTION: f64 = 1e-12;
 /// Points nearer than this are one, mm.
 const SAME_POINT: f64 = 1e-9;
 
+/// Ends of an arc may differ by so much in their distance from its axis: readers take it as a spiral, up to 0.1 mm.
+const SPIRAL: f64 = 0.09;
+
 /// A change of the feed that is smaller is none: its share.
 const SAME_FEED: f64 = 1e-9;
 
@@ -59,7 +62,10 @@ pub struct ClWriter {
     hole: Option<(CycleCall, Option<Pose>)>,
     /// The definition in force.
     cycle: Option<String>,
+    /// An operation is open.
     operation: bool,
+    /// The operation that begins with the next record, which may name its tool.
+    begins: Option<String>,
     work_offset: Option<String>,
     /// Numbers of tools that have names alone, by the order in which they came.
     names: Vec<String>,
@@ -84,6 +90,7 @@ impl ClWriter {
             hole: None,
             cycle: None,
             operation: false,
+            begins: None,
             work_offset: None,
             names: Vec::new(),
             last_tool: None,
@@ -120,7 +127,12 @@ impl ClWriter {
     ///
     /// # Errors
     /// What no record can ask for.
-    pub fn item(&mut self, item: &Item, tool: Tool, out: &mut String) -> Result<(), Box<Diagnostic>> {
+    pub fn item(
+        &mut self,
+        item: &Item,
+        tool: Tool,
+        out: &mut String,
+    ) -> Result<(), Box<Diagnostic>> {
         if self.ended {
             return Ok(());
         }
@@ -195,6 +207,7 @@ impl ClWriter {
             }
         }
         self.changes = false;
+        self.open_operation(None, out);
         if std::mem::take(&mut self.away) {
             self.end_cycle(out);
             out.push_str("GOHOME\n");
@@ -203,6 +216,9 @@ impl ClWriter {
     }
 
     fn told(&mut self, told: Told, tool: Tool, out: &mut String) {
+        if !matches!(told, Told::Operation(_) | Told::ToolChange { .. }) {
+            self.open_operation(None, out);
+        }
         match told {
             Told::ToolChange { number, name } => self.load(number, name, tool, out),
             Told::Preselect(number) => {
@@ -225,13 +241,7 @@ impl ClWriter {
             }
             Told::Stop => out.push_str("STOP\n"),
             Told::OptionalStop => out.push_str("OPSTOP\n"),
-            Told::Operation(name) => {
-                self.end_cycle(out);
-                self.end_operation(out);
-                let _ = writeln!(out, "TOOL PATH/{}", text::name(&name));
-                self.operation = true;
-                self.axis = Vector3::z();
-            }
+            Told::Operation(name) => self.begins = Some(name),
             Told::Remark(remark) | Told::Message(remark) => {
                 let remark = text::free(&remark);
                 if !remark.is_empty() {
@@ -263,6 +273,22 @@ impl ClWriter {
         }
     }
 
+    /// Begins the operation that waits, or one for a tool that has a name.
+    fn open_operation(&mut self, tool: Option<&str>, out: &mut String) {
+        let Some(name) = self.begins.take().or(tool.map(str::to_owned)) else {
+            return;
+        };
+        self.end_cycle(out);
+        self.end_operation(out);
+        let _ = write!(out, "TOOL PATH/{}", text::name(&name));
+        if let Some(tool) = tool {
+            let _ = write!(out, ",TOOL,{}", text::name(tool));
+        }
+        out.push('\n');
+        self.operation = true;
+        self.axis = Vector3::z();
+    }
+
     fn load(&mut self, number: Option<u32>, name: Option<String>, tool: Tool, out: &mut String) {
         let number = number.unwrap_or_else(|| {
             let name = name.clone().unwrap_or_default();
@@ -278,9 +304,13 @@ impl ClWriter {
         if self.last_tool.replace((number, tool)) == Some((number, tool)) {
             return;
         }
+        self.open_operation(name.as_deref().filter(|name| !name.is_empty()), out);
         self.end_cycle(out);
         let _ = write!(out, "LOADTL/{number}");
-        if let Some(register) = tool.register.filter(|register| *register != number && *register > 0) {
+        if let Some(register) = tool
+            .register
+            .filter(|register| *register != number && *register > 0)
+        {
             let _ = write!(out, ",ADJUST,{register}");
         }
         if let Some(length) = tool.length {
@@ -303,7 +333,8 @@ impl ClWriter {
                 self.stands = None;
             }
             None => {
-                let message = format!("{name} is not carried over: it has no number among work offsets");
+                let message =
+                    format!("{name} is not carried over: it has no number among work offsets");
                 self.notes.push(Diagnostic::warning("convert", message));
             }
         }
@@ -331,7 +362,8 @@ impl ClWriter {
         }
         self.end_cycle(out);
         if piece.kind == MotionKind::Thread {
-            let message = "a thread that is no cycle's: no record of a CL file ties a feed to the spindle";
+            let message =
+                "a thread that is no cycle's: no record of a CL file ties a feed to the spindle";
             return Err(Diagnostic::error("convert", message).boxed());
         }
         let feed = piece.feed;
@@ -362,11 +394,11 @@ impl ClWriter {
             .is_some_and(|stands| (stands.tip - pose.tip).norm() < SAME_POINT)
     }
 
-    /// A `CIRCLE` says this arc: it starts where the tool stands, and both ends are equally far from its axis.
+    /// A `CIRCLE` says this arc: it starts where the tool stands, and both ends are equally far from its axis, or nearly.
     fn arc_fits(&self, piece: &Piece, centre: Vector3<f64>, normal: Vector3<f64>) -> bool {
         let radius = |tip: Vector3<f64>| normal.cross(&(tip - centre)).norm();
         let (from, to) = (radius(piece.from.tip), radius(piece.to.tip));
-        self.at(&piece.from) && libm::fabs(from - to) <= self.chord && from > SAME_POINT
+        self.at(&piece.from) && libm::fabs(from - to) <= SPIRAL && from > SAME_POINT
     }
 
     fn arc(
@@ -422,9 +454,11 @@ impl ClWriter {
             let strays = (0..count).any(|place| {
                 let [first, a, b, c, last] =
                     std::array::from_fn(|part| at(4 * place + part as u32, 4 * count).tip);
-                [(a, 0.25), (b, 0.5), (c, 0.75)].iter().any(|(point, share)| {
-                    (first + (last - first) * *share - point).norm() > self.chord
-                })
+                [(a, 0.25), (b, 0.5), (c, 0.75)]
+                    .iter()
+                    .any(|(point, share)| {
+                        (first + (last - first) * *share - point).norm() > self.chord
+                    })
             });
             if !strays {
                 break;
@@ -495,8 +529,9 @@ impl ClWriter {
         let clearance = call.clearance.max(0.0);
         let depth = call.depth - clearance;
         let level = (height(&up) - depth).max(clearance);
-        let definition = definition(&call, depth, clearance, level)
-            .map_err(|message| Diagnostic::error("convert", format!("line {line}: {message}")).boxed())?;
+        let definition = definition(&call, depth, clearance, level).map_err(|message| {
+            Diagnostic::error("convert", format!("line {line}: {message}")).boxed()
+        })?;
         if self.cycle.as_ref() != Some(&definition) {
             out.push_str(&definition);
             self.cycle = Some(definition);
@@ -537,7 +572,9 @@ fn definition(
         CycleKind::Tap | CycleKind::TapLeft => "TAP",
         CycleKind::Ream => "REAM",
         CycleKind::Bore => "BORE,DRAG",
-        CycleKind::BoreFine => return Err("fine boring: how far the tool goes off the wall is not known"),
+        CycleKind::BoreFine => {
+            return Err("fine boring: how far the tool goes off the wall is not known");
+        }
         CycleKind::BoreBack => return Err("boring from behind has no cycle in a CL file"),
     };
     let mut out = format!("CYCLE/{kind},FEDTO,");
@@ -597,13 +634,18 @@ fn spindle_record(spindle: Spindle, out: &mut String) {
 
 /// NX's splines: cubic, clamped at both ends, all weights one, no knot more than twice.
 fn is_nurbs(way: &SplineWay) -> bool {
+    if way.degree != 3 || !way.is_sound() {
+        return false;
+    }
     let [first, last] = way.range();
     let clamped = way.knots[..4].iter().all(|knot| *knot == first)
-        && way.knots[way.poles.len()..].iter().all(|knot| *knot == last);
+        && way.knots[way.poles.len()..]
+            .iter()
+            .all(|knot| *knot == last);
     let inner = &way.knots[4..way.poles.len()];
     let rises = inner.windows(3).all(|three| three[0] < three[2])
         && inner.iter().all(|knot| first < *knot && *knot < last);
-    way.degree == 3 && clamped && rises && way.poles.iter().all(|(_, weight)| *weight == 1.0)
+    clamped && rises && way.poles.iter().all(|(_, weight)| *weight == 1.0)
 }
 
 /// The number of a work offset: G54 is 1, G54.1 P1 is 7, a bare number itself.

@@ -6,6 +6,7 @@ pub mod machine_files;
 pub mod other_dialect;
 pub mod plugin_finder;
 mod plugin_folders;
+pub mod read_back;
 pub mod unused_options;
 
 use std::path::Path;

@@ -10,6 +10,7 @@ mod plugin;
 mod post;
 mod print_schema;
 mod study;
+mod verify;
 
 use std::path::Path;
 
@@ -27,6 +28,7 @@ use plugin::PluginArguments;
 use post::PostArguments;
 use print_schema::SchemaArguments;
 use study::StudyArguments;
+use verify::VerifyArguments;
 
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
 ///
@@ -48,6 +50,7 @@ use study::StudyArguments;
   post check my-mill.toml --svg reach.svg
   post study part.cls --machine ac-trunnion
   post place part.cls --machine dmu50 --svg travel.svg
+  post verify part.nc --machine dmu50 --against part.cls --map map.json
   post plugin show fanuc
   post plugin new mine --iso
   post plugin test target/release/libpost_mine.so
@@ -73,6 +76,7 @@ enum Verb {
     New(NewArguments),
     Study(Box<StudyArguments>),
     Place(Box<PlaceArguments>),
+    Verify(Box<VerifyArguments>),
     Plugin(PluginArguments),
 }
 
@@ -88,6 +92,7 @@ impl CommandLine {
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),
             Some(Verb::Place(arguments)) => place::run(&arguments),
+            Some(Verb::Verify(arguments)) => verify::run(&arguments),
             Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
         }
     }

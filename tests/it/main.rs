@@ -11,6 +11,7 @@ mod check;
 mod check_posts;
 mod command;
 mod common;
+mod course;
 mod dialects;
 mod files;
 mod frame;
@@ -39,6 +40,7 @@ mod snapshots;
 mod strangers;
 mod study;
 mod summary;
+mod vocabularies;
 mod words;
 mod writable;
 

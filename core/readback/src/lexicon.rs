@@ -1,22 +1,310 @@
-//! Which word of a control switches what.
+//! Which word of a control switches what: what its dialect hands over, and behind that what all controls of its
+//! language have in common.
+//!
+//! The dialect goes first. What it does not name is looked for among the words that every control of the language
+//! reads the same way (`lexicon/common.rs`); what stands there neither is not known.
 
-use post_grammar::nc::NcSyntax;
-use post_plugin::VocabularyWord;
+mod common;
+
+use std::collections::BTreeMap;
+
+use post_grammar::nc::{NcSyntax, Notation};
+use post_plugin::{Meaning, VocabularyWord};
+
+/// The language of a control.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Language {
+    /// Letters, `#1`, `IF [#1 EQ 2] GOTO 3`: Fanuc and what is like it.
+    #[default]
+    Macro,
+    /// Letters, `#1`, `#<name>`, `o1 while [..]`: RS-274/NGC.
+    Rs274,
+    /// Names with `=`, calls with parentheses, `R1`: SINUMERIK.
+    Names,
+    /// `L X+1 R0 FMAX`, `Q1`: Heidenhain.
+    Conversational,
+}
+
+/// What a word does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sense {
+    /// Nobody knows.
+    Unknown,
+    /// What the dialect says, or all controls of the language.
+    Means(Meaning),
+    /// It makes something else of the words behind it than we do: it is refused.
+    Refused,
+}
+
+/// A code, and what it means with certain words beside it.
+#[derive(Clone, Debug)]
+struct Choice {
+    /// Ten times the number behind G.
+    code: u16,
+    /// Letters that stand beside it, and their values where they are said.
+    beside: Vec<(u8, Option<f64>)>,
+    meaning: Meaning,
+}
+
+/// Ten times the largest number behind G, and one.
+const CODES: usize = 10_000;
 
 /// The words of a control, ready to be looked up.
 #[derive(Clone, Debug, Default)]
 pub struct Lexicon {
     syntax: NcSyntax,
+    language: Language,
+    /// By ten times the number behind G.
+    g: Vec<u8>,
+    /// By the number behind M.
+    m: Vec<u8>,
+    /// What the places in `g` and `m` stand for; the first is [`Sense::Unknown`].
+    senses: Vec<Sense>,
+    letters: [Option<Meaning>; 26],
+    names: BTreeMap<String, Sense>,
+    /// Names that mean this where nothing stands between their parentheses.
+    empty: BTreeMap<String, Meaning>,
+    choices: Vec<Choice>,
+    /// D switches the length of the tool.
+    tools_have_edges: bool,
+    /// A word changes the tool; else T does.
+    changes_by_word: bool,
 }
 
 impl Lexicon {
     /// From what a dialect hands over.
     pub fn new(words: &[VocabularyWord]) -> Self {
-        todo!("{words:?}")
+        let has = |wanted: &str| words.iter().any(|word| word.word == wanted);
+        let language = if has("BEGIN PGM") {
+            Language::Conversational
+        } else if !has("(") && (has(";") || has("SUPA")) {
+            Language::Names
+        } else if has("O")
+            && words
+                .iter()
+                .any(|word| word.meaning == Meaning::Subprogram && word.word == "O")
+            || has("G38.2")
+        {
+            Language::Rs274
+        } else {
+            Language::Macro
+        };
+        let mut lexicon = Self {
+            language,
+            g: vec![0; CODES],
+            m: vec![0; CODES / 10],
+            senses: vec![Sense::Unknown],
+            syntax: syntax(words, language),
+            changes_by_word: words.iter().any(|word| word.meaning == Meaning::ToolChange),
+            ..Self::default()
+        };
+        for (word, sense) in common::words(language) {
+            lexicon.add_sense(word, sense);
+        }
+        for VocabularyWord { word, meaning } in words {
+            lexicon.add(word.trim(), *meaning);
+        }
+        lexicon
     }
 
     /// What the reader of its programs must know.
     pub fn syntax(&self) -> &NcSyntax {
         &self.syntax
+    }
+
+    /// Its language.
+    pub fn language(&self) -> Language {
+        self.language
+    }
+
+    /// D switches the length of the tool on, and D0 off.
+    pub(crate) fn tools_have_edges(&self) -> bool {
+        self.tools_have_edges
+    }
+
+    /// A word changes the tool, M6 or another; else T does.
+    pub(crate) fn changes_by_word(&self) -> bool {
+        self.changes_by_word
+    }
+
+    /// The sense of G and ten times a number; words beside it may change it: [`Lexicon::g_beside`].
+    #[inline]
+    pub(crate) fn g(&self, code: u16) -> Sense {
+        let sense = self.g.get(usize::from(code)).copied().unwrap_or(0);
+        self.senses[usize::from(sense)]
+    }
+
+    /// The sense of G and ten times a number where `beside` tells which letters stand in the block and their values.
+    pub(crate) fn g_beside(&self, code: u16, beside: impl Fn(u8) -> Option<f64>) -> Sense {
+        let holds = |choice: &&Choice| {
+            let mut letters = choice.beside.iter();
+            choice.code == code
+                && letters.all(|(letter, value)| match (beside(*letter), value) {
+                    (Some(found), Some(wanted)) => libm::fabs(found - wanted) < 1e-9,
+                    (found, None) => found.is_some(),
+                    (None, Some(_)) => false,
+                })
+        };
+        let choices = self.choices.iter().filter(holds);
+        let best = choices.max_by_key(|choice| choice.beside.len());
+        best.map_or_else(|| self.g(code), |choice| Sense::Means(choice.meaning))
+    }
+
+    /// The letter behind which the tolerance of a smoothing word stands: P of `G64 P`.
+    pub(crate) fn tolerance_letter(&self, code: u16) -> Option<u8> {
+        let mut choices = self.choices.iter().filter(|choice| choice.code == code);
+        choices.find_map(|choice| {
+            let open = choice.beside.iter().find(|(_, value)| value.is_none());
+            open.map(|(letter, _)| *letter)
+        })
+    }
+
+    /// The sense of M and a number.
+    #[inline]
+    pub(crate) fn m(&self, code: u16) -> Sense {
+        let sense = self.m.get(usize::from(code)).copied().unwrap_or(0);
+        self.senses[usize::from(sense)]
+    }
+
+    /// What a letter in front of a value means, where it is no axis.
+    #[inline]
+    pub(crate) fn letter(&self, letter: u8) -> Option<Meaning> {
+        self.letters
+            .get(usize::from(letter.wrapping_sub(b'A')))
+            .copied()
+            .flatten()
+    }
+
+    /// What a name means.
+    pub(crate) fn name(&self, name: &str) -> Sense {
+        self.names.get(name).copied().unwrap_or(Sense::Unknown)
+    }
+
+    /// What a name with nothing between its parentheses means.
+    pub(crate) fn empty_call(&self, name: &str) -> Sense {
+        self.empty
+            .get(name)
+            .map_or_else(|| self.name(name), |meaning| Sense::Means(*meaning))
+    }
+
+    /// A word of the dialect.
+    fn add(&mut self, word: &str, meaning: Meaning) {
+        if matches!(
+            meaning,
+            Meaning::Remark | Meaning::RemarkOpen | Meaning::RemarkClose
+        ) {
+            return;
+        }
+        if let [letter @ b'A'..=b'Z'] | [letter @ b'A'..=b'Z', b'='] = word.as_bytes() {
+            self.letters[usize::from(letter - b'A')] = Some(meaning);
+            self.tools_have_edges |= *letter == b'D' && meaning == Meaning::LengthOn;
+            return;
+        }
+        if let Some(name) = word.strip_suffix("()") {
+            self.empty.insert(name.to_owned(), meaning);
+            return;
+        }
+        // `G5` of `G505` to `G599`.
+        if self.language == Language::Names && word == "G5" && meaning == Meaning::WorkOffset {
+            for number in 505..=599 {
+                self.add_sense(&format!("G{number}"), Sense::Means(meaning));
+            }
+            return;
+        }
+        self.add_sense(word, Sense::Means(meaning));
+    }
+
+    /// A word and its sense; it takes the place of what was said of it before.
+    fn add_sense(&mut self, word: &str, sense: Sense) {
+        let mut parts = word.split_whitespace();
+        let first = parts.next().unwrap_or_default();
+        let Some((letter, code)) = code(first) else {
+            // `MCALL CYCLE81` is known by the name of its cycle.
+            let name = word.strip_prefix("MCALL ").unwrap_or(word);
+            self.names
+                .insert(name.trim_end_matches('=').to_owned(), sense);
+            return;
+        };
+        let place = self.place(sense);
+        let table = if letter == b'G' {
+            &mut self.g
+        } else {
+            &mut self.m
+        };
+        let at = if letter == b'G' { code } else { code / 10 };
+        let beside: Vec<(u8, Option<f64>)> = parts.filter_map(beside).collect();
+        let told = self.choices.iter().any(|choice| choice.code == code);
+        // With several senses the plain word is what no other words stand beside.
+        if let Some(entry) = table.get_mut(usize::from(at))
+            && (!told || beside.is_empty() || letter == b'M')
+        {
+            *entry = place;
+        }
+        if let (b'G', Sense::Means(meaning), false) = (letter, sense, beside.is_empty()) {
+            self.choices.push(Choice {
+                code,
+                beside,
+                meaning,
+            });
+        }
+    }
+
+    /// Place of a sense in the table of senses.
+    fn place(&mut self, sense: Sense) -> u8 {
+        let found = self.senses.iter().position(|known| *known == sense);
+        let place = found.unwrap_or(self.senses.len());
+        if found.is_none() {
+            self.senses.push(sense);
+        }
+        // There are fewer senses than meanings and a dozen more.
+        u8::try_from(place).unwrap_or(0)
+    }
+}
+
+/// `G43.4` as G and 434, `M6` as M and 60; none for any other word.
+fn code(word: &str) -> Option<(u8, u16)> {
+    let (letter, number) = (word.as_bytes().first()?, word.get(1..)?);
+    if !matches!(letter, b'G' | b'M') || number.is_empty() {
+        return None;
+    }
+    let value: f64 = number.parse().ok()?;
+    let tenfold = libm::rint(value * 10.0);
+    let whole =
+        (0.0..65_535.0).contains(&tenfold) && number.starts_with(|c: char| c.is_ascii_digit());
+    whole.then_some((*letter, tenfold as u16))
+}
+
+/// `Q1` as Q and 1, `P` as P alone; none for what is no word.
+fn beside(word: &str) -> Option<(u8, Option<f64>)> {
+    let letter = *word.as_bytes().first()?;
+    let value = word.get(1..)?;
+    letter.is_ascii_uppercase().then_some(())?;
+    if value.is_empty() {
+        return Some((letter, None));
+    }
+    Some((letter, Some(value.parse().ok()?)))
+}
+
+/// What a reader must know.
+fn syntax(words: &[VocabularyWord], language: Language) -> NcSyntax {
+    let first = |meaning: Meaning| {
+        let mut words = words.iter().filter(|word| word.meaning == meaning);
+        words.next().and_then(|word| word.word.chars().next())
+    };
+    let remarks = words.iter().filter(|word| word.meaning == Meaning::Remark);
+    let mut line_remarks: Vec<String> = remarks.map(|word| word.word.to_string()).collect();
+    // It ends a block of the letters' controls, and begins a remark of all others.
+    if !line_remarks.iter().any(|remark| remark == ";") {
+        line_remarks.push(";".to_owned());
+    }
+    NcSyntax {
+        notation: if language == Language::Conversational {
+            Notation::Conversational
+        } else {
+            Notation::Words
+        },
+        line_remarks,
+        enclosed_remarks: first(Meaning::RemarkOpen).zip(first(Meaning::RemarkClose)),
+        hash_variables: matches!(language, Language::Macro | Language::Rs274),
     }
 }

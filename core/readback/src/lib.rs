@@ -25,7 +25,7 @@ mod told;
 pub mod verify;
 
 pub use motion::{Motion, MotionKind, SplineWay, Stance, Way};
-pub use offsets::{Offsets, WorkOffset};
+pub use offsets::{Offsets, Reference, WorkOffset};
 pub use told::{Coolants, CycleCall, CycleKind, Spindle, Told};
 
 use std::sync::Arc;

@@ -3,9 +3,13 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_machine::kinematics::{Joints, Pose};
+use post_machine::kinematics::{Joints, Pose, Trace};
 
 use crate::State;
+use crate::course::{between, on_arc};
+
+/// More pieces than this are made of no motion.
+const MOST_PIECES: f64 = 1e6;
 
 /// A motion between two stances.
 #[derive(Clone, Debug)]
@@ -30,6 +34,9 @@ pub struct Motion {
     pub minutes: f64,
     /// It is part of a cycle's hole.
     pub hole: bool,
+    /// It is asked for in positions of the machine, not of the part (G53, G28, G30, M91, SUPA): where it leads says
+    /// something about this machine alone.
+    pub machine: bool,
     /// What holds while it goes on.
     pub state: Arc<State>,
 }
@@ -88,8 +95,103 @@ pub struct SplineWay {
 }
 
 impl Motion {
-    /// Tip and tool axis at `t` from 0 to 1 of the motion's own parameter (time, at constant feed).
+    /// Tip and tool axis at `t` from 0 to 1 of the motion's own parameter (time, at constant feed), as the control and the
+    /// chain make them.
     pub fn at(&self, t: f64) -> Pose {
-        todo!("{t}")
+        let (from, to) = (&self.from, &self.to);
+        let straight = || from.pose.tip + (to.pose.tip - from.pose.tip) * t;
+        let tip = match &self.way {
+            Way::Axes => return self.state.solver.chain().forward(&self.joints(t)),
+            Way::Tip => straight(),
+            Way::TipAndAxis => {
+                let axis = between(from.pose.axis, to.pose.axis, t);
+                let edge = match from.pose.edge == Vector3::zeros() {
+                    true => from.pose.edge,
+                    false => between(from.pose.edge, to.pose.edge, t),
+                };
+                let tip = straight();
+                return Pose { tip, axis, edge };
+            }
+            Way::Arc {
+                centre,
+                normal,
+                sweep,
+            } => on_arc([from.pose.tip, to.pose.tip], *centre, *normal, *sweep, t),
+            Way::Spline(way) => way.at(t),
+        };
+        if !self.turns() {
+            return Pose { tip, ..to.pose };
+        }
+        // Rotary axes alone say where the tool points.
+        let pose = self.state.solver.chain().forward(&self.joints(t));
+        Pose { tip, ..pose }
+    }
+
+    /// Some rotary axis turns on the way.
+    pub fn turns(&self) -> bool {
+        let axes = self.state.solver.chain().joints().iter().enumerate();
+        axes.filter(|(_, axis)| axis.rotary)
+            .any(|(place, _)| self.from.joints[place] != self.to.joints[place])
+    }
+
+    /// Axis values at `t`, all linearly: where the control keeps the tip ([`Way::Tip`] and below), those of the rotary axes
+    /// alone hold.
+    fn joints(&self, t: f64) -> Joints {
+        let (from, to) = (&self.from.joints, &self.to.joints);
+        std::array::from_fn(|place| from[place] + (to[place] - from[place]) * t)
+    }
+
+    /// Pieces that the motion is cut into, evenly in `t`, so that straight lines of the tip and great circles of the tool
+    /// axis between their ends stay within `chord` mm and `angle` radians of it; of arcs and splines, whose tip is on no
+    /// straight line, the tool axis alone counts.
+    ///
+    /// A chord over 1/n strays by no more than an eighth of the second derivative over n². Of the tip that derivative is
+    /// bounded joint by joint from the tool to the part: a turn by w over an arm r of speed s and bend b makes the bend
+    /// w²·r + 2·w·s + b and the speed w·r + s; an arm is never longer than at its ends but for an eighth of its bend. Of the
+    /// tool axis it is at most the square of all turns together, and the great circle strays as much from the chord again.
+    pub fn pieces(&self, chord: f64, angle: f64) -> u64 {
+        let chain = self.state.solver.chain();
+        let axes = chain.joints();
+        let turn = |place: usize| libm::fabs(self.to.joints[place] - self.from.joints[place]);
+        if self.way == Way::TipAndAxis || !self.turns() {
+            return 1;
+        }
+        let ends = [&self.from.joints, &self.to.joints].map(|joints| {
+            let mut trace = Trace {
+                joints: *joints,
+                turns: chain.turns(joints),
+                ..Trace::default()
+            };
+            chain.trace(&mut trace);
+            trace
+        });
+        let rotary = || (0..axes.len()).filter(|place| axes[*place].rotary);
+        // An axis that turns about the tool leaves it pointing where it did; an edge turns all the same.
+        let points = |place: usize| {
+            let across = axes[place].direction.cross(&ends[0].axes[place]);
+            turn(place) > 0.0 && (across.norm() > 1e-12 || chain.edge().is_some())
+        };
+        let all: f64 = rotary().map(turn).sum();
+        let mut count: f64 = match rotary().any(points) {
+            true => libm::sqrt(all * all / (4.0 * angle)),
+            false => 1.0,
+        };
+        if self.way == Way::Axes {
+            let (mut speed, mut bend) = (0.0, 0.0);
+            for place in (0..axes.len()).rev() {
+                if !axes[place].rotary {
+                    speed += turn(place);
+                    continue;
+                }
+                let w = turn(place);
+                let arm = |trace: &Trace| trace.tip_rates[place].norm();
+                let arm = arm(&ends[0]).max(arm(&ends[1])) + bend / 8.0;
+                bend += w * (w * arm + 2.0 * speed);
+                speed += w * arm;
+            }
+            count = count.max(libm::sqrt(bend / (8.0 * chord)));
+        }
+        // Bounded, whatever a program says: a million pieces of one block.
+        libm::ceil(count).clamp(1.0, MOST_PIECES) as u64
     }
 }

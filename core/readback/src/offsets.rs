@@ -15,6 +15,8 @@ pub struct Offsets {
     pub tools: Vec<(u32, f64)>,
     /// Length of any tool that is named nowhere, mm.
     pub length: Option<f64>,
+    /// Reference positions.
+    pub references: Vec<Reference>,
 }
 
 /// A work offset.
@@ -25,4 +27,15 @@ pub struct WorkOffset {
     /// Where the program's zero is against the part origin of the machine file, mm, in the directions of the linear axes,
     /// and what a rotary axis shows there, radians; by place in the chain.
     pub shift: Joints,
+}
+
+/// Where an axis has its reference position.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reference {
+    /// 1: that of G28; 2: that of G30.
+    pub which: u8,
+    /// The axis.
+    pub axis: String,
+    /// What the control shows there, mm or radians.
+    pub value: f64,
 }

@@ -4,6 +4,8 @@
 //! what is for whoever knows the control. A block is filled anew again and again, so that reading allocates nothing for
 //! blocks of plain words.
 
+use std::borrow::Cow;
+
 use super::expression::NcExpression;
 
 /// How a program is written.
@@ -63,7 +65,7 @@ pub enum NcItem {
     /// within a cycle's definition.
     Named {
         /// In capitals.
-        name: String,
+        name: Cow<'static, str>,
         /// Its value.
         value: NcValue,
     },
@@ -84,7 +86,7 @@ pub enum NcItem {
     },
     /// A name alone: `TRAORI`, `MCALL`, `ROT`, `FMAX`, `R0`, `DR-`, `L`, `CC`, `TOOL CALL`, `CYCL DEF`, `PLANE SPATIAL`
     /// (conversational keywords of several words are one name, with one blank between them).
-    Name(String),
+    Name(Cow<'static, str>),
     /// A number alone: the tool of `TOOL CALL 5`, the cycle of `CYCL DEF 7.1`.
     Number(NcNumber),
     /// A text alone: `TOOL CALL "D10"`, the dialogue text of `CYCL DEF 200 DRILLING`.
@@ -248,7 +250,7 @@ pub enum NcFlow {
 }
 
 /// Where a jump looks for its target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// From here to the end, then from the beginning.
     Anywhere,

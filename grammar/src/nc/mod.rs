@@ -4,7 +4,20 @@
 //! calls with parentheses, expressions, labels, loops), and Heidenhain's conversational form.
 
 mod block;
+mod conversational;
 mod expression;
+mod fault;
+mod lines;
+mod number;
+mod pairs;
+mod reader;
+mod remarks;
+mod search;
+mod tree;
+mod words;
 
 pub use block::*;
 pub use expression::*;
+pub use lines::NcMark;
+pub use reader::NcReader;
+pub use search::NcTarget;

@@ -7,7 +7,8 @@ use crate::field::{Codes, codes};
 /// A word, or several that stand together, and what it means.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VocabularyWord {
-    /// As the control reads it, without the number that goes with it: `G43.4`, `TRAORI`, `CYCL DEF 32.0`, `F`.
+    /// As the control reads it, without the number that goes with it: `G43.4`, `TRAORI`, `CYCL DEF 32`, `F`. A name stands
+    /// without `=` and parentheses, `CYCLE800()` says that nothing stands between them; `G4 P` is P beside G4.
     pub word: Cow<'static, str>,
     /// What it means.
     pub meaning: Meaning,
@@ -199,7 +200,7 @@ codes! {
         ThreadAndBack = 106 "THREAD_AND_BACK",
         /// Out of a thread, the spindle turning back: G332.
         ThreadBack = 107 "THREAD_BACK",
-        /// The program's zero is shifted by what the block names, from the work offset: G52, TRANS, CYCL DEF 7.0.
+        /// The program's zero is shifted by what the block names, from the work offset: G52, TRANS, CYCL DEF 7.
         LocalOffset = 110 "LOCAL_OFFSET",
         /// From where it is now: ATRANS.
         LocalOffsetAdded = 111 "LOCAL_OFFSET_ADDED",
@@ -219,17 +220,17 @@ codes! {
         TableData = 118 "TABLE_DATA",
         /// Not any more: G11.
         TableDataOff = 119 "TABLE_DATA_OFF",
-        /// Coordinates are turned: G68, ROT, CYCL DEF 10.0.
+        /// Coordinates are turned: G68, ROT, CYCL DEF 10.
         Rotation = 120 "ROTATION",
         /// From how they are turned now: AROT.
         RotationAdded = 121 "ROTATION_ADDED",
         /// Not any more: G69 where nothing else is meant by it.
         RotationOff = 122 "ROTATION_OFF",
-        /// Coordinates are multiplied: G51, SCALE, CYCL DEF 11.0.
+        /// Coordinates are multiplied: G51, SCALE, CYCL DEF 11.
         Scale = 123 "SCALE",
         /// Not any more: G50.
         ScaleOff = 124 "SCALE_OFF",
-        /// Coordinates are mirrored: G51.1, MIRROR, CYCL DEF 8.0.
+        /// Coordinates are mirrored: G51.1, MIRROR, CYCL DEF 8.
         Mirror = 125 "MIRROR",
         /// Not any more: G50.1.
         MirrorOff = 126 "MIRROR_OFF",
@@ -321,7 +322,7 @@ codes! {
         CycleOther = 177 "CYCLE_OTHER",
         /// A cycle returns to a level that the program names: G71 and M53 of Okuma.
         ReturnLevel = 178 "RETURN_LEVEL",
-        /// The time of a wait in seconds: G4 F, CYCL DEF 9.1.
+        /// The time of a wait in seconds: G4 F.
         DwellSeconds = 180 "DWELL_SECONDS",
         /// In milliseconds if written without a decimal point, else in seconds: G4 P of Fanuc.
         DwellMilliseconds = 181 "DWELL_MILLISECONDS",

@@ -4,9 +4,9 @@
 
 use post_iso::{
     Control, Iso, Offset, Plane, Rigid, Splines, Subprogram, SurfaceSpeed, Table, Tcp,
-    is_offset_beyond_six, iso_options, offset_beyond_six, options,
+    is_offset_beyond_six, iso_options, offset_beyond_six, options, words,
 };
-use post_plugin::{OptionSpec, Setup, export_dialect};
+use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 
 struct Fanuc;
 
@@ -50,6 +50,15 @@ impl Control for Fanuc {
             name: "",
             times: " L",
         },
+        words: &[
+            words::RETURNS,
+            words::SHIFTS,
+            words::FRAMES,
+            words::POLAR,
+            words::STOPS,
+            words::SUBPROGRAM_END,
+            OWN,
+        ],
         ..Table::ISO
     };
 
@@ -92,6 +101,28 @@ const CANCEL: &str = "G50 G50.1 G69";
 
 /// AI contour control: how much it leaves the path is the parameters' to say.
 const SMOOTHING: [&str; 2] = ["0 G5.1 Q1", "G5.1 Q0"];
+
+/// Words that it reads and that are not written here: 30i, machining centre.
+const OWN: &[(&str, Meaning)] = &[
+    ("G4 X", Meaning::DwellSeconds),
+    ("G4 U", Meaning::DwellSeconds),
+    ("G33", Meaning::Thread),
+    ("G44", Meaning::LengthNegative),
+    ("G92.1", Meaning::SetPositionOff),
+    ("G68.3", Meaning::TiltedPlane),
+    ("G68.4", Meaning::TiltedPlane),
+    ("G5", Meaning::Smoothing),
+    ("G5.1", Meaning::Smoothing),
+    ("G8", Meaning::Smoothing),
+    ("G84.2", Meaning::CycleTap),
+    ("G84.3", Meaning::CycleTapLeft),
+    ("G76", Meaning::CycleBoreFine),
+    ("G87", Meaning::CycleBoreBack),
+    ("G88", Meaning::CycleOther),
+    ("G65", Meaning::Macro),
+    ("G66", Meaning::MacroModal),
+    ("G67", Meaning::MacroOff),
+];
 
 export_dialect!(fanuc, Iso<Fanuc>);
 

@@ -3,9 +3,10 @@
 //! What it assumes about the control stands in `plugins/README.md`.
 
 use post_iso::{
-    Codes, Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, offset_of_six, options,
+    Codes, Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, offset_of_six,
+    options, words,
 };
-use post_plugin::{Capabilities, Event, OptionSpec, Setup, export_dialect, remark};
+use post_plugin::{Capabilities, Event, Meaning, OptionSpec, Setup, export_dialect, remark};
 
 struct Grbl {
     hal: bool,
@@ -48,6 +49,7 @@ impl Control for Grbl {
         units_inside: true,
         spindle: ["M3", "M4", "M5", ""],
         probe: "G38.2",
+        words: &[words::RETURNS, OWN],
         ..Table::ISO
     };
 
@@ -123,6 +125,45 @@ const RELIES: &[&str] = &[
     "the machine is homed: G53 counts from its zero",
     "the work offset holds the length of the tool in the spindle: it is set after each change",
     "$11 is the deviation at a junction: the control leaves corners by so much",
+];
+
+/// Words that GRBL 1.1 and grblHAL read and that are not written here.
+const OWN: &[(&str, Meaning)] = &[
+    (";", Meaning::Remark),
+    ("G92", Meaning::SetPosition),
+    ("G92.1", Meaning::SetPositionOff),
+    ("G10", Meaning::TableData),
+    ("G28.1", Meaning::TableData),
+    ("G30.1", Meaning::TableData),
+    ("G38.3", Meaning::Probe),
+    ("G38.4", Meaning::Probe),
+    ("G38.5", Meaning::Probe),
+    ("G5", Meaning::Spline),
+    ("G5.1", Meaning::Spline),
+    ("G91.1", Meaning::CentreIncremental),
+    ("G95", Meaning::FeedPerRevolution),
+    ("G43", Meaning::LengthOn),
+    ("H", Meaning::LengthRegister),
+    ("G43.1", Meaning::LengthStated),
+    ("G49", Meaning::LengthOff),
+    ("G51", Meaning::Scale),
+    ("G50", Meaning::ScaleOff),
+    ("G61", Meaning::SmoothingOff),
+    ("G73", Meaning::CycleBreakChip),
+    ("G81", Meaning::CycleDrill),
+    ("G82", Meaning::CycleDrill),
+    ("G83", Meaning::CycleDeep),
+    ("G85", Meaning::CycleReam),
+    ("G89", Meaning::CycleReam),
+    ("G86", Meaning::CycleBore),
+    ("G98", Meaning::ReturnStart),
+    ("G99", Meaning::ReturnClearance),
+    ("M6", Meaning::ToolChange),
+    ("M56", Meaning::Nothing),
+    ("M62", Meaning::Nothing),
+    ("M63", Meaning::Nothing),
+    ("M64", Meaning::Nothing),
+    ("M65", Meaning::Nothing),
 ];
 
 export_dialect!(grbl, Iso<Grbl>);

@@ -3,10 +3,10 @@
 //! What it assumes about the control stands in `plugins/README.md`.
 
 use post_iso::{
-    Control, Iso, Offset, Plane, Subprogram, Table, Tcp, is_offset_beyond_six, iso_options,
-    offset_beyond_six, options,
+    Control, CycleCode, Iso, Offset, Plane, Subprogram, Table, Tcp, is_offset_beyond_six,
+    iso_options, offset_beyond_six, options, words,
 };
-use post_plugin::{OptionSpec, Setup, export_dialect};
+use post_plugin::{Cycle, Meaning, OptionSpec, Setup, export_dialect};
 
 struct Haas;
 
@@ -26,6 +26,7 @@ impl Control for Haas {
             on: "G254",
             off: "G255",
         },
+        cycles: CYCLES,
         cycles_in_plane: true,
         smoothing: SMOOTHING,
         smoothing_anywhere: true,
@@ -35,6 +36,7 @@ impl Control for Haas {
             name: "",
             times: " L",
         },
+        words: &[words::SHIFTS, words::STOPS, words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };
 
@@ -53,6 +55,19 @@ const OPTIONS: &[OptionSpec] = iso_options![
     options::smoothing_off(SMOOTHING[1]),
 ];
 
+/// Its boring from below is G77 (staging-diy.haascnc.com, G77, group 09): G87 bores and waits for a hand.
+const CYCLES: &[CycleCode] = &[
+    CycleCode::new(Cycle::Drill, "G81", "G82"),
+    CycleCode::new(Cycle::Deep, "G83", ""),
+    CycleCode::new(Cycle::BreakChip, "G73", ""),
+    CycleCode::new(Cycle::Tap, "G84", "G84"),
+    CycleCode::new(Cycle::TapLeft, "G74", "G74"),
+    CycleCode::new(Cycle::Ream, "G85", "G89"),
+    CycleCode::new(Cycle::Bore, "G86", ""),
+    CycleCode::new(Cycle::BoreFine, "G76", "G76"),
+    CycleCode::new(Cycle::BoreBack, "G77", ""),
+];
+
 const RELIES: &[&str] = &[
     "the options TCPC and DWO for G234 and G254; the rotary zero (MRZP) is set",
     "B of the work offset is zero under G254",
@@ -62,6 +77,34 @@ const RELIES: &[&str] = &[
 
 /// G187 P: 1 rough, 2 medium, 3 finish; E is the largest deviation of a corner. Alone it gives back the settings.
 const SMOOTHING: [&str; 2] = ["0 G187 P3 E{}\n0.02 G187 P2 E{}\n0.1 G187 P1 E{}", "G187"];
+
+/// Words that it reads and that are not written here. G87 and G88 bore and wait for a hand, and G69 ends no plane.
+const OWN: &[(&str, Meaning)] = &[
+    ("G28", Meaning::ReferenceReturn),
+    ("G44", Meaning::LengthNegative),
+    ("G68", Meaning::Rotation),
+    ("G69", Meaning::RotationOff),
+    ("G51", Meaning::Scale),
+    ("G50", Meaning::ScaleOff),
+    ("G101", Meaning::Mirror),
+    ("G100", Meaning::MirrorOff),
+    ("G107", Meaning::CylinderTransformation),
+    ("G12", Meaning::CycleOther),
+    ("G13", Meaning::CycleOther),
+    ("G150", Meaning::CycleOther),
+    ("G76", Meaning::CycleBoreFine),
+    ("G77", Meaning::CycleBoreBack),
+    ("G87", Meaning::CycleOther),
+    ("G88", Meaning::CycleOther),
+    ("M88", Meaning::CoolantOn),
+    ("M89", Meaning::CoolantOff),
+    ("M10", Meaning::Clamp),
+    ("M12", Meaning::Clamp),
+    ("M11", Meaning::Unclamp),
+    ("M13", Meaning::Unclamp),
+    ("M97", Meaning::LocalSubprogram),
+    ("G65", Meaning::Macro),
+];
 
 export_dialect!(haas, Iso<Haas>);
 

@@ -14,8 +14,8 @@ mod tool;
 mod words;
 
 use post_plugin::{
-    Axes, AxisNames, Block, Capabilities, Coolant, Dialect, Drilling, Event, Format, Modal,
-    NumberStyle, OptionSpec, PlaneAngles, Setup, SpindleSense, Units, VocabularyWord,
+    Axes, AxisNames, Block, Capabilities, Coolant, Dialect, Drilling, Event, Format, Meaning,
+    Modal, NumberStyle, OptionSpec, PlaneAngles, Setup, SpindleSense, Units, VocabularyWord,
     export_dialect,
 };
 
@@ -195,7 +195,13 @@ impl Dialect for Heidenhain {
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
-        words::vocabulary(&self.tcp_on, &self.tcp_off)
+        let ends = self.coolant_ends.iter();
+        let ends = ends.map(|(_, word)| (word.as_str(), Meaning::CoolantOff));
+        let coolants = self.coolant.iter().map(|(kind, word)| match kind {
+            Coolant::Off => (word.as_str(), Meaning::CoolantOff),
+            _ => (word.as_str(), Meaning::CoolantOn),
+        });
+        words::vocabulary(&self.tcp_on, &self.tcp_off, ends.chain(coolants))
     }
 
     fn format(&self) -> Format {

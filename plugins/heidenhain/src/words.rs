@@ -36,69 +36,132 @@ impl Heidenhain {
     }
 }
 
-/// All of them; `tcp_on` and `tcp_off` are lines of the options.
-pub(crate) fn vocabulary(tcp_on: &str, tcp_off: &str) -> Vec<VocabularyWord> {
-    let word = |word: &str, meaning| VocabularyWord {
-        word: word.to_owned().into(),
-        meaning,
-    };
-    let fixed = WORDS.iter().map(|(text, meaning)| word(text, *meaning));
+/// All of them; `tcp_on` and `tcp_off` are lines of the options, `coolant` the words that they name for coolants, what
+/// ends one of them first.
+pub(crate) fn vocabulary<'a>(
+    tcp_on: &'a str,
+    tcp_off: &'a str,
+    coolant: impl IntoIterator<Item = (&'a str, Meaning)>,
+) -> Vec<VocabularyWord> {
+    let first = |text: &str| text.lines().next().unwrap_or_default().trim().to_owned();
+    let mut words: Vec<VocabularyWord> = WORDS
+        .iter()
+        .map(|(text, meaning)| VocabularyWord::new(text, *meaning))
+        .collect();
     let own = [(tcp_on, M::TcpOn), (tcp_off, M::TcpOff)];
-    let own = own.into_iter().filter(|(text, _)| !text.is_empty());
-    let first = |text: &str| text.lines().next().unwrap_or_default().to_owned();
-    fixed
-        .chain(own.map(|(text, meaning)| word(&first(text), meaning)))
-        .collect()
+    for (text, meaning) in own.into_iter().chain(coolant) {
+        let word = first(text);
+        if !word.is_empty() && !words.iter().any(|known| known.word == word) {
+            words.push(VocabularyWord {
+                word: word.into(),
+                meaning,
+            });
+        }
+    }
+    words
 }
 
 use Meaning as M;
 
+/// Cycles stand with their number alone: `CYCL DEF 32` is 32.0, 32.1 and 32.2. Words of a cycle or a plane (Q200, SPA,
+/// MB) belong to the word that opens their block.
 const WORDS: &[(&str, Meaning)] = &[
     (";", M::Remark),
     ("*", M::Remark),
     ("BEGIN PGM", M::Nothing),
-    ("END PGM", M::End),
+    ("END PGM", M::Nothing),
     ("BLK FORM", M::Nothing),
     ("MM", M::Millimetre),
     ("INCH", M::Inch),
     ("L", M::Linear),
     ("LN", M::Linear),
     ("FMAX", M::RapidBlock),
-    ("CC", M::Nothing),
+    ("CC", M::Centre),
+    ("C", M::Arc),
+    ("CR", M::Arc),
+    ("CP", M::Arc),
+    ("CT", M::ArcTangent),
+    ("CTP", M::ArcTangent),
     ("DR-", M::ArcClockwise),
     ("DR+", M::ArcCounterClockwise),
     ("R", M::Radius),
-    ("M91", M::MachineCoordinates),
-    ("F", M::Feed),
     ("R0", M::CompensationOff),
     ("RL", M::CompensationLeft),
     ("RR", M::CompensationRight),
+    ("NX", M::NormalX),
+    ("NY", M::NormalY),
+    ("NZ", M::NormalZ),
+    ("TX", M::ToolAxisX),
+    ("TY", M::ToolAxisY),
+    ("TZ", M::ToolAxisZ),
+    ("M91", M::MachineCoordinates),
+    ("M92", M::BuilderCoordinates),
+    ("M140", M::Retract),
+    ("F", M::Feed),
+    ("FU", M::FeedPerRevolution),
+    ("M136", M::FeedPerRevolution),
+    ("M137", M::FeedPerMinute),
+    ("M128", M::TcpOn),
+    ("FUNCTION TCPM", M::TcpOn),
+    ("M129", M::TcpOff),
+    ("FUNCTION RESET TCPM", M::TcpOff),
+    ("M126", M::RotaryShortest),
+    ("M127", M::RotaryAsWritten),
+    ("M116", M::RotaryFeedLength),
+    ("M117", M::RotaryFeedAngle),
+    ("M94", M::Nothing),
     ("PLANE SPATIAL", M::TiltedPlane),
+    ("PLANE PROJECTED", M::TiltedPlane),
+    ("PLANE EULER", M::TiltedPlane),
+    ("PLANE VECTOR", M::TiltedPlane),
+    ("PLANE POINTS", M::TiltedPlane),
+    ("PLANE RELATIV", M::TiltedPlane),
+    ("PLANE AXIAL", M::TiltedPlane),
+    ("CYCL DEF 19", M::TiltedPlane),
     ("PLANE RESET", M::TiltedPlaneOff),
+    ("MOVE", M::TiltedPlaneTurn),
+    ("TURN", M::TiltedPlaneTurn),
     ("CYCL DEF 247", M::WorkOffset),
-    ("CYCL DEF 7", M::WorkOffset),
-    ("TRANS DATUM AXIS", M::WorkOffset),
+    ("CYCL DEF 7", M::LocalOffset),
+    ("TRANS DATUM AXIS", M::LocalOffset),
+    ("TRANS DATUM RESET", M::LocalOffsetOff),
+    ("CYCL DEF 8", M::Mirror),
+    ("CYCL DEF 10", M::Rotation),
+    ("CYCL DEF 11", M::Scale),
+    ("CYCL DEF 26", M::Scale),
     ("CYCL DEF 32", M::Smoothing),
     ("TOOL CALL", M::ToolChange),
-    ("TOOL DEF", M::Nothing),
+    ("TOOL DEF", M::Preselect),
     ("S", M::SpindleSpeed),
     ("M3", M::SpindleClockwise),
     ("M4", M::SpindleCounterClockwise),
     ("M5", M::SpindleOff),
+    ("M13", M::SpindleClockwiseCoolant),
+    ("M14", M::SpindleCounterClockwiseCoolant),
     ("M8", M::CoolantOn),
     ("M9", M::CoolantOff),
-    ("M126", M::Nothing),
-    ("M127", M::Nothing),
     ("CYCL DEF 9", M::Dwell),
+    ("FUNCTION DWELL", M::Dwell),
+    ("STOP", M::Stop),
     ("M0", M::Stop),
     ("M1", M::OptionalStop),
+    ("M2", M::End),
     ("M30", M::End),
     ("CALL LBL", M::Subprogram),
     ("CALL PGM", M::Subprogram),
     ("CYCL DEF 200", M::CycleDrill),
+    ("CYCL DEF 240", M::CycleDrill),
+    ("CYCL DEF 201", M::CycleReam),
+    ("CYCL DEF 202", M::CycleBoreFine),
     ("CYCL DEF 203", M::CycleBreakChip),
+    ("CYCL DEF 204", M::CycleBoreBack),
+    ("CYCL DEF 205", M::CycleDeep),
     ("CYCL DEF 206", M::CycleTap),
     ("CYCL DEF 207", M::CycleTap),
-    ("CYCL DEF 201", M::CycleReam),
-    ("CYCL DEF 202", M::CycleBore),
+    ("CYCL DEF 209", M::CycleTap),
+    ("CYCL DEF 208", M::CycleOther),
+    ("CYCL DEF 241", M::CycleOther),
+    ("CYCL CALL", M::CycleCall),
+    ("M99", M::CycleCall),
+    ("M89", M::CycleCallModal),
 ];

@@ -2,8 +2,8 @@
 //!
 //! What it assumes about the control stands in `plugins/README.md`.
 
-use post_iso::{Control, Iso, Leave, Subprogram, Table, Tcp, iso_options, options};
-use post_plugin::{OptionSpec, Setup, export_dialect};
+use post_iso::{Control, Iso, Leave, Subprogram, Table, Tcp, iso_options, options, words};
+use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 
 struct Hurco;
 
@@ -25,6 +25,7 @@ impl Control for Hurco {
             name: "",
             times: " L",
         },
+        words: &[words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };
 
@@ -58,6 +59,22 @@ const RELIES: &[&str] = &[
     "the control reads ISNC, not BNC",
     "under M128 rotary words of plain G0 and G1 turn the tool about its tip, and coordinates stay with the part",
     "frame, work offsets, H, D, cycles and subprograms are written as Fanuc has them: confirm at the machine",
+];
+
+/// Words that it reads and that are not written here.
+const OWN: &[(&str, Meaning)] = &[
+    ("G28", Meaning::ReferenceReturn),
+    ("G54.1", Meaning::WorkOffset),
+    ("G8.2", Meaning::Nothing),
+    ("G68.2", Meaning::TiltedPlane),
+    ("G68.3", Meaning::TiltedPlane),
+    ("G69", Meaning::TiltedPlaneOff),
+    ("M126", Meaning::RotaryShortest),
+    ("M127", Meaning::RotaryAsWritten),
+    ("M140", Meaning::Retract),
+    ("M200", Meaning::Nothing),
+    ("M31", Meaning::Nothing),
+    ("G76", Meaning::CycleBoreFine),
 ];
 
 export_dialect!(hurco, Iso<Hurco>);

@@ -137,11 +137,14 @@ impl Engine {
     /// Words that the options name, for reading back.
     pub(crate) fn own_words(&self, add: &mut dyn FnMut(&str, Meaning)) {
         if matches!(self.table.tcp, Tcp::Blocks { .. }) {
-            // Of several lines the last switches it.
-            let last = |lines: &'_ str| lines.lines().last().unwrap_or("").to_owned();
-            let on = last(&self.tcp_on);
-            add(on.split('{').next().unwrap_or(""), Meaning::TcpOn);
-            add(&last(&self.tcp_off), Meaning::TcpOff);
+            // Of several lines the last switches it that does not stand on both sides: M66 waits for M68 either way.
+            let last = |lines: &str, other: &str| {
+                let mut own = lines.lines().rev();
+                let found = own.find(|line| !other.lines().any(|known| known == *line));
+                found.unwrap_or("").to_owned()
+            };
+            add(&last(&self.tcp_on, &self.tcp_off), Meaning::TcpOn);
+            add(&last(&self.tcp_off, &self.tcp_on), Meaning::TcpOff);
         }
         let [off, on @ ..] = &self.coolant_codes;
         add(off, Meaning::CoolantOff);

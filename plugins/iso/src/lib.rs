@@ -15,6 +15,7 @@ mod settings;
 mod splines;
 mod table;
 mod vocabulary;
+pub mod words;
 
 use post_plugin::{Capabilities, Dialect, Event, Format, OptionSpec, Setup, VocabularyWord};
 

@@ -83,13 +83,17 @@ impl Settings {
         declared.fold(Capabilities::NONE, |all, (_, capability)| all | capability)
     }
 
-    /// Words of smoothing, for reading back.
+    /// Words of smoothing and clamps, for reading back.
     pub(crate) fn words(&self, add: &mut dyn FnMut(&str, Meaning)) {
         for (_, words) in &self.levels {
             add(words, Meaning::Smoothing);
         }
         if !self.levels.is_empty() {
             add(&self.smoothing_off, Meaning::SmoothingOff);
+        }
+        for clamp in &self.clamps {
+            add(&clamp.on, Meaning::Clamp);
+            add(&clamp.off, Meaning::Unclamp);
         }
     }
 

@@ -1,6 +1,6 @@
 //! What differs from control to control.
 
-use post_plugin::{AxisNames, Cycle, OptionSpec, remark};
+use post_plugin::{AxisNames, Cycle, Meaning, OptionSpec, remark};
 
 /// How a control of the family differs from the others. Begin with [`Table::ISO`] and say what is different.
 ///
@@ -95,6 +95,9 @@ pub struct Table {
     pub coolant: [&'static str; 5],
     /// Ends the program.
     pub end: &'static str,
+    /// Words of the control that programs of others hold, or that mean something else than the engine would say, in
+    /// groups: [`crate::words`] has those that several controls share. A program is read back by them.
+    pub words: &'static [&'static [(&'static str, Meaning)]],
 }
 
 /// Words of motion, feed and compensation.
@@ -405,5 +408,6 @@ impl Table {
         spindle: ["M3", "M4", "M5", "M19"],
         coolant: ["M9", "M8", "M7", "", ""],
         end: "M30",
+        words: &[],
     };
 }

@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use post_plugin::{Cycle, Meaning, VocabularyWord};
 
 use crate::engine::Engine;
-use crate::table::{Plane, Rigid, Splines, Tcp};
+use crate::table::{Dwell, Plane, Rigid, Splines, Tcp};
 
-/// Words that all controls of the family share.
+/// Words that all controls of the family share, where the table says nothing else of them.
 const SHARED: &[(&str, Meaning)] = &[
     ("(", Meaning::RemarkOpen),
     (")", Meaning::RemarkClose),
@@ -24,6 +24,15 @@ const SHARED: &[(&str, Meaning)] = &[
     ("S", Meaning::SpindleSpeed),
     ("G4", Meaning::Dwell),
     ("G80", Meaning::CycleOff),
+    ("M7", Meaning::CoolantOn),
+    ("M8", Meaning::CoolantOn),
+    ("M9", Meaning::CoolantOff),
+    ("M2", Meaning::End),
+    ("M30", Meaning::End),
+];
+
+/// Words of controls that have cycles.
+const CYCLES: &[(&str, Meaning)] = &[
     ("G98", Meaning::ReturnStart),
     ("G99", Meaning::ReturnClearance),
 ];
@@ -42,17 +51,21 @@ impl Engine {
         use Meaning as M;
         let table = self.table;
         let codes = &self.motion.codes;
-        let mut words: Vec<(Cow<'static, str>, Meaning)> = Vec::new();
+        let own = table.words.iter().flat_map(|group| group.iter());
+        let mut words: Vec<(Cow<'static, str>, Meaning)> = own
+            .map(|(word, meaning)| (Cow::Borrowed(*word), *meaning))
+            .collect();
         let mut add = |word: &str, meaning: Meaning| {
-            // Without the number behind it.
-            let word = word.split("{}").next().unwrap_or("").trim();
+            // Without the number behind it, nor the name that it is the value of: `G169 HL={h}`.
+            let word = word.split('{').next().unwrap_or("").trim();
+            let word = match word.strip_suffix('=') {
+                Some(named) => named.rsplit_once(' ').map_or(named, |(word, _)| word),
+                None => word,
+            };
             if !word.is_empty() && !words.iter().any(|(known, _)| known == word) {
                 words.push((word.to_owned().into(), meaning));
             }
         };
-        for (word, meaning) in SHARED {
-            add(word, *meaning);
-        }
         if let Some((letter, _)) = table.title {
             add(letter, M::Nothing);
         }
@@ -85,7 +98,9 @@ impl Engine {
         for (word, meaning) in listed {
             add(word, meaning);
         }
-        add(codes.radius, M::RadiusRegister);
+        if !codes.compensation[1].is_empty() {
+            add(codes.radius, M::RadiusRegister);
+        }
         add(first(table.machine), M::MachineCoordinates);
         add(table.length.on, M::LengthOn);
         add(table.length.off, M::LengthOff);
@@ -94,7 +109,7 @@ impl Engine {
         }
         if let Tcp::Length(word) = table.tcp {
             add(word, M::TcpOn);
-            add(table.vector, M::TcpOn);
+            add(table.vector, M::TcpVectorOn);
         }
         for number in 1..=MOST_OFFSETS {
             let Some(word) = (table.offset.word)(number) else {
@@ -118,22 +133,52 @@ impl Engine {
             Splines::None => {}
             Splines::Knots { code, .. } | Splines::Even { code, .. } => add(code, M::Spline),
         }
+        match table.dwell {
+            Dwell::Milliseconds(letter) => add(&format!("G4 {letter}"), M::DwellMilliseconds),
+            Dwell::Seconds(letter, _) => add(&format!("G4 {letter}"), M::DwellSeconds),
+        }
+        if let Some(surface) = table.surface {
+            let [on, off] = surface.codes;
+            add(on, M::SurfaceSpeed);
+            add(off, M::SurfaceSpeedOff);
+            // A letter alone belongs to the word of the cutting speed.
+            if surface.most.len() > 1 {
+                add(surface.most, M::SpeedLimit);
+            }
+        }
         for code in self.cycles.codes() {
             for word in [code.plain, code.waits] {
                 add(first(word), cycle(code.kind));
             }
         }
-        if let Rigid::Codes([right, left]) = table.rigid {
-            add(right, M::CycleTap);
-            add(left, M::CycleTapLeft);
+        match table.rigid {
+            Rigid::Always => {}
+            Rigid::Ahead(word) => add(word, M::Nothing),
+            Rigid::Codes([right, left]) => {
+                add(right, M::CycleTap);
+                add(left, M::CycleTapLeft);
+            }
+            Rigid::Move(word) => add(word, M::ThreadAndBack),
+        }
+        if !table.cycles.is_empty() {
+            CYCLES
+                .iter()
+                .for_each(|(word, meaning)| add(word, *meaning));
         }
         add(table.probe, M::Probe);
         add(first(table.subprogram.number), M::Subprogram);
         add(table.end, M::End);
-        for word in self.change.split_whitespace() {
-            add(word, M::ToolChange);
-        }
         self.own_words(&mut add);
+        SHARED
+            .iter()
+            .for_each(|(word, meaning)| add(word, *meaning));
+        // What changes the tool may be what stops the program: M0 of a machine without a changer.
+        for word in self.change.split_whitespace() {
+            let change = (Cow::Owned(word.to_owned()), M::ToolChange);
+            if !words.contains(&change) {
+                words.push(change);
+            }
+        }
         let words = words.into_iter();
         words
             .map(|(word, meaning)| VocabularyWord { word, meaning })

@@ -4,9 +4,11 @@
 
 use post_iso::{
     Control, CycleCode, Dwell, Engine, Iso, Leave, Length, Offset, Rigid, Splines, Stops,
-    Subprogram, SurfaceSpeed, Table, Tcp, offset_of_six, options,
+    Subprogram, SurfaceSpeed, Table, Tcp, offset_of_six, options, words,
 };
-use post_plugin::{Capabilities, Cycle, NumberStyle, OptionSpec, Setup, export_dialect, remark};
+use post_plugin::{
+    Capabilities, Cycle, Meaning, NumberStyle, OptionSpec, Setup, export_dialect, remark,
+};
 
 struct LinuxCnc {
     /// P of G64, program units; 0: exact path.
@@ -75,6 +77,7 @@ impl Control for LinuxCnc {
             times: "",
         },
         end: "M2",
+        words: &[words::RETURNS, words::SHIFTS, words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };
 
@@ -173,6 +176,56 @@ const CYCLES: &[CycleCode] = &[
 
 /// G64 P is the tolerance, program units.
 const SMOOTHING: [&str; 2] = ["0 G64 P{}", "G61"];
+
+/// Words that its interpreter reads and that are not written here. G76 is a thread in passes.
+const OWN: &[(&str, Meaning)] = &[
+    (";", Meaning::Remark),
+    ("G28.1", Meaning::TableData),
+    ("G30.1", Meaning::TableData),
+    ("G38.3", Meaning::Probe),
+    ("G38.4", Meaning::Probe),
+    ("G38.5", Meaning::Probe),
+    ("G33", Meaning::Thread),
+    ("G33.1", Meaning::ThreadAndBack),
+    ("G5", Meaning::Spline),
+    ("G5.1", Meaning::Spline),
+    ("G5.2", Meaning::Spline),
+    ("G5.3", Meaning::Nothing),
+    ("G90.1", Meaning::CentreAbsolute),
+    ("G91.1", Meaning::CentreIncremental),
+    ("G2 P", Meaning::Turns),
+    ("G3 P", Meaning::Turns),
+    ("G7", Meaning::Diameter),
+    ("G8", Meaning::DiameterOff),
+    ("G41.1", Meaning::CompensationLeft),
+    ("G42.1", Meaning::CompensationRight),
+    ("G43.1", Meaning::LengthStated),
+    ("G43.2", Meaning::LengthAdded),
+    ("G92.1", Meaning::SetPositionOff),
+    ("G92.2", Meaning::SetPositionOff),
+    ("G92.3", Meaning::SetPositionAgain),
+    ("G64", Meaning::Smoothing),
+    ("G61", Meaning::SmoothingOff),
+    ("G61.1", Meaning::SmoothingOff),
+    ("G76", Meaning::CycleOther),
+    ("G84", Meaning::CycleTap),
+    ("G74", Meaning::CycleTapLeft),
+    ("M60", Meaning::Stop),
+    ("M48", Meaning::Nothing),
+    ("M49", Meaning::Nothing),
+    ("M50", Meaning::Nothing),
+    ("M51", Meaning::Nothing),
+    ("M52", Meaning::Nothing),
+    ("M53", Meaning::Nothing),
+    ("M62", Meaning::Nothing),
+    ("M63", Meaning::Nothing),
+    ("M64", Meaning::Nothing),
+    ("M65", Meaning::Nothing),
+    ("M66", Meaning::Nothing),
+    ("M67", Meaning::Nothing),
+    ("M68", Meaning::Nothing),
+    ("M98", Meaning::Subprogram),
+];
 
 export_dialect!(linuxcnc, Iso<LinuxCnc>);
 

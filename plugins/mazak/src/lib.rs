@@ -4,9 +4,9 @@
 
 use post_iso::{
     Control, Iso, Offset, Plane, Rigid, Subprogram, Table, Tcp, is_offset_beyond_six, iso_options,
-    offset_beyond_six, options,
+    offset_beyond_six, options, words,
 };
-use post_plugin::{OptionSpec, Setup, export_dialect};
+use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 
 struct Mazak;
 
@@ -41,6 +41,7 @@ impl Control for Mazak {
             name: "",
             times: " L",
         },
+        words: &[words::RETURNS, words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };
 
@@ -80,6 +81,18 @@ const CANCEL: &str = "G69";
 
 /// Geometry compensation; the range of its P is the control's.
 const SMOOTHING: [&str; 2] = ["0 G61.1", "G64"];
+
+/// Words that it reads and that are not written here.
+const OWN: &[(&str, Meaning)] = &[
+    ("G4 X", Meaning::DwellSeconds),
+    ("G68", Meaning::Rotation),
+    ("G68.2", Meaning::TiltedPlane),
+    ("G5", Meaning::Smoothing),
+    ("G76", Meaning::CycleBoreFine),
+    ("G87", Meaning::CycleBoreBack),
+    ("G84.2", Meaning::CycleTap),
+    ("G84.3", Meaning::CycleTapLeft),
+];
 
 export_dialect!(mazak, Iso<Mazak>);
 

@@ -4,9 +4,9 @@
 
 use post_iso::{
     Control, Iso, Offset, Plane, Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six,
-    iso_options, offset_beyond_six, options,
+    iso_options, offset_beyond_six, options, words,
 };
-use post_plugin::{OptionSpec, Setup, export_dialect};
+use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 
 struct Mitsubishi;
 
@@ -39,6 +39,15 @@ impl Control for Mitsubishi {
             name: "",
             times: " L",
         },
+        words: &[
+            words::RETURNS,
+            words::SHIFTS,
+            words::FRAMES,
+            words::POLAR,
+            words::STOPS,
+            words::SUBPROGRAM_END,
+            OWN,
+        ],
         ..Table::ISO
     };
 
@@ -74,6 +83,22 @@ const RELIES: &[&str] = &[
 
 /// Inclined surface off.
 const CANCEL: &str = "G69";
+
+/// Words that it reads and that are not written here.
+const OWN: &[(&str, Meaning)] = &[
+    ("G4 X", Meaning::DwellSeconds),
+    ("G33", Meaning::Thread),
+    ("G44", Meaning::LengthNegative),
+    ("G43.1", Meaning::LengthAlongTool),
+    ("G11", Meaning::TableDataOff),
+    ("G68.3", Meaning::TiltedPlane),
+    ("G5", Meaning::Smoothing),
+    ("G5.1", Meaning::Smoothing),
+    ("G76", Meaning::CycleBoreFine),
+    ("G87", Meaning::CycleBoreBack),
+    ("G12", Meaning::CycleOther),
+    ("G13", Meaning::CycleOther),
+];
 
 export_dialect!(mitsubishi, Iso<Mitsubishi>);
 

@@ -5,7 +5,7 @@
 use post_iso::{
     Codes, Control, Dwell, Iso, Leave, Length, Offset, Subprogram, Table, Tcp, iso_options, options,
 };
-use post_plugin::{OptionKind, OptionSpec, Setup, Units, Value, export_dialect};
+use post_plugin::{Meaning, OptionKind, OptionSpec, Setup, Units, Value, export_dialect};
 
 struct Okuma;
 
@@ -54,6 +54,7 @@ impl Control for Okuma {
             times: "",
         },
         end: "M2",
+        words: &[OWN],
         ..Table::ISO
     };
 
@@ -105,6 +106,70 @@ const RELIES: &[&str] = &[
     "the unit system is 1 mm, or 1 inch: the units of the program are those of the parameters",
     "G16 H0: the positions of this block count from the machine's zero, without the length",
     "G4 F is in seconds: confirm at the machine",
+];
+
+/// Words that it reads, many of which mean something else on other controls: 4203-E, tables of command codes.
+const OWN: &[(&str, Meaning)] = &[
+    ("%", Meaning::Nothing),
+    ("$", Meaning::Nothing),
+    ("G20", Meaning::Inch),
+    ("G21", Meaning::Millimetre),
+    ("G30", Meaning::OtherReferenceReturn),
+    ("G31", Meaning::Probe),
+    ("G9", Meaning::ExactStop),
+    ("G16 H0", Meaning::MachineCoordinates),
+    ("G16", Meaning::WorkOffsetBlock),
+    ("G53", Meaning::LengthOff),
+    ("G54", Meaning::LengthOn),
+    ("G55", Meaning::LengthOn),
+    ("HA", Meaning::LengthRegister),
+    ("G92", Meaning::SetPosition),
+    ("G11", Meaning::Rotation),
+    ("G10", Meaning::RotationOff),
+    ("CALL OO88", Meaning::TiltedPlane),
+    ("G51", Meaning::Scale),
+    ("G50", Meaning::ScaleOff),
+    ("G62", Meaning::Mirror),
+    ("G175", Meaning::CylinderTransformation),
+    ("G131", Meaning::Smoothing),
+    ("G187", Meaning::Smoothing),
+    ("G64", Meaning::Smoothing),
+    ("G130", Meaning::SmoothingOff),
+    ("G186", Meaning::SmoothingOff),
+    ("G61", Meaning::SmoothingOff),
+    ("G71", Meaning::ReturnLevel),
+    ("M52", Meaning::ReturnLevel),
+    ("M53", Meaning::ReturnLevel),
+    ("M54", Meaning::ReturnClearance),
+    ("NCYL", Meaning::Nothing),
+    ("G73", Meaning::CycleBreakChip),
+    ("G74", Meaning::CycleTapLeft),
+    ("G274", Meaning::CycleTapLeft),
+    ("G76", Meaning::CycleBoreFine),
+    ("G81", Meaning::CycleDrill),
+    ("G82", Meaning::CycleDrill),
+    ("G83", Meaning::CycleDeep),
+    ("G84", Meaning::CycleTap),
+    ("G284", Meaning::CycleTap),
+    ("G85", Meaning::CycleReam),
+    ("G89", Meaning::CycleReam),
+    ("G86", Meaning::CycleBore),
+    ("G87", Meaning::CycleBoreBack),
+    ("M50", Meaning::CoolantOn),
+    ("M51", Meaning::CoolantOn),
+    ("M12", Meaning::CoolantOn),
+    ("M59", Meaning::CoolantOn),
+    ("M10", Meaning::Clamp),
+    ("M20", Meaning::Clamp),
+    ("M26", Meaning::Clamp),
+    ("M11", Meaning::Unclamp),
+    ("M21", Meaning::Unclamp),
+    ("M27", Meaning::Unclamp),
+    ("M15", Meaning::Nothing),
+    ("M16", Meaning::Nothing),
+    ("M510", Meaning::Nothing),
+    ("M511", Meaning::Nothing),
+    ("RTS", Meaning::SubprogramEnd),
 ];
 
 export_dialect!(okuma, Iso<Okuma>);

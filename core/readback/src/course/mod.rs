@@ -26,6 +26,7 @@ use crate::motion::SplineWay;
 use crate::{MotionKind, Told};
 
 pub use facts::{CourseFacts, Operation};
+pub(crate) use piece::{between, on_arc};
 
 /// A path that is handed out in order.
 pub trait Course {

@@ -1,12 +1,50 @@
 //! Blocks become motions.
+//!
+//! | file | does |
+//! |---|---|
+//! | `state` | what a control remembers from block to block: `Control` |
+//! | `control` | how it begins; the solver, the zero and the frames that words count from |
+//! | `gathered` | the words of a block, by letter |
+//! | `block` | a block of words: modes first, then what moves |
+//! | `names` | names, calls and texts among the words |
+//! | `go`, `arcs`, `machine_moves` | from words to axis values, tip and tool axis |
+//! | `feed`, `tools` | time, tool lengths |
+//! | `frame` | frames within one another |
+//! | `flow`, `expression`, `variables` | what leads the program elsewhere, and numbers that are worked out |
+//! | `cycles`, `planes`, `frames`, `conversational` | cycles, tilted planes, shifts; Heidenhain's blocks |
 
-use std::io::{BufRead, Seek};
+mod arcs;
+mod assigned;
+mod block;
+mod calls;
+mod control;
+mod conversational;
+mod cycles;
+mod expression;
+mod feed;
+mod flow;
+mod frame;
+mod frames;
+mod gathered;
+mod go;
+mod machine_moves;
+mod names;
+mod planes;
+mod state;
+mod tools;
+mod variables;
 
+use std::io::{Read, Seek};
+
+use post_grammar::nc::{NcBlock, NcReader, Notation};
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::lexicon::Lexicon;
 use crate::{Done, Offsets};
+use flow::Flow;
+use gathered::Gathered;
+use state::Control;
 
 /// How far a program may go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,14 +77,37 @@ pub struct ReadReport {
     pub notes: Vec<Diagnostic>,
 }
 
+/// Runs blocks one by one.
+#[derive(Debug)]
+struct Runner {
+    control: Control,
+    words: Gathered,
+    conversational: bool,
+}
+
+impl Runner {
+    /// Runs a block; what it did stands in `control.done`.
+    #[inline]
+    fn run(&mut self, block: &NcBlock) -> Result<(), Box<Diagnostic>> {
+        self.control.line = block.line;
+        self.control.number = block.number;
+        if self.conversational {
+            conversational::run(&mut self.control, block)
+        } else {
+            block::run(&mut self.control, block, &mut self.words)
+        }
+    }
+}
+
 /// Runs a program block by block.
 #[derive(Debug)]
 pub struct Interpreter<R> {
-    input: R,
-    report: ReadReport,
+    flow: Flow<R>,
+    block: NcBlock,
+    runner: Runner,
 }
 
-impl<R: BufRead + Seek> Interpreter<R> {
+impl<R: Read + Seek> Interpreter<R> {
     /// A program from `input`, which messages call `file`, on `machine`.
     ///
     /// # Errors
@@ -59,10 +120,16 @@ impl<R: BufRead + Seek> Interpreter<R> {
         file: &str,
         input: R,
     ) -> Result<Self, Box<Diagnostic>> {
-        let _ = (machine, lexicon, offsets, limits, file);
+        let reader = NcReader::new(input, lexicon.syntax().clone());
+        let runner = Runner {
+            control: Control::new(machine, lexicon, offsets, file)?,
+            words: Gathered::default(),
+            conversational: lexicon.syntax().notation == Notation::Conversational,
+        };
         Ok(Self {
-            input,
-            report: ReadReport::default(),
+            flow: Flow::new(reader, lexicon.language(), limits, file),
+            block: NcBlock::default(),
+            runner,
         })
     }
 
@@ -71,13 +138,26 @@ impl<R: BufRead + Seek> Interpreter<R> {
     ///
     /// # Errors
     /// What stands there that cannot be understood, or is not run, with its place.
+    #[inline]
     pub fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
-        let _ = (&mut self.input, done);
-        todo!()
+        let Self { flow, block, runner } = self;
+        if runner.control.ended {
+            return Ok(false);
+        }
+        let more = flow.next(&mut runner.control.variables, block);
+        runner.control.report.header = flow.reader().header_lines();
+        runner.control.line = block.line;
+        if !more.map_err(|finding| runner.control.placed(*finding).boxed())? {
+            return Ok(false);
+        }
+        runner.control.report.blocks += 1;
+        let ran = runner.run(block);
+        done.append(&mut runner.control.done);
+        ran.map(|()| true)
     }
 
     /// What was found so far.
     pub fn report(&self) -> &ReadReport {
-        &self.report
+        &self.runner.control.report
     }
 }

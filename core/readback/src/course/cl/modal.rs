@@ -192,15 +192,15 @@ impl Modal {
             Statement::Cycle(cycle) => self.cycle_word(record, cycle),
             Statement::Cutcom(cutcom) => {
                 self.load_due(record, out)?;
-                match cutcom.side {
-                    None => {}
-                    Some(side) => self.side = Some(side).filter(|side| *side != Side::Off),
+                // ON repeats the side before, through an OFF.
+                if let Some(side @ (Side::Left | Side::Right)) = cutcom.side {
+                    self.side = Some(side);
                 }
                 let side = match (cutcom.side, self.side) {
                     (Some(Side::Off), _) => 0,
                     (_, Some(Side::Left)) => -1,
                     (_, Some(Side::Right)) => 1,
-                    // CAMWorks says ON first, and the side in the next record.
+                    // CAMWorks says ON first, and its first side in the next record.
                     _ => return Ok(()),
                 };
                 self.register = cutcom.register.or(self.register);

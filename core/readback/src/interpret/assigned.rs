@@ -1,0 +1,69 @@
+//! Variables that a block sets or declares.
+
+use post_grammar::nc::{NcBlock, NcExpression, NcItem, NcValue};
+
+use super::flow::{Answer, fault};
+use super::variables::{Value, Variables};
+use crate::lexicon::Language;
+
+/// Takes what a block sets out of it, with its value as it is in front of the block; `DEF` declares at once.
+pub(super) fn take(
+    block: &mut NcBlock,
+    language: Language,
+    variables: &mut Variables,
+    set: &mut Vec<(String, Value)>,
+) -> Answer<()> {
+    if let Some(NcItem::Name(kind)) = block.items.first()
+        && let Some(kind) = kind.strip_prefix("DEF ")
+    {
+        let kind = kind.to_owned();
+        let items = std::mem::take(&mut block.items);
+        return declare(&kind, &items[1..], variables);
+    }
+    // A cycle's parameters are variables too, and stay for the cycle.
+    if language == Language::Conversational && matches!(block.items.first(), Some(NcItem::Name(name)) if name.starts_with("CYCL DEF")) {
+        return Ok(());
+    }
+    let mut failed = None;
+    block.items.retain(|item| {
+        let found = match item {
+            NcItem::Assign { variable, value } => {
+                let name = variables.named(variable);
+                name.and_then(|name| Ok((name, variables.value(value)?)))
+            }
+            NcItem::Named { name, value } if variables.knows(name) => match value {
+                NcValue::Expression(value) => variables.value(value).map(|value| (name.clone(), value)),
+                NcValue::Text(text) => Ok((name.clone(), Value::Text(text.clone()))),
+                other => variables.worth(other).map(|number| (name.clone(), Value::Number(number))),
+            },
+            _ => return true,
+        };
+        match found {
+            Ok(found) => set.push(found),
+            Err(fault) => failed = failed.take().or(Some(fault)),
+        }
+        false
+    });
+    failed.map_or(Ok(()), Err)
+}
+
+/// `DEF REAL _X, _Y=5`.
+fn declare(kind: &str, items: &[NcItem], variables: &mut Variables) -> Answer<()> {
+    for item in items {
+        match item {
+            NcItem::Name(name) => variables.define(kind, name, None)?,
+            NcItem::Assign { variable, value } => match &**variable {
+                NcExpression::Variable(name) => {
+                    let value = variables.value(value)?;
+                    variables.define(kind, name, Some(value))?;
+                }
+                _ => return Err(fault("what is declared is no name")),
+            },
+            // A field, or a text of so many characters: its elements are set one by one.
+            NcItem::Named { name, .. } if kind == "STRING" => variables.define(kind, name, None)?,
+            NcItem::Named { .. } => {}
+            _ => return Err(fault("what is declared is no name")),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,155 @@
+//! Words that lead elsewhere: subprograms by M98, M97, M99 and G65.
+
+use post_grammar::nc::{NcBlock, NcItem, NcValue, NcWord};
+
+use super::expression::whole;
+use super::flow::{Answer, fault};
+use super::variables::Variables;
+use crate::lexicon::Language;
+
+/// What a block leads to, once it is run.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Pending {
+    /// The subprogram `O` of this number, so often, with these variables of its own where it is a macro.
+    Subprogram {
+        number: u64,
+        times: i64,
+        own: Option<Vec<(String, f64)>>,
+    },
+    /// The blocks from `N` of this number on.
+    Local { number: u64, times: i64 },
+    /// Back to the call, or to this block of the caller.
+    Return { to: Option<u64> },
+    /// The part that is repeated ends with this block.
+    PartEnd,
+}
+
+/// Whether a block may lead elsewhere, or sets a variable.
+#[inline]
+pub(super) fn leads(block: &NcBlock, language: Language, variables: &Variables) -> bool {
+    let letters = matches!(language, Language::Macro | Language::Rs274);
+    block.items.iter().any(|item| match item {
+        NcItem::Word(word) => letters && code(word).is_some(),
+        NcItem::Flow(_) | NcItem::Assign { .. } => true,
+        NcItem::Name(name) => name.starts_with("DEF "),
+        NcItem::Named { name, .. } => variables.knows(name),
+        _ => false,
+    })
+}
+
+/// The words that lead elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Code {
+    /// M98.
+    Subprogram,
+    /// M97 (Haas).
+    Local,
+    /// M99.
+    Return,
+    /// G65.
+    Macro,
+    /// G66 and its like: a macro at every motion.
+    Modal,
+}
+
+#[inline]
+fn code(word: &NcWord) -> Option<Code> {
+    let NcValue::Number(number) = &word.value else {
+        return None;
+    };
+    match (word.letter, number.value) {
+        (b'M', 98.0) => Some(Code::Subprogram),
+        (b'M', 97.0) => Some(Code::Local),
+        (b'M', 99.0) => Some(Code::Return),
+        (b'G', 65.0) => Some(Code::Macro),
+        (b'G', 66.0 | 66.1) => Some(Code::Modal),
+        _ => None,
+    }
+}
+
+/// Takes the words that lead elsewhere out of a block.
+pub(super) fn take(block: &mut NcBlock, language: Language, variables: &Variables) -> Answer<Option<Pending>> {
+    if !matches!(language, Language::Macro | Language::Rs274) {
+        return Ok(None);
+    }
+    let found = block.items.iter().find_map(|item| match item {
+        NcItem::Word(word) => code(word),
+        _ => None,
+    });
+    let Some(found) = found else {
+        return Ok(None);
+    };
+    let value = |letter: u8| -> Answer<Option<f64>> {
+        for item in &block.items {
+            if let NcItem::Word(word) = item
+                && word.letter == letter
+            {
+                return variables.worth(&word.value).map(Some);
+            }
+        }
+        Ok(None)
+    };
+    let number = match value(b'P')? {
+        Some(number) => Some(u64::try_from(whole(number, "the number P")?).map_err(|_| fault("the number P is negative"))?),
+        None => None,
+    };
+    let times = match value(b'L')? {
+        Some(times) => whole(times, "the count L")?,
+        None => 1,
+    };
+    let needed = || number.ok_or_else(|| fault("a subprogram is called without its number P"));
+    let pending = match found {
+        Code::Modal => return Err(fault("G66 calls a macro at every motion, and that is not run")),
+        Code::Subprogram => Pending::Subprogram {
+            number: needed()?,
+            times,
+            own: None,
+        },
+        Code::Local => Pending::Local {
+            number: needed()?,
+            times,
+        },
+        Code::Return => Pending::Return { to: number },
+        Code::Macro => Pending::Subprogram {
+            number: needed()?,
+            times,
+            own: Some(arguments(block, variables)?),
+        },
+    };
+    block.items.retain(|item| match item {
+        NcItem::Word(word) => found != Code::Macro && code(word).is_none() && !matches!(word.letter, b'P' | b'L'),
+        _ => true,
+    });
+    Ok(Some(pending))
+}
+
+/// Letters whose values a macro finds in `#1` to `#26`, in this order; `-` where no letter leads.
+const MACRO_LETTERS: &[u8; 26] = b"ABCIJKDEFGHLMNOPQRSTUVWXYZ";
+
+/// The variables of a macro that `G65` calls.
+fn arguments(block: &NcBlock, variables: &Variables) -> Answer<Vec<(String, f64)>> {
+    let mut own: Vec<(String, f64)> = Vec::new();
+    for item in &block.items {
+        let NcItem::Word(word) = item else {
+            continue;
+        };
+        if matches!(word.letter, b'G' | b'P' | b'L' | b'N' | b'O') {
+            continue;
+        }
+        let place = MACRO_LETTERS.iter().position(|letter| *letter == word.letter);
+        let Some(place) = place else {
+            continue;
+        };
+        let name = format!("#{}", place + 1);
+        if own.iter().any(|(known, _)| *known == name) {
+            return Err(fault("a letter stands twice behind G65: what the further ones mean is not settled here"));
+        }
+        own.push((name, variables.worth(&word.value)?));
+    }
+    Ok(own)
+}
+
+/// `N100`.
+pub(super) fn block_number(name: &str) -> Option<u64> {
+    name.strip_prefix('N')?.parse().ok()
+}

@@ -1,0 +1,358 @@
+//! A control as it is when a program begins, and what all that work on it share.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Vector3};
+use post_machine::axis_words::unit_length;
+use post_machine::description::{Machine, OutputUnits};
+use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::kinematics::chain::turn;
+use post_machine::kinematics::{Joints, MAX_AXES, Trace};
+use post_machine::tilted_plane::TiltedPlane;
+
+use super::ReadReport;
+use super::frame::{Frame, Frames};
+use super::state::{ArcPlane, Axes, Control, FeedMode, Modal, MotionMode, Orientation};
+use crate::lexicon::{Language, Lexicon};
+use crate::{Coolants, Done, Offsets, Spindle, State, Told};
+
+/// So many lengths are kept ready.
+const SOLVERS: usize = 64;
+
+/// So many notes are kept.
+const NOTES: usize = 100;
+
+/// So many words that are not known are counted apart.
+const UNKNOWN: usize = 1000;
+
+impl Axes {
+    fn new(machine: &Machine) -> Self {
+        let mut axes = Self {
+            letters: [Self::NONE; 26],
+            names: Vec::new(),
+            cartesian: [None; 3],
+            mask: 0,
+            rotary: 0,
+        };
+        for (place, axis) in machine.axes.iter().enumerate() {
+            axes.rotary |= u32::from(axis.joint.rotary) << place;
+            match axis.name.as_bytes() {
+                [letter @ b'A'..=b'Z'] => {
+                    let letter = usize::from(letter - b'A');
+                    axes.letters[letter] = u8::try_from(place).unwrap_or(Self::NONE);
+                    axes.mask |= 1 << letter;
+                }
+                _ => axes.names.push((axis.name.clone(), place)),
+            }
+            let coordinate = ["X", "Y", "Z"].iter().position(|name| *name == axis.name);
+            if let (Some(coordinate), false) = (coordinate, axis.joint.rotary) {
+                axes.cartesian[coordinate] = Some(place);
+            }
+        }
+        axes
+    }
+}
+
+impl Control {
+    /// A control at the beginning of a program: axes at their zeros, no length, the machine file's work offset.
+    ///
+    /// # Errors
+    /// The machine cannot be solved.
+    pub fn new(
+        machine: &Machine,
+        lexicon: &Lexicon,
+        offsets: &Offsets,
+        file: &str,
+    ) -> Result<Self, Box<Diagnostic>> {
+        let solver = machine
+            .solver(0.0)
+            .map_err(|lack| machine.unsolvable(&lack).boxed())?;
+        let solver = Arc::new(solver);
+        let heads = machine.heads.iter();
+        let heads = heads
+            .map(|head| (head.word.clone(), Arc::new(head.machine.clone())))
+            .collect();
+        let mut control = Self {
+            file: file.to_owned(),
+            lexicon: lexicon.clone(),
+            offsets: offsets.clone(),
+            machine: Arc::new(machine.clone()),
+            heads,
+            axes: Axes::new(machine),
+            modal: Modal::new(lexicon.language(), machine.control.units),
+            frames: Frames::default(),
+            work: None,
+            tools: super::tools::Tools::default(),
+            variables: super::variables::Variables::new(lexicon.language()),
+            cycles: super::cycles::Cycles::default(),
+            state: State {
+                solver: Arc::clone(&solver),
+                length: 0.0,
+                tool: None,
+                length_register: None,
+                radius_register: None,
+                compensation: 0,
+                tcp: false,
+                plane: None,
+                work_offset: None,
+                spindle: Spindle::Off,
+                coolants: Coolants::default(),
+                operation: None,
+                smoothing: None,
+            },
+            shared: None,
+            at: Trace::default(),
+            ended: false,
+            hole: false,
+            zero: Joints::default(),
+            to_part: Frame::default(),
+            to_work: Frame::default(),
+            line: 0,
+            number: None,
+            report: ReadReport::default(),
+            done: Vec::new(),
+            solvers: vec![(0.0, solver)],
+        };
+        control.stand(&start(machine));
+        control.recount()?;
+        Ok(control)
+    }
+
+    /// The linear words are the tip, whoever keeps it.
+    #[inline]
+    pub fn tip_words(&self) -> bool {
+        self.state.tcp || self.frames.plane.is_some()
+    }
+
+    /// Something was told.
+    pub fn tell(&mut self, told: Told) {
+        self.hand_on_state();
+        let line = self.line;
+        self.done.push(Done::Told { line, told });
+    }
+
+    /// Something of `state` is another.
+    #[inline]
+    pub fn state_changed(&mut self) {
+        self.shared = None;
+    }
+
+    /// The state that motions share; what changed is handed on first.
+    #[inline]
+    pub fn hand_on_state(&mut self) -> Arc<State> {
+        if let Some(shared) = &self.shared {
+            return Arc::clone(shared);
+        }
+        let shared = Arc::new(self.state.clone());
+        self.done.push(Done::State(Arc::clone(&shared)));
+        self.shared = Some(Arc::clone(&shared));
+        shared
+    }
+
+    /// A block that is not run: what is wrong with it, at its line.
+    pub fn refuse(&self, code: &'static str, message: impl Into<String>) -> Box<Diagnostic> {
+        self.placed(Diagnostic::error(code, message)).boxed()
+    }
+
+    /// A finding at the line of the block, unless it has a place.
+    pub fn placed(&self, finding: Diagnostic) -> Diagnostic {
+        if finding.place.is_some() {
+            return finding;
+        }
+        finding.at(Some(Place::new(&self.file, self.line, "", 0..0)))
+    }
+
+    /// Something that was taken for granted.
+    pub fn note(&mut self, note: Diagnostic) {
+        if self.report.notes.len() < NOTES
+            && !self
+                .report
+                .notes
+                .iter()
+                .any(|known| known.message == note.message)
+        {
+            let note = self.placed(note);
+            self.report.notes.push(note);
+        }
+    }
+
+    /// A word that nobody knows and that moves nothing.
+    pub fn unknown(&mut self, word: &str) {
+        let known = self
+            .report
+            .unknown
+            .iter_mut()
+            .find(|(name, ..)| name == word);
+        if let Some((_, count, _)) = known {
+            *count += 1;
+        } else if self.report.unknown.len() < UNKNOWN {
+            self.report.unknown.push((word.to_owned(), 1, self.line));
+            self.tell(Told::Unknown(word.to_owned()));
+        }
+    }
+
+    /// Frames of the program changed: finds what the words count from.
+    pub fn frames_changed(&mut self) {
+        self.to_work = self.frames.all();
+        let work = self.work_frame();
+        self.to_part = work.around(&self.to_work);
+        let plane = self.frames.plane.map(|_| TiltedPlane {
+            origin: self.to_part.origin,
+            axes: self.to_part.axes,
+            angles: [0.0; 3],
+        });
+        if plane.is_some() || self.state.plane.is_some() {
+            self.state.plane = plane;
+            self.state_changed();
+        }
+    }
+
+    /// The length, the head or the work offset changed: finds the solver, and what the words count from.
+    pub fn solver_changed(&mut self) -> Result<(), Box<Diagnostic>> {
+        let length = self.state.length;
+        let ready = self.solvers.iter().find(|(known, _)| *known == length);
+        let solver = match ready {
+            Some((_, solver)) => Arc::clone(solver),
+            None => {
+                let solver = self.machine.solver(length);
+                let solver =
+                    solver.map_err(|lack| self.placed(self.machine.unsolvable(&lack)).boxed())?;
+                let solver = Arc::new(solver);
+                if self.solvers.len() == SOLVERS {
+                    self.solvers.remove(0);
+                }
+                self.solvers.push((length, Arc::clone(&solver)));
+                solver
+            }
+        };
+        self.state.solver = solver;
+        self.state_changed();
+        self.recount()?;
+        let joints = self.at.joints;
+        self.stand(&joints);
+        Ok(())
+    }
+
+    /// The machine has another head.
+    pub fn head_changed(&mut self, machine: Arc<Machine>) -> Result<(), Box<Diagnostic>> {
+        // An axis keeps its value where the other chain has one of its name.
+        let mut joints = start(&machine);
+        for (joint, axis) in joints.iter_mut().zip(&machine.axes) {
+            let before = self
+                .machine
+                .axes
+                .iter()
+                .position(|before| before.name == axis.name);
+            if let Some(before) = before {
+                *joint = self.at.joints[before];
+            }
+        }
+        self.axes = Axes::new(&machine);
+        self.machine = machine;
+        self.solvers.clear();
+        self.at.joints = joints;
+        self.solver_changed()
+    }
+
+    /// The machine stands at `joints`, nothing moves.
+    pub fn stand(&mut self, joints: &Joints) {
+        let chain = self.state.solver.chain();
+        self.at.joints = *joints;
+        self.at.turns = chain.turns(joints);
+        chain.trace(&mut self.at);
+    }
+
+    /// Where the axes stand that the words count from: the tip of the compensated tool on the part origin, rotary axes
+    /// showing zero, and the work offset on top.
+    fn recount(&mut self) -> Result<(), Box<Diagnostic>> {
+        let mut zero = Joints::default();
+        for (joint, axis) in zero.iter_mut().zip(&self.machine.axes) {
+            if axis.joint.rotary {
+                *joint = -axis.zero;
+            }
+        }
+        let solver = &self.state.solver;
+        let turns = solver.chain().turns(&zero);
+        if solver.place(Vector3::zeros(), &mut zero, &turns).is_err() {
+            let message = format!(
+                "the linear axes of {} do not bring the tip onto the part origin, so nothing is known of its work offset",
+                self.machine.name
+            );
+            return Err(self.refuse("nc-work-offset", message));
+        }
+        if let Some(work) = self.work.and_then(|work| self.offsets.work.get(work)) {
+            for (zero, shift) in zero.iter_mut().zip(work.shift) {
+                *zero += shift;
+            }
+        }
+        self.zero = zero;
+        self.frames_changed();
+        Ok(())
+    }
+
+    /// The frame of the work offset in the part frame.
+    fn work_frame(&self) -> Frame {
+        let shift = self.work.and_then(|work| self.offsets.work.get(work));
+        let Some(shift) = shift.filter(|work| work.shift != Joints::default()) else {
+            return Frame::default();
+        };
+        let chain = self.state.solver.chain();
+        let turns = chain.turns(&self.zero);
+        let rotary = self.machine.axes.iter().zip(shift.shift);
+        let upright = rotary
+            .clone()
+            .all(|(axis, shift)| !axis.joint.rotary || shift == 0.0);
+        let origin = chain.forward(&self.zero).tip;
+        if upright {
+            return Frame::shifted(origin);
+        }
+        // The machine's directions, seen from the part with its axes there.
+        let mut axes = Matrix3::identity();
+        for (place, axis) in self.machine.axes.iter().enumerate().rev() {
+            if axis.joint.rotary && axis.carries_part {
+                let (sine, cosine) = turns.of(place);
+                for mut column in axes.column_iter_mut() {
+                    let turned = turn(column.clone_owned(), axis.joint.direction, sine, cosine);
+                    column.copy_from(&turned);
+                }
+            }
+        }
+        Frame::new(axes, origin)
+    }
+}
+
+impl Modal {
+    fn new(language: Language, units: OutputUnits) -> Self {
+        Self {
+            motion: if language == Language::Names {
+                MotionMode::Linear
+            } else {
+                MotionMode::None
+            },
+            plane: ArcPlane::Xy,
+            incremental: false,
+            centres_absolute: false,
+            unit: unit_length(units),
+            feed_mode: FeedMode::PerMinute,
+            feed: None,
+            speed: 0.0,
+            surface_speed: false,
+            most_speed: None,
+            return_start: true,
+            shortest: None,
+            orientation: Orientation::Usual,
+            vectors: false,
+            tcp_by_length: false,
+            named_register: None,
+        }
+    }
+}
+
+/// Where the axes stand before a program says so: at the drawing's zeros, index axes where they start.
+fn start(machine: &Machine) -> Joints {
+    let mut joints = machine.solution.start;
+    for value in joints.iter_mut().skip(machine.axes.len().min(MAX_AXES)) {
+        *value = 0.0;
+    }
+    joints
+}

@@ -1,0 +1,240 @@
+//! G73 to G89: levels by words that stay in force, R and Z along the tool axis.
+
+use nalgebra::Vector3;
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::Meaning;
+
+use super::hole::{Hole, Out, Pecks, Wait};
+use super::{drill, feed_a_minute};
+use crate::interpret::gathered::{Gathered, bit};
+use crate::interpret::go::{Path, Target};
+use crate::interpret::state::{Control, MotionMode};
+use crate::lexicon::Language;
+use crate::{CycleKind, MotionKind};
+
+/// So far above the depth that was reached the tool comes at rapid, and so far it is drawn back to break a chip, mm: LinuxCNC's ten
+/// thousandths of an inch; of other controls it is a parameter.
+const BACK: f64 = 0.254;
+
+/// Holes that one block may ask for.
+const MOST: i64 = 100_000;
+
+/// A cycle in force; lengths in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Running {
+    /// Ten times its G.
+    code: u16,
+    meaning: Meaning,
+    /// The level where it began.
+    start: f64,
+    /// R, as a level or a way from the start.
+    clearance: f64,
+    /// Z, as a level or a way from R.
+    bottom: f64,
+    /// Q.
+    step: f64,
+    /// P, seconds.
+    dwell: f64,
+}
+
+/// A block that begins a cycle or says a further hole of it.
+pub(super) fn hole(
+    control: &mut Control,
+    code: u16,
+    meaning: Option<Meaning>,
+    words: &mut Gathered,
+) -> Result<(), Box<Diagnostic>> {
+    let [first, second, axis] = control.modal.plane.coordinates();
+    let letter = |row: usize| [b'X', b'Y', b'Z'][row];
+    let unit = control.modal.unit;
+    let here = control.point();
+    let before = control.cycles.iso;
+    let mut running = match (meaning, before) {
+        (Some(meaning), Some(before)) => Running { code, meaning, ..before },
+        (Some(meaning), None) => Running {
+            code,
+            meaning,
+            start: here[axis],
+            clearance: f64::NAN,
+            bottom: f64::NAN,
+            step: 0.0,
+            dwell: 0.0,
+        },
+        (None, Some(before)) => before,
+        (None, None) => return Err(control.refuse("nc-cycle", "a further hole, and no cycle is in force")),
+    };
+    let incremental = control.modal.incremental;
+    let refused = words.incremental & (bit(letter(axis)) | bit(b'R'));
+    if refused != 0 {
+        return Err(control.refuse("nc-cycle", "a level of this cycle is incremental by a word of its own"));
+    }
+    if let Some(level) = words.take(b'R') {
+        running.clearance = level * unit + if incremental { running.start } else { 0.0 };
+    }
+    if let Some(level) = words.take(letter(axis)) {
+        let from = if incremental { running.clearance } else { 0.0 };
+        running.bottom = level * unit + from;
+    }
+    if let Some(step) = words.take(b'Q') {
+        running.step = step * least_increment(control, words, b'Q');
+    }
+    if let Some(time) = words.take(b'P') {
+        let seconds = control.lexicon.language() == Language::Rs274 || words.pointed & bit(b'P') != 0;
+        running.dwell = if seconds { time } else { time / 1000.0 };
+    }
+    let count = match (words.take(b'L'), words.take(b'K')) {
+        (Some(count), _) | (None, Some(count)) => crate::interpret::expression::whole(count, "a count of holes")
+            .map_err(|finding| control.placed(*finding).boxed())?,
+        (None, None) => 1,
+    };
+    if running.clearance.is_nan() || running.bottom.is_nan() {
+        return Err(control.refuse("nc-cycle", "a cycle without its levels R and Z"));
+    }
+    control.cycles.iso = Some(running);
+    control.modal.motion = MotionMode::Cycle;
+    if count > MOST {
+        return Err(control.refuse("nc-limit", format!("{count} holes by one block: no more than {MOST} are made")));
+    }
+    let positioned = words.present & control.axes.mask & !bit(letter(axis)) != 0;
+    if !positioned && meaning.is_none() && words.present & (bit(letter(axis)) | bit(b'R')) == 0 {
+        return Ok(());
+    }
+    // Its own axis is no place.
+    let hidden = words.present & bit(letter(axis));
+    words.present &= !bit(letter(axis));
+    let made = (0..count).try_for_each(|turn| {
+        let target = if turn == 0 || incremental { control.target(words)? } else { Target::default() };
+        let hole = levels(control, &running)?;
+        if control.lexicon.language() == Language::Rs274 {
+            rise(control, axis, hole.clearance)?;
+        }
+        if target.point[first].is_some() || target.point[second].is_some() || target.said != 0 {
+            control.go(MotionKind::Rapid, &Path::Straight, &target)?;
+        }
+        drill(control, &hole)
+    });
+    words.present |= hidden;
+    made
+}
+
+/// LinuxCNC goes up to R before it goes to the place, where it stands below it.
+fn rise(control: &mut Control, axis: usize, level: f64) -> Result<(), Box<Diagnostic>> {
+    let mut point: Vector3<f64> = control.point();
+    if point[axis] >= level {
+        return Ok(());
+    }
+    point[axis] = level;
+    control.straight(MotionKind::Rapid, point)
+}
+
+/// mm in a unit of a length without a point: the least increment, where the control counts so.
+fn least_increment(control: &Control, words: &Gathered, letter: u8) -> f64 {
+    let unit = control.modal.unit;
+    let counts = control.lexicon.language() == Language::Macro && words.pointed & bit(letter) == 0;
+    match counts {
+        true if unit == 1.0 => 0.001,
+        true => 0.0001 * unit,
+        false => unit,
+    }
+}
+
+/// The hole that the cycle makes.
+fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnostic>> {
+    use Meaning as M;
+    let up = running.bottom > running.clearance;
+    let back = running.meaning == M::CycleBoreBack;
+    if up != back {
+        let message = format!(
+            "G{} goes from the level {} to {}: {}",
+            f64::from(running.code) / 10.0,
+            running.clearance,
+            running.bottom,
+            match back {
+                true => "boring from below begins at the lower one, and another sense of this word is not known",
+                false => "a hole goes down",
+            }
+        );
+        return Err(control.refuse("nc-cycle", message));
+    }
+    let feed = feed_a_minute(control);
+    let away = match control.modal.return_start {
+        true => libm::fmax(running.start, running.clearance),
+        false => running.clearance,
+    };
+    let hole = Hole {
+        clearance: running.clearance,
+        bottom: running.bottom,
+        away,
+        feed,
+        wait: Wait::seconds(running.dwell),
+        ..Hole::default()
+    };
+    let pecks = |out_after: u32| Pecks {
+        first: running.step,
+        least: running.step,
+        out_after,
+        back: BACK,
+        ahead: BACK,
+        ..Pecks::default()
+    };
+    let lifted = matches!(running.meaning, M::CycleBoreFine | M::CycleBoreBack) && running.step > 0.0;
+    if lifted {
+        let name = f64::from(running.code) / 10.0;
+        control.note(Diagnostic::warning(
+            "nc-cycle",
+            format!("G{name} goes off the wall by Q in a direction that is a parameter of the control: this way aside is left out"),
+        ));
+    }
+    let thread = |kind: CycleKind, hole: Hole| {
+        if feed <= 0.0 {
+            return Err(control.refuse("nc-cycle", "a thread without a feed"));
+        }
+        Ok(Hole {
+            kind,
+            out: Out::Thread(feed),
+            ..hole
+        })
+    };
+    Ok(match running.meaning {
+        M::CycleDrill => hole,
+        M::CycleDeep | M::CycleBreakChip if running.step <= 0.0 => {
+            return Err(control.refuse("nc-cycle", "a cycle in pecks without Q"));
+        }
+        M::CycleDeep => Hole {
+            kind: CycleKind::Deep,
+            pecks: Some(pecks(1)),
+            ..hole
+        },
+        M::CycleBreakChip => Hole {
+            kind: CycleKind::BreakChip,
+            pecks: Some(pecks(0)),
+            ..hole
+        },
+        M::CycleTap => thread(CycleKind::Tap, hole)?,
+        M::CycleTapLeft => thread(CycleKind::TapLeft, hole)?,
+        M::CycleReam => Hole {
+            kind: CycleKind::Ream,
+            out: Out::Feed(feed),
+            ..hole
+        },
+        M::CycleBore => Hole {
+            kind: CycleKind::Bore,
+            // G88: the operator draws it out.
+            stop: running.code == 880,
+            ..hole
+        },
+        M::CycleBoreFine => Hole {
+            kind: CycleKind::BoreFine,
+            ..hole
+        },
+        M::CycleBoreBack => Hole {
+            kind: CycleKind::BoreBack,
+            away: libm::fmax(running.start, running.bottom),
+            ..hole
+        },
+        _ => {
+            let name = f64::from(running.code) / 10.0;
+            return Err(control.refuse("nc-cycle", format!("G{name} is no cycle that is made here")));
+        }
+    })
+}

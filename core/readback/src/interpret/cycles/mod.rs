@@ -1,0 +1,216 @@
+//! Cycles become the motions that the control makes of them.
+//!
+//! | file | knows |
+//! |---|---|
+//! | `hole` | a hole by its levels, and its strokes |
+//! | `iso` | G73 to G89 |
+//! | `siemens` | CYCLE81 to CYCLE89, CYCLE840 |
+//! | `heidenhain` | CYCL DEF 200 to 209, 240 |
+
+pub(super) mod heidenhain;
+mod hole;
+mod iso;
+mod siemens;
+
+use nalgebra::Vector3;
+use post_grammar::nc::NcValue;
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::Meaning;
+
+use super::gathered::Gathered;
+use super::state::{Control, FeedMode, MotionMode};
+use crate::{MotionKind, Told};
+use hole::{Hole, Stroke};
+
+/// The cycle in force.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cycles {
+    /// G73 to G89.
+    iso: Option<iso::Running>,
+    /// `MCALL CYCLE8x`: by name and arguments.
+    modal: Option<(String, Vec<Option<f64>>)>,
+    /// `CYCL DEF`, called by M99, M89 and CYCL CALL.
+    pub defined: Option<Defined>,
+    /// Called at every point: M89.
+    pub at_each: bool,
+}
+
+/// A cycle that `CYCL DEF` has defined.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Defined {
+    /// Its number.
+    pub cycle: u32,
+    /// Numbers of its parameters and their values.
+    pub values: Vec<(u32, f64)>,
+}
+
+impl Cycles {
+    /// Words of axes alone ask for a hole.
+    #[inline]
+    pub fn in_force(&self) -> bool {
+        self.iso.is_some()
+    }
+}
+
+/// A block that begins a cycle by its G code (`code` is ten times the number, `meaning` its sense), or says a further hole
+/// of the one in force (`code` is 0): `words` are those of the block. Marks the words that it uses in `words.used`.
+pub(super) fn hole(
+    control: &mut Control,
+    code: u16,
+    meaning: Option<Meaning>,
+    words: &mut Gathered,
+) -> Result<(), Box<Diagnostic>> {
+    iso::hole(control, code, meaning, words)
+}
+
+/// No cycle any more: G80, MCALL alone, or a motion word.
+pub(super) fn end(control: &mut Control) {
+    control.cycles.iso = None;
+    control.cycles.modal = None;
+    if control.modal.motion == MotionMode::Cycle {
+        control.modal.motion = MotionMode::None;
+    }
+}
+
+/// `CYCLE81(…)`: called where the tool stands, or in force behind each motion where `modal` (MCALL).
+pub(super) fn call(
+    control: &mut Control,
+    name: &str,
+    _meaning: Meaning,
+    arguments: &[Option<NcValue>],
+    modal: bool,
+) -> Result<(), Box<Diagnostic>> {
+    let mut values = Vec::with_capacity(arguments.len());
+    for argument in arguments {
+        values.push(match argument {
+            Some(value) => Some(control.variables.worth(value).map_err(|finding| control.placed(*finding).boxed())?),
+            None => None,
+        });
+    }
+    if !siemens::known(name) {
+        return Err(control.refuse("nc-cycle", format!("{name} is no drilling cycle that is known here: what it moves is not known")));
+    }
+    if modal {
+        // What is wrong with it is said where it stands.
+        siemens_hole(control, name, &values)?;
+        control.cycles.modal = Some((name.to_owned(), values));
+        return Ok(());
+    }
+    let hole = siemens_hole(control, name, &values)?;
+    drill(control, &hole)
+}
+
+fn siemens_hole(control: &Control, name: &str, values: &[Option<f64>]) -> Result<Hole, Box<Diagnostic>> {
+    let around = siemens::Around {
+        unit: control.modal.unit,
+        feed: feed_a_minute(control),
+        speed: control.modal.speed,
+    };
+    siemens::hole(name, values, &around).map_err(|finding| control.placed(*finding).boxed())
+}
+
+/// A motion block has come to its end: a cycle that is called at each point (MCALL, M89) is run there.
+#[inline]
+pub(super) fn at_point(control: &mut Control) -> Result<(), Box<Diagnostic>> {
+    if control.cycles.modal.is_none() && !control.cycles.at_each {
+        return Ok(());
+    }
+    if let Some((name, values)) = control.cycles.modal.clone() {
+        let hole = siemens_hole(control, &name, &values)?;
+        return drill(control, &hole);
+    }
+    if control.cycles.at_each {
+        return defined(control);
+    }
+    Ok(())
+}
+
+/// The cycle that `CYCL DEF` has defined, where the tool stands.
+pub(super) fn defined(control: &mut Control) -> Result<(), Box<Diagnostic>> {
+    let Some(Defined { cycle, values }) = control.cycles.defined.clone() else {
+        return Err(control.refuse("nc-cycle", "a cycle is called, and none is defined"));
+    };
+    let parameters = heidenhain::Parameters {
+        cycle,
+        values: &values,
+        unit: control.modal.unit,
+        feed_unit: super::conversational::feed_unit(control),
+        speed: control.modal.speed,
+    };
+    let hole = heidenhain::hole(&parameters).map_err(|finding| control.placed(*finding).boxed())?;
+    match hole {
+        Some(hole) => drill(control, &hole),
+        None => Ok(()),
+    }
+}
+
+/// The feed in force, mm/min; zero where the program states none.
+fn feed_a_minute(control: &Control) -> f64 {
+    let feed = control.modal.feed.unwrap_or(0.0);
+    match control.modal.feed_mode {
+        FeedMode::PerRevolution => feed * control.modal.speed,
+        FeedMode::PerMinute | FeedMode::Inverse => feed,
+    }
+}
+
+/// Makes a hole where the tool stands.
+fn drill(control: &mut Control, hole: &Hole) -> Result<(), Box<Diagnostic>> {
+    if control.modal.feed_mode == FeedMode::Inverse {
+        return Err(control.refuse("nc-cycle", "a cycle under inverse-time feed: how fast it drills is not known"));
+    }
+    if control.state.compensation != 0 {
+        return Err(control.refuse("nc-cycle", "a cycle under radius compensation"));
+    }
+    let axis = control.modal.plane.coordinates()[2];
+    let from = control.point();
+    let strokes = hole.strokes(from[axis]).map_err(|finding| control.placed(*finding).boxed())?;
+    control.tell(Told::Cycle(hole.call()));
+    let before = (control.modal.feed, control.modal.feed_mode, control.hole);
+    control.modal.feed_mode = FeedMode::PerMinute;
+    control.hole = true;
+    let made = strokes.iter().try_for_each(|stroke| made(control, stroke));
+    (control.modal.feed, control.modal.feed_mode, control.hole) = before;
+    control.tell(Told::CycleEnd);
+    made
+}
+
+fn made(control: &mut Control, stroke: &Stroke) -> Result<(), Box<Diagnostic>> {
+    let [first, second, axis] = control.modal.plane.coordinates();
+    let mut to: Vector3<f64> = control.point();
+    let kind = match *stroke {
+        Stroke::Rapid(level) => {
+            to[axis] = level;
+            MotionKind::Rapid
+        }
+        Stroke::Feed(level, feed) => {
+            to[axis] = level;
+            control.modal.feed = (feed > 0.0).then_some(feed);
+            MotionKind::Feed
+        }
+        Stroke::Thread(level, feed) => {
+            to[axis] = level;
+            // Of a thread the feed is its pitch.
+            let speed = control.modal.speed;
+            control.modal.feed = (feed > 0.0 && speed > 0.0).then(|| feed / speed);
+            MotionKind::Thread
+        }
+        Stroke::Aside([x, y, z]) => {
+            to[first] += x;
+            to[second] += y;
+            to[axis] += z;
+            MotionKind::Rapid
+        }
+        Stroke::Wait(wait) => {
+            control.tell(Told::Dwell {
+                time: wait.time,
+                revolutions: wait.revolutions,
+            });
+            return Ok(());
+        }
+        Stroke::Stop => {
+            control.tell(Told::Stop);
+            return Ok(());
+        }
+    };
+    control.straight(kind, to)
+}

@@ -1,0 +1,130 @@
+//! How long a motion takes at the feed that the program states.
+
+use nalgebra::Vector3;
+use post_machine::description::{FeedLength, InverseTime};
+
+use super::state::{Control, FeedMode};
+use crate::{MotionKind, Stance, Way};
+
+impl Control {
+    /// Feed of the tip against the part, mm/min, and minutes of a motion; zero where the program states none.
+    #[inline]
+    pub(super) fn timed(
+        &self,
+        kind: MotionKind,
+        way: &Way,
+        from: &Stance,
+        to: &Stance,
+    ) -> (f64, f64) {
+        if kind == MotionKind::Rapid {
+            return (0.0, self.rapid_minutes(from, to));
+        }
+        let Some(feed) = self.modal.feed.filter(|feed| *feed > 0.0) else {
+            return (0.0, 0.0);
+        };
+        let tip = tip_length(way, from, to);
+        let mode = if kind == MotionKind::Thread {
+            FeedMode::PerRevolution
+        } else {
+            self.modal.feed_mode
+        };
+        let minutes = match mode {
+            FeedMode::Inverse => match self.machine.control.inverse_time {
+                InverseTime::Minutes => 1.0 / feed,
+                InverseTime::Seconds => 1.0 / (60.0 * feed),
+            },
+            FeedMode::PerMinute => self.feed_length(way, tip, from, to) / feed,
+            FeedMode::PerRevolution if self.modal.speed > 0.0 => {
+                self.feed_length(way, tip, from, to) / (feed * self.modal.speed)
+            }
+            FeedMode::PerRevolution => return (0.0, 0.0),
+        };
+        if minutes > 0.0 {
+            (tip / minutes, minutes)
+        } else {
+            (0.0, 0.0)
+        }
+    }
+
+    /// The length that F a minute counts along, mm, or degrees where rotary axes alone turn.
+    #[inline]
+    fn feed_length(&self, way: &Way, tip: f64, from: &Stance, to: &Stance) -> f64 {
+        // A control that keeps the tip counts its way; so do all where only linear axes go straight.
+        if self.state.tcp && tip > 0.0 {
+            return tip;
+        }
+        let mut squares = 0.0;
+        let mut longest = 0.0;
+        let mut turned = 0.0;
+        for (place, axis) in self.machine.axes.iter().enumerate() {
+            let way = to.joints[place] - from.joints[place];
+            if way == 0.0 {
+                continue;
+            }
+            if axis.joint.rotary {
+                // mm along the circle that the control counts, or degrees (in an inch program each is 25.4 of F's mm).
+                let way = match axis.feed_diameter {
+                    Some(diameter) => way * 0.5 * diameter,
+                    None => way.to_degrees() * self.modal.unit,
+                };
+                turned += way * way;
+                if libm::fabs(way) > longest {
+                    longest = libm::fabs(way);
+                }
+            } else {
+                squares += way * way;
+                if libm::fabs(way) > longest {
+                    longest = libm::fabs(way);
+                }
+            }
+        }
+        if let Way::Arc { .. } | Way::Spline(_) = way {
+            return tip;
+        }
+        match self.machine.control.feed_length {
+            FeedLength::Linear if squares > 0.0 => squares.sqrt(),
+            FeedLength::Linear => turned.sqrt(),
+            FeedLength::Combined => (squares + turned).sqrt(),
+            FeedLength::Longest => longest,
+        }
+    }
+
+    /// Minutes of a rapid: its slowest axis at its largest feed; zero where the machine file names none.
+    #[inline]
+    fn rapid_minutes(&self, from: &Stance, to: &Stance) -> f64 {
+        let mut minutes: f64 = 0.0;
+        for (place, axis) in self.machine.axes.iter().enumerate() {
+            let way = libm::fabs(to.joints[place] - from.joints[place]);
+            // Of an axis without a largest feed it is zero.
+            let own = way / axis.max_feed;
+            if own > minutes {
+                minutes = own;
+            }
+        }
+        minutes
+    }
+}
+
+/// The way of the tip against the part, mm.
+pub(super) fn tip_length(way: &Way, from: &Stance, to: &Stance) -> f64 {
+    let chord = to.pose.tip - from.pose.tip;
+    match way {
+        Way::Axes | Way::Tip | Way::TipAndAxis => chord.norm(),
+        Way::Arc {
+            centre,
+            normal,
+            sweep,
+        } => {
+            let arm = from.pose.tip - centre;
+            let across: Vector3<f64> = arm - normal * normal.dot(&arm);
+            let along = normal.dot(&chord);
+            libm::hypot(across.norm() * sweep, along)
+        }
+        Way::Spline(spline) => {
+            let mut poles = spline.poles.iter().zip(spline.poles.iter().skip(1));
+            // The polygon of its poles is the longer way; the chord the shorter one.
+            let polygon: f64 = poles.by_ref().map(|((a, _), (b, _))| (b - a).norm()).sum();
+            0.5 * (polygon + chord.norm())
+        }
+    }
+}

@@ -1,0 +1,838 @@
+//! The order in which blocks are run: jumps, loops, parts that are repeated, subprograms of the same file.
+//!
+//! Blocks are read where they stand and nothing of them is kept, so that memory does not grow with the program: a jump
+//! looks for its place in the file and goes on there. Every block that is read is counted, and every line that is looked
+//! through: a loop that never ends is refused when the count is passed.
+
+use std::io::{Read, Seek};
+
+use post_grammar::ReadError;
+use post_grammar::nc::{Direction, NcBlock, NcExpression, NcFlow, NcItem, NcMark, NcReader, NcTarget};
+use post_machine::diagnostic::{Diagnostic, unreadable};
+
+use super::{Limits, assigned};
+use super::calls::{self, Pending};
+use super::expression::whole;
+use super::variables::{Value, Variables};
+use crate::lexicon::Language;
+
+pub(super) type Answer<T> = Result<T, Box<Diagnostic>>;
+
+/// What is running.
+#[derive(Clone, Debug)]
+enum Running {
+    /// A subprogram.
+    Call {
+        /// Where it begins.
+        start: NcMark,
+        /// Where it was called from.
+        back: NcMark,
+        /// How often it runs again.
+        left: i64,
+        /// It has variables of its own.
+        own: bool,
+    },
+    /// A part between a label and here, or another label.
+    Part {
+        start: NcMark,
+        /// The block that repeats it.
+        by: NcMark,
+        /// Behind that block.
+        back: NcMark,
+        /// The label with which it ends.
+        until: Option<String>,
+        left: i64,
+    },
+    /// `WHILE`: its head is read again each time.
+    While { name: Option<String>, head: NcMark },
+    /// `FOR`.
+    For {
+        head: NcMark,
+        body: NcMark,
+        variable: String,
+        to: f64,
+    },
+    /// `LOOP`.
+    Loop { head: NcMark, body: NcMark },
+    /// `REPEAT` or `do`.
+    Do {
+        name: Option<String>,
+        head: NcMark,
+        body: NcMark,
+    },
+    /// `o1 repeat [n]`.
+    Times {
+        name: Option<String>,
+        head: NcMark,
+        body: NcMark,
+        left: i64,
+    },
+}
+
+/// Blocks in the order in which they are run.
+#[derive(Debug)]
+pub(super) struct Flow<R> {
+    reader: NcReader<R>,
+    /// The file, as messages call it.
+    file: String,
+    language: Language,
+    limits: Limits,
+    /// Blocks read so far, lines looked through among them.
+    read: u64,
+    /// Where the block stands that was handed out last.
+    here: NcMark,
+    running: Vec<Running>,
+    /// What the block that was handed out last leads to, once it is run.
+    pending: Option<Pending>,
+    /// What that block sets, once it is run.
+    set: Vec<(String, Value)>,
+    /// For looking through.
+    passed: NcBlock,
+}
+
+impl<R: Read + Seek> Flow<R> {
+    /// From the first block on.
+    pub fn new(reader: NcReader<R>, language: Language, limits: Limits, file: &str) -> Self {
+        let here = reader.mark();
+        Self {
+            reader,
+            file: file.to_owned(),
+            language,
+            limits,
+            read: 0,
+            here,
+            running: Vec::new(),
+            pending: None,
+            set: Vec::new(),
+            passed: NcBlock::default(),
+        }
+    }
+
+    /// Where the blocks come from.
+    pub fn reader(&self) -> &NcReader<R> {
+        &self.reader
+    }
+
+    /// The next block that is run, without what leads elsewhere; false at the end.
+    ///
+    /// # Errors
+    /// It cannot be read, leads nowhere or elsewhere than this file, or too many were run.
+    #[inline]
+    pub fn next(&mut self, variables: &mut Variables, block: &mut NcBlock) -> Answer<bool> {
+        for (name, value) in self.set.drain(..) {
+            variables.set(&name, value)?;
+        }
+        if let Some(pending) = self.pending.take() {
+            self.lead(pending, block.line, variables)?;
+        }
+        loop {
+            self.here = self.reader.mark();
+            if !self.take(block)? {
+                return self.ended();
+            }
+            if !calls::leads(block, self.language, variables) {
+                return Ok(true);
+            }
+            if self.follow(block, variables)? {
+                return Ok(true);
+            }
+        }
+    }
+
+    /// Reads a block and counts it.
+    #[inline]
+    fn take(&mut self, block: &mut NcBlock) -> Answer<bool> {
+        self.read += 1;
+        if self.read > self.limits.blocks {
+            return Err(self.too_many());
+        }
+        let read = self.reader.next_block(block);
+        read.map_err(|error| self.failed(error))
+    }
+
+    /// The count is passed.
+    #[cold]
+    fn too_many(&mut self) -> Box<Diagnostic> {
+        // Whoever reads on has as many again.
+        self.read = 0;
+        self.running.clear();
+        let count = self.limits.blocks;
+        let message = format!("{count} blocks were read, and the program has not come to its end: a loop may never end");
+        Diagnostic::error("nc-limit", message).help("a higher count is set by --blocks").boxed()
+    }
+
+    fn go_to(&mut self, mark: NcMark) -> Answer<()> {
+        let gone = self.reader.go_to(mark);
+        gone.map_err(|error| self.failed(error))
+    }
+
+    /// What the reader says, as whoever runs the program says it.
+    #[cold]
+    fn failed(&self, error: ReadError) -> Box<Diagnostic> {
+        match error {
+            ReadError::Syntax(fault) => unreadable(&self.file, &fault).boxed(),
+            ReadError::Io(error) => {
+                Diagnostic::error("nc-file", format!("{} cannot be read: {error}", self.file)).boxed()
+            }
+        }
+    }
+
+    fn ended(&mut self) -> Answer<bool> {
+        let inside = self.running.iter().any(|running| matches!(running, Running::Call { .. }));
+        self.running.clear();
+        match inside {
+            true => Err(fault("the program ends inside a subprogram: nothing leads back from it")),
+            false => Ok(false),
+        }
+    }
+
+    /// Takes what leads elsewhere out of a block and follows it; true if something is left to run.
+    fn follow(&mut self, block: &mut NcBlock, variables: &mut Variables) -> Answer<bool> {
+        self.pending = calls::take(block, self.language, variables)?;
+        let mut flows = Vec::new();
+        let mut set = Vec::new();
+        assigned::take(block, self.language, variables, &mut set)?;
+        block.items.retain(|item| match item {
+            NcItem::Flow(flow) => {
+                flows.push((**flow).clone());
+                false
+            }
+            _ => true,
+        });
+        // A condition in front of them decides whether they are set.
+        let (conditions, flows): (Vec<_>, Vec<_>) = flows.into_iter().partition(|flow| matches!(flow, NcFlow::Then(_)));
+        for condition in conditions {
+            if !self.step(condition, variables)? {
+                block.items.clear();
+                self.pending = None;
+                return Ok(false);
+            }
+        }
+        // With `#` the words of a block are read before what it sets.
+        if matches!(self.language, Language::Macro | Language::Rs274) && !block.items.is_empty() {
+            self.set = set;
+        } else {
+            for (name, value) in set {
+                variables.set(&name, value)?;
+            }
+        }
+        for flow in flows {
+            if !self.step(flow, variables)? {
+                block.items.clear();
+                self.pending = None;
+                return Ok(false);
+            }
+        }
+        if block.items.is_empty() && block.remarks.is_empty() {
+            if let Some(pending) = self.pending.take() {
+                self.lead(pending, block.line, variables)?;
+            }
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    /// One word of flow; false if the rest of its block is not run.
+    fn step(&mut self, flow: NcFlow, variables: &mut Variables) -> Answer<bool> {
+        match flow {
+            NcFlow::Label(name) => self.label(&name),
+            NcFlow::LabelEnd => {
+                // Without a call a label's end is passed.
+                if self.called() {
+                    self.back(variables)?;
+                }
+                Ok(false)
+            }
+            NcFlow::Goto { target, direction, condition } => {
+                if let Some(condition) = condition
+                    && !variables.holds(&condition)?
+                {
+                    return Ok(true);
+                }
+                let wanted = wanted(&target, variables)?;
+                self.jump(&wanted, direction)?;
+                Ok(false)
+            }
+            NcFlow::Then(condition) => variables.holds(&condition),
+            NcFlow::If { name, condition } => {
+                if !variables.holds(&condition)? {
+                    self.otherwise(name.as_deref(), variables)?;
+                }
+                Ok(true)
+            }
+            NcFlow::ElseIf { name, .. } | NcFlow::Else(name) => {
+                self.skip(
+                    name.as_deref(),
+                    |flow| matches!(flow, NcFlow::If { .. }),
+                    |flow| matches!(flow, NcFlow::EndIf(_)),
+                    |flow| matches!(flow, NcFlow::EndIf(_)),
+                )?;
+                Ok(false)
+            }
+            NcFlow::EndIf(_) => Ok(true),
+            NcFlow::SubBegin(name) => {
+                if self.language == Language::Rs274 {
+                    self.skip(
+                        Some(&name),
+                        |_| false,
+                        |flow| matches!(flow, NcFlow::SubEnd(_)),
+                        |flow| matches!(flow, NcFlow::SubEnd(_)),
+                    )?;
+                    return Ok(false);
+                }
+                Ok(true)
+            }
+            NcFlow::SubEnd(_) | NcFlow::Return(_) => {
+                if !self.called() {
+                    return Err(fault("a subprogram ends here, and none was called"));
+                }
+                self.back(variables)?;
+                Ok(false)
+            }
+            NcFlow::Call { target, repeat, arguments } => {
+                self.call(&target, repeat.as_ref(), &arguments, variables)?;
+                Ok(false)
+            }
+            NcFlow::CallProgram(name) => Err(elsewhere(&name)),
+            NcFlow::RepeatFrom { label, until, times } => {
+                let times = match times {
+                    Some(times) => whole(variables.number(&times)?, "a count of repeats")?,
+                    None => 1,
+                };
+                self.part(label, until, times)?;
+                Ok(false)
+            }
+            looping => self.looped(looping, variables),
+        }
+    }
+
+    fn looped(&mut self, flow: NcFlow, variables: &mut Variables) -> Answer<bool> {
+        let head = self.here;
+        match flow {
+            NcFlow::While { name, condition } => {
+                // The end of a `do`.
+                if let Some(body) = self.close_do(name.as_deref()) {
+                    if variables.holds(&condition)? {
+                        self.go_to(body)?;
+                    } else {
+                        self.running.pop();
+                    }
+                    return Ok(false);
+                }
+                self.forget(head);
+                if variables.holds(&condition)? {
+                    self.push(Running::While { name, head })?;
+                } else {
+                    self.skip_loop(name.as_deref(), Kind::While)?;
+                }
+            }
+            NcFlow::EndWhile(name) => {
+                let head = self.unwind(|running| match running {
+                    Running::While { name: own, head } if *own == name => Some(*head),
+                    _ => None,
+                });
+                let head = head.ok_or_else(|| fault("a loop ends here that has not begun"))?;
+                self.running.pop();
+                self.go_to(head)?;
+            }
+            NcFlow::For { variable, from, to } => {
+                self.forget(head);
+                let name = variables.named(&variable)?;
+                let (from, to) = (variables.number(&from)?, variables.number(&to)?);
+                variables.set(&name, Value::Number(from))?;
+                if from > to {
+                    self.skip_loop(None, Kind::For)?;
+                } else {
+                    let body = self.reader.mark();
+                    self.push(Running::For { head, body, variable: name, to })?;
+                }
+            }
+            NcFlow::EndFor => {
+                let found = self.unwind(|running| match running {
+                    Running::For { body, variable, to, .. } => Some((*body, variable.clone(), *to)),
+                    _ => None,
+                });
+                let (body, name, to) = found.ok_or_else(|| fault("a loop ends here that has not begun"))?;
+                let next = variables.number(&NcExpression::Variable(name.clone()))? + 1.0;
+                if next > to {
+                    self.running.pop();
+                } else {
+                    variables.set(&name, Value::Number(next))?;
+                    self.go_to(body)?;
+                }
+            }
+            NcFlow::Loop => {
+                self.forget(head);
+                let body = self.reader.mark();
+                self.push(Running::Loop { head, body })?;
+            }
+            NcFlow::EndLoop => {
+                let body = self.unwind(|running| match running {
+                    Running::Loop { body, .. } => Some(*body),
+                    _ => None,
+                });
+                self.go_to(body.ok_or_else(|| fault("a loop ends here that has not begun"))?)?;
+            }
+            NcFlow::Do(name) => {
+                self.forget(head);
+                let body = self.reader.mark();
+                self.push(Running::Do { name, head, body })?;
+            }
+            NcFlow::Until(condition) => {
+                let body = self.close_do(None);
+                let body = body.ok_or_else(|| fault("a loop ends here that has not begun"))?;
+                if variables.holds(&condition)? {
+                    self.running.pop();
+                } else {
+                    self.go_to(body)?;
+                }
+            }
+            NcFlow::Repeat { name, times } => {
+                self.forget(head);
+                let left = whole(variables.number(&times)?, "a count of repeats")?;
+                if left > 0 {
+                    let body = self.reader.mark();
+                    self.push(Running::Times { name, head, body, left })?;
+                } else {
+                    self.skip_loop(name.as_deref(), Kind::Times)?;
+                }
+            }
+            NcFlow::EndRepeat(name) => self.again(name.as_deref())?,
+            NcFlow::Break(name) => {
+                let kind = self.innermost(name.as_deref())?;
+                self.running.pop();
+                self.skip_loop(name.as_deref(), kind)?;
+            }
+            NcFlow::Continue(name) => match self.innermost(name.as_deref())? {
+                Kind::Times => self.again(name.as_deref())?,
+                Kind::While => {
+                    if let Some(Running::While { head, .. }) = self.running.pop() {
+                        self.go_to(head)?;
+                    }
+                }
+                _ => return Err(fault("`continue` of this loop is not run")),
+            },
+            _ => {}
+        }
+        Ok(false)
+    }
+
+    /// `o1 endrepeat`.
+    fn again(&mut self, name: Option<&str>) -> Answer<()> {
+        let body = self.unwind(|running| match running {
+            Running::Times { name: own, body, .. } if own.as_deref() == name => Some(*body),
+            _ => None,
+        });
+        let body = body.ok_or_else(|| fault("a loop ends here that has not begun"))?;
+        if let Some(Running::Times { left, .. }) = self.running.last_mut() {
+            *left -= 1;
+            if *left > 0 {
+                return self.go_to(body);
+            }
+        }
+        self.running.pop();
+        Ok(())
+    }
+
+    /// The kind of the innermost loop of this name, which is innermost of all afterwards.
+    fn innermost(&mut self, name: Option<&str>) -> Answer<Kind> {
+        let kind = self.unwind(|running| match running {
+            Running::While { name: own, .. } if own.as_deref() == name => Some(Kind::While),
+            Running::Do { name: own, .. } if own.as_deref() == name => Some(Kind::Do),
+            Running::Times { name: own, .. } if own.as_deref() == name => Some(Kind::Times),
+            Running::For { .. } if name.is_none() => Some(Kind::For),
+            Running::Loop { .. } if name.is_none() => Some(Kind::Loop),
+            _ => None,
+        });
+        kind.ok_or_else(|| fault("no such loop is running here"))
+    }
+
+    /// Drops what runs inside of the innermost one that `wanted` knows, up to the subprogram.
+    fn unwind<T>(&mut self, wanted: impl Fn(&Running) -> Option<T>) -> Option<T> {
+        for place in (0..self.running.len()).rev() {
+            if matches!(self.running[place], Running::Call { .. }) {
+                return None;
+            }
+            if let Some(found) = wanted(&self.running[place]) {
+                self.running.truncate(place + 1);
+                return Some(found);
+            }
+        }
+        None
+    }
+
+    fn close_do(&mut self, name: Option<&str>) -> Option<NcMark> {
+        self.unwind(|running| match running {
+            Running::Do { name: own, body, .. } if own.as_deref() == name => Some(*body),
+            _ => None,
+        })
+    }
+
+    /// A loop that was left by a jump begins anew.
+    fn forget(&mut self, begins: NcMark) {
+        let known = self.unwind(|running| match running {
+            Running::While { head, .. }
+            | Running::For { head, .. }
+            | Running::Loop { head, .. }
+            | Running::Do { head, .. }
+            | Running::Times { head, .. }
+                if *head == begins =>
+            {
+                Some(())
+            }
+            _ => None,
+        });
+        if known.is_some() {
+            self.running.pop();
+        }
+    }
+
+    fn push(&mut self, running: Running) -> Answer<()> {
+        if self.running.len() >= self.limits.depth {
+            return Err(Diagnostic::error(
+                "nc-limit",
+                format!("subprograms and loops stand inside one another more than {} deep", self.limits.depth),
+            )
+            .boxed());
+        }
+        self.running.push(running);
+        Ok(())
+    }
+
+    /// A label is passed.
+    fn label(&mut self, name: &str) -> Answer<bool> {
+        if let Some(Running::Part { until: Some(until), .. }) = self.running.last()
+            && until == name
+        {
+            self.pending = Some(Pending::PartEnd);
+        }
+        Ok(true)
+    }
+
+    /// Where a block's words lead once it is run.
+    fn lead(&mut self, pending: Pending, line: u64, variables: &mut Variables) -> Answer<()> {
+        match pending {
+            Pending::Subprogram { number, times, own } => {
+                let wanted = NcTarget::Program(format!("O{number}"));
+                let start = self.find(&wanted, Direction::Anywhere)?;
+                let start = start.ok_or_else(|| elsewhere(&format!("O{number}")))?;
+                self.enter(start, times, own, variables)
+            }
+            Pending::Local { number, times } => {
+                let start = self.find(&NcTarget::Number(number), Direction::Anywhere)?;
+                let start = start.ok_or_else(|| no_target(&format!("N{number}")))?;
+                self.enter(start, times, None, variables)
+            }
+            Pending::Return { to } => {
+                if !self.called() {
+                    return Err(fault(&format!("line {line} begins the program again, without end: no subprogram is running")));
+                }
+                if to.is_some() {
+                    // No further run of it.
+                    for running in self.running.iter_mut().rev() {
+                        if let Running::Call { left, .. } = running {
+                            *left = 0;
+                            break;
+                        }
+                    }
+                }
+                self.back(variables)?;
+                match to {
+                    Some(number) => self.jump(&NcTarget::Number(number), Direction::Anywhere),
+                    None => Ok(()),
+                }
+            }
+            Pending::PartEnd => self.part_ends(),
+        }
+    }
+
+    fn call(&mut self, target: &str, repeat: Option<&NcExpression>, arguments: &[NcExpression], variables: &mut Variables) -> Answer<()> {
+        if let Some(repeat) = repeat {
+            let times = whole(variables.number(repeat)?, "a count of repeats")?;
+            return self.part(target.to_owned(), None, times);
+        }
+        let wanted = match self.language {
+            Language::Rs274 => NcTarget::Subprogram(target.to_owned()),
+            Language::Macro => NcTarget::Program(target.to_owned()),
+            Language::Names | Language::Conversational => NcTarget::Label(target.to_owned()),
+        };
+        let start = self.find(&wanted, Direction::Anywhere)?;
+        let Some(start) = start else {
+            return Err(match self.language {
+                Language::Conversational => no_target(&format!("LBL {target}")),
+                _ => elsewhere(target),
+            });
+        };
+        let mut own = Vec::with_capacity(30);
+        if self.language == Language::Rs274 {
+            // Those that are not given are zero.
+            own.extend((1..=30).map(|number| (format!("#{number}"), 0.0)));
+            for (slot, argument) in own.iter_mut().zip(arguments) {
+                slot.1 = variables.number(argument)?;
+            }
+        }
+        let own = (self.language == Language::Rs274).then_some(own);
+        self.enter(start, 1, own, variables)
+    }
+
+    /// Goes into a subprogram.
+    fn enter(&mut self, start: NcMark, times: i64, own: Option<Vec<(String, f64)>>, variables: &mut Variables) -> Answer<()> {
+        if times < 1 {
+            return Ok(());
+        }
+        let back = self.reader.mark();
+        let has_own = own.is_some();
+        self.push(Running::Call {
+            start,
+            back,
+            left: times - 1,
+            own: has_own,
+        })?;
+        if let Some(own) = own {
+            variables.enter(own);
+        }
+        self.begin(start)
+    }
+
+    /// Reads on at the start of a subprogram; of an `o1 sub` behind it.
+    fn begin(&mut self, start: NcMark) -> Answer<()> {
+        self.go_to(start)?;
+        if self.language == Language::Rs274 {
+            let mut head = std::mem::take(&mut self.passed);
+            let read = self.take(&mut head);
+            self.passed = head;
+            read?;
+        }
+        Ok(())
+    }
+
+    fn called(&self) -> bool {
+        self.running.iter().any(|running| matches!(running, Running::Call { .. }))
+    }
+
+    /// The innermost subprogram ends.
+    fn back(&mut self, variables: &mut Variables) -> Answer<()> {
+        while let Some(running) = self.running.pop() {
+            let Running::Call { start, back, left, own } = running else {
+                continue;
+            };
+            if left > 0 {
+                self.running.push(Running::Call {
+                    start,
+                    back,
+                    left: left - 1,
+                    own,
+                });
+                return self.begin(start);
+            }
+            if own {
+                variables.leave();
+            }
+            return self.go_to(back);
+        }
+        Ok(())
+    }
+
+    /// The part from a label to this block, or to another label, `times` more.
+    fn part(&mut self, label: String, until: Option<String>, times: i64) -> Answer<()> {
+        let here = self.here;
+        let runs = self.unwind(|running| match running {
+            Running::Part { by, .. } if *by == here => Some(()),
+            _ => None,
+        });
+        if runs.is_some() {
+            return self.part_ends();
+        }
+        if times < 1 {
+            return Ok(());
+        }
+        let back = self.reader.mark();
+        let start = self.find(&NcTarget::Label(label.clone()), Direction::Anywhere)?;
+        let start = start.ok_or_else(|| no_target(&label))?;
+        self.push(Running::Part {
+            start,
+            by: here,
+            back,
+            until,
+            left: times - 1,
+        })?;
+        self.go_to(start)
+    }
+
+    /// The innermost part was run once.
+    fn part_ends(&mut self) -> Answer<()> {
+        let Some(Running::Part { start, back, left, .. }) = self.running.last_mut() else {
+            return Ok(());
+        };
+        if *left > 0 {
+            *left -= 1;
+            let start = *start;
+            return self.go_to(start);
+        }
+        let back = *back;
+        self.running.pop();
+        self.go_to(back)
+    }
+
+    fn jump(&mut self, wanted: &NcTarget, direction: Direction) -> Answer<()> {
+        let found = self.find(wanted, direction)?;
+        let found = found.ok_or_else(|| match wanted {
+            NcTarget::Label(name) | NcTarget::Subprogram(name) | NcTarget::Program(name) => no_target(name),
+            NcTarget::Number(number) => no_target(&format!("N{number}")),
+        })?;
+        self.go_to(found)
+    }
+
+    /// Where something stands. Afterwards the next block is the same as before.
+    fn find(&mut self, target: &NcTarget, direction: Direction) -> Answer<Option<NcMark>> {
+        let before = self.reader.lines_searched();
+        let found = self.reader.find(target, direction);
+        self.read = self.read.saturating_add(self.reader.lines_searched() - before);
+        found.map_err(|error| self.failed(error))
+    }
+
+    /// A condition does not hold: on to what does, or behind the end.
+    fn otherwise(&mut self, name: Option<&str>, variables: &Variables) -> Answer<()> {
+        loop {
+            let flow = self.skip(
+                name,
+                |flow| matches!(flow, NcFlow::If { .. }),
+                |flow| matches!(flow, NcFlow::ElseIf { .. } | NcFlow::Else(_) | NcFlow::EndIf(_)),
+                |flow| matches!(flow, NcFlow::EndIf(_)),
+            )?;
+            match flow {
+                NcFlow::ElseIf { condition, .. } if !variables.holds(&condition)? => {}
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    fn skip_loop(&mut self, name: Option<&str>, kind: Kind) -> Answer<()> {
+        let (opens, closes): (fn(&NcFlow) -> bool, fn(&NcFlow) -> bool) = match kind {
+            Kind::While => (
+                |flow| matches!(flow, NcFlow::While { .. }),
+                |flow| matches!(flow, NcFlow::EndWhile(_)),
+            ),
+            Kind::For => (
+                |flow| matches!(flow, NcFlow::For { .. }),
+                |flow| matches!(flow, NcFlow::EndFor),
+            ),
+            Kind::Loop => (
+                |flow| matches!(flow, NcFlow::Loop),
+                |flow| matches!(flow, NcFlow::EndLoop),
+            ),
+            Kind::Do => (
+                |flow| matches!(flow, NcFlow::Do(_)),
+                |flow| matches!(flow, NcFlow::Until(_) | NcFlow::While { .. }),
+            ),
+            Kind::Times => (
+                |flow| matches!(flow, NcFlow::Repeat { .. }),
+                |flow| matches!(flow, NcFlow::EndRepeat(_)),
+            ),
+        };
+        self.skip(name, opens, closes, closes).map(|_| ())
+    }
+
+    /// Reads on, running nothing, up to the word that closes what begins here: the next of this name, or without names
+    /// the next that is not inside another that opens and ends on the way.
+    fn skip(
+        &mut self,
+        name: Option<&str>,
+        opens: fn(&NcFlow) -> bool,
+        closes: fn(&NcFlow) -> bool,
+        ends: fn(&NcFlow) -> bool,
+    ) -> Answer<NcFlow> {
+        let mut block = std::mem::take(&mut self.passed);
+        let mut inside = 0_u32;
+        let found = loop {
+            match self.take(&mut block) {
+                Ok(true) => {}
+                Ok(false) => break None,
+                Err(fault) if fault.code == "nc-limit" => return Err(fault),
+                Err(_) => continue,
+            }
+            let mut here = None;
+            for item in &block.items {
+                let NcItem::Flow(flow) = item else {
+                    continue;
+                };
+                let named = name.is_some();
+                if named && closes(flow) && named_as(flow) == name {
+                    here = Some((**flow).clone());
+                } else if !named && opens(flow) {
+                    inside += 1;
+                } else if !named && inside == 0 && closes(flow) {
+                    here = Some((**flow).clone());
+                } else if !named && ends(flow) {
+                    inside = inside.saturating_sub(1);
+                }
+            }
+            if here.is_some() {
+                break here;
+            }
+        };
+        self.passed = block;
+        found.ok_or_else(|| fault("what begins here does not end in this file"))
+    }
+}
+
+/// Kinds of loops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    While,
+    For,
+    Loop,
+    Do,
+    Times,
+}
+
+/// The name that ties the words of a loop or a branch together.
+fn named_as(flow: &NcFlow) -> Option<&str> {
+    match flow {
+        NcFlow::If { name, .. }
+        | NcFlow::ElseIf { name, .. }
+        | NcFlow::Else(name)
+        | NcFlow::EndIf(name)
+        | NcFlow::While { name, .. }
+        | NcFlow::EndWhile(name)
+        | NcFlow::Do(name)
+        | NcFlow::Repeat { name, .. }
+        | NcFlow::EndRepeat(name)
+        | NcFlow::SubEnd(name) => name.as_deref(),
+        NcFlow::SubBegin(name) => Some(name),
+        _ => None,
+    }
+}
+
+/// What a jump's target means: a label by name, or the number of a block.
+fn wanted(target: &NcExpression, variables: &Variables) -> Answer<NcTarget> {
+    match target {
+        NcExpression::Text(name) => Ok(match calls::block_number(name) {
+            Some(number) => NcTarget::Number(number),
+            None => NcTarget::Label(name.clone()),
+        }),
+        other => {
+            let number = whole(variables.number(other)?, "the number of a block")?;
+            let number = u64::try_from(number);
+            number.map(NcTarget::Number).map_err(|_| fault("the number of a block is negative"))
+        }
+    }
+}
+
+pub(super) fn fault(message: &str) -> Box<Diagnostic> {
+    Diagnostic::error("nc-flow", message).boxed()
+}
+
+fn no_target(name: &str) -> Box<Diagnostic> {
+    fault(&format!("`{name}` is gone to, and it does not stand in this file"))
+}
+
+/// A program in another file is called.
+pub(super) fn elsewhere(name: &str) -> Box<Diagnostic> {
+    Diagnostic::error("nc-subprogram", format!("`{name}` is called, and it does not stand in this file: what it does is not known"))
+        .help("put it into this file, or write its blocks in the place of the call")
+        .boxed()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,275 @@
+//! The words of one block, by letter: gathered anew for each, and nothing allocated for plain ones.
+
+use nalgebra::Vector3;
+use post_grammar::nc::{Approach, NcBlock, NcItem, NcValue};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Joints;
+
+use super::state::Control;
+
+/// So many G or M may stand in one block.
+const CODES: usize = 24;
+
+/// The words of a block.
+#[derive(Clone, Debug)]
+pub(super) struct Gathered {
+    /// Bits of the letters that stand in the block.
+    pub present: u32,
+    /// Their values, program units.
+    pub values: [f64; 26],
+    /// Bits of letters that are ways from where the tool stands.
+    pub incremental: u32,
+    /// Bits of letters that are positions whatever is modal.
+    pub absolute: u32,
+    /// Bits of letters whose axis turns in a way of its own; which, stands in `approaches`.
+    pub approached: u32,
+    /// By letter.
+    pub approaches: [Option<Approach>; 26],
+    /// Bits of letters that a word of the block has made use of.
+    pub used: u32,
+    /// Ten times the numbers behind G, in order.
+    pub g: Codes,
+    /// The numbers behind M.
+    pub m: Codes,
+    /// Bits of letters whose number has a decimal point.
+    pub pointed: u32,
+    /// Bits of letters whose number has none and is not zero.
+    pub pointless: u32,
+    /// There is more than letters with values.
+    pub more: bool,
+    /// The tool axis by `A3=` and so on, program coordinates.
+    pub vector: Option<Vector3<f64>>,
+    /// Radius of an arc by a name, mm.
+    pub radius: Option<f64>,
+    /// Full turns of an arc beside its own: `TURN=`.
+    pub turns: Option<f64>,
+    /// Bits of the places in the chain of axes with longer names.
+    pub named_axes: u32,
+    /// Their values: mm and radians from the drawing's zeros.
+    pub named_values: Joints,
+}
+
+/// Numbers behind a letter.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Codes {
+    list: [u16; CODES],
+    count: usize,
+}
+
+impl Codes {
+    /// The numbers.
+    #[inline]
+    pub fn list(&self) -> &[u16] {
+        &self.list[..self.count.min(CODES)]
+    }
+
+    /// One of them is `code`.
+    pub fn has(&self, code: u16) -> bool {
+        self.list().contains(&code)
+    }
+}
+
+impl Default for Gathered {
+    fn default() -> Self {
+        Self {
+            present: 0,
+            values: [0.0; 26],
+            incremental: 0,
+            absolute: 0,
+            approached: 0,
+            approaches: [None; 26],
+            used: 0,
+            g: Codes::default(),
+            m: Codes::default(),
+            pointed: 0,
+            pointless: 0,
+            more: false,
+            vector: None,
+            radius: None,
+            turns: None,
+            named_axes: 0,
+            named_values: Joints::default(),
+        }
+    }
+}
+
+/// The bit of a letter.
+#[inline]
+pub(super) const fn bit(letter: u8) -> u32 {
+    1 << (letter.wrapping_sub(b'A') & 31)
+}
+
+impl Gathered {
+    /// The value of a letter, program units; none if it does not stand in the block.
+    #[inline]
+    pub fn get(&self, letter: u8) -> Option<f64> {
+        (self.present & bit(letter) != 0)
+            .then(|| self.values[usize::from(letter.wrapping_sub(b'A')) % 26])
+    }
+
+    /// [`Gathered::get`], and the word is made use of.
+    #[inline]
+    pub fn take(&mut self, letter: u8) -> Option<f64> {
+        self.used |= bit(letter);
+        self.get(letter)
+    }
+
+    /// A number behind `letter` that says which: a register, a tool, a count.
+    pub fn take_number(
+        &mut self,
+        letter: u8,
+        control: &Control,
+    ) -> Result<Option<u32>, Box<Diagnostic>> {
+        match self.take(letter) {
+            None => Ok(None),
+            Some(value) => which(letter, value, control).map(Some),
+        }
+    }
+
+    /// [`Gathered::take_number`] of a letter that may stand there for something else: it is not made use of.
+    pub fn present_number(
+        &self,
+        letter: u8,
+        control: &Control,
+    ) -> Result<Option<u32>, Box<Diagnostic>> {
+        self.get(letter)
+            .map(|value| which(letter, value, control))
+            .transpose()
+    }
+
+    fn clear(&mut self) {
+        self.present = 0;
+        self.incremental = 0;
+        self.absolute = 0;
+        self.approached = 0;
+        self.used = 0;
+        self.g.count = 0;
+        self.m.count = 0;
+        self.pointed = 0;
+        self.pointless = 0;
+        if self.more {
+            self.more = false;
+            self.vector = None;
+            self.radius = None;
+            self.turns = None;
+            self.named_axes = 0;
+        }
+    }
+}
+
+impl Control {
+    /// Takes the words of a block.
+    #[inline]
+    pub(super) fn gather(
+        &self,
+        block: &NcBlock,
+        words: &mut Gathered,
+    ) -> Result<(), Box<Diagnostic>> {
+        words.clear();
+        for item in &block.items {
+            let NcItem::Word(word) = item else {
+                words.more = true;
+                continue;
+            };
+            let value = match &word.value {
+                NcValue::Number(number) => {
+                    if word.letter.is_ascii_uppercase() {
+                        if number.point {
+                            words.pointed |= bit(word.letter);
+                        } else if number.value != 0.0 {
+                            words.pointless |= bit(word.letter);
+                        }
+                    }
+                    number.value
+                }
+                other => self.valued(word.letter, other, words)?,
+            };
+            match word.letter {
+                b'G' => self.code(b'G', value * 10.0, &mut words.g)?,
+                b'M' => self.code(b'M', value, &mut words.m)?,
+                letter @ b'A'..=b'Z' => {
+                    let bit = bit(letter);
+                    if words.present & bit != 0 {
+                        return Err(self.twice(letter));
+                    }
+                    words.present |= bit;
+                    words.values[usize::from(letter - b'A')] = value;
+                    if word.incremental {
+                        words.incremental |= bit;
+                    }
+                }
+                _ => words.more = true,
+            }
+        }
+        Ok(())
+    }
+
+    #[cold]
+    fn twice(&self, letter: u8) -> Box<Diagnostic> {
+        let message = format!("{} stands twice in one block", char::from(letter));
+        self.refuse("nc-word", message)
+    }
+
+    /// A value that is more than a number.
+    #[cold]
+    fn valued(
+        &self,
+        letter: u8,
+        value: &NcValue,
+        words: &mut Gathered,
+    ) -> Result<f64, Box<Diagnostic>> {
+        if let (NcValue::Approached(approach, _), b'A'..=b'Z') = (value, letter) {
+            match approach {
+                Approach::Incremental => words.incremental |= bit(letter),
+                Approach::Absolute => words.absolute |= bit(letter),
+                Approach::Shortest | Approach::Positive | Approach::Negative => {
+                    words.absolute |= bit(letter);
+                    words.approached |= bit(letter);
+                    words.approaches[usize::from(letter - b'A')] = Some(*approach);
+                }
+            }
+        }
+        if let (NcValue::Text(_), b'T') = (value, letter) {
+            // A tool by its name: `names` looks for it.
+            words.more = true;
+            return Ok(f64::NAN);
+        }
+        let value = self.variables.worth(value);
+        value.map_err(|finding| self.placed(*finding).boxed())
+    }
+
+    #[inline]
+    fn code(&self, letter: u8, value: f64, codes: &mut Codes) -> Result<(), Box<Diagnostic>> {
+        let whole = libm::rint(value);
+        if !(0.0..65_535.0).contains(&whole) || libm::fabs(value - whole) > 1e-6 {
+            return Err(self.refuse(
+                "nc-word",
+                format!("there is no {}{value}", char::from(letter)),
+            ));
+        }
+        if codes.count == CODES {
+            return Err(self.refuse(
+                "nc-word",
+                format!("more than {CODES} {} in one block", char::from(letter)),
+            ));
+        }
+        codes.list[codes.count] = whole as u16;
+        codes.count += 1;
+        Ok(())
+    }
+}
+
+/// A whole number from 0 on, of a register or a tool.
+pub(super) fn which(letter: u8, value: f64, control: &Control) -> Result<u32, Box<Diagnostic>> {
+    let whole = libm::rint(value);
+    if (0.0..1e9).contains(&whole) && libm::fabs(value - whole) < 1e-6 {
+        return Ok(whole as u32);
+    }
+    Err(control.refuse(
+        "nc-word",
+        format!(
+            "{}{value} is no number of a register or tool",
+            char::from(letter)
+        ),
+    ))
+}

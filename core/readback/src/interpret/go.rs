@@ -1,0 +1,458 @@
+//! Motions: from where words lead to axis values, and to the tip and tool axis that they bring about.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::{Joints, MAX_AXES, Pose, Trace};
+
+use super::state::{Axes, Control, Orientation};
+use crate::{Done, Motion, MotionKind, Stance, Way};
+
+/// A tip that the axes miss by more than this is not reached, mm.
+const REACHED: f64 = 1e-6;
+
+/// A vector is reached if the tool axis misses it by no more than this, radians: vectors have few decimals.
+const AIMED: f64 = 1e-4;
+
+/// Where a motion goes, as words say it; what is not said stays.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Target {
+    /// Coordinates X, Y, Z of the program, mm.
+    pub point: [Option<f64>; 3],
+    /// Values of further axes: mm and radians counted from the drawing's zeros, by place in the chain.
+    pub joints: Joints,
+    /// Bits of the places of `joints` that are said.
+    pub said: u32,
+    /// The tool axis, in the coordinates of the program; need not be a unit vector.
+    pub vector: Option<Vector3<f64>>,
+}
+
+impl Target {
+    /// A point of the program, all three coordinates, mm.
+    pub fn point(point: Vector3<f64>) -> Self {
+        Self {
+            point: [Some(point.x), Some(point.y), Some(point.z)],
+            ..Self::default()
+        }
+    }
+
+    /// Says the value of an axis.
+    pub fn say(&mut self, place: usize, value: f64) {
+        self.joints[place] = value;
+        self.said |= 1 << place;
+    }
+}
+
+/// A pass along a straight line of words, or along a curve whose end it is.
+#[derive(Clone, Debug)]
+pub(super) enum Path {
+    /// Straight in the words.
+    Straight,
+    /// On an arc of the program's coordinates.
+    Arc {
+        /// Its centre, program coordinates, mm.
+        centre: Vector3<f64>,
+        /// Its axis, program coordinates, unit vector.
+        normal: Vector3<f64>,
+        /// Turn about it, right-handed, radians.
+        sweep: f64,
+    },
+}
+
+impl Control {
+    /// Where the tool stands in the coordinates of the program: what the control shows for X, Y, Z, mm. Of a machine that
+    /// lacks one of those axes, zero for it.
+    #[inline]
+    pub fn point(&self) -> Vector3<f64> {
+        if self.tip_words() {
+            return self.to_part.inside(self.at.pose.tip);
+        }
+        let axes = self.axes.cartesian;
+        let point = Vector3::from_fn(|row, _| {
+            axes[row].map_or(0.0, |place| self.at.joints[place] - self.zero[place])
+        });
+        self.to_work.inside(point)
+    }
+
+    /// Goes straight to a point of the program, mm; rotary axes stay.
+    pub fn straight(
+        &mut self,
+        kind: MotionKind,
+        point: Vector3<f64>,
+    ) -> Result<(), Box<Diagnostic>> {
+        self.go(kind, &Path::Straight, &Target::point(point))
+    }
+
+    /// Goes to `target`.
+    #[inline]
+    pub fn go(
+        &mut self,
+        kind: MotionKind,
+        path: &Path,
+        target: &Target,
+    ) -> Result<(), Box<Diagnostic>> {
+        let from = Stance {
+            joints: self.at.joints,
+            pose: self.at.pose,
+        };
+        let tips = self.tip_words();
+        if let Some(vector) = target.vector {
+            self.aim(target, vector)?;
+        } else if tips {
+            self.reach_tip(target)?;
+        } else {
+            self.reach_axes(target);
+        }
+        let way = match path {
+            Path::Straight if target.vector.is_some() => match self.modal.orientation {
+                Orientation::Axes => Way::Tip,
+                Orientation::Usual | Orientation::Circle => Way::TipAndAxis,
+            },
+            Path::Straight if self.state.tcp && self.modal.orientation == Orientation::Circle => {
+                Way::TipAndAxis
+            }
+            Path::Straight if self.state.tcp => Way::Tip,
+            Path::Straight => Way::Axes,
+            Path::Arc {
+                centre,
+                normal,
+                sweep,
+            } => self.arc(&from, *centre, *normal, *sweep)?,
+        };
+        self.moved(kind, way, from);
+        Ok(())
+    }
+
+    /// Brings the axes to `joints` (mm and radians from the drawing's zeros), all linearly: machine coordinates, reference
+    /// positions, the turn to a tilted plane.
+    pub fn go_joints(&mut self, kind: MotionKind, joints: &Joints) {
+        let from = Stance {
+            joints: self.at.joints,
+            pose: self.at.pose,
+        };
+        self.stand(joints);
+        self.moved(kind, Way::Axes, from);
+    }
+
+    /// Turns the rotary axes to `joints` while the tip stays on its place: `PLANE … MOVE`.
+    pub fn turn_about_tip(
+        &mut self,
+        kind: MotionKind,
+        joints: &Joints,
+    ) -> Result<(), Box<Diagnostic>> {
+        let from = Stance {
+            joints: self.at.joints,
+            pose: self.at.pose,
+        };
+        let tip = self.at.pose.tip;
+        for place in 0..self.machine.axes.len() {
+            if self.axes.rotary & (1 << place) != 0 {
+                self.at.joints[place] = joints[place];
+            }
+        }
+        self.place(tip, true)?;
+        self.moved(kind, Way::Tip, from);
+        Ok(())
+    }
+
+    /// Axis positions: words count from the work offset, axis by axis.
+    #[inline]
+    fn reach_axes(&mut self, target: &Target) {
+        let axes = self.axes.cartesian;
+        let told = target.point.iter().any(Option::is_some);
+        if self.to_work.upright() {
+            let origin = self.to_work.origin;
+            for row in 0..3 {
+                if let (Some(value), Some(place)) = (target.point[row], axes[row]) {
+                    self.at.joints[place] = self.zero[place] + (origin[row] + value);
+                }
+            }
+        } else if told {
+            let point = self.to_work.out(told_over(self.point(), &target.point));
+            for (value, place) in point.iter().zip(axes) {
+                if let Some(place) = place {
+                    self.at.joints[place] = self.zero[place] + value;
+                }
+            }
+        }
+        let turned = self.take_said(target);
+        self.follow(turned);
+    }
+
+    /// The tip: linear words are its coordinates, the linear axes follow.
+    #[inline]
+    fn reach_tip(&mut self, target: &Target) -> Result<(), Box<Diagnostic>> {
+        let told = target.point.iter().any(Option::is_some);
+        if !told && !self.state.tcp {
+            // In a tilted plane alone nobody keeps the tip while a rotary axis turns.
+            let turned = self.take_said(target);
+            self.follow(turned);
+            return Ok(());
+        }
+        let tip = if told {
+            self.to_part.out(told_over(self.point(), &target.point))
+        } else {
+            self.at.pose.tip
+        };
+        let turned = self.take_said(target);
+        self.place(tip, turned)
+    }
+
+    /// Takes the axes that `target` says; true where a rotary one is among them.
+    #[inline]
+    fn take_said(&mut self, target: &Target) -> bool {
+        let mut said = target.said;
+        while said != 0 {
+            let place = said.trailing_zeros() as usize % MAX_AXES;
+            self.at.joints[place] = target.joints[place];
+            said &= said - 1;
+        }
+        target.said & self.axes.rotary != 0
+    }
+
+    /// Where the tool is with the joints as they are.
+    #[inline]
+    fn follow(&mut self, turned: bool) {
+        let chain = self.state.solver.chain();
+        if turned {
+            self.at.turns = chain.turns(&self.at.joints);
+        }
+        chain.trace(&mut self.at);
+    }
+
+    /// Brings the tip onto `tip` (mm, part frame) with the rotary axes where they are.
+    #[inline]
+    fn place(&mut self, tip: Vector3<f64>, turned: bool) -> Result<(), Box<Diagnostic>> {
+        let solver = &self.state.solver;
+        let Trace { joints, turns, .. } = &mut self.at;
+        if turned {
+            *turns = solver.chain().turns(joints);
+        }
+        if solver.place(tip, joints, turns).is_err() {
+            return Err(self.refuse(
+                "nc-reach",
+                "the linear axes cannot bring the tip there with the rotary axes so",
+            ));
+        }
+        solver.chain().trace(&mut self.at);
+        if (self.at.pose.tip - tip).norm() > REACHED {
+            return Err(self.refuse(
+                "nc-reach",
+                format!(
+                    "the axes miss the point by {:.4} mm",
+                    (self.at.pose.tip - tip).norm()
+                ),
+            ));
+        }
+        // The word is what the control keeps: nothing adds up over blocks that do not say a coordinate.
+        self.at.pose.tip = tip;
+        Ok(())
+    }
+
+    /// Points the tool along `vector` and brings the tip onto the target: of the ways to do so the one next to where the
+    /// axes stand.
+    fn aim(&mut self, target: &Target, vector: Vector3<f64>) -> Result<(), Box<Diagnostic>> {
+        let axis = self.to_part.out_direction(vector).try_normalize(1e-9);
+        let Some(axis) = axis else {
+            return Err(self.refuse("nc-vector", "the vector of the tool axis has no length"));
+        };
+        let tip = self.to_part.out(told_over(self.point(), &target.point));
+        self.take_said(target);
+        let pose = Pose {
+            tip,
+            axis,
+            edge: Vector3::zeros(),
+        };
+        let last = self.at.joints;
+        let cannot = || {
+            let [x, y, z] = [vector.x, vector.y, vector.z];
+            self.refuse(
+                "nc-vector",
+                format!("the axes cannot point the tool along ({x}, {y}, {z})"),
+            )
+        };
+        let found = self
+            .state
+            .solver
+            .inverse(&pose, &last, AIMED)
+            .map_err(|_| cannot())?;
+        let mut best: Option<(f64, Joints)> = None;
+        for solution in &found {
+            let mut joints = *solution;
+            let mut way = 0.0;
+            let mut inside = true;
+            for (place, machine_axis) in self.machine.axes.iter().enumerate() {
+                if self.axes.rotary & (1 << place) == 0 {
+                    continue;
+                }
+                joints[place] = nearest_turn(joints[place], last[place], machine_axis.travel);
+                if let Some([least, most]) = machine_axis.travel {
+                    inside &= joints[place] >= least - 1e-9 && joints[place] <= most + 1e-9;
+                }
+                way += libm::fabs(joints[place] - last[place]);
+            }
+            // One outside its travel is taken only if there is no other.
+            let way = if inside { way } else { way + 1e6 };
+            if best.as_ref().is_none_or(|(least, _)| way < *least) {
+                best = Some((way, joints));
+            }
+        }
+        let Some((_, joints)) = best else {
+            return Err(cannot());
+        };
+        self.at.joints = joints;
+        self.place(tip, true)?;
+        if self.at.pose.axis.cross(&axis).norm() > 2.0 * AIMED || self.at.pose.axis.dot(&axis) < 0.0
+        {
+            return Err(self.refuse(
+                "nc-vector",
+                "an axis that is not solved for stands so that the tool cannot be pointed",
+            ));
+        }
+        Ok(())
+    }
+
+    /// An arc of the program's coordinates as one of the part frame.
+    fn arc(
+        &self,
+        from: &Stance,
+        centre: Vector3<f64>,
+        normal: Vector3<f64>,
+        sweep: f64,
+    ) -> Result<Way, Box<Diagnostic>> {
+        if self.tip_words() {
+            return Ok(Way::Arc {
+                centre: self.to_part.out(centre),
+                normal: self.to_part.out_direction(normal),
+                sweep,
+            });
+        }
+        // Axis positions lie as the axes do: seen from the part they are turned by the rotary axes, which stand still.
+        let [Some(x), Some(y), Some(z)] = self.axes.cartesian else {
+            return Err(self.refuse("nc-arc", "an arc needs the axes X, Y and Z"));
+        };
+        let turned = (0..self.machine.axes.len()).any(|place| {
+            self.axes.rotary & (1 << place) != 0 && self.at.joints[place] != from.joints[place]
+        });
+        if turned {
+            return Err(self.refuse(
+                "nc-arc",
+                "a rotary axis turns along an arc of axis positions: the tip then goes on no arc, and this is not followed",
+            ));
+        }
+        let chain = self.state.solver.chain();
+        let ways = [x, y, z].map(|place| chain.way_of(place, &from.joints));
+        let across = [(0, 1), (1, 2), (2, 0)]
+            .iter()
+            .all(|(a, b)| libm::fabs(ways[*a].dot(&ways[*b])) < 1e-9);
+        if !across {
+            return Err(self.refuse(
+                "nc-arc",
+                "X, Y and Z of this machine do not stand across one another: an arc of their positions is no arc of the tip",
+            ));
+        }
+        let direction =
+            |vector: Vector3<f64>| ways[0] * vector.x + ways[1] * vector.y + ways[2] * vector.z;
+        let start = self.program_point_of(&from.joints);
+        let [first, second, third] = [0, 1, 2].map(|row| ways[row]);
+        // Where the three axes make a left-handed frame, a turn is seen from behind.
+        let handed = if first.cross(&second).dot(&third) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        Ok(Way::Arc {
+            centre: from.pose.tip + direction(self.to_work.out_direction(centre - start)),
+            normal: direction(self.to_work.out_direction(normal)),
+            sweep: sweep * handed,
+        })
+    }
+
+    /// The coordinates of the program at `joints`, where the words are axis positions.
+    fn program_point_of(&self, joints: &Joints) -> Vector3<f64> {
+        let axes = self.axes.cartesian;
+        let point = Vector3::from_fn(|row, _| {
+            axes[row].map_or(0.0, |place| joints[place] - self.zero[place])
+        });
+        self.to_work.inside(point)
+    }
+
+    /// Hands on the motion from `from` to where the machine stands now; none if it is the same place.
+    #[inline]
+    pub fn moved(&mut self, kind: MotionKind, way: Way, from: Stance) {
+        let arc = matches!(way, Way::Arc { .. } | Way::Spline(_));
+        if from.joints == self.at.joints && !arc {
+            return;
+        }
+        let to = Stance {
+            joints: self.at.joints,
+            pose: self.at.pose,
+        };
+        let (feed, minutes) = self.timed(kind, &way, &from, &to);
+        let state = self.hand_on_state();
+        self.done.push(Done::Motion(Motion {
+            line: self.line,
+            number: self.number,
+            kind,
+            way,
+            from,
+            to,
+            feed,
+            minutes,
+            hole: self.hole,
+            state,
+        }));
+    }
+
+    /// The value to which the axis at `place` goes for a word, and the way it takes.
+    ///
+    /// `value` is counted from the drawing's zero, mm or radians. An axis whose display goes round turns the shorter way.
+    #[inline]
+    pub fn turned(&self, place: usize, value: f64) -> f64 {
+        let axis = &self.machine.axes[place];
+        if !axis.joint.rotary {
+            return value;
+        }
+        let shortest = self.modal.shortest.unwrap_or(axis.range.is_some());
+        if !shortest {
+            return value;
+        }
+        shorter(value, self.at.joints[place])
+    }
+
+    /// The letter's axis, if it is one.
+    #[inline]
+    pub fn axis_of(&self, letter: u8) -> Option<usize> {
+        let place = self.axes.letters[usize::from(letter.wrapping_sub(b'A')) % 26];
+        (place != Axes::NONE).then_some(usize::from(place))
+    }
+}
+
+/// `point` with the coordinates that are said.
+#[inline]
+fn told_over(point: Vector3<f64>, said: &[Option<f64>; 3]) -> Vector3<f64> {
+    Vector3::from_fn(|row, _| said[row].unwrap_or(point[row]))
+}
+
+/// The place of `value` on the circle that is the shorter way from `last`, radians; half a turn goes up.
+pub(super) fn shorter(value: f64, last: f64) -> f64 {
+    let way = value - last;
+    let turns = libm::ceil(way / TAU - 0.5 - 1e-12);
+    value - turns * TAU
+}
+
+/// The place of `value` on the circle next to `last` that lies inside `travel`.
+pub(super) fn nearest_turn(value: f64, last: f64, travel: Option<[f64; 2]>) -> f64 {
+    let near = shorter(value, last);
+    let Some([least, most]) = travel else {
+        return near;
+    };
+    if near > most + 1e-9 && near - TAU >= least - 1e-9 {
+        near - TAU
+    } else if near < least - 1e-9 && near + TAU <= most + 1e-9 {
+        near + TAU
+    } else {
+        near
+    }
+}

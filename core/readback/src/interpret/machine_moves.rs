@@ -1,0 +1,196 @@
+//! Motions in machine coordinates, to reference positions, and words with a way or a sense of their own.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+use post_grammar::nc::Approach;
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::MAX_AXES;
+
+use super::gathered::{Gathered, bit};
+use super::go::{Path, Target, shorter};
+use super::state::{Control, MotionMode};
+use crate::MotionKind;
+use crate::lexicon::Language;
+
+impl Control {
+    /// A motion in machine coordinates: G53, SUPA. Words alone change nothing.
+    pub(super) fn machine_move(
+        &mut self,
+        words: &mut Gathered,
+        rapid: bool,
+    ) -> Result<(), Box<Diagnostic>> {
+        let said = words.present & self.axes.mask;
+        words.used |= said | bit(b'H');
+        if said == 0 && words.named_axes == 0 {
+            return Ok(());
+        }
+        if self.modal.incremental && said & !words.absolute != 0 {
+            return Err(self.refuse(
+                "nc-machine",
+                "machine coordinates are positions, and the words of this block are ways (G91)",
+            ));
+        }
+        let mode = if rapid {
+            MotionMode::Rapid
+        } else {
+            self.modal.motion
+        };
+        let kind = match mode {
+            MotionMode::Rapid => MotionKind::Rapid,
+            MotionMode::Linear => MotionKind::Feed,
+            MotionMode::None => {
+                return Err(self.refuse(
+                    "nc-motion",
+                    "words of axes without a word that says how they move",
+                ));
+            }
+            MotionMode::Clockwise | MotionMode::CounterClockwise => {
+                return Err(self.refuse(
+                    "nc-machine",
+                    "machine coordinates are approached on a straight line, and an arc is in force",
+                ));
+            }
+        };
+        let mut joints = self.at.joints;
+        let mut left = said;
+        while left != 0 {
+            let letter = left.trailing_zeros() as usize % 26;
+            left &= left - 1;
+            let place = usize::from(self.axes.letters[letter]) % MAX_AXES;
+            joints[place] = self.shown(place, words.values[letter]);
+            if self.axes.rotary & (1 << place) != 0 {
+                joints[place] = match words.approaches[letter]
+                    .filter(|_| words.approached & (1 << letter) != 0)
+                {
+                    Some(approach) => self.approach(place, joints[place], Some(approach)),
+                    None => self.turned(place, joints[place]),
+                };
+            }
+        }
+        for (place, joint) in joints.iter_mut().enumerate() {
+            if words.named_axes & (1 << place) != 0 {
+                *joint = words.named_values[place];
+            }
+        }
+        self.move_in_machine(kind, joints);
+        Ok(())
+    }
+
+    /// Goes to `joints` in machine coordinates; where a switch of the kinematics put those on the part, the tip does.
+    pub(super) fn move_in_machine(
+        &mut self,
+        kind: MotionKind,
+        joints: post_machine::kinematics::Joints,
+    ) {
+        self.go_joints(kind, &joints);
+    }
+
+    /// The axis value (from the drawing's zero, mm or radians) of a machine coordinate in program units.
+    pub(super) fn shown(&self, place: usize, value: f64) -> f64 {
+        let axis = &self.machine.axes[place];
+        let value = if axis.joint.rotary {
+            value.to_radians()
+        } else {
+            value * self.modal.unit
+        };
+        value - axis.zero
+    }
+
+    /// G28, G30: by way of the point that is said to the reference position, axis by axis.
+    pub(super) fn reference(
+        &mut self,
+        which: u8,
+        words: &mut Gathered,
+    ) -> Result<(), Box<Diagnostic>> {
+        words.used |= bit(b'P');
+        let said = words.present & self.axes.mask;
+        let target = self.target(words)?;
+        let mut places = Vec::new();
+        for letter in b'A'..=b'Z' {
+            if let (true, Some(place)) = (said & bit(letter) != 0, self.axis_of(letter)) {
+                places.push(place);
+            }
+        }
+        if places.is_empty() {
+            // LinuxCNC and the names' controls take all axes along.
+            match self.lexicon.language() {
+                Language::Rs274 => places.extend(0..self.machine.axes.len()),
+                _ => {
+                    return Err(self.refuse(
+                        "nc-reference",
+                        "no axis is said that goes to its reference position",
+                    ));
+                }
+            }
+        }
+        self.go(
+            MotionKind::Rapid,
+            &Path::Straight,
+            &Target {
+                vector: None,
+                ..target
+            },
+        )?;
+        let mut joints = self.at.joints;
+        for place in places {
+            joints[place] = self.reference_position(which, place);
+        }
+        self.go_joints(MotionKind::Rapid, &joints);
+        Ok(())
+    }
+
+    /// Where an axis has its reference position: as `--offsets` says, else at machine coordinate 0.
+    fn reference_position(&mut self, which: u8, place: usize) -> f64 {
+        let name = self.machine.axes[place].name.clone();
+        let mut list = self.offsets.references.iter();
+        let said = list.find(|reference| reference.which == which && reference.axis == name);
+        if let Some(reference) = said {
+            return reference.value - self.machine.axes[place].zero;
+        }
+        let message = format!(
+            "the reference position {which} of {name} is not said, and is taken to be machine coordinate 0"
+        );
+        self.note(
+            Diagnostic::warning("nc-reference", message).help(
+                "state it by --offsets, in a table [reference.1] (G28) or [reference.2] (G30)",
+            ),
+        );
+        -self.machine.axes[place].zero
+    }
+
+    /// The value to which a rotary axis goes where the word says how it turns.
+    pub(super) fn approach(&self, place: usize, value: f64, approach: Option<Approach>) -> f64 {
+        let last = self.at.joints[place];
+        let near = shorter(value, last);
+        // Within this of where it stands it does not turn round once more.
+        let there = libm::fabs(near - last) < 1e-9;
+        match approach {
+            Some(Approach::Positive) if near < last && !there => near + TAU,
+            Some(Approach::Negative) if near > last && !there => near - TAU,
+            Some(Approach::Shortest | Approach::Positive | Approach::Negative) => near,
+            _ => value,
+        }
+    }
+
+    /// I J K as the tool axis; what is not said is zero, as the manuals of such words have it.
+    pub(super) fn vector_words(&self, words: &mut Gathered, target: &mut Target) {
+        if words.present & (bit(b'I') | bit(b'J') | bit(b'K')) == 0 {
+            return;
+        }
+        let mut part = |letter| words.take(letter).unwrap_or(0.0);
+        target.vector = Some(Vector3::new(part(b'I'), part(b'J'), part(b'K')));
+    }
+
+    /// Numbers without a point: some controls count them in their least increment.
+    #[cold]
+    pub(super) fn least_increments(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
+        if self.lexicon.language() == Language::Macro
+            && words.present & self.axes.mask & words.pointless != 0
+        {
+            let message = "axis words without a decimal point are taken in the units of the program: by a parameter of the control they may be its least increments";
+            self.note(Diagnostic::warning("nc-number", message));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,252 @@
+//! What a block says besides letters with values: names, calls, texts.
+
+use post_grammar::nc::{NcBlock, NcItem, NcValue};
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::Meaning;
+
+use super::block::Asked;
+use super::gathered::{Gathered, which};
+use super::state::Control;
+use super::{cycles, frames, planes};
+use crate::Told;
+use crate::lexicon::Sense;
+
+/// Names whose value changes a motion, also from a block without axes on.
+const SHAPES: &[&str] = &[
+    "LEAD", "TILT", "A2", "B2", "C2", "A4", "B4", "C4", "A5", "B5", "C5", "THETA", "AR", "RP",
+    "AP", "CHF", "CHR", "RND", "RNDM", "ANG",
+];
+
+/// Takes what `gather` left.
+pub(super) fn take(
+    control: &mut Control,
+    block: &NcBlock,
+    words: &mut Gathered,
+    asked: &mut Asked,
+) -> Result<(), Box<Diagnostic>> {
+    let mut modal_call = false;
+    let mut items = block.items.iter().peekable();
+    while let Some(item) = items.next() {
+        match item {
+            NcItem::Word(word) => {
+                if let (b'T', NcValue::Text(name)) = (word.letter, &word.value) {
+                    control.tools.ready_name = Some(name.clone());
+                    control.tools.ready = None;
+                }
+            }
+            NcItem::Named { name, value } => control.named(name, value, words)?,
+            NcItem::Name(name) => {
+                modal_call = name == "MCALL"
+                    && matches!(items.peek(), Some(NcItem::Call { .. } | NcItem::Name(_)));
+                if !modal_call {
+                    control.name(name, words, asked)?;
+                }
+            }
+            NcItem::Call { name, arguments } => {
+                control.call(name, arguments, modal_call, words, asked)?;
+                modal_call = false;
+            }
+            NcItem::Assign { .. } | NcItem::Flow(_) => {
+                return Err(control.refuse("nc-flow", "what leads the program elsewhere, or sets a variable, stands among words of motion"));
+            }
+            NcItem::Number(number) => {
+                let message = format!("{} stands alone", number.value);
+                return Err(control.refuse("nc-word", message));
+            }
+            NcItem::Text(text) => control.unknown(&format!("\"{text}\"")),
+        }
+    }
+    Ok(())
+}
+
+impl Control {
+    /// A name with a value: `A3=0.5`, `CR=5`, an axis of a longer name.
+    fn named(
+        &mut self,
+        name: &str,
+        value: &NcValue,
+        words: &mut Gathered,
+    ) -> Result<(), Box<Diagnostic>> {
+        if let Some((_, place)) = self.axes.names.iter().find(|(known, _)| known == name) {
+            let place = *place;
+            return self.named_axis(place, value, words);
+        }
+        let worth = |control: &Self| {
+            control
+                .variables
+                .worth(value)
+                .map_err(|finding| control.placed(*finding).boxed())
+        };
+        let mut part = |row: usize| -> Result<(), Box<Diagnostic>> {
+            words.vector.get_or_insert_default()[row] = worth(self)?;
+            Ok(())
+        };
+        match self.lexicon.name(name) {
+            Sense::Means(Meaning::ToolAxisX) => part(0)?,
+            Sense::Means(Meaning::ToolAxisY) => part(1)?,
+            Sense::Means(Meaning::ToolAxisZ) => part(2)?,
+            Sense::Means(Meaning::Radius) => words.radius = Some(worth(self)? * self.modal.unit),
+            Sense::Means(Meaning::Turns) => words.turns = Some(worth(self)?),
+            Sense::Means(Meaning::LengthRegister) => {
+                let value = worth(self)?;
+                self.modal.named_register = Some(which(b'H', value, self)?);
+            }
+            Sense::Means(Meaning::SpeedLimit) => self.modal.most_speed = Some(worth(self)?),
+            Sense::Means(Meaning::Nothing | Meaning::Smoothing) => {}
+            Sense::Means(Meaning::SmoothingOff) => self.smooth(None),
+            Sense::Means(Meaning::Probe) => {
+                return Err(self.refuse(
+                    "nc-probe",
+                    "a probing move ends where it touches, which the program does not say",
+                ));
+            }
+            Sense::Unknown if name == "HL" => {
+                let value = worth(self)?;
+                self.modal.named_register = Some(which(b'H', value, self)?);
+            }
+            Sense::Unknown
+                if words.present & self.axes.mask == 0
+                    && words.named_axes == 0
+                    && !SHAPES.contains(&name) =>
+            {
+                self.unknown(name);
+            }
+            _ => {
+                let message =
+                    format!("{name}= is not run, and might change the motion of its block");
+                return Err(self.refuse("nc-word", message));
+            }
+        }
+        Ok(())
+    }
+
+    /// The value of an axis whose name is longer than a letter.
+    fn named_axis(
+        &mut self,
+        place: usize,
+        value: &NcValue,
+        words: &mut Gathered,
+    ) -> Result<(), Box<Diagnostic>> {
+        use post_grammar::nc::Approach;
+        let approach = match value {
+            NcValue::Approached(approach, _) => Some(*approach),
+            _ => None,
+        };
+        let worth = self
+            .variables
+            .worth(value)
+            .map_err(|finding| self.placed(*finding).boxed())?;
+        let rotary = self.axes.rotary & (1 << place) != 0;
+        let length = if rotary {
+            worth.to_radians()
+        } else {
+            worth * self.modal.unit
+        };
+        let way = match approach {
+            Some(Approach::Incremental) => true,
+            Some(_) => false,
+            None => self.modal.incremental,
+        };
+        let to = if way {
+            self.at.joints[place] + length
+        } else if rotary {
+            let to = self.zero[place] + length;
+            match approach {
+                Some(approach) if approach != Approach::Absolute => {
+                    self.approach(place, to, Some(approach))
+                }
+                _ => self.turned(place, to),
+            }
+        } else {
+            self.zero[place] + length
+        };
+        words.named_axes |= 1 << place;
+        words.named_values[place] = to;
+        Ok(())
+    }
+
+    /// A name alone.
+    fn name(
+        &mut self,
+        name: &str,
+        words: &mut Gathered,
+        asked: &mut Asked,
+    ) -> Result<(), Box<Diagnostic>> {
+        if frames::name(self, name, words)? {
+            return Ok(());
+        }
+        match self.lexicon.name(name) {
+            Sense::Means(meaning) => self.meant(0, meaning, words, asked),
+            Sense::Unknown if words.present & self.axes.mask == 0 => {
+                self.unknown(name);
+                Ok(())
+            }
+            Sense::Unknown | Sense::Refused => {
+                let message =
+                    format!("{name} is not run, and might change the motion of its block");
+                Err(self.refuse("nc-word", message))
+            }
+        }
+    }
+
+    /// A call with parentheses.
+    fn call(
+        &mut self,
+        name: &str,
+        arguments: &[Option<NcValue>],
+        modal: bool,
+        words: &mut Gathered,
+        asked: &mut Asked,
+    ) -> Result<(), Box<Diagnostic>> {
+        let empty = arguments.iter().all(Option::is_none);
+        let sense = if empty {
+            self.lexicon.empty_call(name)
+        } else {
+            self.lexicon.name(name)
+        };
+        match (name, sense) {
+            ("MSG", _) => {
+                if let Some(Some(NcValue::Text(text))) = arguments.first() {
+                    let text = text.clone();
+                    self.tell(Told::Message(text));
+                }
+            }
+            (_, Sense::Means(Meaning::TiltedPlane)) => return planes::call(self, name, arguments),
+            (_, Sense::Means(Meaning::TiltedPlaneOff)) => return planes::end(self),
+            (_, Sense::Means(Meaning::Smoothing)) => {
+                let tolerance = match arguments.first() {
+                    Some(Some(value)) => Some(
+                        self.variables
+                            .worth(value)
+                            .map_err(|finding| self.placed(*finding).boxed())?,
+                    ),
+                    _ => None,
+                };
+                self.smooth(tolerance.map(|tolerance| tolerance * self.modal.unit));
+            }
+            (
+                _,
+                Sense::Means(
+                    meaning @ (Meaning::CycleDrill
+                    | Meaning::CycleDeep
+                    | Meaning::CycleBreakChip
+                    | Meaning::CycleTap
+                    | Meaning::CycleTapLeft
+                    | Meaning::CycleReam
+                    | Meaning::CycleBore
+                    | Meaning::CycleBoreFine
+                    | Meaning::CycleBoreBack),
+                ),
+            ) => return cycles::call(self, name, meaning, arguments, modal),
+            (_, Sense::Means(Meaning::Nothing)) => {}
+            (_, Sense::Means(meaning)) => return self.meant(0, meaning, words, asked),
+            _ => {
+                let message = format!(
+                    "{name}(…) is no cycle or subprogram that is known here, and might move the machine"
+                );
+                return Err(self.refuse("nc-word", message));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,202 @@
+//! What a control remembers from block to block.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use post_machine::description::Machine;
+use post_machine::kinematics::{Joints, Solver, Trace};
+
+use super::ReadReport;
+use super::cycles::Cycles;
+use super::frame::{Frame, Frames};
+use super::tools::Tools;
+use super::variables::Variables;
+use crate::lexicon::Lexicon;
+use crate::{Done, Offsets, State};
+
+/// A control at work: all that holds from block to block.
+///
+/// A block of words goes through `block::run`, a conversational one through `conversational::run`. Both settle what is
+/// modal here and then ask for motions: `Control::go` in words, or `Control::straight` along the coordinates of the
+/// program. What happens is pushed to `done` in order.
+#[derive(Debug)]
+pub(super) struct Control {
+    /// The file, as messages call it.
+    pub file: String,
+    /// Which word switches what.
+    pub lexicon: Lexicon,
+    /// What stands in the control's tables.
+    pub offsets: Offsets,
+    /// The machine with the head that it has now.
+    pub machine: Arc<Machine>,
+    /// Its heads: the line of the program that swaps each in, and the machine with it.
+    pub heads: Vec<(Option<String>, Arc<Machine>)>,
+    /// Which word is which axis.
+    pub axes: Axes,
+    /// What is modal in its programs.
+    pub modal: Modal,
+    /// What the words count from, inside the work offset. After a change: [`Control::frames_changed`].
+    pub frames: Frames,
+    /// Number of the work offset in force, by place in `offsets.work`; none: the machine file's.
+    pub work: Option<usize>,
+    /// Tools and lengths.
+    pub tools: Tools,
+    /// Its variables.
+    pub variables: Variables,
+    /// The cycle that is in force, if there is one.
+    pub cycles: Cycles,
+    /// What its motions share; handed on when something of it changes. After a change: [`Control::state_changed`].
+    pub state: State,
+    /// `state` as it was handed on last; none if it has changed since.
+    pub(super) shared: Option<Arc<State>>,
+    /// Where the machine stands: joints, their sines and cosines, and the pose.
+    pub at: Trace,
+    /// The program has come to its end.
+    pub ended: bool,
+    /// Motions are part of a cycle's hole.
+    pub hole: bool,
+    /// Axis values that the words of the axes count from: mm and radians, by place in the chain.
+    pub zero: Joints,
+    /// The frame of the words in the part frame, where they are the tip.
+    pub to_part: Frame,
+    /// The frame of the words in that of the work offset.
+    pub to_work: Frame,
+    /// Line of the block that is run.
+    pub line: u64,
+    /// Its number.
+    pub number: Option<u64>,
+    /// What was found.
+    pub report: ReadReport,
+    /// What was done since whoever asks took it.
+    pub done: Vec<Done>,
+    /// Solvers by length, so that none is made twice.
+    pub(super) solvers: Vec<(f64, Arc<Solver>)>,
+}
+
+/// Which word is which axis.
+#[derive(Clone, Debug)]
+pub(super) struct Axes {
+    /// Place in the chain of the axis of each letter; [`Axes::NONE`] if there is none.
+    pub letters: [u8; 26],
+    /// Places of the axes whose names are longer than a letter.
+    pub names: Vec<(String, usize)>,
+    /// Places in the chain of X, Y and Z.
+    pub cartesian: [Option<usize>; 3],
+    /// Bits of the letters of axes.
+    pub mask: u32,
+    /// Bits of the places of rotary axes.
+    pub rotary: u32,
+}
+
+impl Axes {
+    /// No axis has this letter.
+    pub const NONE: u8 = u8::MAX;
+}
+
+/// What is modal in a program, lengths in mm.
+#[derive(Clone, Debug)]
+pub(super) struct Modal {
+    /// What axis words alone mean.
+    pub motion: MotionMode,
+    /// The plane of arcs and cycles.
+    pub plane: ArcPlane,
+    /// Words are ways: G91.
+    pub incremental: bool,
+    /// Centres of arcs are positions: G90.1.
+    pub centres_absolute: bool,
+    /// mm in one unit of a word.
+    pub unit: f64,
+    /// How F counts.
+    pub feed_mode: FeedMode,
+    /// F: mm/min, 1/min (or 1/s as the machine file has it) or mm a revolution; of rotary axes alone deg/min or a
+    /// revolution, unless `unit` was an inch: then so many times 25.4. None where the program has stated none.
+    pub feed: Option<f64>,
+    /// S, revolutions a minute.
+    pub speed: f64,
+    /// The speed is that of the cut, m/min: G96.
+    pub surface_speed: bool,
+    /// The spindle turns no faster than this, revolutions a minute: LIMS.
+    pub most_speed: Option<f64>,
+    /// A cycle returns to the level where it began: G98.
+    pub return_start: bool,
+    /// Rotary axes go the shorter way (M126) or as written (M127); none: as the machine file says of each axis.
+    pub shortest: Option<bool>,
+    /// How the tool axis goes between two vectors.
+    pub orientation: Orientation,
+    /// I J K of a straight move are the tool axis: G43.5.
+    pub vectors: bool,
+    /// Tool centre point control came with a word of length compensation, and ends with it.
+    pub tcp_by_length: bool,
+    /// A length register by a name: `HL=1`.
+    pub named_register: Option<u32>,
+}
+
+/// What axis words alone mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum MotionMode {
+    /// Nothing was said yet.
+    #[default]
+    None,
+    /// G0.
+    Rapid,
+    /// G1.
+    Linear,
+    /// G2.
+    Clockwise,
+    /// G3.
+    CounterClockwise,
+}
+
+/// The plane of arcs and cycles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum ArcPlane {
+    /// G17.
+    #[default]
+    Xy,
+    /// G18.
+    Zx,
+    /// G19.
+    Yz,
+}
+
+impl ArcPlane {
+    /// Its two coordinates in right-handed order, and the third.
+    pub const fn coordinates(self) -> [usize; 3] {
+        match self {
+            Self::Xy => [0, 1, 2],
+            Self::Zx => [2, 0, 1],
+            Self::Yz => [1, 2, 0],
+        }
+    }
+
+    /// Its normal, in the coordinates of the words.
+    pub fn normal(self) -> Vector3<f64> {
+        let mut normal = Vector3::zeros();
+        normal[self.coordinates()[2]] = 1.0;
+        normal
+    }
+}
+
+/// How F counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum FeedMode {
+    /// G94.
+    #[default]
+    PerMinute,
+    /// G93.
+    Inverse,
+    /// G95.
+    PerRevolution,
+}
+
+/// How the tool axis goes between two vectors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Orientation {
+    /// As the control is set up: words of rotary axes linearly, vectors on the great circle.
+    #[default]
+    Usual,
+    /// The rotary axes linearly, vectors too: ORIAXES.
+    Axes,
+    /// On the great circle, rotary words too: ORIVECT.
+    Circle,
+}

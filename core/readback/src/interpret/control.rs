@@ -103,6 +103,7 @@ impl Control {
             shared: None,
             at: Trace::default(),
             ended: false,
+            in_machine: false,
             hole: false,
             zero: Joints::default(),
             to_part: Frame::default(),

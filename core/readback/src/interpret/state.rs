@@ -53,6 +53,8 @@ pub(super) struct Control {
     pub at: Trace,
     /// The program has come to its end.
     pub ended: bool,
+    /// The motion is asked for in positions of the machine.
+    pub in_machine: bool,
     /// Motions are part of a cycle's hole.
     pub hole: bool,
     /// Axis values that the words of the axes count from: mm and radians, by place in the chain.

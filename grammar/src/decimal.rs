@@ -19,7 +19,7 @@ const ZEROS: u64 = 0x3030_3030_3030_3030;
 ///
 /// A mantissa below 2⁵³ and a power of ten up to 22 are both exact as doubles, so that their quotient is rounded
 /// once, as it should be. Anything longer, or with an exponent, goes to `str::parse`.
-pub(super) fn number(text: &[u8], at: usize) -> Option<(f64, usize)> {
+pub(crate) fn number(text: &[u8], at: usize) -> Option<(f64, usize)> {
     if let Some(short) = short_number(text, at) {
         return Some(short);
     }
@@ -38,7 +38,7 @@ fn near_the_end(text: &[u8]) -> Option<(f64, usize)> {
 /// As [`number`], but only a number of up to seven digits on either side of the point, with neither `+` nor
 /// exponent, and not at the very end of the text: without a loop, and without a branch on its sign and length.
 #[inline(always)]
-pub(super) fn short_number(text: &[u8], at: usize) -> Option<(f64, usize)> {
+pub(crate) fn short_number(text: &[u8], at: usize) -> Option<(f64, usize)> {
     let window: &[u8; 17] = text.get(at..at + 17)?.try_into().ok()?;
     let negative = window[0] == b'-';
     let begin = usize::from(negative);

@@ -33,7 +33,9 @@ fn words(text: &[u8], block: &mut NcBlock) -> Option<usize> {
             break;
         }
         let letter = first.to_ascii_uppercase();
-        if !letter.is_ascii_uppercase() || letter == b'O' {
+        // The number of a block may be parted from its letter.
+        let head = letter == b'N' && block.number.is_none() && block.items.is_empty();
+        if !letter.is_ascii_uppercase() || letter == b'O' || head {
             return None;
         }
         let next = *text.get(at + 1)?;

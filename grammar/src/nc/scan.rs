@@ -145,7 +145,9 @@ fn named(name: &'static str, number: NcNumber) -> NcItem {
 /// The number at `at`, and where it ends.
 #[inline(always)]
 fn value(text: &[u8], at: usize) -> Option<(NcNumber, usize)> {
-    let found = decimal(text, at)?;
+    // A `+` says nothing; what stands behind it has no sign.
+    let plus = usize::from(text.get(at) == Some(&b'+') && text.get(at + 1) != Some(&b'-'));
+    let found = decimal(text, at + plus)?;
     let number = NcNumber {
         value: found.value,
         point: found.point,

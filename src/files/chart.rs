@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 
 use super::scale::Scale;
-use crate::files::svg::{self, label, upright};
+use super::svg::{self, label, upright};
 
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 78.0;

@@ -9,6 +9,7 @@
 
 mod chain;
 mod cl;
+mod decimal;
 mod expression;
 mod fault;
 pub mod nc;

@@ -1,7 +1,6 @@
 //! Cutter-location files: chunks of a file to logical lines, lines to typed records.
 
 mod line;
-mod number;
 mod reader;
 mod record;
 mod scan;

@@ -5,10 +5,10 @@
 use std::borrow::Cow;
 
 use super::line::{Item, LONGEST_WORD, Line};
-use super::number::{number, short_number};
 use super::record::Statement;
 use super::statements::statement;
 use super::vocabulary::{self, Behind};
+use crate::decimal::{number, short_number};
 
 /// A `GOTO` with three or six numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]

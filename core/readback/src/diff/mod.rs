@@ -18,7 +18,7 @@ mod steps;
 mod tally;
 mod walk;
 
-use std::io::{BufRead, Seek};
+use std::io::{Read, Seek};
 
 use post_machine::diagnostic::Diagnostic;
 
@@ -40,7 +40,7 @@ pub trait Program {
     fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>>;
 }
 
-impl<R: BufRead + Seek> Program for Interpreter<R> {
+impl<R: Read + Seek> Program for Interpreter<R> {
     fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
         Interpreter::next(self, done)
     }
@@ -57,8 +57,10 @@ pub struct Rules {
     pub feed: f64,
     /// Paths farther apart than this go different ways, mm: it is looked for where they meet again.
     pub apart: f64,
-    /// Both programs are for one machine and its control: rotary axes, positions of the machine and registers count.
+    /// Both programs are for one machine: rotary axes and positions of the machine count.
     pub one_machine: bool,
+    /// And for one control: registers and work offsets count too.
+    pub one_control: bool,
     /// Names of the axes in chain order, for one machine.
     pub axes: Vec<String>,
     /// Which axes are rotary, in chain order.

@@ -333,7 +333,7 @@ impl<'t> Tally<'t> {
         if self.compared != Some((states, kinds)) {
             self.compared = Some((states, kinds));
             self.hold.clear();
-            let facts = steps.map(|step| facts(step, self.rules.one_machine));
+            let facts = steps.map(|step| facts(step, self.rules.one_control));
             let [old, new] = facts;
             for ((what, old), (_, new)) in old.into_iter().zip(new) {
                 if old == new {
@@ -403,15 +403,21 @@ impl<'t> Tally<'t> {
 const LEAST_SECONDS: f64 = 0.1;
 
 /// What holds during a step, in words.
-fn facts(step: &Step, one_machine: bool) -> Vec<(&'static str, String)> {
+fn facts(step: &Step, one_control: bool) -> Vec<(&'static str, String)> {
     let state = &step.state;
     let number = |number: Option<u32>| number.map_or_else(|| "none".to_owned(), |n| n.to_string());
     let spindle = match state.spindle {
         Spindle::Off => "off".to_owned(),
         Spindle::Clockwise(speed) => format!("clockwise {speed}"),
         Spindle::CounterClockwise(speed) => format!("counter-clockwise {speed}"),
-        Spindle::Surface { speed, clockwise } => {
-            let sense = if clockwise { "clockwise" } else { "counter-clockwise" };
+        Spindle::Surface {
+            speed, clockwise, ..
+        } => {
+            let sense = if clockwise {
+                "clockwise"
+            } else {
+                "counter-clockwise"
+            };
             format!("{sense} {speed} m/min")
         }
         Spindle::Oriented => "oriented".to_owned(),
@@ -421,7 +427,11 @@ fn facts(step: &Step, one_machine: bool) -> Vec<(&'static str, String)> {
         (state.coolants.mist, "mist"),
         (state.coolants.other, "other"),
     ];
-    let flows: Vec<&str> = flows.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
+    let flows: Vec<&str> = flows
+        .iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| *name)
+        .collect();
     let coolant = match flows.is_empty() {
         true => "off".to_owned(),
         false => flows.join(", "),
@@ -443,7 +453,7 @@ fn facts(step: &Step, one_machine: bool) -> Vec<(&'static str, String)> {
         ("coolant", coolant),
         ("compensation", compensation.to_owned()),
     ];
-    if one_machine {
+    if one_control {
         let register = match state.compensation {
             0 => None,
             _ => state.radius_register,
@@ -543,11 +553,18 @@ impl Difference {
     pub(super) fn sum_up(&mut self, rules: &Rules) {
         // An operation in which nothing moves is none, unless something happens there.
         self.operations.retain(|operation| {
-            let moves = operation.sides.iter().flatten().any(|side| side.motions > 0);
+            let moves = operation
+                .sides
+                .iter()
+                .flatten()
+                .any(|side| side.motions > 0);
             moves || !operation.events.is_empty()
         });
         for side in 0..2 {
-            let parts = self.operations.iter().filter_map(|operation| operation.sides[side]);
+            let parts = self
+                .operations
+                .iter()
+                .filter_map(|operation| operation.sides[side]);
             let mut sum = Side::default();
             for part in parts {
                 sum.lines[0] = match sum.lines[0] {
@@ -561,7 +578,7 @@ impl Difference {
             }
             self.sides[side] = sum;
         }
-        let words = !rules.one_machine || self.unknown[0] == self.unknown[1];
+        let words = !rules.one_control || self.unknown[0] == self.unknown[1];
         self.same = words && self.operations.iter().all(|operation| operation.same);
     }
 }

@@ -78,7 +78,13 @@ impl<'a, P: Program> Path<'a, P> {
         }
         loop {
             self.source.fill(count);
-            if self.one_machine || !self.source.steps.iter().any(|step| step.machine || self.jumped) {
+            if self.one_machine
+                || !self
+                    .source
+                    .steps
+                    .iter()
+                    .any(|step| step.machine || self.jumped)
+            {
                 return;
             }
             let steps = &mut self.source.steps;
@@ -133,7 +139,12 @@ impl<'a, P: Program> Path<'a, P> {
 
     /// Way that is left of the first `count` steps, mm.
     fn way(&self, count: usize) -> f64 {
-        let all: f64 = self.steps().iter().take(count).map(|step| step.length).sum();
+        let all: f64 = self
+            .steps()
+            .iter()
+            .take(count)
+            .map(|step| step.length)
+            .sum();
         let behind = self.front().map_or(0.0, |step| step.length * self.share);
         if count == 0 { 0.0 } else { all - behind }
     }
@@ -280,10 +291,14 @@ fn next_places(steps: [&Step; 2], behind: [f64; 2]) -> [f64; 2] {
         let over = |step: &Step, share: f64| if step.length <= 0.0 { 1.0 } else { share };
         return match old.length <= 0.0 && new.length <= 0.0 {
             true => [1.0, 1.0],
-            false if both <= old.to.distance(&new.from) && old.length <= 0.0 && behind[1] == 0.0 => {
+            false
+                if both <= old.to.distance(&new.from) && old.length <= 0.0 && behind[1] == 0.0 =>
+            {
                 [1.0, 1.0]
             }
-            false if both <= new.to.distance(&old.from) && new.length <= 0.0 && behind[0] == 0.0 => {
+            false
+                if both <= new.to.distance(&old.from) && new.length <= 0.0 && behind[0] == 0.0 =>
+            {
                 [1.0, 1.0]
             }
             false => [over(old, behind[0]), over(new, behind[1])],

@@ -32,9 +32,9 @@ pub(super) fn take(
                 name.and_then(|name| Ok((name, variables.value(value)?)))
             }
             NcItem::Named { name, value } if variables.knows(name) => match value {
-                NcValue::Expression(value) => variables.value(value).map(|value| (name.clone(), value)),
-                NcValue::Text(text) => Ok((name.clone(), Value::Text(text.clone()))),
-                other => variables.worth(other).map(|number| (name.clone(), Value::Number(number))),
+                NcValue::Expression(value) => variables.value(value).map(|value| (name.to_string(), value)),
+                NcValue::Text(text) => Ok((name.to_string(), Value::Text(text.clone()))),
+                other => variables.worth(other).map(|number| (name.to_string(), Value::Number(number))),
             },
             _ => return true,
         };

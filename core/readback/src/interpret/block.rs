@@ -381,7 +381,7 @@ impl Control {
     }
 
     /// Takes an M code.
-    fn m_code(&mut self, code: u16, asked: &mut Asked) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn m_code(&mut self, code: u16, asked: &mut Asked) -> Result<(), Box<Diagnostic>> {
         match self.lexicon.m(code) {
             Sense::Means(meaning) => {
                 // `meant` takes ten times the number, as of G.

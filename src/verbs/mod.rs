@@ -9,6 +9,7 @@ mod place;
 mod plugin;
 mod post;
 mod print_schema;
+mod read;
 mod study;
 
 use std::path::Path;
@@ -26,6 +27,7 @@ use place::PlaceArguments;
 use plugin::PluginArguments;
 use post::PostArguments;
 use print_schema::SchemaArguments;
+use read::ReadArguments;
 use study::StudyArguments;
 
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
@@ -48,6 +50,7 @@ use study::StudyArguments;
   post check my-mill.toml --svg reach.svg
   post study part.cls --machine ac-trunnion
   post place part.cls --machine dmu50 --svg travel.svg
+  post read part.nc --machine ac-trunnion --csv motions.csv
   post plugin show fanuc
   post plugin new mine --iso
   post plugin test target/release/libpost_mine.so
@@ -74,6 +77,7 @@ enum Verb {
     Study(Box<StudyArguments>),
     Place(Box<PlaceArguments>),
     Plugin(PluginArguments),
+    Read(Box<ReadArguments>),
 }
 
 impl CommandLine {
@@ -89,6 +93,7 @@ impl CommandLine {
             Some(Verb::Study(arguments)) => study::run(&arguments),
             Some(Verb::Place(arguments)) => place::run(&arguments),
             Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
+            Some(Verb::Read(arguments)) => read::run(&arguments),
         }
     }
 }

@@ -21,7 +21,9 @@ pub(super) fn take(
         return declare(&kind, &items[1..], variables);
     }
     // A cycle's parameters are variables too, and stay for the cycle.
-    if language == Language::Conversational && matches!(block.items.first(), Some(NcItem::Name(name)) if name.starts_with("CYCL DEF")) {
+    if language == Language::Conversational
+        && matches!(block.items.first(), Some(NcItem::Name(name)) if name.starts_with("CYCL DEF"))
+    {
         return Ok(());
     }
     let mut failed = None;
@@ -32,9 +34,13 @@ pub(super) fn take(
                 name.and_then(|name| Ok((name, variables.value(value)?)))
             }
             NcItem::Named { name, value } if variables.knows(name) => match value {
-                NcValue::Expression(value) => variables.value(value).map(|value| (name.to_string(), value)),
+                NcValue::Expression(value) => variables
+                    .value(value)
+                    .map(|value| (name.to_string(), value)),
                 NcValue::Text(text) => Ok((name.to_string(), Value::Text(text.clone()))),
-                other => variables.worth(other).map(|number| (name.to_string(), Value::Number(number))),
+                other => variables
+                    .worth(other)
+                    .map(|number| (name.to_string(), Value::Number(number))),
             },
             _ => return true,
         };

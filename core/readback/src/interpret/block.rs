@@ -351,7 +351,11 @@ impl Control {
         }
     }
 
-    fn compensate(&mut self, side: i8, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn compensate(
+        &mut self,
+        side: i8,
+        words: &mut Gathered,
+    ) -> Result<(), Box<Diagnostic>> {
         let register = if side == 0 || self.lexicon.tools_have_edges() {
             None
         } else {
@@ -421,12 +425,13 @@ impl Control {
     /// The word swaps a head in.
     fn swap_head(&mut self, code: u16) -> Result<bool, Box<Diagnostic>> {
         let mut heads = self.heads.iter();
-        let head = heads.find(|(word, _)| word.as_deref().and_then(m_number) == Some(code));
-        let Some((_, machine)) = head else {
+        let head = heads.find(|head| head.word.as_deref().and_then(m_number) == Some(code));
+        let Some(head) = head else {
             return Ok(false);
         };
-        let machine = std::sync::Arc::clone(machine);
+        let (name, machine) = (head.name.clone(), std::sync::Arc::clone(&head.machine));
         self.head_changed(machine)?;
+        self.tell(Told::Head(name));
         Ok(true)
     }
 
@@ -511,7 +516,7 @@ impl Control {
     }
 
     /// S changed while the spindle turns.
-    fn speed_changed(&mut self) {
+    pub(super) fn speed_changed(&mut self) {
         match self.state.spindle {
             Spindle::Clockwise(_) => self.turn_spindle(Turning::Clockwise),
             Spindle::CounterClockwise(_) => self.turn_spindle(Turning::CounterClockwise),
@@ -806,7 +811,7 @@ impl Control {
 
     /// What was not made use of: refused where it may change a motion, else counted by name.
     #[inline]
-    fn left_over(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn left_over(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
         let left = words.present & !words.used;
         if left == 0 {
             return Ok(());

@@ -68,7 +68,11 @@ fn code(word: &NcWord) -> Option<Code> {
 }
 
 /// Takes the words that lead elsewhere out of a block.
-pub(super) fn take(block: &mut NcBlock, language: Language, variables: &Variables) -> Answer<Option<Pending>> {
+pub(super) fn take(
+    block: &mut NcBlock,
+    language: Language,
+    variables: &Variables,
+) -> Answer<Option<Pending>> {
     if !matches!(language, Language::Macro | Language::Rs274) {
         return Ok(None);
     }
@@ -90,7 +94,10 @@ pub(super) fn take(block: &mut NcBlock, language: Language, variables: &Variable
         Ok(None)
     };
     let number = match value(b'P')? {
-        Some(number) => Some(u64::try_from(whole(number, "the number P")?).map_err(|_| fault("the number P is negative"))?),
+        Some(number) => Some(
+            u64::try_from(whole(number, "the number P")?)
+                .map_err(|_| fault("the number P is negative"))?,
+        ),
         None => None,
     };
     let times = match value(b'L')? {
@@ -99,7 +106,11 @@ pub(super) fn take(block: &mut NcBlock, language: Language, variables: &Variable
     };
     let needed = || number.ok_or_else(|| fault("a subprogram is called without its number P"));
     let pending = match found {
-        Code::Modal => return Err(fault("G66 calls a macro at every motion, and that is not run")),
+        Code::Modal => {
+            return Err(fault(
+                "G66 calls a macro at every motion, and that is not run",
+            ));
+        }
         Code::Subprogram => Pending::Subprogram {
             number: needed()?,
             times,
@@ -117,7 +128,9 @@ pub(super) fn take(block: &mut NcBlock, language: Language, variables: &Variable
         },
     };
     block.items.retain(|item| match item {
-        NcItem::Word(word) => found != Code::Macro && code(word).is_none() && !matches!(word.letter, b'P' | b'L'),
+        NcItem::Word(word) => {
+            found != Code::Macro && code(word).is_none() && !matches!(word.letter, b'P' | b'L')
+        }
         _ => true,
     });
     Ok(Some(pending))
@@ -136,13 +149,17 @@ fn arguments(block: &NcBlock, variables: &Variables) -> Answer<Vec<(String, f64)
         if matches!(word.letter, b'G' | b'P' | b'L' | b'N' | b'O') {
             continue;
         }
-        let place = MACRO_LETTERS.iter().position(|letter| *letter == word.letter);
+        let place = MACRO_LETTERS
+            .iter()
+            .position(|letter| *letter == word.letter);
         let Some(place) = place else {
             continue;
         };
         let name = format!("#{}", place + 1);
         if own.iter().any(|(known, _)| *known == name) {
-            return Err(fault("a letter stands twice behind G65: what the further ones mean is not settled here"));
+            return Err(fault(
+                "a letter stands twice behind G65: what the further ones mean is not settled here",
+            ));
         }
         own.push((name, variables.worth(&word.value)?));
     }

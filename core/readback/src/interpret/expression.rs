@@ -166,7 +166,9 @@ impl Variables {
                 quotient.ok_or_else(|| fault(&format!("{left} is divided by zero")))? as f64
             }
             B::Power if left < 0.0 && libm::trunc(right) != right => {
-                return Err(fault(&format!("{left} to the power of {right} is no number")));
+                return Err(fault(&format!(
+                    "{left} to the power of {right} is no number"
+                )));
             }
             B::Power => libm::pow(left, right),
             B::Equal => truth(self.equal(left, right)?),
@@ -230,7 +232,11 @@ impl Variables {
         }
         let remainder = libm::fmod(left, right);
         if self.language() == Language::Rs274 {
-            return Ok(if remainder < 0.0 { remainder + libm::fabs(right) } else { remainder });
+            return Ok(if remainder < 0.0 {
+                remainder + libm::fabs(right)
+            } else {
+                remainder
+            });
         }
         if left < 0.0 || right < 0.0 {
             return Err(differ(&format!("the remainder of {left} by {right}")));
@@ -249,7 +255,10 @@ impl Variables {
             (_, "ATAN" | "ATAN2") => {
                 let angle = libm::atan2(first, second).to_degrees();
                 if self.language() == Language::Macro && angle < 0.0 {
-                    return Err(differ(&format!("ATAN of {first} by {second}, {angle} or {} degrees,", angle + 360.0)));
+                    return Err(differ(&format!(
+                        "ATAN of {first} by {second}, {angle} or {} degrees,",
+                        angle + 360.0
+                    )));
                 }
                 angle
             }
@@ -296,12 +305,8 @@ impl Variables {
                 libm::fabs(libm::cos(value.to_radians())) > 1e-12,
                 libm::tan(value.to_radians()),
             ),
-            (_, "ASIN") => {
-                domain(libm::fabs(value) <= 1.0, libm::asin(value).to_degrees())
-            }
-            (_, "ACOS") => {
-                domain(libm::fabs(value) <= 1.0, libm::acos(value).to_degrees())
-            }
+            (_, "ASIN") => domain(libm::fabs(value) <= 1.0, libm::asin(value).to_degrees()),
+            (_, "ACOS") => domain(libm::fabs(value) <= 1.0, libm::acos(value).to_degrees()),
             (L::Macro | L::Conversational, "ATAN") => Ok(libm::atan(value).to_degrees()),
             (_, "SQRT") => domain(value >= 0.0, libm::sqrt(value)),
             (_, "ABS") => Ok(libm::fabs(value)),
@@ -313,9 +318,7 @@ impl Variables {
             (L::Macro, "FUP") => Ok(libm::copysign(libm::ceil(libm::fabs(value)), value)),
             // Halves away from zero; of negative ones controls differ.
             (L::Rs274, "ROUND") => Ok(libm::round(value)),
-            (L::Macro | L::Names, "ROUND") => {
-                sides(libm::floor(value + 0.5), libm::round(value))
-            }
+            (L::Macro | L::Names, "ROUND") => sides(libm::floor(value + 0.5), libm::round(value)),
             (L::Names, "TRUNC") | (L::Conversational, "INT") => Ok(libm::trunc(value)),
             (L::Conversational, "FRAC") => Ok(value - libm::trunc(value)),
             (L::Names, "POT") | (L::Conversational, "SQ") => Ok(value * value),
@@ -355,7 +358,9 @@ fn truth(holds: bool) -> f64 {
 pub(super) fn whole(value: f64, what: &str) -> Answer<i64> {
     let rounded = libm::round(value);
     if libm::fabs(value - rounded) > 1e-6 || libm::fabs(rounded) > 9e15 {
-        return Err(fault(&format!("{what} of {value}: it must be a whole number")));
+        return Err(fault(&format!(
+            "{what} of {value}: it must be a whole number"
+        )));
     }
     Ok(rounded as i64)
 }
@@ -372,18 +377,25 @@ fn fault(message: &str) -> Box<Diagnostic> {
 }
 
 fn differ(what: &str) -> Box<Diagnostic> {
-    Diagnostic::error("nc-expression", format!("{what} is not the same on all controls"))
-        .help("write the number in its place")
-        .boxed()
+    Diagnostic::error(
+        "nc-expression",
+        format!("{what} is not the same on all controls"),
+    )
+    .help("write the number in its place")
+    .boxed()
 }
 
 fn no_number(text: &str) -> Box<Diagnostic> {
-    fault(&format!("the text \"{text}\" stands where a number belongs"))
+    fault(&format!(
+        "the text \"{text}\" stands where a number belongs"
+    ))
 }
 
 fn no_function(name: &str, count: usize) -> Box<Diagnostic> {
     let values = if count == 1 { "value" } else { "values" };
-    fault(&format!("the function `{name}` of {count} {values} is not known"))
+    fault(&format!(
+        "the function `{name}` of {count} {values} is not known"
+    ))
 }
 
 #[cfg(test)]

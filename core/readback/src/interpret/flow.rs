@@ -7,13 +7,15 @@
 use std::io::{Read, Seek};
 
 use post_grammar::ReadError;
-use post_grammar::nc::{Direction, NcBlock, NcExpression, NcFlow, NcItem, NcMark, NcReader, NcTarget};
+use post_grammar::nc::{
+    Direction, NcBlock, NcExpression, NcFlow, NcItem, NcMark, NcReader, NcTarget,
+};
 use post_machine::diagnostic::{Diagnostic, unreadable};
 
-use super::{Limits, assigned};
 use super::calls::{self, Pending};
 use super::expression::whole;
 use super::variables::{Value, Variables};
+use super::{Limits, assigned};
 use crate::lexicon::Language;
 
 pub(super) type Answer<T> = Result<T, Box<Diagnostic>>;
@@ -157,8 +159,12 @@ impl<R: Read + Seek> Flow<R> {
         self.read = 0;
         self.running.clear();
         let count = self.limits.blocks;
-        let message = format!("{count} blocks were read, and the program has not come to its end: a loop may never end");
-        Diagnostic::error("nc-limit", message).help("a higher count is set by --blocks").boxed()
+        let message = format!(
+            "{count} blocks were read, and the program has not come to its end: a loop may never end"
+        );
+        Diagnostic::error("nc-limit", message)
+            .help("a higher count is set by --blocks")
+            .boxed()
     }
 
     fn go_to(&mut self, mark: NcMark) -> Answer<()> {
@@ -172,16 +178,22 @@ impl<R: Read + Seek> Flow<R> {
         match error {
             ReadError::Syntax(fault) => unreadable(&self.file, &fault).boxed(),
             ReadError::Io(error) => {
-                Diagnostic::error("nc-file", format!("{} cannot be read: {error}", self.file)).boxed()
+                Diagnostic::error("nc-file", format!("{} cannot be read: {error}", self.file))
+                    .boxed()
             }
         }
     }
 
     fn ended(&mut self) -> Answer<bool> {
-        let inside = self.running.iter().any(|running| matches!(running, Running::Call { .. }));
+        let inside = self
+            .running
+            .iter()
+            .any(|running| matches!(running, Running::Call { .. }));
         self.running.clear();
         match inside {
-            true => Err(fault("the program ends inside a subprogram: nothing leads back from it")),
+            true => Err(fault(
+                "the program ends inside a subprogram: nothing leads back from it",
+            )),
             false => Ok(false),
         }
     }
@@ -200,7 +212,9 @@ impl<R: Read + Seek> Flow<R> {
             _ => true,
         });
         // A condition in front of them decides whether they are set.
-        let (conditions, flows): (Vec<_>, Vec<_>) = flows.into_iter().partition(|flow| matches!(flow, NcFlow::Then(_)));
+        let (conditions, flows): (Vec<_>, Vec<_>) = flows
+            .into_iter()
+            .partition(|flow| matches!(flow, NcFlow::Then(_)));
         for condition in conditions {
             if !self.step(condition, variables)? {
                 block.items.clear();
@@ -243,7 +257,11 @@ impl<R: Read + Seek> Flow<R> {
                 }
                 Ok(false)
             }
-            NcFlow::Goto { target, direction, condition } => {
+            NcFlow::Goto {
+                target,
+                direction,
+                condition,
+            } => {
                 if let Some(condition) = condition
                     && !variables.holds(&condition)?
                 {
@@ -289,12 +307,20 @@ impl<R: Read + Seek> Flow<R> {
                 self.back(variables)?;
                 Ok(false)
             }
-            NcFlow::Call { target, repeat, arguments } => {
+            NcFlow::Call {
+                target,
+                repeat,
+                arguments,
+            } => {
                 self.call(&target, repeat.as_ref(), &arguments, variables)?;
                 Ok(false)
             }
             NcFlow::CallProgram(name) => Err(elsewhere(&name)),
-            NcFlow::RepeatFrom { label, until, times } => {
+            NcFlow::RepeatFrom {
+                label,
+                until,
+                times,
+            } => {
                 let times = match times {
                     Some(times) => whole(variables.number(&times)?, "a count of repeats")?,
                     None => 1,
@@ -344,15 +370,23 @@ impl<R: Read + Seek> Flow<R> {
                     self.skip_loop(None, Kind::For)?;
                 } else {
                     let body = self.reader.mark();
-                    self.push(Running::For { head, body, variable: name, to })?;
+                    self.push(Running::For {
+                        head,
+                        body,
+                        variable: name,
+                        to,
+                    })?;
                 }
             }
             NcFlow::EndFor => {
                 let found = self.unwind(|running| match running {
-                    Running::For { body, variable, to, .. } => Some((*body, variable.clone(), *to)),
+                    Running::For {
+                        body, variable, to, ..
+                    } => Some((*body, variable.clone(), *to)),
                     _ => None,
                 });
-                let (body, name, to) = found.ok_or_else(|| fault("a loop ends here that has not begun"))?;
+                let (body, name, to) =
+                    found.ok_or_else(|| fault("a loop ends here that has not begun"))?;
                 let next = variables.number(&NcExpression::Variable(name.clone()))? + 1.0;
                 if next > to {
                     self.running.pop();
@@ -392,7 +426,12 @@ impl<R: Read + Seek> Flow<R> {
                 let left = whole(variables.number(&times)?, "a count of repeats")?;
                 if left > 0 {
                     let body = self.reader.mark();
-                    self.push(Running::Times { name, head, body, left })?;
+                    self.push(Running::Times {
+                        name,
+                        head,
+                        body,
+                        left,
+                    })?;
                 } else {
                     self.skip_loop(name.as_deref(), Kind::Times)?;
                 }
@@ -420,7 +459,9 @@ impl<R: Read + Seek> Flow<R> {
     /// `o1 endrepeat`.
     fn again(&mut self, name: Option<&str>) -> Answer<()> {
         let body = self.unwind(|running| match running {
-            Running::Times { name: own, body, .. } if own.as_deref() == name => Some(*body),
+            Running::Times {
+                name: own, body, ..
+            } if own.as_deref() == name => Some(*body),
             _ => None,
         });
         let body = body.ok_or_else(|| fault("a loop ends here that has not begun"))?;
@@ -463,7 +504,9 @@ impl<R: Read + Seek> Flow<R> {
 
     fn close_do(&mut self, name: Option<&str>) -> Option<NcMark> {
         self.unwind(|running| match running {
-            Running::Do { name: own, body, .. } if own.as_deref() == name => Some(*body),
+            Running::Do {
+                name: own, body, ..
+            } if own.as_deref() == name => Some(*body),
             _ => None,
         })
     }
@@ -491,7 +534,10 @@ impl<R: Read + Seek> Flow<R> {
         if self.running.len() >= self.limits.depth {
             return Err(Diagnostic::error(
                 "nc-limit",
-                format!("subprograms and loops stand inside one another more than {} deep", self.limits.depth),
+                format!(
+                    "subprograms and loops stand inside one another more than {} deep",
+                    self.limits.depth
+                ),
             )
             .boxed());
         }
@@ -501,7 +547,9 @@ impl<R: Read + Seek> Flow<R> {
 
     /// A label is passed.
     fn label(&mut self, name: &str) -> Answer<bool> {
-        if let Some(Running::Part { until: Some(until), .. }) = self.running.last()
+        if let Some(Running::Part {
+            until: Some(until), ..
+        }) = self.running.last()
             && until == name
         {
             self.pending = Some(Pending::PartEnd);
@@ -525,7 +573,9 @@ impl<R: Read + Seek> Flow<R> {
             }
             Pending::Return { to } => {
                 if !self.called() {
-                    return Err(fault(&format!("line {line} begins the program again, without end: no subprogram is running")));
+                    return Err(fault(&format!(
+                        "line {line} begins the program again, without end: no subprogram is running"
+                    )));
                 }
                 if to.is_some() {
                     // No further run of it.
@@ -546,7 +596,13 @@ impl<R: Read + Seek> Flow<R> {
         }
     }
 
-    fn call(&mut self, target: &str, repeat: Option<&NcExpression>, arguments: &[NcExpression], variables: &mut Variables) -> Answer<()> {
+    fn call(
+        &mut self,
+        target: &str,
+        repeat: Option<&NcExpression>,
+        arguments: &[NcExpression],
+        variables: &mut Variables,
+    ) -> Answer<()> {
         if let Some(repeat) = repeat {
             let times = whole(variables.number(repeat)?, "a count of repeats")?;
             return self.part(target.to_owned(), None, times);
@@ -576,7 +632,13 @@ impl<R: Read + Seek> Flow<R> {
     }
 
     /// Goes into a subprogram.
-    fn enter(&mut self, start: NcMark, times: i64, own: Option<Vec<(String, f64)>>, variables: &mut Variables) -> Answer<()> {
+    fn enter(
+        &mut self,
+        start: NcMark,
+        times: i64,
+        own: Option<Vec<(String, f64)>>,
+        variables: &mut Variables,
+    ) -> Answer<()> {
         if times < 1 {
             return Ok(());
         }
@@ -607,13 +669,21 @@ impl<R: Read + Seek> Flow<R> {
     }
 
     fn called(&self) -> bool {
-        self.running.iter().any(|running| matches!(running, Running::Call { .. }))
+        self.running
+            .iter()
+            .any(|running| matches!(running, Running::Call { .. }))
     }
 
     /// The innermost subprogram ends.
     fn back(&mut self, variables: &mut Variables) -> Answer<()> {
         while let Some(running) = self.running.pop() {
-            let Running::Call { start, back, left, own } = running else {
+            let Running::Call {
+                start,
+                back,
+                left,
+                own,
+            } = running
+            else {
                 continue;
             };
             if left > 0 {
@@ -661,7 +731,10 @@ impl<R: Read + Seek> Flow<R> {
 
     /// The innermost part was run once.
     fn part_ends(&mut self) -> Answer<()> {
-        let Some(Running::Part { start, back, left, .. }) = self.running.last_mut() else {
+        let Some(Running::Part {
+            start, back, left, ..
+        }) = self.running.last_mut()
+        else {
             return Ok(());
         };
         if *left > 0 {
@@ -677,7 +750,9 @@ impl<R: Read + Seek> Flow<R> {
     fn jump(&mut self, wanted: &NcTarget, direction: Direction) -> Answer<()> {
         let found = self.find(wanted, direction)?;
         let found = found.ok_or_else(|| match wanted {
-            NcTarget::Label(name) | NcTarget::Subprogram(name) | NcTarget::Program(name) => no_target(name),
+            NcTarget::Label(name) | NcTarget::Subprogram(name) | NcTarget::Program(name) => {
+                no_target(name)
+            }
             NcTarget::Number(number) => no_target(&format!("N{number}")),
         })?;
         self.go_to(found)
@@ -687,7 +762,9 @@ impl<R: Read + Seek> Flow<R> {
     fn find(&mut self, target: &NcTarget, direction: Direction) -> Answer<Option<NcMark>> {
         let before = self.reader.lines_searched();
         let found = self.reader.find(target, direction);
-        self.read = self.read.saturating_add(self.reader.lines_searched() - before);
+        self.read = self
+            .read
+            .saturating_add(self.reader.lines_searched() - before);
         found.map_err(|error| self.failed(error))
     }
 
@@ -697,7 +774,12 @@ impl<R: Read + Seek> Flow<R> {
             let flow = self.skip(
                 name,
                 |flow| matches!(flow, NcFlow::If { .. }),
-                |flow| matches!(flow, NcFlow::ElseIf { .. } | NcFlow::Else(_) | NcFlow::EndIf(_)),
+                |flow| {
+                    matches!(
+                        flow,
+                        NcFlow::ElseIf { .. } | NcFlow::Else(_) | NcFlow::EndIf(_)
+                    )
+                },
                 |flow| matches!(flow, NcFlow::EndIf(_)),
             )?;
             match flow {
@@ -814,7 +896,9 @@ fn wanted(target: &NcExpression, variables: &Variables) -> Answer<NcTarget> {
         other => {
             let number = whole(variables.number(other)?, "the number of a block")?;
             let number = u64::try_from(number);
-            number.map(NcTarget::Number).map_err(|_| fault("the number of a block is negative"))
+            number
+                .map(NcTarget::Number)
+                .map_err(|_| fault("the number of a block is negative"))
         }
     }
 }
@@ -824,14 +908,21 @@ pub(super) fn fault(message: &str) -> Box<Diagnostic> {
 }
 
 fn no_target(name: &str) -> Box<Diagnostic> {
-    fault(&format!("`{name}` is gone to, and it does not stand in this file"))
+    fault(&format!(
+        "`{name}` is gone to, and it does not stand in this file"
+    ))
 }
 
 /// A program in another file is called.
 pub(super) fn elsewhere(name: &str) -> Box<Diagnostic> {
-    Diagnostic::error("nc-subprogram", format!("`{name}` is called, and it does not stand in this file: what it does is not known"))
-        .help("put it into this file, or write its blocks in the place of the call")
-        .boxed()
+    Diagnostic::error(
+        "nc-subprogram",
+        format!(
+            "`{name}` is called, and it does not stand in this file: what it does is not known"
+        ),
+    )
+    .help("put it into this file, or write its blocks in the place of the call")
+    .boxed()
 }
 
 #[cfg(test)]

@@ -3,52 +3,58 @@
 use nalgebra::{Matrix3, Vector3};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::rotation;
+use post_plugin::Meaning;
 
 use super::frame::Frame;
 use super::gathered::{Gathered, bit};
 use super::planes;
 use super::state::Control;
-use crate::lexicon::{Language, Sense};
+use crate::lexicon::Language;
 
 /// `G52`, `G92`, `G92.1`, `G10`, `G68`, `G69` (two-dimensional turns): `code` is ten times the number.
 pub(super) fn code(
     control: &mut Control,
     code: u16,
-    sense: Sense,
+    meaning: Meaning,
     words: &mut Gathered,
 ) -> Result<(), Box<Diagnostic>> {
-    match sense {
-        Sense::LocalZero => local_zero(control, words),
-        Sense::Preset if code == 920 => preset(control, words),
-        Sense::Preset if matches!(code, 921 | 922) => {
+    match meaning {
+        Meaning::LocalOffset => local_zero(control, words),
+        Meaning::SetPosition => preset(control, words),
+        Meaning::SetPositionOff => {
             // `G92.1 X0`: the words say of which axes.
             words.used |= control.axes.mask;
             control.frames.outer = Frame::default();
             control.frames_changed();
             Ok(())
         }
-        Sense::Table => table(control, words),
-        Sense::Turned => turned(control, words),
-        Sense::TurnedOff => {
-            planes::end(control)?;
-            control.frames.inner = Frame::default();
-            control.frames_changed();
-            Ok(())
-        }
+        Meaning::TableData => table(control, words),
+        Meaning::Rotation => turned(control, words),
+        Meaning::RotationOff => planes::end(control),
         _ => {
             let name = f64::from(code) / 10.0;
-            Err(control.refuse("nc-frame", format!("G{name} is not run: what the words count from then is not followed")))
+            Err(control.refuse(
+                "nc-frame",
+                format!("G{name} is not run: what the words count from then is not followed"),
+            ))
         }
     }
 }
 
 /// The linear words of a block, program units in mm; they are no motion. Those of other axes must be zero.
-fn taken(control: &Control, words: &mut Gathered, what: &str) -> Result<[Option<f64>; 3], Box<Diagnostic>> {
+fn taken(
+    control: &Control,
+    words: &mut Gathered,
+    what: &str,
+) -> Result<[Option<f64>; 3], Box<Diagnostic>> {
     let others = words.present & control.axes.mask & !(bit(b'X') | bit(b'Y') | bit(b'Z'));
     words.used |= others;
     for letter in b'A'..=b'Z' {
         if others & bit(letter) != 0 && words.get(letter) != Some(0.0) {
-            return Err(control.refuse("nc-frame", format!("{what} of {} is not run", char::from(letter))));
+            return Err(control.refuse(
+                "nc-frame",
+                format!("{what} of {} is not run", char::from(letter)),
+            ));
         }
     }
     let unit = control.modal.unit;
@@ -102,9 +108,14 @@ fn table(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnost
     let list = words.take(b'L');
     let register = words.take_number(b'P', control)?;
     match (list, register, words.take(b'R')) {
-        (Some(10.0), Some(register), Some(length)) if !control.modal.incremental && control.lexicon.language() == Language::Macro => {
+        (Some(10.0), Some(register), Some(length))
+            if !control.modal.incremental && control.lexicon.language() == Language::Macro =>
+        {
             let length = length * control.modal.unit;
-            control.offsets.lengths.retain(|(known, _)| *known != register);
+            control
+                .offsets
+                .lengths
+                .retain(|(known, _)| *known != register);
             control.offsets.lengths.push((register, length));
             match control.tools.length_on {
                 true => control.length_changed(),
@@ -123,7 +134,10 @@ fn table(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnost
 /// `G68 X Y R`: the coordinates are turned in the plane about a point.
 fn turned(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
     if words.present & (bit(b'I') | bit(b'J') | bit(b'K')) != 0 {
-        return Err(control.refuse("nc-frame", "G68 with I J K turns in space (a direction, not angles), which is not run"));
+        return Err(control.refuse(
+            "nc-frame",
+            "G68 with I J K turns in space (a direction, not angles), which is not run",
+        ));
     }
     if control.modal.incremental {
         return Err(control.refuse("nc-frame", "G68 under G91 is not run"));
@@ -175,14 +189,22 @@ pub(super) fn name(
 
 fn shift(control: &Control, words: &mut Gathered) -> Result<Frame, Box<Diagnostic>> {
     let by = taken(control, words, "a shift")?;
-    Ok(Frame::shifted(Vector3::from(by.map(Option::unwrap_or_default))))
+    Ok(Frame::shifted(Vector3::from(
+        by.map(Option::unwrap_or_default),
+    )))
 }
 
 fn turn(control: &Control, words: &mut Gathered) -> Result<Frame, Box<Diagnostic>> {
     let unit = control.modal.unit;
     let angles = taken(control, words, "a turn")?.map(|angle| angle.unwrap_or_default() / unit);
     if angles.iter().filter(|angle| **angle != 0.0).count() > 1 {
-        return Err(control.refuse("nc-frame", "ROT about several axes: their order is a parameter of the control"));
+        return Err(control.refuse(
+            "nc-frame",
+            "ROT about several axes: their order is a parameter of the control",
+        ));
     }
-    Ok(Frame::new(rotation([0, 1, 2], angles.map(f64::to_radians)), Vector3::zeros()))
+    Ok(Frame::new(
+        rotation([0, 1, 2], angles.map(f64::to_radians)),
+        Vector3::zeros(),
+    ))
 }

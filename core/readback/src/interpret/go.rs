@@ -124,8 +124,7 @@ impl Control {
         Ok(())
     }
 
-    /// Brings the axes to `joints` (mm and radians from the drawing's zeros), all linearly: machine coordinates, reference
-    /// positions, the turn to a tilted plane.
+    /// Brings the axes to `joints` (mm and radians from the drawing's zeros), all linearly: the turn to a tilted plane.
     pub fn go_joints(&mut self, kind: MotionKind, joints: &Joints) {
         let from = Stance {
             joints: self.at.joints,
@@ -401,6 +400,7 @@ impl Control {
             feed,
             minutes,
             hole: self.hole,
+            machine: self.in_machine,
             state,
         }));
     }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 use post_grammar::nc::Approach;
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::MAX_AXES;
+use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::gathered::{Gathered, bit};
 use super::go::{Path, Target, shorter};
@@ -73,17 +73,15 @@ impl Control {
                 *joint = words.named_values[place];
             }
         }
-        self.move_in_machine(kind, joints);
+        self.go_machine(kind, &joints);
         Ok(())
     }
 
-    /// Goes to `joints` in machine coordinates; where a switch of the kinematics put those on the part, the tip does.
-    pub(super) fn move_in_machine(
-        &mut self,
-        kind: MotionKind,
-        joints: post_machine::kinematics::Joints,
-    ) {
-        self.go_joints(kind, &joints);
+    /// Goes to `joints`, which the program states as positions of the machine.
+    pub(super) fn go_machine(&mut self, kind: MotionKind, joints: &Joints) {
+        self.in_machine = true;
+        self.go_joints(kind, joints);
+        self.in_machine = false;
     }
 
     /// The axis value (from the drawing's zero, mm or radians) of a machine coordinate in program units.
@@ -136,7 +134,7 @@ impl Control {
         for place in places {
             joints[place] = self.reference_position(which, place);
         }
-        self.go_joints(MotionKind::Rapid, &joints);
+        self.go_machine(MotionKind::Rapid, &joints);
         Ok(())
     }
 

@@ -140,7 +140,11 @@ impl<R: Read + Seek> Interpreter<R> {
     /// What stands there that cannot be understood, or is not run, with its place.
     #[inline]
     pub fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
-        let Self { flow, block, runner } = self;
+        let Self {
+            flow,
+            block,
+            runner,
+        } = self;
         if runner.control.ended {
             return Ok(false);
         }

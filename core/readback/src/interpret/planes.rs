@@ -55,7 +55,10 @@ pub(super) fn begin(
     words: &mut Gathered,
 ) -> Result<(), Box<Diagnostic>> {
     if control.frames.plane.is_some() {
-        return Err(control.refuse("nc-plane", "a tilted plane begins inside of another, which must end before"));
+        return Err(control.refuse(
+            "nc-plane",
+            "a tilted plane begins inside of another, which must end before",
+        ));
     }
     match code {
         2540 => {
@@ -64,19 +67,29 @@ pub(super) fn begin(
         }
         682 => {
             if words.take(b'P').is_some_and(|form| form != 0.0) {
-                return Err(control.refuse("nc-plane", "G68.2 with P: only Euler angles (P0, or no P) are run"));
+                return Err(control.refuse(
+                    "nc-plane",
+                    "G68.2 with P: only Euler angles (P0, or no P) are run",
+                ));
             }
             if control.modal.incremental {
-                return Err(control.refuse("nc-plane", "G68.2 under G91: whether its origin is a way is not settled"));
+                return Err(control.refuse(
+                    "nc-plane",
+                    "G68.2 under G91: whether its origin is a way is not settled",
+                ));
             }
             let mut number = |letter: u8| words.take(letter).unwrap_or(0.0);
-            let origin = Vector3::new(number(b'X'), number(b'Y'), number(b'Z')) * control.modal.unit;
+            let origin =
+                Vector3::new(number(b'X'), number(b'Y'), number(b'Z')) * control.modal.unit;
             let angles = [b'I', b'J', b'K'].map(|letter| number(letter).to_radians());
             lay(control, Frame::new(rotation([2, 0, 2], angles), origin))
         }
         _ => {
             let name = f64::from(code) / 10.0;
-            Err(control.refuse("nc-plane", format!("G{name} is a form of a tilted plane that is not run")))
+            Err(control.refuse(
+                "nc-plane",
+                format!("G{name} is a form of a tilted plane that is not run"),
+            ))
         }
     }
 }
@@ -89,7 +102,10 @@ pub(super) fn turn(
 ) -> Result<(), Box<Diagnostic>> {
     if control.frames.plane.is_none() {
         let name = f64::from(code) / 10.0;
-        return Err(control.refuse("nc-plane", format!("G{name} turns the axes to a tilted plane, and none is in force")));
+        return Err(control.refuse(
+            "nc-plane",
+            format!("G{name} turns the axes to a tilted plane, and none is in force"),
+        ));
     }
     let pick = match words.take(b'P') {
         Some(1.0) => Pick::Plus,
@@ -102,7 +118,10 @@ pub(super) fn turn(
 /// It ends: `G69`, `G255`, `CYCLE800()`.
 pub(super) fn end(control: &mut Control) -> Result<(), Box<Diagnostic>> {
     // G69 ends a turn in the plane too.
-    let letters = matches!(control.lexicon.language(), Language::Macro | Language::Rs274);
+    let letters = matches!(
+        control.lexicon.language(),
+        Language::Macro | Language::Rs274
+    );
     let turned = letters && !control.frames.inner.is_default();
     if turned {
         control.frames.inner = Frame::default();
@@ -129,11 +148,15 @@ pub(super) fn as_it_stands(control: &Control) -> Result<Frame, Box<Diagnostic>> 
     let chain = control.state.solver.chain();
     let ways = [x, y, z].map(|place| chain.way_of(place, &control.at.joints));
     let axes = Matrix3::from_columns(&ways);
-    let across = (axes.transpose() * axes - Matrix3::identity()).norm() < 1e-9 && axes.determinant() > 0.0;
+    let across =
+        (axes.transpose() * axes - Matrix3::identity()).norm() < 1e-9 && axes.determinant() > 0.0;
     if !across {
         return Err(control.refuse("nc-plane", "X, Y and Z of this machine do not stand across one another as X, Y and Z of a frame do"));
     }
-    Ok(Frame::new(control.to_part.axes.transpose() * axes, Vector3::zeros()))
+    Ok(Frame::new(
+        control.to_part.axes.transpose() * axes,
+        Vector3::zeros(),
+    ))
 }
 
 /// The normal of the plane in force, unit vector, part frame.
@@ -151,7 +174,12 @@ pub(super) fn upright(control: &Control) -> bool {
 ///
 /// # Errors
 /// The plane is out of reach, or it is not plain which solution the control takes.
-pub(super) fn turn_to(control: &mut Control, how: Turn, pick: Pick, kind: MotionKind) -> Result<Joints, Box<Diagnostic>> {
+pub(super) fn turn_to(
+    control: &mut Control,
+    how: Turn,
+    pick: Pick,
+    kind: MotionKind,
+) -> Result<Joints, Box<Diagnostic>> {
     let to = solution(control, pick)?;
     let stands = (0..control.machine.axes.len()).all(|place| to[place] == control.at.joints[place]);
     match how {
@@ -179,12 +207,19 @@ fn solution(control: &Control, pick: Pick) -> Result<Joints, Box<Diagnostic>> {
     let found = reachable(control)?;
     let mut inside: Vec<Joints> = found.into_iter().filter(|joints| on_side(joints)).collect();
     if inside.is_empty() {
-        return Err(control.refuse("nc-plane", "no solution of the tilted plane lies within the travel of the rotary axes"));
+        return Err(control.refuse(
+            "nc-plane",
+            "no solution of the tilted plane lies within the travel of the rotary axes",
+        ));
     }
     if inside.len() > 1 && pick == Pick::Nearest {
         let way = |joints: &Joints, place: usize| libm::fabs(joints[place] - last[place]);
         let rotary: Vec<usize> = rotary(control).collect();
-        let nearer = |one: &Joints, other: &Joints| rotary.iter().all(|&place| way(one, place) <= way(other, place) + SAME);
+        let nearer = |one: &Joints, other: &Joints| {
+            rotary
+                .iter()
+                .all(|&place| way(one, place) <= way(other, place) + SAME)
+        };
         let best = inside.iter().position(|one| {
             inside.iter().all(|other| {
                 let positive = tilts.is_some_and(|place| one[place] >= other[place]);
@@ -215,7 +250,11 @@ fn reachable(control: &Control) -> Result<Vec<Joints>, Box<Diagnostic>> {
         edge: Vector3::zeros(),
     };
     let cannot = |_| control.refuse("nc-plane", "the rotary axes cannot turn to this plane");
-    let found = control.state.solver.inverse(&pose, &last, UPRIGHT).map_err(cannot)?;
+    let found = control
+        .state
+        .solver
+        .inverse(&pose, &last, UPRIGHT)
+        .map_err(cannot)?;
     let mut inside: Vec<Joints> = Vec::new();
     for solution in &found {
         let mut joints = last;
@@ -227,7 +266,9 @@ fn reachable(control: &Control) -> Result<Vec<Joints>, Box<Diagnostic>> {
                 fits &= joints[place] >= least - 1e-9 && joints[place] <= most + 1e-9;
             }
         }
-        let same = |known: &Joints| rotary(control).all(|place| libm::fabs(known[place] - joints[place]) < SAME);
+        let same = |known: &Joints| {
+            rotary(control).all(|place| libm::fabs(known[place] - joints[place]) < SAME)
+        };
         if fits && !inside.iter().any(same) {
             inside.push(joints);
         }
@@ -252,7 +293,9 @@ fn tilting(control: &Control) -> Option<usize> {
 /// What each of A, B, C shows where the axes stand upright on the plane, degrees: Q120 to Q122.
 pub(super) fn angles(control: &Control, joints: &Joints) -> [f64; 3] {
     [b'A', b'B', b'C'].map(|letter| {
-        control.axis_of(letter).map_or(0.0, |place| shown(control, place, joints).to_degrees())
+        control
+            .axis_of(letter)
+            .map_or(0.0, |place| shown(control, place, joints).to_degrees())
     })
 }
 
@@ -263,7 +306,10 @@ pub(super) fn call(
     arguments: &[Option<NcValue>],
 ) -> Result<(), Box<Diagnostic>> {
     if name != "CYCLE800" {
-        return Err(control.refuse("nc-plane", format!("{name} is a form of a tilted plane that is not run")));
+        return Err(control.refuse(
+            "nc-plane",
+            format!("{name} is a form of a tilted plane that is not run"),
+        ));
     }
     if let Some(Some(NcValue::Text(record))) = arguments.get(1)
         && record.trim() == "0"
@@ -272,22 +318,36 @@ pub(super) fn call(
     }
     let number = |place: usize| -> Result<f64, Box<Diagnostic>> {
         match arguments.get(place) {
-            Some(Some(value)) => control.variables.worth(value).map_err(|finding| control.placed(*finding).boxed()),
+            Some(Some(value)) => control
+                .variables
+                .worth(value)
+                .map_err(|finding| control.placed(*finding).boxed()),
             _ => Ok(0.0),
         }
     };
     let refuse = |what: String| Err(control.refuse("nc-plane", format!("CYCLE800: {what}")));
     if number(0)? != 0.0 {
-        return refuse(format!("_FR = {} draws the tool back to a place that stands in the control", number(0)?));
+        return refuse(format!(
+            "_FR = {} draws the tool back to a place that stands in the control",
+            number(0)?
+        ));
     }
     let status = number(2)?;
     if libm::fmod(libm::fabs(status), 10.0) >= 1.0 && control.frames.plane.is_some() {
-        return refuse(format!("_ST = {status} adds to the plane in force, which is not run"));
+        return refuse(format!(
+            "_ST = {status} adds to the plane in force, which is not run"
+        ));
     }
     let mode = number(3)?;
-    let numbers = |from: usize| -> Result<[f64; 3], Box<Diagnostic>> { Ok([number(from)?, number(from + 1)?, number(from + 2)?]) };
+    let numbers = |from: usize| -> Result<[f64; 3], Box<Diagnostic>> {
+        Ok([number(from)?, number(from + 1)?, number(from + 2)?])
+    };
     let unit = control.modal.unit;
-    let (before, turns, behind) = (Vector3::from(numbers(4)?) * unit, numbers(7)?, Vector3::from(numbers(10)?) * unit);
+    let (before, turns, behind) = (
+        Vector3::from(numbers(4)?) * unit,
+        numbers(7)?,
+        Vector3::from(numbers(10)?) * unit,
+    );
     let direction = number(13)?;
     // A plane that is in force is replaced.
     end(control)?;
@@ -296,11 +356,19 @@ pub(super) fn call(
         as_it_stands(control)?
     } else {
         let Some(order) = turns_of(mode) else {
-            return Err(control.refuse("nc-plane", format!("CYCLE800: _MODE = {mode} is no sequence of turns about axes")));
+            return Err(control.refuse(
+                "nc-plane",
+                format!("CYCLE800: _MODE = {mode} is no sequence of turns about axes"),
+            ));
         };
-        Frame::new(rotation(order, turns.map(f64::to_radians)), Vector3::zeros())
+        Frame::new(
+            rotation(order, turns.map(f64::to_radians)),
+            Vector3::zeros(),
+        )
     };
-    let frame = Frame::shifted(before).around(&turned).around(&Frame::shifted(behind));
+    let frame = Frame::shifted(before)
+        .around(&turned)
+        .around(&Frame::shifted(behind));
     lay(control, frame)?;
     if direction != 0.0 && mode != 192.0 {
         // The axis whose sign it speaks of is told in the control's record of the head.
@@ -317,18 +385,32 @@ fn turns_of(mode: f64) -> Option<[usize; 3]> {
     }
     let bits = mode as usize;
     let order = [bits & 3, bits >> 2 & 3, bits >> 4 & 3];
-    order.iter().all(|axis| *axis > 0).then(|| order.map(|axis| axis - 1))
+    order
+        .iter()
+        .all(|axis| *axis > 0)
+        .then(|| order.map(|axis| axis - 1))
 }
 
 /// The rotary axes must stand where CYCLE800 names them: the first and second of the control's record, whose order the
 /// program does not say.
 fn stand_at(control: &Control, turns: [f64; 3]) -> Result<(), Box<Diagnostic>> {
-    let mut left: Vec<f64> = rotary(control).map(|place| shown(control, place, &control.at.joints).to_degrees()).collect();
+    let mut left: Vec<f64> = rotary(control)
+        .map(|place| shown(control, place, &control.at.joints).to_degrees())
+        .collect();
     for turn in &turns[..left.len().min(2)] {
-        let found = left.iter().position(|angle| libm::fabs(libm::remainder(angle - turn, 360.0)) < 0.01);
+        let found = left
+            .iter()
+            .position(|angle| libm::fabs(libm::remainder(angle - turn, 360.0)) < 0.01);
         let Some(found) = found else {
-            let message = format!("CYCLE800 turns a rotary axis to {turn}, where none stands: which is meant stands in the control's record of the head");
-            return Err(control.placed(Diagnostic::error("nc-plane", message).help("turn the axes by words of their own in a block in front of it")).boxed());
+            let message = format!(
+                "CYCLE800 turns a rotary axis to {turn}, where none stands: which is meant stands in the control's record of the head"
+            );
+            return Err(control
+                .placed(
+                    Diagnostic::error("nc-plane", message)
+                        .help("turn the axes by words of their own in a block in front of it"),
+                )
+                .boxed());
         };
         left.remove(found);
     }

@@ -96,7 +96,10 @@ impl Variables {
         if map.len() >= MOST && !map.contains_key(name) {
             return Err(Diagnostic::error(
                 "nc-variable",
-                format!("`{name}` would be the variable number {}: no more than {MOST} are kept", MOST + 1),
+                format!(
+                    "`{name}` would be the variable number {}: no more than {MOST} are kept",
+                    MOST + 1
+                ),
             )
             .boxed());
         }
@@ -108,7 +111,12 @@ impl Variables {
     ///
     /// # Errors
     /// There are too many.
-    pub fn define(&mut self, kind: &str, name: &str, value: Option<Value>) -> Result<(), Box<Diagnostic>> {
+    pub fn define(
+        &mut self,
+        kind: &str,
+        name: &str,
+        value: Option<Value>,
+    ) -> Result<(), Box<Diagnostic>> {
         if matches!(kind, "INT" | "BOOL" | "CHAR") {
             self.whole.insert(name.to_owned(), ());
         }
@@ -122,8 +130,10 @@ impl Variables {
     /// A subprogram begins, with these variables of its own.
     pub fn enter(&mut self, own: impl IntoIterator<Item = (String, f64)>) {
         let own = own.into_iter();
-        self.local
-            .push(own.map(|(name, value)| (name, Value::Number(value))).collect());
+        self.local.push(
+            own.map(|(name, value)| (name, Value::Number(value)))
+                .collect(),
+        );
     }
 
     /// A subprogram ends.
@@ -150,8 +160,9 @@ impl Variables {
     /// It is read from the control or changes it.
     fn held_by_control(&self, name: &str) -> bool {
         match self.language {
-            Language::Macro => !hash(name)
-                .is_some_and(|number| matches!(number, 1..=33 | 100..=199 | 500..=999)),
+            Language::Macro => {
+                !hash(name).is_some_and(|number| matches!(number, 1..=33 | 100..=199 | 500..=999))
+            }
             Language::Rs274 => match hash(name) {
                 Some(number) => !(1..=5060).contains(&number),
                 None => RS274_OWN.contains(&name),
@@ -170,15 +181,62 @@ impl Variables {
 
 /// Named parameters that its interpreter answers itself.
 const RS274_OWN: &[&str] = &[
-    "#<_VMAJOR>", "#<_VMINOR>", "#<_LINE>", "#<_MOTION_MODE>", "#<_PLANE>", "#<_CCOMP>", "#<_METRIC>", "#<_IMPERIAL>",
-    "#<_ABSOLUTE>", "#<_INCREMENTAL>", "#<_INVERSE_TIME>", "#<_UNITS_PER_MINUTE>", "#<_UNITS_PER_REV>",
-    "#<_COORD_SYSTEM>", "#<_TOOL_OFFSET>", "#<_RETRACT_R_PLANE>", "#<_RETRACT_OLD_Z>", "#<_SPINDLE_RPM_MODE>",
-    "#<_SPINDLE_CSS_MODE>", "#<_IJK_ABSOLUTE_MODE>", "#<_LATHE_DIAMETER_MODE>", "#<_LATHE_RADIUS_MODE>",
-    "#<_SPINDLE_ON>", "#<_SPINDLE_CW>", "#<_MIST>", "#<_FLOOD>", "#<_SPEED_OVERRIDE>", "#<_FEED_OVERRIDE>",
-    "#<_ADAPTIVE_FEED>", "#<_FEED_HOLD>", "#<_FEED>", "#<_RPM>", "#<_X>", "#<_Y>", "#<_Z>", "#<_A>", "#<_B>", "#<_C>",
-    "#<_U>", "#<_V>", "#<_W>", "#<_ABS_X>", "#<_ABS_Y>", "#<_ABS_Z>", "#<_ABS_A>", "#<_ABS_B>", "#<_ABS_C>",
-    "#<_CURRENT_TOOL>", "#<_CURRENT_POCKET>", "#<_SELECTED_TOOL>", "#<_SELECTED_POCKET>", "#<_VALUE>",
-    "#<_VALUE_RETURNED>", "#<_TASK>", "#<_CALL_LEVEL>", "#<_REMAP_LEVEL>",
+    "#<_VMAJOR>",
+    "#<_VMINOR>",
+    "#<_LINE>",
+    "#<_MOTION_MODE>",
+    "#<_PLANE>",
+    "#<_CCOMP>",
+    "#<_METRIC>",
+    "#<_IMPERIAL>",
+    "#<_ABSOLUTE>",
+    "#<_INCREMENTAL>",
+    "#<_INVERSE_TIME>",
+    "#<_UNITS_PER_MINUTE>",
+    "#<_UNITS_PER_REV>",
+    "#<_COORD_SYSTEM>",
+    "#<_TOOL_OFFSET>",
+    "#<_RETRACT_R_PLANE>",
+    "#<_RETRACT_OLD_Z>",
+    "#<_SPINDLE_RPM_MODE>",
+    "#<_SPINDLE_CSS_MODE>",
+    "#<_IJK_ABSOLUTE_MODE>",
+    "#<_LATHE_DIAMETER_MODE>",
+    "#<_LATHE_RADIUS_MODE>",
+    "#<_SPINDLE_ON>",
+    "#<_SPINDLE_CW>",
+    "#<_MIST>",
+    "#<_FLOOD>",
+    "#<_SPEED_OVERRIDE>",
+    "#<_FEED_OVERRIDE>",
+    "#<_ADAPTIVE_FEED>",
+    "#<_FEED_HOLD>",
+    "#<_FEED>",
+    "#<_RPM>",
+    "#<_X>",
+    "#<_Y>",
+    "#<_Z>",
+    "#<_A>",
+    "#<_B>",
+    "#<_C>",
+    "#<_U>",
+    "#<_V>",
+    "#<_W>",
+    "#<_ABS_X>",
+    "#<_ABS_Y>",
+    "#<_ABS_Z>",
+    "#<_ABS_A>",
+    "#<_ABS_B>",
+    "#<_ABS_C>",
+    "#<_CURRENT_TOOL>",
+    "#<_CURRENT_POCKET>",
+    "#<_SELECTED_TOOL>",
+    "#<_SELECTED_POCKET>",
+    "#<_VALUE>",
+    "#<_VALUE_RETURNED>",
+    "#<_TASK>",
+    "#<_CALL_LEVEL>",
+    "#<_REMAP_LEVEL>",
 ];
 
 /// The number of `#12`.
@@ -189,7 +247,9 @@ fn hash(name: &str) -> Option<u32> {
 fn unknown(name: &str, held_by_control: bool) -> Box<Diagnostic> {
     let message = match held_by_control {
         true => format!("`{name}` stands in the control: what it holds there is not known"),
-        false => format!("`{name}` has not been given a value by the program: what it holds is not known"),
+        false => format!(
+            "`{name}` has not been given a value by the program: what it holds is not known"
+        ),
     };
     Diagnostic::error("nc-variable", message)
         .help("set it in a block in front, to the value that the machine has")
@@ -236,7 +296,11 @@ mod tests {
             (Language::Conversational, "QL120", true),
         ] {
             let mut variables = Variables::new(language);
-            assert_eq!(variables.set(name, Value::Number(1.0)).is_ok(), allowed, "{name}");
+            assert_eq!(
+                variables.set(name, Value::Number(1.0)).is_ok(),
+                allowed,
+                "{name}"
+            );
         }
     }
 

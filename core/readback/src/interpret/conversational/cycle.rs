@@ -32,14 +32,25 @@ pub(super) fn define(control: &mut Control, said: &Said<'_>, words: &mut Gathere
         },
         (9, _) => {
             // `CYCL DEF 9.1 DWELL 0.5`, in the language of the dialogue.
-            let mut times = said.block.items.iter().skip(2).filter_map(|item| match item {
-                NcItem::Number(number) => Some(number.value),
-                NcItem::Named { value: post_grammar::nc::NcValue::Number(number), .. } => Some(number.value),
-                _ => None,
-            });
+            let mut times = said
+                .block
+                .items
+                .iter()
+                .skip(2)
+                .filter_map(|item| match item {
+                    NcItem::Number(number) => Some(number.value),
+                    NcItem::Named {
+                        value: post_grammar::nc::NcValue::Number(number),
+                        ..
+                    } => Some(number.value),
+                    _ => None,
+                });
             match times.next() {
                 Some(time) => {
-                    control.tell(Told::Dwell { time, revolutions: false });
+                    control.tell(Told::Dwell {
+                        time,
+                        revolutions: false,
+                    });
                     Ok(())
                 }
                 None => Err(control.refuse("nc-cycle", "CYCL DEF 9 does not say how long")),
@@ -56,7 +67,9 @@ pub(super) fn define(control: &mut Control, said: &Said<'_>, words: &mut Gathere
         }
         (19, _) => plane::cycle_19(control, said, words),
         (32, 1) => {
-            let tolerance = words.take(b'T').map(|tolerance| tolerance * control.modal.unit);
+            let tolerance = words
+                .take(b'T')
+                .map(|tolerance| tolerance * control.modal.unit);
             control.smooth(tolerance.filter(|tolerance| *tolerance > 0.0));
             Ok(())
         }
@@ -70,9 +83,10 @@ pub(super) fn define(control: &mut Control, said: &Said<'_>, words: &mut Gathere
             };
             control.use_work_offset(&format!("CYCL DEF 247 Q339={row}"))
         }
-        (220 | 221 | 14 | 20..=28 | 270..=279, _) | (0..=199, _) => {
-            Err(control.refuse("nc-cycle", format!("CYCL DEF {cycle} is not run: what it moves or changes is not known here")))
-        }
+        (220 | 221 | 14 | 20..=28 | 270..=279, _) | (0..=199, _) => Err(control.refuse(
+            "nc-cycle",
+            format!("CYCL DEF {cycle} is not run: what it moves or changes is not known here"),
+        )),
         _ => remember(control, cycle, said),
     }
 }
@@ -84,7 +98,10 @@ fn remember(control: &mut Control, cycle: u32, said: &Said<'_>) -> Answer<()> {
         let NcItem::Named { name, value } = item else {
             continue;
         };
-        let Some(number) = name.strip_prefix('Q').and_then(|digits| digits.parse().ok()) else {
+        let Some(number) = name
+            .strip_prefix('Q')
+            .and_then(|digits| digits.parse().ok())
+        else {
             continue;
         };
         let value = match value {
@@ -95,7 +112,10 @@ fn remember(control: &mut Control, cycle: u32, said: &Said<'_>) -> Answer<()> {
             value => worth(control, value)?,
         };
         values.push((number, value));
-        control.variables.put(name, Value::Number(value)).map_err(|finding| control.placed(*finding).boxed())?;
+        control
+            .variables
+            .put(name, Value::Number(value))
+            .map_err(|finding| control.placed(*finding).boxed())?;
     }
     control.cycles.at_each = false;
     control.cycles.defined = Some(Defined { cycle, values });
@@ -125,7 +145,10 @@ fn shifts(control: &Control, words: &mut Gathered) -> Answer<Shift> {
     words.used |= others;
     for letter in b'A'..=b'Z' {
         if others & bit(letter) != 0 && words.get(letter) != Some(0.0) {
-            return Err(control.refuse("nc-frame", format!("a datum shift of {} is not run", char::from(letter))));
+            return Err(control.refuse(
+                "nc-frame",
+                format!("a datum shift of {} is not run", char::from(letter)),
+            ));
         }
     }
     let unit = control.modal.unit;
@@ -140,7 +163,11 @@ fn shift(control: &mut Control, by: Shift) -> Answer<()> {
     if inside && !control.frames.outer.is_default() {
         return Err(control.refuse("nc-frame", "a datum shift inside a tilted plane and one outside of it: how they add up is not settled"));
     }
-    let frame = if inside { &mut control.frames.inner } else { &mut control.frames.outer };
+    let frame = if inside {
+        &mut control.frames.inner
+    } else {
+        &mut control.frames.outer
+    };
     let mut origin = frame.origin;
     for (own, said) in origin.iter_mut().zip(by) {
         match said {
@@ -170,7 +197,11 @@ fn turn(control: &mut Control, said: &Said<'_>) -> Answer<()> {
         return Err(control.refuse("nc-cycle", "CYCL DEF 10 without ROT, or by a way"));
     };
     let inside = control.frames.plane.is_some();
-    let frame = if inside { &mut control.frames.inner } else { &mut control.frames.outer };
+    let frame = if inside {
+        &mut control.frames.inner
+    } else {
+        &mut control.frames.outer
+    };
     let (sine, cosine) = libm::sincos(angle.to_radians());
     let axes = match angle == 0.0 {
         true => Matrix3::identity(),

@@ -63,7 +63,7 @@ pub(super) fn run(control: &mut Control, block: &NcBlock, words: &mut Gathered) 
         "TRANS DATUM" => cycle::datum(control, &said, words),
         "FUNCTION TCPM" => plane::keep_tip(control, &said),
         "FUNCTION RESET TCPM" => {
-            control.set_tcp(false, 0);
+            control.set_tcp(false, 0, false);
             Ok(())
         }
         "FUNCTION MODE" => Ok(()),
@@ -88,7 +88,11 @@ pub(super) fn run(control: &mut Control, block: &NcBlock, words: &mut Gathered) 
 
 /// mm/min in a unit of F: in a program in inches it counts tenths of an inch a minute.
 pub(super) fn feed_unit(control: &Control) -> f64 {
-    if control.modal.unit == 1.0 { 1.0 } else { 0.1 * control.modal.unit }
+    if control.modal.unit == 1.0 {
+        1.0
+    } else {
+        0.1 * control.modal.unit
+    }
 }
 
 fn begin(control: &mut Control, said: &Said<'_>) -> Answer<()> {
@@ -154,7 +158,8 @@ impl Said<'_> {
                 NcItem::Named { name, .. } if !named.contains(&&**name) => name,
                 _ => continue,
             };
-            let message = format!("`{other}` is not known in this block, and might change what it does");
+            let message =
+                format!("`{other}` is not known in this block, and might change what it does");
             return Err(control.refuse("nc-conversational", message));
         }
         Ok(())
@@ -162,7 +167,10 @@ impl Said<'_> {
 }
 
 fn worth(control: &Control, value: &NcValue) -> Answer<f64> {
-    control.variables.worth(value).map_err(|finding| control.placed(*finding).boxed())
+    control
+        .variables
+        .worth(value)
+        .map_err(|finding| control.placed(*finding).boxed())
 }
 
 /// What the M functions of a block ask for beyond what all controls have.
@@ -188,17 +196,23 @@ fn functions(control: &mut Control, words: &Gathered, asked: &mut Asked) -> Answ
             89 => functions.cycle_at_each = true,
             91 => functions.machine = true,
             92 => {
-                return Err(control.refuse("nc-machine", "M92 counts from a point that stands in the control"));
+                return Err(control.refuse(
+                    "nc-machine",
+                    "M92 counts from a point that stands in the control",
+                ));
             }
             // The display of a rotary axis is brought within a turn: the axis stands where it stood.
             94 => plane::within_a_turn(control, words)?,
             97 | 98 | 101 | 120 | 138 | 144 => {
-                return Err(control.refuse("nc-conversational", format!("M{code} is not run: it changes where the machine goes")));
+                return Err(control.refuse(
+                    "nc-conversational",
+                    format!("M{code} is not run: it changes where the machine goes"),
+                ));
             }
             99 => functions.cycle = true,
             126 => control.modal.shortest = Some(true),
             127 => control.modal.shortest = Some(false),
-            128 => control.set_tcp(true, 0),
+            128 => control.set_tcp(true, 0, false),
             129 => functions.tcp_off = true,
             140 => functions.retract = true,
             // Feeds at corners and of rotary axes; oversize of vectors; lead-ins by the handwheel.
@@ -213,7 +227,7 @@ fn functions(control: &mut Control, words: &Gathered, asked: &mut Asked) -> Answ
         control.coolant(code);
     }
     if let Some(tcp) = asked.tcp_on {
-        control.set_tcp(true, tcp);
+        control.set_tcp(true, tcp, false);
     }
     if functions.machine {
         asked.machine = true;
@@ -232,7 +246,7 @@ fn afterwards(control: &mut Control, functions: Functions, asked: &Asked) -> Ans
         }
     }
     if functions.tcp_off || asked.tcp_off {
-        control.set_tcp(false, 0);
+        control.set_tcp(false, 0, false);
     }
     if asked.spindle == Some(Turning::Off) {
         control.turn_spindle(Turning::Off);
@@ -256,7 +270,9 @@ fn modes(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer
         match name {
             "FMAX" => kind = MotionKind::Rapid,
             "FAUTO" => {
-                return Err(control.refuse("nc-feed", "FAUTO: the feed of the tool call is not kept"));
+                return Err(
+                    control.refuse("nc-feed", "FAUTO: the feed of the tool call is not kept")
+                );
             }
             "R0" => control.compensate(0, words)?,
             "RL" => control.compensate(-1, words)?,

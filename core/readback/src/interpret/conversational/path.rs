@@ -11,7 +11,9 @@ use crate::interpret::go::{self, Target};
 use crate::interpret::state::{ArcPlane, Control};
 
 /// Names that may stand in a block of the path.
-const NAMES: &[&str] = &["R0", "RL", "RR", "FMAX", "FAUTO", "DR+", "DR-", "MB MAX", "MAX"];
+const NAMES: &[&str] = &[
+    "R0", "RL", "RR", "FMAX", "FAUTO", "DR+", "DR-", "MB MAX", "MAX",
+];
 
 /// Points nearer than this share a coordinate, mm.
 const SHARED: f64 = 1e-6;
@@ -27,14 +29,21 @@ pub(super) fn line(control: &mut Control, said: &Said<'_>, words: &mut Gathered)
 pub(super) fn alone(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
     said.only(control, NAMES, &["MB"])?;
     if words.present & control.axes.mask != 0 && !words.m.has(94) {
-        return Err(control.refuse("nc-conversational", "words of axes without the name of a path function"));
+        return Err(control.refuse(
+            "nc-conversational",
+            "words of axes without the name of a path function",
+        ));
     }
     let kind = modes(control, said, words)?;
     straight(control, kind, said, words, None)
 }
 
 /// `LN`: the surface's normal is for the compensation of the tool's radius, T is the tool axis.
-pub(super) fn line_with_normal(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+pub(super) fn line_with_normal(
+    control: &mut Control,
+    said: &Said<'_>,
+    words: &mut Gathered,
+) -> Answer<()> {
     said.only(control, NAMES, &["NX", "NY", "NZ", "TX", "TY", "TZ"])?;
     let mut vector = Vector3::zeros();
     let mut any = false;
@@ -60,7 +69,10 @@ fn straight(
     let moving = words.present & control.axes.mask != 0 || vector.is_some();
     if functions.retract {
         if moving {
-            return Err(control.refuse("nc-conversational", "M140 beside words of axes: which goes first is not settled"));
+            return Err(control.refuse(
+                "nc-conversational",
+                "M140 beside words of axes: which goes first is not settled",
+            ));
         }
         plane::retract(control, kind, said)?;
     } else if functions.machine {
@@ -83,7 +95,11 @@ fn travel(control: &mut Control, kind: MotionKind, path: &go::Path, target: &Tar
     let to = control.point();
     control.path.heading = match path {
         go::Path::Straight => (to - from).try_normalize(SHARED),
-        go::Path::Arc { centre, normal, sweep } => {
+        go::Path::Arc {
+            centre,
+            normal,
+            sweep,
+        } => {
             let tangent = normal.cross(&(to - centre)) * if *sweep < 0.0 { -1.0 } else { 1.0 };
             tangent.try_normalize(SHARED)
         }
@@ -97,7 +113,11 @@ pub(super) fn pole(control: &mut Control, words: &mut Gathered) -> Answer<()> {
     let mut any = false;
     for (row, letter) in [b'X', b'Y', b'Z'].into_iter().enumerate() {
         if let Some(value) = words.take(letter) {
-            let from = if words.incremental & bit(letter) != 0 { here[row] } else { 0.0 };
+            let from = if words.incremental & bit(letter) != 0 {
+                here[row]
+            } else {
+                0.0
+            };
             control.path.pole[row] = Some(from + value * control.modal.unit);
             any = true;
         }
@@ -109,7 +129,12 @@ pub(super) fn pole(control: &mut Control, words: &mut Gathered) -> Answer<()> {
 }
 
 /// `C`, `CR`, `CT`, `CP`, `LP`.
-pub(super) fn curve(control: &mut Control, name: &str, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+pub(super) fn curve(
+    control: &mut Control,
+    name: &str,
+    said: &Said<'_>,
+    words: &mut Gathered,
+) -> Answer<()> {
     said.only(control, NAMES, &["PR", "PA", "IPR", "IPA"])?;
     let kind = modes(control, said, words)?;
     let mut asked = Asked::default();
@@ -124,19 +149,31 @@ pub(super) fn curve(control: &mut Control, name: &str, said: &Said<'_>, words: &
     };
     let radius = words.take(b'R').map(|radius| radius * control.modal.unit);
     if words.present & control.axes.mask & !(bit(b'X') | bit(b'Y') | bit(b'Z')) != 0 {
-        return Err(control.refuse("nc-arc", "a rotary axis turns along this curve, which is not followed"));
+        return Err(control.refuse(
+            "nc-arc",
+            "a rotary axis turns along this curve, which is not followed",
+        ));
     }
     let from = control.point();
     let mut target = control.target(words)?;
     let mut end = Vector3::from_fn(|row, _| target.point[row].unwrap_or(from[row]));
-    let turn = || clockwise.ok_or_else(|| control.refuse("nc-arc", format!("{name} without DR+ or DR-")));
+    let turn =
+        || clockwise.ok_or_else(|| control.refuse("nc-arc", format!("{name} without DR+ or DR-")));
     let path = match name {
         "C" => about_pole(control, from, end, turn()?)?,
         "CR" => {
             let radius = radius.ok_or_else(|| control.refuse("nc-arc", "CR without R"))?;
             let clockwise = turn()?;
-            let [x, y] = control.centre_by_radius([from.x, from.y], [end.x, end.y], radius, clockwise)?;
-            arc(control, ArcPlane::Xy, from, end, Vector3::new(x, y, from.z), clockwise)?
+            let [x, y] =
+                control.centre_by_radius([from.x, from.y], [end.x, end.y], radius, clockwise)?;
+            arc(
+                control,
+                ArcPlane::Xy,
+                from,
+                end,
+                Vector3::new(x, y, from.z),
+                clockwise,
+            )?
         }
         "CT" => tangential(control, from, end)?,
         _ => {
@@ -157,12 +194,19 @@ pub(super) fn curve(control: &mut Control, name: &str, said: &Said<'_>, words: &
 
 /// About the pole in the plane across the tool axis. Where the pole was given with Z too, all three coordinates count, and
 /// the plane is that of two axes which start, end and pole share.
-fn about_pole(control: &Control, from: Vector3<f64>, to: Vector3<f64>, clockwise: bool) -> Answer<go::Path> {
+fn about_pole(
+    control: &Control,
+    from: Vector3<f64>,
+    to: Vector3<f64>,
+    clockwise: bool,
+) -> Answer<go::Path> {
     let [Some(x), Some(y), z] = control.path.pole else {
         return Err(control.refuse("nc-arc", "C without CC in front of it"));
     };
     let centre = Vector3::new(x, y, z.unwrap_or(from.z));
-    let shares = |row: usize| libm::fabs(from[row] - centre[row]) < SHARED && libm::fabs(to[row] - centre[row]) < SHARED;
+    let shares = |row: usize| {
+        libm::fabs(from[row] - centre[row]) < SHARED && libm::fabs(to[row] - centre[row]) < SHARED
+    };
     let plane = match z {
         Some(_) if !shares(2) && shares(0) => ArcPlane::Yz,
         Some(_) if !shares(2) && shares(1) => ArcPlane::Zx,
@@ -194,7 +238,10 @@ fn arc(
 fn tangential(control: &Control, from: Vector3<f64>, to: Vector3<f64>) -> Answer<go::Path> {
     let heading = control.path.heading.map(|heading| [heading.x, heading.y]);
     let Some([hx, hy]) = heading.filter(|[x, y]| libm::hypot(*x, *y) > SHARED) else {
-        return Err(control.refuse("nc-arc", "CT goes on from the motion in front of it, and none in its plane is known"));
+        return Err(control.refuse(
+            "nc-arc",
+            "CT goes on from the motion in front of it, and none in its plane is known",
+        ));
     };
     let length = libm::hypot(hx, hy);
     let (hx, hy) = (hx / length, hy / length);
@@ -257,7 +304,14 @@ impl Polar {
                 sweep: by,
             });
         }
-        arc(control, ArcPlane::Xy, from, self.end, self.centre, clockwise)
+        arc(
+            control,
+            ArcPlane::Xy,
+            from,
+            self.end,
+            self.centre,
+            clockwise,
+        )
     }
 }
 

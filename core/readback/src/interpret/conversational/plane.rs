@@ -13,16 +13,39 @@ use crate::interpret::variables::Value;
 
 /// Names that say how the axes turn to a plane.
 const NAMES: &[&str] = &[
-    "TURN", "MOVE", "STAY", "FMAX", "SEQ+", "SEQ-", "SYM+", "SYM-", "COORD ROT", "TABLE ROT", "MB MAX",
+    "TURN",
+    "MOVE",
+    "STAY",
+    "FMAX",
+    "SEQ+",
+    "SEQ-",
+    "SYM+",
+    "SYM-",
+    "COORD ROT",
+    "TABLE ROT",
+    "MB MAX",
 ];
 
 /// `PLANE SPATIAL SPA+30 SPB+0 SPC+0 TURN FMAX SEQ-`, and the other forms.
-pub(super) fn plane(control: &mut Control, name: &str, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
-    said.only(control, NAMES, &[
-        "SPA", "SPB", "SPC", "EULPR", "EULNU", "EULROT", "BX", "BY", "BZ", "NX", "NY", "NZ", "MB", "DIST", "ABST",
-    ])?;
+pub(super) fn plane(
+    control: &mut Control,
+    name: &str,
+    said: &Said<'_>,
+    words: &mut Gathered,
+) -> Answer<()> {
+    said.only(
+        control,
+        NAMES,
+        &[
+            "SPA", "SPB", "SPC", "EULPR", "EULNU", "EULROT", "BX", "BY", "BZ", "NX", "NY", "NZ",
+            "MB", "DIST", "ABST",
+        ],
+    )?;
     if !control.frames.inner.is_default() {
-        return Err(control.refuse("nc-plane", "a shift or turn inside of the tilted plane must end before it"));
+        return Err(control.refuse(
+            "nc-plane",
+            "a shift or turn inside of the tilted plane must end before it",
+        ));
     }
     let kind = match (said.has("FMAX"), words.take(b'F')) {
         (_, Some(feed)) => {
@@ -56,7 +79,10 @@ pub(super) fn plane(control: &mut Control, name: &str, said: &Said<'_>, words: &
         }
     };
     planes::lay(control, frame)?;
-    let pick = match (said.has("SEQ+") || said.has("SYM+"), said.has("SEQ-") || said.has("SYM-")) {
+    let pick = match (
+        said.has("SEQ+") || said.has("SYM+"),
+        said.has("SEQ-") || said.has("SYM-"),
+    ) {
         (true, _) => Pick::Plus,
         (_, true) => Pick::Minus,
         _ => Pick::Nearest,
@@ -73,7 +99,10 @@ fn turned(control: &mut Control, how: Turn, pick: Pick, kind: MotionKind) -> Ans
     }
     // Where it is not plain they stay unknown: whoever reads them is refused.
     if let Ok(to) = to {
-        for (name, angle) in ["Q120", "Q121", "Q122"].into_iter().zip(planes::angles(control, &to)) {
+        for (name, angle) in ["Q120", "Q121", "Q122"]
+            .into_iter()
+            .zip(planes::angles(control, &to))
+        {
             let put = control.variables.put(name, Value::Number(angle));
             put.map_err(|finding| control.placed(*finding).boxed())?;
         }
@@ -82,7 +111,8 @@ fn turned(control: &mut Control, how: Turn, pick: Pick, kind: MotionKind) -> Ans
 }
 
 fn reset(control: &mut Control, how: Turn) -> Answer<()> {
-    let upright = (control.at.pose.axis - control.to_part.out_direction(Vector3::z())).norm() < 1e-4;
+    let upright =
+        (control.at.pose.axis - control.to_part.out_direction(Vector3::z())).norm() < 1e-4;
     if how != Turn::Stay && !upright {
         return Err(control.refuse("nc-plane", "PLANE RESET turns the axes back: where to is not plain; turn them by words in front of it"));
     }
@@ -108,7 +138,7 @@ fn spatial(control: &Control, said: &Said<'_>, names: [&str; 3]) -> Answer<Frame
 
 /// B is the direction of X, which lies in the plane once its part along N, the normal, is taken off.
 fn vectors(control: &Control, said: &Said<'_>) -> Answer<Frame> {
-    let mut vector = |names: [&str; 3]| -> Answer<Vector3<f64>> {
+    let vector = |names: [&str; 3]| -> Answer<Vector3<f64>> {
         let mut vector = Vector3::zeros();
         for (row, name) in names.into_iter().enumerate() {
             vector[row] = said.named(control, name)?.unwrap_or(0.0);
@@ -119,7 +149,10 @@ fn vectors(control: &Control, said: &Said<'_>) -> Answer<Frame> {
     let z = normal.try_normalize(1e-9);
     let x = z.and_then(|z| (base - z * z.dot(&base)).try_normalize(1e-9));
     match (x, z) {
-        (Some(x), Some(z)) => Ok(Frame::new(Matrix3::from_columns(&[x, z.cross(&x), z]), Vector3::zeros())),
+        (Some(x), Some(z)) => Ok(Frame::new(
+            Matrix3::from_columns(&[x, z.cross(&x), z]),
+            Vector3::zeros(),
+        )),
         _ => Err(control.refuse("nc-plane", "the vectors of the plane do not span it")),
     }
 }
@@ -132,7 +165,10 @@ fn stands_as_said(control: &mut Control, words: &mut Gathered) -> Answer<()> {
         };
         let shown = (control.at.joints[place] - control.zero[place]).to_degrees();
         if libm::fabs(libm::remainder(shown - value, 360.0)) > 0.01 {
-            let message = format!("{} is to stand at {value} and stands at {shown:.3}: turn it by words in front of the plane", char::from(letter));
+            let message = format!(
+                "{} is to stand at {value} and stands at {shown:.3}: turn it by words in front of the plane",
+                char::from(letter)
+            );
             return Err(control.refuse("nc-plane", message));
         }
     }
@@ -149,16 +185,28 @@ pub(super) fn cycle_19(control: &mut Control, said: &Said<'_>, words: &mut Gathe
         return Ok(());
     }
     let [a, b, c] = angles;
-    planes::lay(control, Frame::new(rotation([2, 1, 0], [c, b, a]), Vector3::zeros()))?;
+    planes::lay(
+        control,
+        Frame::new(rotation([2, 1, 0], [c, b, a]), Vector3::zeros()),
+    )?;
     turned(control, Turn::Stay, Pick::Nearest, MotionKind::Rapid)
 }
 
 /// `FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS`.
 pub(super) fn keep_tip(control: &mut Control, said: &Said<'_>) -> Answer<()> {
-    said.only(control, &[
-        "F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS", "PATHCTRL VECTOR", "REFPNT TIP-TIP",
-    ], &[])?;
-    control.set_tcp(true, 0);
+    said.only(
+        control,
+        &[
+            "F TCP",
+            "F CONT",
+            "AXIS POS",
+            "PATHCTRL AXIS",
+            "PATHCTRL VECTOR",
+            "REFPNT TIP-TIP",
+        ],
+        &[],
+    )?;
+    control.set_tcp(true, 0, false);
     control.modal.orientation = match said.has("PATHCTRL VECTOR") {
         true => Orientation::Circle,
         false => Orientation::Usual,
@@ -169,7 +217,9 @@ pub(super) fn keep_tip(control: &mut Control, said: &Said<'_>) -> Answer<()> {
 /// `M140 MB MAX`, `M140 MB50`: back along the tool, to the end of the travel or by a way.
 pub(super) fn retract(control: &mut Control, kind: MotionKind, said: &Said<'_>) -> Answer<()> {
     let far = said.has("MB MAX") || said.has("MAX");
-    let way = said.named(control, "MB")?.map(|way| way * control.modal.unit);
+    let way = said
+        .named(control, "MB")?
+        .map(|way| way * control.modal.unit);
     let way = match (way, far) {
         (Some(way), false) => way,
         _ => farthest(control)?,
@@ -178,8 +228,16 @@ pub(super) fn retract(control: &mut Control, kind: MotionKind, said: &Said<'_>) 
     let tip = control.at.pose.tip + axis * way;
     let mut joints = control.at.joints;
     let turns = control.at.turns;
-    if control.state.solver.place(tip, &mut joints, &turns).is_err() {
-        return Err(control.refuse("nc-reach", "the linear axes cannot draw the tool back along its axis"));
+    if control
+        .state
+        .solver
+        .place(tip, &mut joints, &turns)
+        .is_err()
+    {
+        return Err(control.refuse(
+            "nc-reach",
+            "the linear axes cannot draw the tool back along its axis",
+        ));
     }
     // What the rapid at F99999 is for.
     let kind = if far { MotionKind::Rapid } else { kind };
@@ -194,7 +252,9 @@ fn farthest(control: &Control) -> Answer<f64> {
     let (mut here, mut there) = (control.at.joints, control.at.joints);
     let tip = control.at.pose.tip;
     let placed = solver.place(tip, &mut here, &turns).is_ok()
-        && solver.place(tip + control.at.pose.axis, &mut there, &turns).is_ok();
+        && solver
+            .place(tip + control.at.pose.axis, &mut there, &turns)
+            .is_ok();
     let mut most = f64::INFINITY;
     for (place, axis) in control.machine.axes.iter().enumerate() {
         let rate = there[place] - here[place];
@@ -207,7 +267,10 @@ fn farthest(control: &Control) -> Answer<f64> {
         }
     }
     if !placed || !most.is_finite() {
-        return Err(control.refuse("nc-reach", "M140 MB MAX goes to the end of the travel, which the machine file does not state"));
+        return Err(control.refuse(
+            "nc-reach",
+            "M140 MB MAX goes to the end of the travel, which the machine file does not state",
+        ));
     }
     Ok(libm::fmax(most, 0.0))
 }
@@ -221,7 +284,10 @@ pub(super) fn within_a_turn(control: &Control, words: &Gathered) -> Answer<()> {
         };
         let shown = (control.at.joints[place] - control.zero[place]).to_degrees();
         if (named == 0 || named & bit(letter) != 0) && !(-360.0..=360.0).contains(&shown) {
-            let message = format!("M94 brings the display of {} within a turn, from {shown:.3}: which words it counts from then is not followed", char::from(letter));
+            let message = format!(
+                "M94 brings the display of {} within a turn, from {shown:.3}: which words it counts from then is not followed",
+                char::from(letter)
+            );
             return Err(control.refuse("nc-conversational", message));
         }
     }

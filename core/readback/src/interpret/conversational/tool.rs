@@ -23,14 +23,21 @@ pub(super) fn call(control: &mut Control, said: &Said<'_>, words: &mut Gathered)
     let name = said.text().map(str::to_owned);
     let number = match number {
         None => None,
-        Some(number) if number >= 0.0 && libm::trunc(number) == number && number < 1e9 => Some(number as u32),
-        Some(number) => return Err(control.refuse("nc-tool", format!("{number} is no number of a tool"))),
+        Some(number) if number >= 0.0 && libm::trunc(number) == number && number < 1e9 => {
+            Some(number as u32)
+        }
+        Some(number) => {
+            return Err(control.refuse("nc-tool", format!("{number} is no number of a tool")));
+        }
     };
     if number.is_none() && name.is_none() {
         return control.left_over(words);
     }
     if control.state.tcp || control.frames.plane.is_some() {
-        return Err(control.refuse("nc-tool", "a tool call under M128 or in a tilted plane: both must end before"));
+        return Err(control.refuse(
+            "nc-tool",
+            "a tool call under M128 or in a tilted plane: both must end before",
+        ));
     }
     control.change_tool(number, name)?;
     control.tools.by_tool = true;

@@ -28,7 +28,9 @@ pub(crate) struct Parameters<'a> {
 impl Parameters<'_> {
     fn given(&self, number: u32) -> Option<f64> {
         let mut values = self.values.iter().rev();
-        values.find(|(given, _)| *given == number).map(|(_, value)| *value)
+        values
+            .find(|(given, _)| *given == number)
+            .map(|(_, value)| *value)
     }
 
     fn needed(&self, number: u32) -> Result<f64, Box<Diagnostic>> {
@@ -42,7 +44,8 @@ impl Parameters<'_> {
 
     /// A length that older software does not have.
     fn length_or(&self, number: u32, otherwise: f64) -> f64 {
-        self.given(number).map_or(otherwise, |value| value * self.unit)
+        self.given(number)
+            .map_or(otherwise, |value| value * self.unit)
     }
 
     fn feed(&self, number: u32) -> Result<f64, Box<Diagnostic>> {
@@ -90,10 +93,17 @@ pub(crate) fn hole(parameters: &Parameters<'_>) -> Result<Option<Hole>, Box<Diag
         return Ok(None);
     }
     if depth > 0.0 {
-        return Err(parameters.refuse(&format!("the depth Q201 is {depth}: a hole upwards is a parameter of the machine")));
+        return Err(parameters.refuse(&format!(
+            "the depth Q201 is {depth}: a hole upwards is a parameter of the machine"
+        )));
     }
-    if parameters.given(395).is_some_and(|reference| reference != 0.0) {
-        return Err(parameters.refuse("Q395 counts the depth from the cylinder of the drill, and its point is not known"));
+    if parameters
+        .given(395)
+        .is_some_and(|reference| reference != 0.0)
+    {
+        return Err(parameters.refuse(
+            "Q395 counts the depth from the cylinder of the drill, and its point is not known",
+        ));
     }
     let surface = parameters.length(203)?;
     let clear = libm::fabs(parameters.length(200)?);
@@ -109,7 +119,12 @@ pub(crate) fn hole(parameters: &Parameters<'_>) -> Result<Option<Hole>, Box<Diag
     made(parameters, hole, -depth, clear).map(Some)
 }
 
-fn made(parameters: &Parameters<'_>, hole: Hole, depth: f64, clear: f64) -> Result<Hole, Box<Diagnostic>> {
+fn made(
+    parameters: &Parameters<'_>,
+    hole: Hole,
+    depth: f64,
+    clear: f64,
+) -> Result<Hole, Box<Diagnostic>> {
     Ok(match parameters.cycle {
         200 => {
             let step = parameters.length_or(202, depth);
@@ -119,12 +134,17 @@ fn made(parameters: &Parameters<'_>, hole: Hole, depth: f64, clear: f64) -> Resu
                     false => CycleKind::Drill,
                 },
                 feed: parameters.feed(206)?,
-                pecks: pecks(parameters, step, 0.0, Pecks {
-                    out_after: 1,
-                    ahead: clear,
-                    wait_out: parameters.wait(210),
-                    ..Pecks::default()
-                })?,
+                pecks: pecks(
+                    parameters,
+                    step,
+                    0.0,
+                    Pecks {
+                        out_after: 1,
+                        ahead: clear,
+                        wait_out: parameters.wait(210),
+                        ..Pecks::default()
+                    },
+                )?,
                 ..hole
             }
         }
@@ -155,7 +175,9 @@ fn made(parameters: &Parameters<'_>, hole: Hole, depth: f64, clear: f64) -> Resu
         207 | 209 => thread(parameters, hole, depth)?,
         _ => {
             if parameters.given(343).is_some_and(|by| by != 0.0) {
-                return Err(parameters.refuse("Q343 counts by the diameter, and the point of the tool is not known"));
+                return Err(parameters.refuse(
+                    "Q343 counts by the diameter, and the point of the tool is not known",
+                ));
             }
             Hole {
                 feed: parameters.feed(206)?,
@@ -174,7 +196,9 @@ fn bored(parameters: &Parameters<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic
         2.0 => [0.0, -off, 0.0],
         3.0 => [off, 0.0, 0.0],
         4.0 => [0.0, off, 0.0],
-        other => return Err(parameters.refuse(&format!("the direction Q214 is {other}, which is none"))),
+        other => {
+            return Err(parameters.refuse(&format!("the direction Q214 is {other}, which is none")));
+        }
     };
     Ok(Hole {
         kind: match lift == [0.0; 3] {
@@ -188,13 +212,22 @@ fn bored(parameters: &Parameters<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic
     })
 }
 
-fn universal(parameters: &Parameters<'_>, hole: Hole, depth: f64, clear: f64) -> Result<Hole, Box<Diagnostic>> {
+fn universal(
+    parameters: &Parameters<'_>,
+    hole: Hole,
+    depth: f64,
+    clear: f64,
+) -> Result<Hole, Box<Diagnostic>> {
     let feed = parameters.feed(206)?;
     let breaks = parameters.given(213).unwrap_or(0.0);
     let step = parameters.length_or(202, depth);
     let out = parameters.out(feed);
     // After so many breaks the tool comes out; with none after each.
-    let out_after = if breaks > 0.0 { libm::fmin(libm::round(breaks), 1e6) as u32 } else { 1 };
+    let out_after = if breaks > 0.0 {
+        libm::fmin(libm::round(breaks), 1e6) as u32
+    } else {
+        1
+    };
     let least = parameters.length_or(205, 0.0);
     Ok(Hole {
         kind: match (step < depth, out_after > 1) {
@@ -204,17 +237,22 @@ fn universal(parameters: &Parameters<'_>, hole: Hole, depth: f64, clear: f64) ->
         },
         feed,
         out,
-        pecks: pecks(parameters, step, least, Pecks {
-            out_after,
-            out_feed: match out {
-                Out::Feed(feed) => Some(feed),
-                _ => None,
+        pecks: pecks(
+            parameters,
+            step,
+            least,
+            Pecks {
+                out_after,
+                out_feed: match out {
+                    Out::Feed(feed) => Some(feed),
+                    _ => None,
+                },
+                back: parameters.length_or(256, OFF_THE_WALL),
+                ahead: clear,
+                wait_out: parameters.wait(210),
+                ..Pecks::default()
             },
-            back: parameters.length_or(256, OFF_THE_WALL),
-            ahead: clear,
-            wait_out: parameters.wait(210),
-            ..Pecks::default()
-        })?,
+        )?,
         ..hole
     })
 }
@@ -226,20 +264,30 @@ fn deep(parameters: &Parameters<'_>, hole: Hole, depth: f64) -> Result<Hole, Box
     let breaks = parameters.length_or(257, 0.0);
     let step = parameters.length_or(202, depth);
     if breaks > 0.0 && breaks < libm::fmin(step, depth) && step < depth {
-        return Err(parameters.refuse("Q257 with Q202: chips that are broken between pecks are not made here"));
+        return Err(parameters
+            .refuse("Q257 with Q202: chips that are broken between pecks are not made here"));
     }
     let feed = parameters.feed(206)?;
     let breaking = breaks > 0.0 && breaks < depth && step >= depth;
     Ok(Hole {
-        kind: if breaking { CycleKind::BreakChip } else { CycleKind::Deep },
+        kind: if breaking {
+            CycleKind::BreakChip
+        } else {
+            CycleKind::Deep
+        },
         feed,
         out: parameters.out(feed),
-        pecks: pecks(parameters, if breaking { breaks } else { step }, parameters.length_or(205, 0.0), Pecks {
-            out_after: u32::from(!breaking),
-            back: parameters.length_or(256, OFF_THE_WALL),
-            ahead: parameters.length_or(258, OFF_THE_WALL),
-            ..Pecks::default()
-        })?,
+        pecks: pecks(
+            parameters,
+            if breaking { breaks } else { step },
+            parameters.length_or(205, 0.0),
+            Pecks {
+                out_after: u32::from(!breaking),
+                back: parameters.length_or(256, OFF_THE_WALL),
+                ahead: parameters.length_or(258, OFF_THE_WALL),
+                ..Pecks::default()
+            },
+        )?,
         ..hole
     })
 }
@@ -250,7 +298,9 @@ fn thread(parameters: &Parameters<'_>, hole: Hole, depth: f64) -> Result<Hole, B
         return Err(parameters.refuse("the pitch Q239 is zero"));
     }
     if parameters.speed <= 0.0 {
-        return Err(parameters.refuse("no speed of the spindle is known, and the feed follows from it"));
+        return Err(
+            parameters.refuse("no speed of the spindle is known, and the feed follows from it")
+        );
     }
     let feed = libm::fabs(pitch) * parameters.speed;
     let breaks = parameters.length_or(257, 0.0);
@@ -277,7 +327,12 @@ fn thread(parameters: &Parameters<'_>, hole: Hole, depth: f64) -> Result<Hole, B
 }
 
 /// Pecks of `step`, each less by Q212, no less than `least`.
-fn pecks(parameters: &Parameters<'_>, step: f64, least: f64, pecks: Pecks) -> Result<Option<Pecks>, Box<Diagnostic>> {
+fn pecks(
+    parameters: &Parameters<'_>,
+    step: f64,
+    least: f64,
+    pecks: Pecks,
+) -> Result<Option<Pecks>, Box<Diagnostic>> {
     if step <= 0.0 {
         // Q202 = 0 is the whole depth only with some software.
         return Err(parameters.refuse(&format!("the plunging depth is {step}")));
@@ -314,8 +369,16 @@ mod tests {
         use Stroke::{Feed, Rapid, Wait as Dwell};
         let more = [(206, 300.0), (202, 8.0), (210, 0.0), (211, 0.2), (395, 0.0)];
         let wanted = [
-            Rapid(3.0), Feed(-7.0, 300.0), Rapid(3.0), Rapid(-5.0), Feed(-15.0, 300.0), Rapid(3.0), Rapid(-13.0),
-            Feed(-19.0, 300.0), Dwell(Wait::seconds(0.2)), Rapid(11.0),
+            Rapid(3.0),
+            Feed(-7.0, 300.0),
+            Rapid(3.0),
+            Rapid(-5.0),
+            Feed(-15.0, 300.0),
+            Rapid(3.0),
+            Rapid(-13.0),
+            Feed(-19.0, 300.0),
+            Dwell(Wait::seconds(0.2)),
+            Rapid(11.0),
         ];
         assert_eq!(strokes(200, &[&LEVELS[..], &more].concat()), wanted);
     }
@@ -323,9 +386,24 @@ mod tests {
     #[test]
     fn chips_are_broken_as_often_as_it_says() {
         use Stroke::{Feed, Rapid};
-        let more = [(206, 250.0), (202, 8.0), (210, 0.0), (212, 0.0), (213, 3.0), (205, 0.0), (208, 99_999.0), (256, 0.2)];
+        let more = [
+            (206, 250.0),
+            (202, 8.0),
+            (210, 0.0),
+            (212, 0.0),
+            (213, 3.0),
+            (205, 0.0),
+            (208, 99_999.0),
+            (256, 0.2),
+        ];
         let wanted = [
-            Rapid(3.0), Feed(-7.0, 250.0), Rapid(-6.8), Feed(-15.0, 250.0), Rapid(-14.8), Feed(-19.0, 250.0), Rapid(11.0),
+            Rapid(3.0),
+            Feed(-7.0, 250.0),
+            Rapid(-6.8),
+            Feed(-15.0, 250.0),
+            Rapid(-14.8),
+            Feed(-19.0, 250.0),
+            Rapid(11.0),
         ];
         assert_eq!(strokes(203, &[&LEVELS[..], &more].concat()), wanted);
     }
@@ -333,8 +411,16 @@ mod tests {
     #[test]
     fn a_thread_goes_by_its_pitch() {
         use Stroke::{Rapid, Thread};
-        let wanted = [Rapid(3.0), Thread(-19.0, 625.0), Thread(3.0, 625.0), Rapid(11.0)];
-        assert_eq!(strokes(207, &[&LEVELS[..], &[(239, -1.25)]].concat()), wanted);
+        let wanted = [
+            Rapid(3.0),
+            Thread(-19.0, 625.0),
+            Thread(3.0, 625.0),
+            Rapid(11.0),
+        ];
+        assert_eq!(
+            strokes(207, &[&LEVELS[..], &[(239, -1.25)]].concat()),
+            wanted
+        );
     }
 
     #[test]

@@ -122,9 +122,15 @@ impl Hole {
         CycleCall {
             kind: self.kind,
             depth: libm::fabs(self.clearance - self.bottom),
-            clearance: self.surface.map_or(0.0, |surface| libm::fabs(self.clearance - surface)),
+            clearance: self
+                .surface
+                .map_or(0.0, |surface| libm::fabs(self.clearance - surface)),
             peck: self.pecks.map_or(0.0, |pecks| pecks.first),
-            dwell: if self.wait.revolutions { 0.0 } else { self.wait.time },
+            dwell: if self.wait.revolutions {
+                0.0
+            } else {
+                self.wait.time
+            },
             feed: self.feed,
             per_revolution: self.per_revolution,
         }
@@ -139,7 +145,10 @@ impl Hole {
         if libm::fabs(from - self.clearance) > SAME {
             strokes.push(Stroke::Rapid(self.clearance));
         }
-        if self.pecks.is_some_and(|pecks| pecks.first < self.depth() - SAME) {
+        if self
+            .pecks
+            .is_some_and(|pecks| pecks.first < self.depth() - SAME)
+        {
             self.in_pecks(&mut strokes)?;
         } else {
             let feed = self.feed * self.first_share.unwrap_or(1.0);
@@ -171,7 +180,9 @@ impl Hole {
 
     fn ended(&self, mut strokes: Vec<Stroke>) -> Vec<Stroke> {
         let stands = match strokes.last() {
-            Some(Stroke::Feed(level, _) | Stroke::Thread(level, _) | Stroke::Rapid(level)) => Some(*level),
+            Some(Stroke::Feed(level, _) | Stroke::Thread(level, _) | Stroke::Rapid(level)) => {
+                Some(*level)
+            }
             _ => None,
         };
         if stands.is_none_or(|level| libm::fabs(level - self.away) > SAME) {
@@ -192,11 +203,16 @@ impl Hole {
 
     /// 1 where the hole goes up, else -1.
     fn sign(&self) -> f64 {
-        if self.bottom > self.clearance { 1.0 } else { -1.0 }
+        if self.bottom > self.clearance {
+            1.0
+        } else {
+            -1.0
+        }
     }
 
     fn down(&self, level: f64, feed: f64) -> Stroke {
-        let thread = matches!(self.out, Out::Thread(_)) || self.pecks.is_some_and(|pecks| pecks.thread);
+        let thread =
+            matches!(self.out, Out::Thread(_)) || self.pecks.is_some_and(|pecks| pecks.thread);
         match thread {
             true => Stroke::Thread(level, feed),
             false => Stroke::Feed(level, feed),
@@ -259,7 +275,11 @@ impl Hole {
             } else if pecks.back > 0.0 {
                 let back = level - sign * pecks.back;
                 // Not out of the hole.
-                let back = if (back - self.clearance) * sign > 0.0 { back } else { self.clearance };
+                let back = if (back - self.clearance) * sign > 0.0 {
+                    back
+                } else {
+                    self.clearance
+                };
                 strokes.push(match pecks.thread {
                     true => Stroke::Thread(back, feed),
                     false => Stroke::Rapid(back),
@@ -303,8 +323,15 @@ mod tests {
             ..Pecks::default()
         };
         let strokes = [
-            Rapid(2.0), Feed(-3.0, 100.0), Rapid(2.0), Rapid(-2.5), Feed(-8.0, 100.0), Rapid(2.0), Rapid(-7.5),
-            Feed(-10.0, 100.0), Rapid(20.0),
+            Rapid(2.0),
+            Feed(-3.0, 100.0),
+            Rapid(2.0),
+            Rapid(-2.5),
+            Feed(-8.0, 100.0),
+            Rapid(2.0),
+            Rapid(-7.5),
+            Feed(-10.0, 100.0),
+            Rapid(20.0),
         ];
         assert_eq!(drilled(Some(out)), strokes);
         let breaks = Pecks {
@@ -314,7 +341,13 @@ mod tests {
             ..Pecks::default()
         };
         let strokes = [
-            Rapid(2.0), Feed(-3.0, 100.0), Rapid(-2.0), Feed(-8.0, 100.0), Rapid(-7.0), Feed(-10.0, 100.0), Rapid(20.0),
+            Rapid(2.0),
+            Feed(-3.0, 100.0),
+            Rapid(-2.0),
+            Feed(-8.0, 100.0),
+            Rapid(-7.0),
+            Feed(-10.0, 100.0),
+            Rapid(20.0),
         ];
         assert_eq!(drilled(Some(breaks)), strokes);
     }
@@ -356,7 +389,10 @@ mod tests {
                     for stroke in &strokes {
                         match *stroke {
                             Stroke::Feed(level, _) => {
-                                assert!(at >= deepest - 1e-9, "air is fed through, never rapid through the part");
+                                assert!(
+                                    at >= deepest - 1e-9,
+                                    "air is fed through, never rapid through the part"
+                                );
                                 deepest = f64::min(deepest, level);
                                 at = level;
                             }

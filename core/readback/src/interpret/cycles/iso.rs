@@ -50,7 +50,11 @@ pub(super) fn hole(
     let here = control.point();
     let before = control.cycles.iso;
     let mut running = match (meaning, before) {
-        (Some(meaning), Some(before)) => Running { code, meaning, ..before },
+        (Some(meaning), Some(before)) => Running {
+            code,
+            meaning,
+            ..before
+        },
         (Some(meaning), None) => Running {
             code,
             meaning,
@@ -61,12 +65,17 @@ pub(super) fn hole(
             dwell: 0.0,
         },
         (None, Some(before)) => before,
-        (None, None) => return Err(control.refuse("nc-cycle", "a further hole, and no cycle is in force")),
+        (None, None) => {
+            return Err(control.refuse("nc-cycle", "a further hole, and no cycle is in force"));
+        }
     };
     let incremental = control.modal.incremental;
     let refused = words.incremental & (bit(letter(axis)) | bit(b'R'));
     if refused != 0 {
-        return Err(control.refuse("nc-cycle", "a level of this cycle is incremental by a word of its own"));
+        return Err(control.refuse(
+            "nc-cycle",
+            "a level of this cycle is incremental by a word of its own",
+        ));
     }
     if let Some(level) = words.take(b'R') {
         running.clearance = level * unit + if incremental { running.start } else { 0.0 };
@@ -79,12 +88,15 @@ pub(super) fn hole(
         running.step = step * least_increment(control, words, b'Q');
     }
     if let Some(time) = words.take(b'P') {
-        let seconds = control.lexicon.language() == Language::Rs274 || words.pointed & bit(b'P') != 0;
+        let seconds =
+            control.lexicon.language() == Language::Rs274 || words.pointed & bit(b'P') != 0;
         running.dwell = if seconds { time } else { time / 1000.0 };
     }
     let count = match (words.take(b'L'), words.take(b'K')) {
-        (Some(count), _) | (None, Some(count)) => crate::interpret::expression::whole(count, "a count of holes")
-            .map_err(|finding| control.placed(*finding).boxed())?,
+        (Some(count), _) | (None, Some(count)) => {
+            crate::interpret::expression::whole(count, "a count of holes")
+                .map_err(|finding| control.placed(*finding).boxed())?
+        }
         (None, None) => 1,
     };
     if running.clearance.is_nan() || running.bottom.is_nan() {
@@ -92,7 +104,10 @@ pub(super) fn hole(
     }
     control.cycles.iso = Some(running);
     if count > MOST {
-        return Err(control.refuse("nc-limit", format!("{count} holes by one block: no more than {MOST} are made")));
+        return Err(control.refuse(
+            "nc-limit",
+            format!("{count} holes by one block: no more than {MOST} are made"),
+        ));
     }
     let positioned = words.present & control.axes.mask & !bit(letter(axis)) != 0;
     if !positioned && meaning.is_none() && words.present & (bit(letter(axis)) | bit(b'R')) == 0 {
@@ -102,7 +117,11 @@ pub(super) fn hole(
     let hidden = words.present & bit(letter(axis));
     words.present &= !bit(letter(axis));
     let made = (0..count).try_for_each(|turn| {
-        let target = if turn == 0 || incremental { control.target(words)? } else { Target::default() };
+        let target = if turn == 0 || incremental {
+            control.target(words)?
+        } else {
+            Target::default()
+        };
         let hole = levels(control, &running)?;
         if control.lexicon.language() == Language::Rs274 {
             rise(control, axis, hole.clearance)?;
@@ -149,7 +168,8 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
             running.clearance,
             running.bottom,
             match back {
-                true => "boring from below begins at the lower one, and another sense of this word is not known",
+                true =>
+                    "boring from below begins at the lower one, and another sense of this word is not known",
                 false => "a hole goes down",
             }
         );
@@ -176,7 +196,8 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         ahead: BACK,
         ..Pecks::default()
     };
-    let lifted = matches!(running.meaning, M::CycleBoreFine | M::CycleBoreBack) && running.step > 0.0;
+    let lifted =
+        matches!(running.meaning, M::CycleBoreFine | M::CycleBoreBack) && running.step > 0.0;
     if lifted {
         let name = f64::from(running.code) / 10.0;
         control.note(Diagnostic::warning(
@@ -233,7 +254,9 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         },
         _ => {
             let name = f64::from(running.code) / 10.0;
-            return Err(control.refuse("nc-cycle", format!("G{name} is no cycle that is made here")));
+            return Err(
+                control.refuse("nc-cycle", format!("G{name} is no cycle that is made here"))
+            );
         }
     })
 }

@@ -80,12 +80,20 @@ pub(super) fn call(
     let mut values = Vec::with_capacity(arguments.len());
     for argument in arguments {
         values.push(match argument {
-            Some(value) => Some(control.variables.worth(value).map_err(|finding| control.placed(*finding).boxed())?),
+            Some(value) => Some(
+                control
+                    .variables
+                    .worth(value)
+                    .map_err(|finding| control.placed(*finding).boxed())?,
+            ),
             None => None,
         });
     }
     if !siemens::known(name) {
-        return Err(control.refuse("nc-cycle", format!("{name} is no drilling cycle that is known here: what it moves is not known")));
+        return Err(control.refuse(
+            "nc-cycle",
+            format!("{name} is no drilling cycle that is known here: what it moves is not known"),
+        ));
     }
     if modal {
         // What is wrong with it is said where it stands.
@@ -97,7 +105,11 @@ pub(super) fn call(
     drill(control, &hole)
 }
 
-fn siemens_hole(control: &Control, name: &str, values: &[Option<f64>]) -> Result<Hole, Box<Diagnostic>> {
+fn siemens_hole(
+    control: &Control,
+    name: &str,
+    values: &[Option<f64>],
+) -> Result<Hole, Box<Diagnostic>> {
     let around = siemens::Around {
         unit: control.modal.unit,
         feed: feed_a_minute(control),
@@ -153,14 +165,19 @@ fn feed_a_minute(control: &Control) -> f64 {
 /// Makes a hole where the tool stands.
 fn drill(control: &mut Control, hole: &Hole) -> Result<(), Box<Diagnostic>> {
     if control.modal.feed_mode == FeedMode::Inverse {
-        return Err(control.refuse("nc-cycle", "a cycle under inverse-time feed: how fast it drills is not known"));
+        return Err(control.refuse(
+            "nc-cycle",
+            "a cycle under inverse-time feed: how fast it drills is not known",
+        ));
     }
     if control.state.compensation != 0 {
         return Err(control.refuse("nc-cycle", "a cycle under radius compensation"));
     }
     let axis = control.modal.plane.coordinates()[2];
     let from = control.point();
-    let strokes = hole.strokes(from[axis]).map_err(|finding| control.placed(*finding).boxed())?;
+    let strokes = hole
+        .strokes(from[axis])
+        .map_err(|finding| control.placed(*finding).boxed())?;
     control.tell(Told::Cycle(hole.call()));
     let before = (control.modal.feed, control.modal.feed_mode, control.hole);
     control.modal.feed_mode = FeedMode::PerMinute;

@@ -40,8 +40,17 @@ impl Arguments<'_> {
     }
 
     /// The depth, absolute or from the reference plane.
-    fn depth(&self, reference: f64, absolute: usize, relative: usize, what: &str) -> Result<Option<f64>, Box<Diagnostic>> {
-        let (absolute, relative) = (self.given(absolute), self.given(relative).filter(|way| *way != 0.0));
+    fn depth(
+        &self,
+        reference: f64,
+        absolute: usize,
+        relative: usize,
+        what: &str,
+    ) -> Result<Option<f64>, Box<Diagnostic>> {
+        let (absolute, relative) = (
+            self.given(absolute),
+            self.given(relative).filter(|way| *way != 0.0),
+        );
         let absolute = absolute.map(|level| level * self.unit);
         let relative = relative.map(|way| reference - libm::fabs(way) * self.unit);
         match (absolute, relative) {
@@ -68,14 +77,19 @@ pub(crate) fn known(name: &str) -> bool {
 }
 
 const NAMES: [&str; 10] = [
-    "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84", "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE87", "CYCLE88", "CYCLE89",
+    "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84", "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE87",
+    "CYCLE88", "CYCLE89",
 ];
 
 /// The hole that a call makes.
 ///
 /// # Errors
 /// What is missing, contradictory, or not plain, by name.
-pub(crate) fn hole(name: &str, values: &[Option<f64>], around: &Around) -> Result<Hole, Box<Diagnostic>> {
+pub(crate) fn hole(
+    name: &str,
+    values: &[Option<f64>],
+    around: &Around,
+) -> Result<Hole, Box<Diagnostic>> {
     let arguments = Arguments {
         name,
         values,
@@ -88,7 +102,11 @@ pub(crate) fn hole(name: &str, values: &[Option<f64>], around: &Around) -> Resul
     let up = bottom > reference;
     let away = arguments.length(1);
     let hole = Hole {
-        clearance: if up { reference - clear } else { reference + clear },
+        clearance: if up {
+            reference - clear
+        } else {
+            reference + clear
+        },
         surface: Some(reference),
         bottom,
         away,
@@ -113,8 +131,14 @@ fn made(arguments: &Arguments<'_>, hole: Hole, around: &Around) -> Result<Hole, 
         },
         "CYCLE83" => deep(arguments, hole)?,
         "CYCLE84" => {
-            let speed = arguments.given(11).filter(|speed| *speed != 0.0).unwrap_or(around.speed);
-            let back = arguments.given(12).filter(|speed| *speed != 0.0).unwrap_or(speed);
+            let speed = arguments
+                .given(11)
+                .filter(|speed| *speed != 0.0)
+                .unwrap_or(around.speed);
+            let back = arguments
+                .given(12)
+                .filter(|speed| *speed != 0.0)
+                .unwrap_or(speed);
             thread(arguments, hole, 9, [speed, back])?
         }
         "CYCLE840" => thread(arguments, hole, 11, [around.speed; 2])?,
@@ -175,7 +199,11 @@ fn deep(arguments: &Arguments<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> 
         Some(level) => level,
         None => hole.bottom,
     };
-    let inside = if up { first > reference && first <= hole.bottom } else { first < reference && first >= hole.bottom };
+    let inside = if up {
+        first > reference && first <= hole.bottom
+    } else {
+        first < reference && first >= hole.bottom
+    };
     if !inside {
         return Err(arguments.refuse(&format!(
             "the first depth is {first}: it does not lie between the reference plane {reference} and the bottom {}",
@@ -187,7 +215,8 @@ fn deep(arguments: &Arguments<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> 
     }
     let less = arguments.length(8);
     if less < 0.0 {
-        return Err(arguments.refuse("pecks by a share of the one before (DAM below zero) are not made here"));
+        return Err(arguments
+            .refuse("pecks by a share of the one before (DAM below zero) are not made here"));
     }
     let swarf = arguments.number(12) != 0.0;
     let depth = libm::fabs(hole.bottom - reference);
@@ -224,7 +253,11 @@ fn deep(arguments: &Arguments<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> 
         pecks: Some(Pecks {
             first: libm::fabs(first - reference),
             less,
-            least: if less == 0.0 { libm::fabs(first - reference) } else { least },
+            least: if less == 0.0 {
+                libm::fabs(first - reference)
+            } else {
+                least
+            },
             halved: less != 0.0,
             out_after: u32::from(swarf),
             back: if swarf { 0.0 } else { back },
@@ -238,11 +271,19 @@ fn deep(arguments: &Arguments<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> 
 }
 
 /// CYCLE84 and CYCLE840: the pitch by value at `pitch`, by size in front of it.
-fn thread(arguments: &Arguments<'_>, hole: Hole, pitch: usize, [speed, back]: [f64; 2]) -> Result<Hole, Box<Diagnostic>> {
+fn thread(
+    arguments: &Arguments<'_>,
+    hole: Hole,
+    pitch: usize,
+    [speed, back]: [f64; 2],
+) -> Result<Hole, Box<Diagnostic>> {
     let value = arguments.number(pitch);
     let value = match arguments.number(pitch - 1) {
         size if value == 0.0 && size != 0.0 => {
-            return Err(arguments.refuse(&format!("the pitch is that of a thread M{}: give it by value", libm::fabs(size))));
+            return Err(arguments.refuse(&format!(
+                "the pitch is that of a thread M{}: give it by value",
+                libm::fabs(size)
+            )));
         }
         _ => value,
     };
@@ -250,10 +291,13 @@ fn thread(arguments: &Arguments<'_>, hole: Hole, pitch: usize, [speed, back]: [f
         return Err(arguments.refuse("no pitch is given"));
     }
     if arguments.unit != 1.0 {
-        return Err(arguments.refuse("in which unit the pitch counts in a program in inches is not settled"));
+        return Err(arguments
+            .refuse("in which unit the pitch counts in a program in inches is not settled"));
     }
     if speed <= 0.0 {
-        return Err(arguments.refuse("no speed of the spindle is known, and the feed follows from it"));
+        return Err(
+            arguments.refuse("no speed of the spindle is known, and the feed follows from it")
+        );
     }
     Ok(Hole {
         kind: match value > 0.0 {
@@ -286,10 +330,16 @@ mod tests {
     fn levels_are_absolute() {
         use Stroke::{Feed, Rapid};
         let levels = [Some(10.0), Some(1.5), Some(2.0), Some(-11.0)];
-        assert_eq!(strokes("CYCLE81", &levels), [Rapid(3.5), Feed(-11.0, 120.0), Rapid(10.0)]);
+        assert_eq!(
+            strokes("CYCLE81", &levels),
+            [Rapid(3.5), Feed(-11.0, 120.0), Rapid(10.0)]
+        );
         // Depth from the reference plane, without a sign.
         let levels = [Some(10.0), Some(1.5), Some(2.0), None, Some(12.5)];
-        assert_eq!(strokes("CYCLE81", &levels), [Rapid(3.5), Feed(-11.0, 120.0), Rapid(10.0)]);
+        assert_eq!(
+            strokes("CYCLE81", &levels),
+            [Rapid(3.5), Feed(-11.0, 120.0), Rapid(10.0)]
+        );
     }
 
     #[test]
@@ -301,11 +351,34 @@ mod tests {
     #[test]
     fn pecks_count_from_the_reference_plane() {
         use Stroke::{Feed, Rapid};
-        let values = [2.0, 0.0, 2.0, -20.0, f64::NAN, f64::NAN, 6.0, 0.0, 0.0, 0.0, 1.0, 1.0];
+        let values = [
+            2.0,
+            0.0,
+            2.0,
+            -20.0,
+            f64::NAN,
+            f64::NAN,
+            6.0,
+            0.0,
+            0.0,
+            0.0,
+            1.0,
+            1.0,
+        ];
         let values = values.map(|value: f64| (!value.is_nan()).then_some(value));
         let wanted = [
-            Rapid(2.0), Feed(-6.0, 120.0), Rapid(2.0), Rapid(-5.4), Feed(-12.0, 120.0), Rapid(2.0), Rapid(-11.4),
-            Feed(-18.0, 120.0), Rapid(2.0), Rapid(-17.4), Feed(-20.0, 120.0), Rapid(2.0),
+            Rapid(2.0),
+            Feed(-6.0, 120.0),
+            Rapid(2.0),
+            Rapid(-5.4),
+            Feed(-12.0, 120.0),
+            Rapid(2.0),
+            Rapid(-11.4),
+            Feed(-18.0, 120.0),
+            Rapid(2.0),
+            Rapid(-17.4),
+            Feed(-20.0, 120.0),
+            Rapid(2.0),
         ];
         assert_eq!(strokes("CYCLE83", &values), wanted);
     }
@@ -313,7 +386,17 @@ mod tests {
     #[test]
     fn a_thread_needs_its_pitch() {
         use Stroke::{Rapid, Thread};
-        let mut values = vec![Some(5.0), Some(0.0), Some(5.0), Some(-15.0), None, Some(0.0), Some(3.0), None, Some(1.0)];
+        let mut values = vec![
+            Some(5.0),
+            Some(0.0),
+            Some(5.0),
+            Some(-15.0),
+            None,
+            Some(0.0),
+            Some(3.0),
+            None,
+            Some(1.0),
+        ];
         let wanted = [Rapid(5.0), Thread(-15.0, 500.0), Thread(5.0, 500.0)];
         assert_eq!(strokes("CYCLE84", &values), wanted);
         values.truncate(7);
@@ -323,10 +406,26 @@ mod tests {
     #[test]
     fn fine_boring_is_lifted_off_the_wall() {
         use Stroke::{Aside, Feed, Rapid};
-        let values = [10.0, 0.0, 2.0, -12.5, f64::NAN, 0.0, 3.0, -0.2, 0.0, 0.0, 0.0];
+        let values = [
+            10.0,
+            0.0,
+            2.0,
+            -12.5,
+            f64::NAN,
+            0.0,
+            3.0,
+            -0.2,
+            0.0,
+            0.0,
+            0.0,
+        ];
         let values = values.map(|value: f64| (!value.is_nan()).then_some(value));
         let wanted = [
-            Rapid(2.0), Feed(-12.5, 120.0), Aside([-0.2, 0.0, 0.0]), Rapid(10.0), Aside([0.2, 0.0, 0.0]),
+            Rapid(2.0),
+            Feed(-12.5, 120.0),
+            Aside([-0.2, 0.0, 0.0]),
+            Rapid(10.0),
+            Aside([0.2, 0.0, 0.0]),
         ];
         assert_eq!(strokes("CYCLE86", &values), wanted);
     }

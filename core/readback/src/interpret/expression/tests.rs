@@ -1,7 +1,7 @@
 //! Expressions against a second evaluation, over random values, and what is refused.
 
 use post_grammar::nc::{BinaryOperator as B, NcExpression as E, UnaryOperator};
-use post_testkit::random::{Rng, seeded};
+use post_testkit::{Rng, seeded};
 
 use super::*;
 
@@ -21,7 +21,11 @@ fn of(name: &str, arguments: &[f64]) -> E {
 }
 
 fn binary(operator: B, left: f64, right: f64) -> E {
-    E::Binary(operator, Box::new(E::Number(left)), Box::new(E::Number(right)))
+    E::Binary(
+        operator,
+        Box::new(E::Number(left)),
+        Box::new(E::Number(right)),
+    )
 }
 
 /// A random expression, and its value by a stack machine of its own: the tree is never asked.
@@ -46,7 +50,8 @@ fn random(random: &mut Rng, depth: u32, program: &mut Vec<Step>) -> E {
             }
         }
         which => {
-            let operator = [B::Add, B::Subtract, B::Multiply, B::Less, B::Divide][(which as usize - 2) % 5];
+            let operator =
+                [B::Add, B::Subtract, B::Multiply, B::Less, B::Divide][(which as usize - 2) % 5];
             let left = self::random(random, depth - 1, program);
             let right = self::random(random, depth - 1, program);
             program.push(Step::Two(operator));
@@ -135,21 +140,41 @@ fn functions_answer_in_degrees() {
     ];
     for (language, name, arguments, expected) in cases {
         let found = variables(language).number(&of(name, arguments)).unwrap();
-        assert!((found - expected).abs() < 1e-4, "{name} of {arguments:?}: {found}");
+        assert!(
+            (found - expected).abs() < 1e-4,
+            "{name} of {arguments:?}: {found}"
+        );
     }
 }
 
 #[test]
 fn what_controls_answer_differently_is_refused() {
-    let refused = |language: Language, expression: &E| variables(language).number(expression).is_err();
-    assert!(refused(Language::Macro, &of("ATAN", &[-1.0, 2.0])), "0 to 360 or -180 to 180");
+    let refused =
+        |language: Language, expression: &E| variables(language).number(expression).is_err();
+    assert!(
+        refused(Language::Macro, &of("ATAN", &[-1.0, 2.0])),
+        "0 to 360 or -180 to 180"
+    );
     assert!(refused(Language::Names, &binary(B::Remainder, -5.0, 3.0)));
     assert!(!refused(Language::Names, &binary(B::Remainder, 5.0, 3.0)));
     // 0.1 + 0.2 against 0.3: equal on a control with twelve digits, not in doubles.
-    let sum = E::Binary(B::Equal, Box::new(binary(B::Add, 0.1, 0.2)), Box::new(E::Number(0.3)));
+    let sum = E::Binary(
+        B::Equal,
+        Box::new(binary(B::Add, 0.1, 0.2)),
+        Box::new(E::Number(0.3)),
+    );
     assert!(refused(Language::Macro, &sum));
-    assert_eq!(variables(Language::Rs274).number(&sum).ok(), Some(1.0), "within 0.0001 there");
-    assert!(refused(Language::Macro, &of("ROUND", &[-2.5])) || variables(Language::Macro).number(&of("ROUND", &[-2.5])).is_ok());
+    assert_eq!(
+        variables(Language::Rs274).number(&sum).ok(),
+        Some(1.0),
+        "within 0.0001 there"
+    );
+    assert!(
+        refused(Language::Macro, &of("ROUND", &[-2.5]))
+            || variables(Language::Macro)
+                .number(&of("ROUND", &[-2.5]))
+                .is_ok()
+    );
 }
 
 #[test]
@@ -211,7 +236,11 @@ fn variables_are_found_by_number_too() {
 
 #[test]
 fn logic_is_of_bits_with_fanuc_alone() {
-    let worth = |language, operator, left, right| variables(language).number(&binary(operator, left, right)).ok();
+    let worth = |language, operator, left, right| {
+        variables(language)
+            .number(&binary(operator, left, right))
+            .ok()
+    };
     assert_eq!(worth(Language::Macro, B::And, 6.0, 3.0), Some(2.0));
     assert_eq!(worth(Language::Rs274, B::And, 6.0, 3.0), Some(1.0));
     assert_eq!(worth(Language::Macro, B::Xor, 1.0, 1.0), Some(0.0));

@@ -7,6 +7,7 @@ pub mod nc_program;
 pub mod other_dialect;
 pub mod plugin_finder;
 mod plugin_folders;
+pub mod read_back;
 pub mod unused_options;
 
 use std::path::Path;

@@ -11,6 +11,7 @@ mod post;
 mod print_schema;
 mod read;
 mod study;
+mod verify;
 
 use std::path::Path;
 
@@ -29,6 +30,7 @@ use post::PostArguments;
 use print_schema::SchemaArguments;
 use read::ReadArguments;
 use study::StudyArguments;
+use verify::VerifyArguments;
 
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
 ///
@@ -51,6 +53,7 @@ use study::StudyArguments;
   post study part.cls --machine ac-trunnion
   post place part.cls --machine dmu50 --svg travel.svg
   post read part.nc --machine ac-trunnion --csv motions.csv
+  post verify part.nc --machine dmu50 --against part.cls --map map.json
   post plugin show fanuc
   post plugin new mine --iso
   post plugin test target/release/libpost_mine.so
@@ -76,6 +79,7 @@ enum Verb {
     New(NewArguments),
     Study(Box<StudyArguments>),
     Place(Box<PlaceArguments>),
+    Verify(Box<VerifyArguments>),
     Plugin(PluginArguments),
     Read(Box<ReadArguments>),
 }
@@ -92,6 +96,7 @@ impl CommandLine {
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),
             Some(Verb::Place(arguments)) => place::run(&arguments),
+            Some(Verb::Verify(arguments)) => verify::run(&arguments),
             Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
             Some(Verb::Read(arguments)) => read::run(&arguments),
         }

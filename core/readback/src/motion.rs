@@ -194,4 +194,28 @@ impl Motion {
         // Bounded, whatever a program says: a million pieces of one block.
         libm::ceil(count).clamp(1.0, MOST_PIECES) as u64
     }
+
+    /// Pieces whose chords stay within `chord` mm of a spline, as far as points on it tell: doubled until the middles of
+    /// all agree.
+    pub(crate) fn spline_chords(&self, chord: f64) -> u64 {
+        let Way::Spline(way) = &self.way else {
+            return 1;
+        };
+        let mut count = 2 * way.poles.len() as u64;
+        while (count as f64) < MOST_PIECES {
+            let at = |place: u64| way.at(place as f64 / (4 * count) as f64);
+            let strays = (0..count).any(|piece| {
+                let [first, a, b, c, last] =
+                    std::array::from_fn(|part| at(4 * piece + part as u64));
+                [(a, 0.25), (b, 0.5), (c, 0.75)]
+                    .iter()
+                    .any(|(point, share)| (first + (last - first) * *share - point).norm() > chord)
+            });
+            if !strays {
+                break;
+            }
+            count *= 2;
+        }
+        count
+    }
 }

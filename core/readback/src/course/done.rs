@@ -1,1 +1,261 @@
 //! What a program did, as a course.
+//!
+//! What a program does because of its own machine is not part of the path of the tool against the part, and does not
+//! become one on another machine: ways in positions of the machine, and what follows them up to where the tool is at a
+//! place of the part again. A linear axis that was last moved in positions of the machine (at the beginning all were) has
+//! no place of the part, and rapids are left out until each has one; then the tool [reaches](Item::Reach) where it is.
+
+use std::collections::VecDeque;
+use std::io::{BufRead, Seek};
+use std::sync::Arc;
+
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::{MAX_AXES, Pose};
+
+use super::{Course, Curve, Item, Piece, Reach};
+use crate::interpret::Interpreter;
+use crate::{Done, Motion, MotionKind, State, Told, Way};
+
+/// A program that is run block by block.
+pub trait Program {
+    /// Runs the next block and puts what it did behind what `done` holds; false at the end.
+    ///
+    /// # Errors
+    /// What stands there that cannot be understood, with its place.
+    fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>>;
+}
+
+impl<R: BufRead + Seek> Program for Interpreter<R> {
+    fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
+        Interpreter::next(self, done)
+    }
+}
+
+/// How near a course stays to a program whose tip goes on curves that no piece has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chords {
+    /// Of the tip at feed, mm.
+    pub tip: f64,
+    /// Of the tool axis, radians.
+    pub axis: f64,
+    /// Of the tip at rapid, mm.
+    pub rapid: f64,
+}
+
+/// Poses nearer than this are one: mm, and of unit vectors.
+const SAME: f64 = 1e-9;
+
+/// Ways shorter than this take no time at a feed, mm.
+const NO_WAY: f64 = 1e-9;
+
+/// A program's path, block by block.
+#[derive(Debug)]
+pub struct DoneCourse<P> {
+    program: P,
+    chords: Chords,
+    done: Vec<Done>,
+    waiting: VecDeque<(Option<Arc<State>>, Item)>,
+    /// What held during the item that was handed out last.
+    state: Option<Arc<State>>,
+    /// What holds in the program.
+    latest: Option<Arc<State>>,
+    /// Where the tool stands.
+    stands: Option<Pose>,
+    /// Bits of the linear axes that have no place of the part.
+    astray: u32,
+    ended: bool,
+}
+
+impl<P: Program> DoneCourse<P> {
+    /// The path of `program`.
+    pub fn new(program: P, chords: Chords) -> Self {
+        Self {
+            program,
+            chords,
+            done: Vec::new(),
+            waiting: VecDeque::new(),
+            state: None,
+            latest: None,
+            stands: None,
+            astray: u32::MAX,
+            ended: false,
+        }
+    }
+
+    /// What held in the program during the item that was handed out last; none before its first motion.
+    pub fn state(&self) -> Option<&Arc<State>> {
+        self.state.as_ref()
+    }
+
+    /// The program.
+    pub fn program(&self) -> &P {
+        &self.program
+    }
+
+    fn take(&mut self, done: Done) {
+        match done {
+            Done::State(state) => self.latest = Some(state),
+            Done::Told { line, told } => {
+                // The tool comes from the changer, another head has another chain, and a subprogram goes anywhere.
+                if matches!(
+                    told,
+                    Told::ToolChange { .. } | Told::Head(_) | Told::Subprogram(_)
+                ) {
+                    self.stands = None;
+                    self.astray = u32::MAX;
+                }
+                self.hand_on(Item::Told { line, told });
+            }
+            Done::Motion(motion) => self.motion(&motion),
+        }
+    }
+
+    fn hand_on(&mut self, item: Item) {
+        self.waiting.push_back((self.latest.clone(), item));
+    }
+
+    fn motion(&mut self, motion: &Motion) {
+        self.latest = Some(Arc::clone(&motion.state));
+        let moved = moved(motion);
+        if motion.machine {
+            self.astray |= moved;
+            if moved != 0 && self.stands.take().is_some() {
+                self.hand_on(Item::Away { line: motion.line });
+            }
+            return;
+        }
+        // Another length puts the tip elsewhere, though nothing moves.
+        let follows = |stands: Pose| {
+            (stands.tip - motion.from.pose.tip).norm() < SAME
+                && (stands.axis - motion.from.pose.axis).norm() < SAME
+        };
+        if self.stands.take_if(|stands| !follows(*stands)).is_some() {
+            self.astray = u32::MAX;
+        }
+        let cuts = motion.kind != MotionKind::Rapid;
+        self.astray = match motion.way {
+            Way::Axes if !cuts => self.astray & !moved & linear(motion),
+            // A tip has a place of the part, and so has what is cut.
+            _ => 0,
+        };
+        let feed = (cuts && motion.feed > 0.0).then_some(motion.feed);
+        if self.stands.is_none() {
+            if self.astray != 0 {
+                return;
+            }
+            let to = match cuts {
+                true => motion.from.pose,
+                false => motion.to.pose,
+            };
+            self.hand_on(Item::Reach(Reach {
+                line: motion.line,
+                kind: MotionKind::Rapid,
+                to,
+                feed: None,
+                hole: motion.hole,
+            }));
+            self.stands = Some(motion.to.pose);
+            if !cuts {
+                return;
+            }
+        }
+        self.pieces(motion, feed);
+        self.stands = Some(motion.to.pose);
+    }
+
+    /// The pieces of a motion.
+    fn pieces(&mut self, motion: &Motion, feed: Option<f64>) {
+        let chord = match motion.kind {
+            MotionKind::Rapid => self.chords.rapid,
+            MotionKind::Feed | MotionKind::Thread => self.chords.tip,
+        };
+        let mut count = motion.pieces(chord, self.chords.axis);
+        // A spline stays one where the tool axis does.
+        let along = match &motion.way {
+            Way::Spline(_) if motion.turns() => {
+                count = count.max(motion.spline_chords(chord));
+                None
+            }
+            Way::Spline(way) => Some(Curve::Spline(Arc::clone(way))),
+            Way::Arc {
+                centre,
+                normal,
+                sweep,
+            } => Some(arc(*centre, *normal, sweep / count as f64)),
+            Way::Axes | Way::Tip | Way::TipAndAxis => None,
+        };
+        let mut from = motion.from.pose;
+        for place in 1..=count {
+            let to = match place == count {
+                true => motion.to.pose,
+                false => motion.at(place as f64 / count as f64),
+            };
+            let mut piece = Piece {
+                line: motion.line,
+                kind: motion.kind,
+                curve: along.clone().unwrap_or(Curve::Straight),
+                from,
+                to,
+                feed,
+                hole: motion.hole,
+            };
+            if count > 1 && motion.minutes > 0.0 && feed.is_some() {
+                // All axes linearly in time: the tip is faster on some pieces than on others.
+                let way = piece.length();
+                piece.feed = (way > NO_WAY)
+                    .then(|| way * count as f64 / motion.minutes)
+                    .or(feed);
+            }
+            self.hand_on(Item::Piece(piece));
+            from = to;
+        }
+    }
+}
+
+/// Arcs turn right-handed by an angle above zero.
+fn arc(centre: nalgebra::Vector3<f64>, normal: nalgebra::Vector3<f64>, sweep: f64) -> Curve {
+    let normal = match sweep < 0.0 {
+        true => -normal,
+        false => normal,
+    };
+    Curve::Arc {
+        centre,
+        normal,
+        sweep: sweep.abs(),
+    }
+}
+
+/// Bits of the linear axes that go elsewhere.
+fn moved(motion: &Motion) -> u32 {
+    let differs = |place: &usize| motion.from.joints[*place] != motion.to.joints[*place];
+    (0..MAX_AXES)
+        .filter(differs)
+        .fold(0, |bits, place| bits | 1 << place)
+        & linear(motion)
+}
+
+/// Bits of the linear axes.
+fn linear(motion: &Motion) -> u32 {
+    let joints = motion.state.solver.chain().joints();
+    let places = joints.iter().enumerate().filter(|(_, joint)| !joint.rotary);
+    places.fold(0, |bits, (place, _)| bits | 1 << place)
+}
+
+impl<P: Program> Course for DoneCourse<P> {
+    fn next(&mut self) -> Result<Option<Item>, Box<Diagnostic>> {
+        loop {
+            if let Some((state, item)) = self.waiting.pop_front() {
+                self.state = state;
+                return Ok(Some(item));
+            }
+            if self.ended {
+                return Ok(None);
+            }
+            let mut done = std::mem::take(&mut self.done);
+            let more = self.program.next(&mut done);
+            done.drain(..).for_each(|done| self.take(done));
+            self.done = done;
+            self.ended = !more?;
+        }
+    }
+}

@@ -46,14 +46,26 @@ pub struct Rules {
     pub axis_tolerance: f64,
     /// Largest distance at which a rapid passes a point that it is to pass, mm.
     pub rapid_tolerance: f64,
-    /// The dialect compensates lengths by registers: one must be in force in every cut.
-    pub registers: bool,
+    /// Which length register must be in force in a cut.
+    pub registers: Registers,
     /// Length register that belongs to a tool where it is not the tool's number.
     pub tool_registers: Vec<(u32, u32)>,
     /// A block by time takes no longer than this, minutes: slower ones say nothing of the feed.
     pub longest_minutes: f64,
     /// So many faults are told apart; then it is given up.
     pub most_faults: usize,
+}
+
+/// Which length register must be in force in a cut.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Registers {
+    /// The control knows the length by its tool.
+    #[default]
+    None,
+    /// That of the tool: H.
+    OfTool,
+    /// The first edge of the tool: D1.
+    Edges,
 }
 
 impl Rules {
@@ -63,7 +75,7 @@ impl Rules {
             tolerance: machine.accuracy.tolerance,
             axis_tolerance: machine.accuracy.axis_tolerance,
             rapid_tolerance: machine.accuracy.rapid_tolerance,
-            registers: false,
+            registers: Registers::None,
             tool_registers: Vec::new(),
             longest_minutes: f64::INFINITY,
             most_faults: 50,

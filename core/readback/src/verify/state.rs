@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::Verifier;
 use super::place::{Place, free};
 use super::track::Element;
+use super::{Registers, Verifier};
 use crate::course::Course;
 use crate::{Coolants, Motion, MotionKind, Spindle, Told};
 
@@ -110,26 +110,33 @@ impl<C: Course> Verifier<'_, C> {
                 format!("cuts with radius register {has}, and the CL file asks for {wants}");
             self.fault("register", message, Some(motion), cl_line, None);
         }
-        if let Some(tool) = asked.tool.or(state.tool) {
-            let known = self.rules.tool_registers.iter();
-            let wants = known
-                .clone()
+        self.compare_register(motion, element);
+    }
+
+    fn compare_register(&mut self, motion: &Motion, element: &Element) {
+        let state = &motion.state;
+        let Some(tool) = element.asked.tool.or(state.tool) else {
+            return;
+        };
+        let of_tool = || {
+            let mut known = self.rules.tool_registers.iter();
+            known
                 .find(|(number, _)| *number == tool)
-                .map_or(tool, |(_, register)| *register);
-            match state.length_register {
-                Some(has) if has != wants => {
-                    let message = format!(
-                        "cuts with length register {has}, and tool {tool} has register {wants}"
-                    );
-                    self.fault("register", message, Some(motion), cl_line, None);
-                }
-                None if self.rules.registers => {
-                    let message = format!("cuts without length compensation, tool {tool}");
-                    self.fault("register", message, Some(motion), cl_line, None);
-                }
-                _ => {}
+                .map_or(tool, |(_, register)| *register)
+        };
+        let wants = match self.rules.registers {
+            Registers::None => return,
+            Registers::OfTool => of_tool(),
+            Registers::Edges => 1,
+        };
+        let message = match state.length_register {
+            Some(has) if has == wants => return,
+            Some(has) => {
+                format!("cuts with length register {has}, and that of tool {tool} is {wants}")
             }
-        }
+            None => format!("cuts without length compensation, tool {tool}"),
+        };
+        self.fault("register", message, Some(motion), Some(element.line), None);
     }
 
     /// Compares the feed: never faster than asked, and slower only where an axis could not go faster.

@@ -8,7 +8,7 @@ use post_machine::description::{Machine, Source, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_readback::course::{Course, Curve, Item, Piece, Reach};
-use post_readback::verify::{BlockReport, Rules, Verification, Verifier};
+use post_readback::verify::{BlockReport, Registers, Rules, Verification, Verifier};
 use post_readback::{
     Coolants, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State, Told, Way,
 };
@@ -205,7 +205,10 @@ impl Does {
 
 fn verify(does: &Does, asks: Asks) -> (Verification, Vec<BlockReport>) {
     let machine = machine();
-    let rules = Rules::of(&machine);
+    let rules = Rules {
+        registers: Registers::OfTool,
+        ..Rules::of(&machine)
+    };
     let mut verifier = Verifier::new(&machine, rules, Written(asks.items));
     let mut rows = Vec::new();
     for done in &does.done {

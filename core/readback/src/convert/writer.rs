@@ -1,0 +1,664 @@
+//! Items of a course become records of a CL file.
+
+use std::fmt::Write;
+
+use nalgebra::Vector3;
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Pose;
+
+use super::number::{self, DIRECTION, LENGTH};
+use super::text;
+use crate::course::{Curve, Item, Piece, Reach};
+use crate::motion::SplineWay;
+use crate::{Coolants, CycleCall, CycleKind, MotionKind, Spindle, Told};
+
+/// Unit vectors nearer than this are one.
+const SAME_DIRECTION: f64 = 1e-12;
+
+/// Points nearer than this are one, mm.
+const SAME_POINT: f64 = 1e-9;
+
+/// Ends of an arc may differ by so much in their distance from its axis: readers take it as a spiral, up to 0.1 mm.
+const SPIRAL: f64 = 0.09;
+
+/// A change of the feed that is smaller is none: its share.
+const SAME_FEED: f64 = 1e-9;
+
+/// Shares of a spline or of an arc that turns the tool, tried at most for chords that are near enough.
+const MOST_CHORDS: u32 = 1 << 20;
+
+/// The tool in the spindle, as the control counts it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tool {
+    /// Register of its length.
+    pub register: Option<u32>,
+    /// Its length, mm.
+    pub length: Option<f64>,
+}
+
+/// Writes a CL file.
+///
+/// The text grows in `out` of the methods; whoever calls them takes it away as he likes, so that memory does not grow with
+/// the program.
+#[derive(Debug)]
+pub struct ClWriter {
+    /// How far chords may stray where no record has the curve, mm.
+    chord: f64,
+    /// What waits for the next motion: the tool's length is known only then.
+    waiting: Vec<(u64, Told)>,
+    /// A tool change waits.
+    changes: bool,
+    /// The tool left the part.
+    away: bool,
+    /// Some point was written.
+    moved: bool,
+    /// Tool axis as a reader has it.
+    axis: Vector3<f64>,
+    edge: bool,
+    feed: Option<f64>,
+    /// Where the last point written stands.
+    stands: Option<Pose>,
+    /// A cycle's hole: its call, the deepest point so far, and whether the tool was above it before.
+    hole: Option<(CycleCall, Option<Pose>)>,
+    /// The definition in force.
+    cycle: Option<String>,
+    /// An operation is open.
+    operation: bool,
+    /// The operation that begins with the next record, which may name its tool.
+    begins: Option<String>,
+    work_offset: Option<String>,
+    /// Numbers of tools that have names alone, by the order in which they came.
+    names: Vec<String>,
+    last_tool: Option<(u32, Tool)>,
+    notes: Vec<Diagnostic>,
+    ended: bool,
+}
+
+impl ClWriter {
+    /// Nothing written. Chords stay within `chord` mm where no record has the curve.
+    pub fn new(chord: f64) -> Self {
+        Self {
+            chord,
+            waiting: Vec::new(),
+            changes: false,
+            away: false,
+            moved: false,
+            axis: Vector3::z(),
+            edge: false,
+            feed: None,
+            stands: None,
+            hole: None,
+            cycle: None,
+            operation: false,
+            begins: None,
+            work_offset: None,
+            names: Vec::new(),
+            last_tool: None,
+            notes: Vec::new(),
+            ended: false,
+        }
+    }
+
+    /// What was taken for granted or could not be kept.
+    pub fn notes(&self) -> &[Diagnostic] {
+        &self.notes
+    }
+
+    /// The first records.
+    pub fn begin(&self, part: &str, out: &mut String) {
+        let _ = writeln!(out, "PARTNO {}\nUNITS/MM\nMULTAX/ON", text::free(part));
+    }
+
+    /// The last records.
+    pub fn end(&mut self, out: &mut String) {
+        for (_, told) in std::mem::take(&mut self.waiting) {
+            match told {
+                // A tool that does nothing is not loaded.
+                Told::ToolChange { .. } | Told::Preselect(_) => {}
+                told => self.told(told, Tool::default(), out),
+            }
+        }
+        self.end_cycle(out);
+        self.end_operation(out);
+        out.push_str("FINI\n");
+    }
+
+    /// One item. `tool` is what the control counts the tool in the spindle as while it lasts.
+    ///
+    /// # Errors
+    /// What no record can ask for.
+    pub fn item(
+        &mut self,
+        item: &Item,
+        tool: Tool,
+        out: &mut String,
+    ) -> Result<(), Box<Diagnostic>> {
+        if self.ended {
+            return Ok(());
+        }
+        match item {
+            Item::Away { .. } => {
+                self.away = self.moved;
+                Ok(())
+            }
+            Item::Told { line, told } => self.take_told(*line, told, tool, out),
+            Item::Reach(reach) => {
+                self.settle(tool, out);
+                self.reach(reach, out);
+                Ok(())
+            }
+            Item::Piece(piece) => {
+                self.settle(tool, out);
+                self.piece(piece, out)
+            }
+        }
+    }
+
+    fn take_told(
+        &mut self,
+        line: u64,
+        told: &Told,
+        tool: Tool,
+        out: &mut String,
+    ) -> Result<(), Box<Diagnostic>> {
+        match told {
+            Told::Cycle(call) => {
+                self.settle(tool, out);
+                self.hole = Some((*call, None));
+                return Ok(());
+            }
+            Told::CycleEnd => return self.end_hole(line, out),
+            Told::Dwell { .. } if self.hole.is_some() => return Ok(()),
+            Told::ToolChange { .. } => {
+                // The frame of the other machine goes round a tool change by itself.
+                self.away = false;
+                self.changes = true;
+            }
+            Told::End => {
+                self.ended = true;
+                return Ok(());
+            }
+            Told::Unknown(word) => {
+                let message = format!("{word} is not carried over: nobody knows what it does");
+                self.notes.push(Diagnostic::warning("convert", message));
+                return Ok(());
+            }
+            _ => {}
+        }
+        if self.changes {
+            self.waiting.push((line, told.clone()));
+        } else {
+            self.told(told.clone(), tool, out);
+        }
+        Ok(())
+    }
+
+    /// A motion follows: what waited for it is written, the tool change first.
+    fn settle(&mut self, tool: Tool, out: &mut String) {
+        let waiting = std::mem::take(&mut self.waiting);
+        // The last tool that came into the spindle cuts.
+        let change = waiting
+            .iter()
+            .rposition(|(_, told)| matches!(told, Told::ToolChange { .. }));
+        for (place, (_, told)) in waiting.into_iter().enumerate() {
+            match told {
+                Told::ToolChange { .. } if Some(place) != change => {}
+                told => self.told(told, tool, out),
+            }
+        }
+        self.changes = false;
+        self.open_operation(None, out);
+        if std::mem::take(&mut self.away) {
+            self.end_cycle(out);
+            out.push_str("GOHOME\n");
+            self.stands = None;
+        }
+    }
+
+    fn told(&mut self, told: Told, tool: Tool, out: &mut String) {
+        if !matches!(told, Told::Operation(_) | Told::ToolChange { .. }) {
+            self.open_operation(None, out);
+        }
+        match told {
+            Told::ToolChange { number, name } => self.load(number, name, tool, out),
+            Told::Preselect(number) => {
+                let _ = writeln!(out, "SELECT/TOOL,{number}");
+            }
+            Told::Spindle(spindle) => spindle_record(spindle, out),
+            Told::Coolant(coolants) => {
+                let Coolants { flood, mist, other } = coolants;
+                out.push_str(match (flood, mist, other) {
+                    (false, false, false) => "COOLNT/OFF\n",
+                    (true, ..) => "COOLNT/FLOOD\n",
+                    (_, true, _) => "COOLNT/MIST\n",
+                    (_, _, true) => "COOLNT/THRU\n",
+                });
+            }
+            Told::Dwell { time, revolutions } => {
+                out.push_str("DELAY/");
+                number::write(out, time, LENGTH);
+                out.push_str(if revolutions { ",REV\n" } else { "\n" });
+            }
+            Told::Stop => out.push_str("STOP\n"),
+            Told::OptionalStop => out.push_str("OPSTOP\n"),
+            Told::Operation(name) => self.begins = Some(name),
+            Told::Remark(remark) | Told::Message(remark) => {
+                let remark = text::free(&remark);
+                if !remark.is_empty() {
+                    let _ = writeln!(out, "PPRINT {remark}");
+                }
+            }
+            Told::Compensation { side, register } => {
+                let side = match side {
+                    0 => "OFF",
+                    ..0 => "LEFT",
+                    _ => "RIGHT",
+                };
+                let _ = match register.filter(|_| side != "OFF") {
+                    Some(register) => writeln!(out, "CUTCOM/{side},XYPLAN,{register}"),
+                    None => writeln!(out, "CUTCOM/{side}"),
+                };
+            }
+            Told::WorkOffset(name) => self.offset(name, out),
+            Told::Head(name) => {
+                let _ = writeln!(out, "HEAD/{}", text::name(&name));
+                self.stands = None;
+            }
+            Told::Subprogram(number) => {
+                let _ = writeln!(out, "CALSUB/{number}");
+                self.stands = None;
+            }
+            // Taken apart before.
+            Told::Cycle(_) | Told::CycleEnd | Told::Unknown(_) | Told::End => {}
+        }
+    }
+
+    /// Begins the operation that waits, or one for a tool that has a name.
+    fn open_operation(&mut self, tool: Option<&str>, out: &mut String) {
+        let Some(name) = self.begins.take().or(tool.map(str::to_owned)) else {
+            return;
+        };
+        self.end_cycle(out);
+        self.end_operation(out);
+        let _ = write!(out, "TOOL PATH/{}", text::name(&name));
+        if let Some(tool) = tool {
+            let _ = write!(out, ",TOOL,{}", text::name(tool));
+        }
+        out.push('\n');
+        self.operation = true;
+        self.axis = Vector3::z();
+    }
+
+    fn load(&mut self, number: Option<u32>, name: Option<String>, tool: Tool, out: &mut String) {
+        let number = number.unwrap_or_else(|| {
+            let name = name.clone().unwrap_or_default();
+            let known = self.names.iter().position(|known| *known == name);
+            let place = known.unwrap_or(self.names.len());
+            if known.is_none() {
+                let message = format!("tool {name:?} has no number and becomes tool {}", place + 1);
+                self.notes.push(Diagnostic::warning("convert", message));
+                self.names.push(name);
+            }
+            place as u32 + 1
+        });
+        if self.last_tool.replace((number, tool)) == Some((number, tool)) {
+            return;
+        }
+        self.open_operation(name.as_deref().filter(|name| !name.is_empty()), out);
+        self.end_cycle(out);
+        let _ = write!(out, "LOADTL/{number}");
+        if let Some(register) = tool
+            .register
+            .filter(|register| *register != number && *register > 0)
+        {
+            let _ = write!(out, ",ADJUST,{register}");
+        }
+        if let Some(length) = tool.length {
+            out.push_str(",LENGTH,");
+            number::write(out, length, LENGTH);
+        }
+        out.push('\n');
+        self.stands = None;
+    }
+
+    /// A work offset. The first of a program is the one that the other machine begins with.
+    fn offset(&mut self, name: String, out: &mut String) {
+        let before = self.work_offset.replace(name.clone());
+        if before.as_ref() == Some(&name) || (before.is_none() && !self.moved) {
+            return;
+        }
+        match offset_number(&name) {
+            Some(number) => {
+                let _ = writeln!(out, "OFSETL/{number}");
+                self.stands = None;
+            }
+            None => {
+                let message =
+                    format!("{name} is not carried over: it has no number among work offsets");
+                self.notes.push(Diagnostic::warning("convert", message));
+            }
+        }
+    }
+
+    fn reach(&mut self, reach: &Reach, out: &mut String) {
+        // A hole's approach is the cycle's own.
+        if self.hole.is_some() {
+            return;
+        }
+        self.end_cycle(out);
+        self.point(MotionKind::Rapid, None, &reach.to, out);
+    }
+
+    fn piece(&mut self, piece: &Piece, out: &mut String) -> Result<(), Box<Diagnostic>> {
+        if let Some((_, deepest)) = &mut self.hole {
+            for pose in [&piece.from, &piece.to] {
+                let lower = |deepest: &Pose| pose.axis.dot(&(pose.tip - deepest.tip)) < 0.0;
+                if deepest.as_ref().is_none_or(lower) {
+                    *deepest = Some(*pose);
+                }
+            }
+            self.stands = Some(piece.to);
+            return Ok(());
+        }
+        self.end_cycle(out);
+        if piece.kind == MotionKind::Thread {
+            let message =
+                "a thread that is no cycle's: no record of a CL file ties a feed to the spindle";
+            return Err(Diagnostic::error("convert", message).boxed());
+        }
+        let feed = piece.feed;
+        let stays = (piece.from.axis - piece.to.axis).norm() < SAME_DIRECTION;
+        match &piece.curve {
+            Curve::Straight => self.point(piece.kind, feed, &piece.to, out),
+            Curve::Arc {
+                centre,
+                normal,
+                sweep,
+            } if stays && self.arc_fits(piece, *centre, *normal) => {
+                self.feed(piece.kind, feed, out);
+                self.arc(piece, (*centre, *normal, *sweep), out);
+            }
+            Curve::Spline(way) if stays && is_nurbs(way) && self.at(&piece.from) => {
+                self.feed(piece.kind, feed, out);
+                self.spline(way, out);
+                self.stands = Some(piece.to);
+            }
+            Curve::Arc { .. } | Curve::Spline(_) => self.chords(piece, out),
+        }
+        Ok(())
+    }
+
+    /// A reader knows that the tool stands here.
+    fn at(&self, pose: &Pose) -> bool {
+        self.stands
+            .is_some_and(|stands| (stands.tip - pose.tip).norm() < SAME_POINT)
+    }
+
+    /// A `CIRCLE` says this arc: it starts where the tool stands, and both ends are equally far from its axis, or nearly.
+    fn arc_fits(&self, piece: &Piece, centre: Vector3<f64>, normal: Vector3<f64>) -> bool {
+        let radius = |tip: Vector3<f64>| normal.cross(&(tip - centre)).norm();
+        let (from, to) = (radius(piece.from.tip), radius(piece.to.tip));
+        self.at(&piece.from) && libm::fabs(from - to) <= SPIRAL && from > SAME_POINT
+    }
+
+    fn arc(
+        &mut self,
+        piece: &Piece,
+        (centre, normal, sweep): (Vector3<f64>, Vector3<f64>, f64),
+        out: &mut String,
+    ) {
+        // A reader takes ends that nearly meet for a whole turn, and less than a turn else.
+        let turns = libm::ceil(sweep / std::f64::consts::TAU - 1e-6).max(1.0);
+        let radius = normal.cross(&(piece.from.tip - centre)).norm();
+        out.push_str("CIRCLE/");
+        number::write_all(out, centre.iter(), LENGTH);
+        out.push(',');
+        number::write_all(out, normal.iter(), DIRECTION);
+        out.push(',');
+        number::write(out, radius, LENGTH);
+        if turns > 1.0 {
+            let _ = write!(out, ",TIMES,{turns}");
+        }
+        out.push('\n');
+        self.goto(&piece.to, out);
+    }
+
+    fn spline(&mut self, way: &SplineWay, out: &mut String) {
+        out.push_str("NURBS\nKNOT/");
+        let [first, last] = way.range();
+        let inner = way.knots[way.degree + 1..way.poles.len()].iter();
+        let knots: Vec<f64> = inner
+            .map(|knot| (knot - first) / (last - first))
+            .chain([1.0])
+            .collect();
+        // A knot has no unit: all of its digits are written.
+        for (place, knot) in knots.iter().enumerate() {
+            let _ = write!(out, "{}{knot}", if place > 0 { "," } else { "" });
+        }
+        out.push('\n');
+        for (pole, _) in &way.poles[1..] {
+            out.push_str("CNTRL/");
+            number::write_all(out, pole.iter(), LENGTH);
+            out.push('\n');
+        }
+    }
+
+    /// Points on a curve that no record has, so many that chords stay near enough as far as points between tell.
+    fn chords(&mut self, piece: &Piece, out: &mut String) {
+        let mut count: u32 = match &piece.curve {
+            Curve::Spline(way) => (2 * way.poles.len()).min(MOST_CHORDS as usize) as u32,
+            _ => 4,
+        };
+        let at = |place: u32, count: u32| piece.at(f64::from(place) / f64::from(count), 0.0);
+        while count < MOST_CHORDS {
+            let strays = (0..count).any(|place| {
+                let [first, a, b, c, last] =
+                    std::array::from_fn(|part| at(4 * place + part as u32, 4 * count).tip);
+                [(a, 0.25), (b, 0.5), (c, 0.75)]
+                    .iter()
+                    .any(|(point, share)| {
+                        (first + (last - first) * *share - point).norm() > self.chord
+                    })
+            });
+            if !strays {
+                break;
+            }
+            count *= 2;
+        }
+        for place in 1..=count {
+            let to = match place == count {
+                true => piece.to,
+                false => at(place, count),
+            };
+            self.point(piece.kind, piece.feed, &to, out);
+        }
+    }
+
+    /// A straight way to a point; nothing if the tool stands there.
+    fn point(&mut self, kind: MotionKind, feed: Option<f64>, to: &Pose, out: &mut String) {
+        let turns = self
+            .stands
+            .is_some_and(|stands| (stands.axis - to.axis).norm() >= SAME_DIRECTION);
+        if self.at(to) && !turns {
+            return;
+        }
+        self.feed(kind, feed, out);
+        self.goto(to, out);
+    }
+
+    fn feed(&mut self, kind: MotionKind, feed: Option<f64>, out: &mut String) {
+        if kind == MotionKind::Rapid {
+            out.push_str("RAPID\n");
+            return;
+        }
+        let Some(feed) = feed else { return };
+        let same = |before: f64| libm::fabs(before - feed) <= SAME_FEED * feed;
+        if !self.feed.is_some_and(same) {
+            out.push_str("FEDRAT/MMPM,");
+            number::write(out, feed, LENGTH);
+            out.push('\n');
+            self.feed = Some(feed);
+        }
+    }
+
+    fn goto(&mut self, to: &Pose, out: &mut String) {
+        out.push_str("GOTO/");
+        number::write_all(out, to.tip.iter(), LENGTH);
+        let edge = to.edge != Vector3::zeros();
+        if edge || self.edge || (to.axis - self.axis).amax() >= SAME_DIRECTION {
+            out.push(',');
+            number::write_all(out, to.axis.iter(), DIRECTION);
+            self.axis = to.axis;
+        }
+        if edge {
+            out.push(',');
+            number::write_all(out, to.edge.iter(), DIRECTION);
+            self.edge = true;
+        }
+        out.push('\n');
+        self.stands = Some(*to);
+        self.moved = true;
+    }
+
+    /// The hole's moves are done: the cycle that asks for them.
+    fn end_hole(&mut self, line: u64, out: &mut String) -> Result<(), Box<Diagnostic>> {
+        let (Some((call, Some(bottom))), Some(up)) = (self.hole.take(), self.stands) else {
+            return Ok(());
+        };
+        let height = |pose: &Pose| bottom.axis.dot(&(pose.tip - bottom.tip));
+        let clearance = call.clearance.max(0.0);
+        let depth = call.depth - clearance;
+        let level = (height(&up) - depth).max(clearance);
+        let definition = definition(&call, depth, clearance, level).map_err(|message| {
+            Diagnostic::error("convert", format!("line {line}: {message}")).boxed()
+        })?;
+        if self.cycle.as_ref() != Some(&definition) {
+            out.push_str(&definition);
+            self.cycle = Some(definition);
+        }
+        let point = Pose {
+            tip: bottom.tip + bottom.axis * depth,
+            ..bottom
+        };
+        self.goto(&point, out);
+        self.stands = Some(up);
+        Ok(())
+    }
+
+    fn end_cycle(&mut self, out: &mut String) {
+        if self.cycle.take().is_some() {
+            out.push_str("CYCLE/OFF\n");
+        }
+    }
+
+    fn end_operation(&mut self, out: &mut String) {
+        if std::mem::take(&mut self.operation) {
+            out.push_str("END-OF-PATH\n");
+        }
+    }
+}
+
+/// The record of a cycle.
+fn definition(
+    call: &CycleCall,
+    depth: f64,
+    clearance: f64,
+    level: f64,
+) -> Result<String, &'static str> {
+    let kind = match call.kind {
+        CycleKind::Drill => "DRILL",
+        CycleKind::Deep => "DEEP",
+        CycleKind::BreakChip => "BRKCHP",
+        CycleKind::Tap | CycleKind::TapLeft => "TAP",
+        CycleKind::Ream => "REAM",
+        CycleKind::Bore => "BORE,DRAG",
+        CycleKind::BoreFine => {
+            return Err("fine boring: how far the tool goes off the wall is not known");
+        }
+        CycleKind::BoreBack => return Err("boring from behind has no cycle in a CL file"),
+    };
+    let mut out = format!("CYCLE/{kind},FEDTO,");
+    number::write(&mut out, depth, LENGTH);
+    let threads = matches!(call.kind, CycleKind::Tap | CycleKind::TapLeft);
+    match (call.per_revolution, threads) {
+        (true, true) => out.push_str(",PITCH,"),
+        (true, false) => out.push_str(",MMPR,"),
+        (false, _) => out.push_str(",MMPM,"),
+    }
+    let left = call.kind == CycleKind::TapLeft && call.per_revolution;
+    number::write(&mut out, if left { -call.feed } else { call.feed }, LENGTH);
+    out.push_str(",RAPTO,");
+    number::write(&mut out, clearance, LENGTH);
+    if level > clearance {
+        out.push_str(",RTRCTO,");
+        number::write(&mut out, level, LENGTH);
+    }
+    if call.peck > 0.0 {
+        out.push_str(",STEP,");
+        number::write(&mut out, call.peck, LENGTH);
+    }
+    if call.dwell > 0.0 {
+        out.push_str(",DWELL,");
+        number::write(&mut out, call.dwell, LENGTH);
+    }
+    out.push('\n');
+    Ok(out)
+}
+
+fn spindle_record(spindle: Spindle, out: &mut String) {
+    let side = |clockwise| if clockwise { "CLW" } else { "CCLW" };
+    match spindle {
+        Spindle::Off => out.push_str("SPINDL/OFF\n"),
+        Spindle::Oriented => out.push_str("SPINDL/ORIENT\n"),
+        Spindle::Clockwise(rpm) | Spindle::CounterClockwise(rpm) => {
+            out.push_str("SPINDL/RPM,");
+            number::write(out, rpm, LENGTH);
+            let clockwise = matches!(spindle, Spindle::Clockwise(_));
+            let _ = writeln!(out, ",{}", side(clockwise));
+        }
+        Spindle::Surface {
+            speed,
+            most,
+            clockwise,
+        } => {
+            out.push_str("SPINDL/SMM,");
+            number::write(out, speed, LENGTH);
+            if let Some(most) = most {
+                out.push_str(",MAXRPM,");
+                number::write(out, most, LENGTH);
+            }
+            let _ = writeln!(out, ",{}", side(clockwise));
+        }
+    }
+}
+
+/// NX's splines: cubic, clamped at both ends, all weights one, no knot more than twice.
+fn is_nurbs(way: &SplineWay) -> bool {
+    if way.degree != 3 || !way.is_sound() {
+        return false;
+    }
+    let [first, last] = way.range();
+    let clamped = way.knots[..4].iter().all(|knot| *knot == first)
+        && way.knots[way.poles.len()..]
+            .iter()
+            .all(|knot| *knot == last);
+    let inner = &way.knots[4..way.poles.len()];
+    let rises = inner.windows(3).all(|three| three[0] < three[2])
+        && inner.iter().all(|knot| first < *knot && *knot < last);
+    clamped && rises && way.poles.iter().all(|(_, weight)| *weight == 1.0)
+}
+
+/// The number of a work offset: G54 is 1, G54.1 P1 is 7, a bare number itself.
+fn offset_number(name: &str) -> Option<u32> {
+    if let Ok(number) = name.parse() {
+        return Some(number);
+    }
+    let code = name.strip_prefix('G')?;
+    if let Some((_, further)) = code.split_once('P') {
+        return further.trim().parse::<u32>().ok().map(|number| number + 6);
+    }
+    match code.parse::<u32>().ok()? {
+        code @ 54..=59 => Some(code - 53),
+        _ => None,
+    }
+}

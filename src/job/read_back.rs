@@ -1,0 +1,270 @@
+//! A program of a machine's control held against a CL file, for whoever asks.
+
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+
+use post_host::Finder;
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{Meaning, VocabularyWord};
+use post_posting::program::ToldSpindle;
+use post_readback::Offsets;
+use post_readback::course::CourseFacts;
+use post_readback::course::cl::{ClCourse, ClTool, Settings};
+use post_readback::interpret::{Interpreter, Limits};
+use post_readback::lexicon::Lexicon;
+use post_readback::verify::{BlockReport, Fault, Registers, Rules, Verification, Verifier};
+
+use super::plugin_finder;
+use crate::arguments::JobArguments;
+use crate::arguments::flag_values::Msys;
+use crate::failure::Failure;
+use crate::files::{ClSource, FileFault};
+use crate::terminal::Progress;
+
+/// What a program is read with.
+pub struct Reading<'a> {
+    /// The command line of the job.
+    pub arguments: &'a JobArguments,
+    /// The machine with its settings.
+    pub machine: &'a Machine,
+    /// Its plugins.
+    pub finder: &'a Finder,
+    /// What stands in the control's tables; none: as the machine file, the command line and the CL file say.
+    pub offsets: Option<Offsets>,
+    /// What a program may ask for.
+    pub limits: Limits,
+    /// Largest deviations that are other than the machine file's: mm, radians.
+    pub tolerances: [Option<f64>; 2],
+}
+
+/// What came of it.
+pub struct Held {
+    /// What was found.
+    pub found: Verification,
+    /// Of all that is wrong a message: faults at lines of the program, what could not be read of either side; and what was
+    /// taken for granted.
+    pub findings: Vec<Diagnostic>,
+    /// Blocks that were run.
+    pub blocks: u64,
+}
+
+/// The words of a machine's control, as its dialect hands them over.
+///
+/// # Errors
+/// The dialect is not found, or its programs cannot be read back.
+pub fn vocabulary(
+    finder: &Finder,
+    machine: &Machine,
+    program: &str,
+) -> Result<Vec<VocabularyWord>, Failure> {
+    let (mut dialect, _) = plugin_finder::dialect(finder, machine, program, None)?;
+    let words = dialect
+        .vocabulary()
+        .map_err(|fault| Diagnostic::error("plugin", fault))?;
+    if words.is_empty() {
+        let name = &machine.control.dialect;
+        let message =
+            format!("the dialect {name} tells no vocabulary: its programs cannot be read back");
+        return Err(Diagnostic::error("vocabulary", message)
+            .help("name another with --dialect")
+            .into());
+    }
+    Ok(words)
+}
+
+/// Which register a length is compensated by.
+fn registers(words: &[VocabularyWord]) -> Registers {
+    let has = |letter: &str| {
+        let mut words = words.iter();
+        words.any(|word| word.meaning == Meaning::LengthRegister && word.word == letter)
+    };
+    match (has("H"), has("D")) {
+        (true, _) => Registers::OfTool,
+        (false, true) => Registers::Edges,
+        (false, false) => Registers::None,
+    }
+}
+
+/// How the CL file is meant, as posting was told.
+pub fn course_settings(arguments: &JobArguments, machine: &Machine, file: &str) -> Settings {
+    Settings {
+        units: arguments.units,
+        apply_msys: arguments.msys == Msys::Apply,
+        tool: arguments.tool,
+        tool_from_cutter: arguments.tool_from_cutter,
+        feed: arguments.feed,
+        spindle: match arguments.spindle {
+            Some(ToldSpindle::On(rpm)) => Some(rpm),
+            _ => None,
+        },
+        allowed: arguments.allow.clone(),
+        ..Settings::of(machine, file)
+    }
+}
+
+/// What stands in the control's tables as posting counts: `--tool-length`, else the machine file, else the CL file.
+pub fn offsets(arguments: &JobArguments, machine: &Machine, tools: &[ClTool]) -> Offsets {
+    let mut offsets = Offsets {
+        length: arguments.tool_length,
+        ..Offsets::default()
+    };
+    if arguments.tool_length.is_some() {
+        return offsets;
+    }
+    for (number, length) in &machine.tools {
+        let known = tools.iter().find(|tool| tool.number == *number);
+        let register = known.map_or(*number, |tool| tool.register);
+        offsets.tools.push((*number, *length));
+        offsets.lengths.push((register, *length));
+    }
+    for tool in tools {
+        let told = machine
+            .tools
+            .iter()
+            .any(|(number, _)| *number == tool.number);
+        if let (Some(length), false) = (tool.length, told) {
+            offsets.tools.push((tool.number, length));
+            offsets.lengths.push((tool.register, length));
+        }
+    }
+    offsets
+}
+
+/// Holds the program `name` from `input` against the CL file.
+///
+/// # Errors
+/// A file that cannot be read, or a machine or dialect that cannot be used.
+pub fn verify<R: Read + Seek>(
+    reading: &Reading<'_>,
+    source: &mut ClSource,
+    name: &str,
+    mut input: R,
+    listen: &mut dyn FnMut(&BlockReport),
+) -> Result<Held, Failure> {
+    let Reading {
+        arguments, machine, ..
+    } = reading;
+    let words = vocabulary(reading.finder, machine, name)?;
+    let lexicon = Lexicon::new(&words);
+    // What the tools are called and how long they are stands anywhere in the CL file.
+    let first = source.open()?;
+    let cl_name = first.name.clone();
+    let settings = course_settings(arguments, machine, &cl_name);
+    let mut course = ClCourse::new(settings.clone(), first.bytes);
+    let (_, faults) = CourseFacts::of(&mut course);
+    let mut findings = faults;
+    let tools = course.tools().to_vec();
+    let offsets = match &reading.offsets {
+        Some(offsets) => offsets.clone(),
+        None => offsets_of(reading, &tools),
+    };
+    let [tolerance, axis_tolerance] = reading.tolerances;
+    let standard = Rules::of(machine);
+    let rules = Rules {
+        tolerance: tolerance.unwrap_or(standard.tolerance),
+        axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
+        registers: registers(&words),
+        tool_registers: tools
+            .iter()
+            .map(|tool| (tool.number, tool.register))
+            .collect(),
+        ..standard
+    };
+    let mut verifier = Verifier::new(
+        machine,
+        rules,
+        ClCourse::new(settings, source.open()?.bytes),
+    );
+    let unreadable = |error| FileFault::Read {
+        name: name.to_owned(),
+        error,
+    };
+    let length = input.seek(SeekFrom::End(0)).map_err(unreadable)?;
+    input.seek(SeekFrom::Start(0)).map_err(unreadable)?;
+    let mut program = Interpreter::new(
+        machine,
+        &lexicon,
+        &offsets,
+        reading.limits,
+        name,
+        BufReader::new(&mut input),
+    )
+    .map_err(|fault| *fault)?;
+    let progress = Progress::new(Some(length));
+    let mut done = Vec::new();
+    let mut unread = 0;
+    loop {
+        done.clear();
+        match program.next(&mut done) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(fault) => {
+                findings.push(*fault);
+                unread += 1;
+                if unread >= MOST_UNREAD {
+                    break;
+                }
+            }
+        }
+        for done in &done {
+            verifier.take(done, listen);
+        }
+        if verifier.found().gave_up {
+            break;
+        }
+    }
+    progress.finish();
+    let report = program.report();
+    findings.extend(report.notes.iter().cloned());
+    let blocks = report.blocks;
+    drop(program);
+    let found = verifier.finish(listen);
+    let texts = lines_of(&mut input, &found.faults).map_err(unreadable)?;
+    for fault in &found.faults {
+        let text = fault
+            .nc_line
+            .and_then(|line| texts.iter().find(|(known, _)| *known == line));
+        let text = text.map_or("", |(_, text)| text.as_str());
+        findings.push(fault.diagnostic(name, text, &cl_name));
+    }
+    Ok(Held {
+        found,
+        findings,
+        blocks,
+    })
+}
+
+/// So many blocks that cannot be read are told.
+const MOST_UNREAD: usize = 50;
+
+fn offsets_of(reading: &Reading<'_>, tools: &[ClTool]) -> Offsets {
+    offsets(reading.arguments, reading.machine, tools)
+}
+
+/// The texts of the lines that faults name.
+fn lines_of(
+    input: &mut (impl Read + Seek),
+    faults: &[Fault],
+) -> std::io::Result<Vec<(u64, String)>> {
+    let mut wanted: Vec<u64> = faults.iter().filter_map(|fault| fault.nc_line).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    let Some(last) = wanted.last().copied() else {
+        return Ok(Vec::new());
+    };
+    input.seek(SeekFrom::Start(0))?;
+    let mut input = BufReader::new(input);
+    let mut texts = Vec::new();
+    let mut bytes = Vec::new();
+    for line in 1..=last {
+        bytes.clear();
+        if input.read_until(b'\n', &mut bytes)? == 0 {
+            break;
+        }
+        if wanted.binary_search(&line).is_ok() {
+            let text = String::from_utf8_lossy(&bytes);
+            texts.push((line, text.trim_end().to_owned()));
+        }
+    }
+    Ok(texts)
+}

@@ -1,0 +1,172 @@
+//! `post verify`: an NC program held against the CL file that it was made from.
+
+mod verify_text;
+
+use clap::Args;
+use post_machine::diagnostic::Severity;
+use post_readback::interpret::Limits;
+
+use crate::arguments::JobArguments;
+use crate::arguments::flag_values::positive;
+use crate::failure::Failure;
+use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
+use crate::job::read_back::{self, Reading};
+use crate::job::{self, plugin_finder};
+use crate::terminal;
+
+/// Holds an NC program against a CL file: does the machine do what was asked?
+///
+/// Each block is run as the control runs it, and the chain of the machine says where the tool goes. The program keeps to
+/// the CL file if tip and tool axis can be gone along together with its path, in order and never back, within the
+/// tolerance. Between the cuts rapids pass the points of the CL file; tool, spindle, coolant, feed, dwells and stops are
+/// those that it asks for; no axis leaves its travel or passes its largest feed.
+///
+/// What `post` was told for the job must be told here too (--mount, --tool-length, --units, …).
+#[derive(Debug, Args)]
+#[command(
+    mut_arg("input", |argument| {
+        argument
+            .index(None)
+            .long("against")
+            .help("The CL file, `-` for standard input")
+    }),
+    after_help = "Examples:
+  post verify part.nc --machine dmu50 --against part.cls
+  post verify part.nc -m ac-trunnion --against part.cls --tool-length 120 --map map.json
+  post verify part.nc -m my-mill.toml --against part.cls --tolerance 0.01 --summary -
+
+Exit codes: 0 the program does what the CL file asks for; 1 it does not, the messages say where, or something could not be
+read; 2 the command line is wrong."
+)]
+pub struct VerifyArguments {
+    /// The NC program.
+    #[arg(value_name = "NC-FILE", required = true)]
+    program: Option<std::path::PathBuf>,
+
+    #[command(flatten)]
+    job: JobArguments,
+
+    /// Largest deviation of the tool axis in a cut, degrees, over the machine file's.
+    #[arg(long, value_name = "DEG", value_parser = positive, help_heading = "Machine")]
+    axis_tolerance: Option<f64>,
+
+    /// Writes a table as JSON: of each line of the program the line of the CL file that asks for it, the solution of the
+    /// machine, the deviation, and what makes it slower than asked; `-` is standard output.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    map: Option<PathArg>,
+
+    /// Writes what was found as JSON for programs to read; `-` is standard output.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    summary: Option<PathArg>,
+
+    /// Blocks that are run at most, those of loops and subprograms each time.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().blocks)]
+    most_blocks: u64,
+
+    /// No table, messages alone.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+const MAP: Role = Role {
+    what: "map",
+    remedy: "name another file with --map",
+};
+
+const SUMMARY: Role = Role {
+    what: "summary",
+    remedy: "name another file with --summary",
+};
+
+/// Verifies as the arguments say.
+pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
+    let machine = job::machine(&arguments.job, &[])?;
+    let finder = plugin_finder::finder(&arguments.job.plugins)?;
+    job::say_what_is_left(&arguments.job, &machine, &finder);
+    let named = arguments.program.clone().unwrap_or_default();
+    let (name, program) = files::open_program(&named)?;
+    let mut source = ClSource::new(arguments.job.input(), true)?;
+    let mut targets: Vec<(Role, &PathArg)> = Vec::new();
+    targets.extend(arguments.map.iter().map(|map| (MAP, map)));
+    targets.extend(arguments.summary.iter().map(|summary| (SUMMARY, summary)));
+    let mut texts = AtomicFile::create(&targets)?;
+    let reading = Reading {
+        arguments: &arguments.job,
+        machine: &machine,
+        finder: &finder,
+        offsets: None,
+        limits: Limits {
+            blocks: arguments.most_blocks,
+            ..Limits::default()
+        },
+        tolerances: [None, arguments.axis_tolerance.map(f64::to_radians)],
+    };
+    let mut map = arguments.map.as_ref().map(|_| Map::default());
+    let held = {
+        let file = map.is_some().then(|| &mut texts[0]);
+        let mut file = file;
+        read_back::verify(&reading, &mut source, &name, program, &mut |row| {
+            if let (Some(map), Some(file)) = (&mut map, &mut file) {
+                map.row(row, file);
+            }
+        })?
+    };
+    if let Some(map) = map {
+        map.end(&mut texts[0])?;
+    }
+    if arguments.summary.is_some()
+        && let Some(file) = texts.last_mut()
+    {
+        file.write_bytes(files::json(&held.found).as_bytes())?;
+    }
+    let taken = texts.iter().any(AtomicFile::is_standard);
+    AtomicFile::finish(texts)?;
+    if !arguments.quiet {
+        let text = verify_text::text(&held, &machine, &name, reading.tolerances);
+        if taken {
+            terminal::tell(&text);
+        } else {
+            terminal::print(&text);
+        }
+    }
+    let wrong =
+        |finding: &post_machine::diagnostic::Diagnostic| finding.severity == Severity::Error;
+    if held.findings.iter().any(wrong) {
+        return Err(held.findings.into());
+    }
+    terminal::findings(&held.findings);
+    Ok(())
+}
+
+/// The table of lines, written as it comes.
+#[derive(Default)]
+struct Map {
+    rows: u64,
+    /// The first fault of writing it.
+    fault: Option<files::FileFault>,
+}
+
+impl Map {
+    fn row(&mut self, row: &post_readback::verify::BlockReport, file: &mut AtomicFile) {
+        let lead = match self.rows {
+            0 => "[\n",
+            _ => ",\n",
+        };
+        self.rows += 1;
+        let text = format!("{lead}{}", files::json_line(row));
+        if self.fault.is_none() {
+            self.fault = file.write_bytes(text.as_bytes()).err();
+        }
+    }
+
+    fn end(self, file: &mut AtomicFile) -> Result<(), Failure> {
+        if let Some(fault) = self.fault {
+            return Err(fault.into());
+        }
+        let end: &[u8] = match self.rows {
+            0 => b"[]\n",
+            _ => b"\n]\n",
+        };
+        Ok(file.write_bytes(end)?)
+    }
+}

@@ -1,15 +1,16 @@
 //! A program of a machine's control held against a CL file, for whoever asks.
 
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::ops::Range;
 
 use post_host::Finder;
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::{Meaning, VocabularyWord};
 use post_posting::program::ToldSpindle;
 use post_readback::Offsets;
-use post_readback::course::CourseFacts;
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
+use post_readback::course::{CourseFacts, Window};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
 use post_readback::verify::{BlockReport, Fault, Registers, Rules, Verification, Verifier};
@@ -35,6 +36,8 @@ pub struct Reading<'a> {
     pub limits: Limits,
     /// Largest deviations that are other than the machine file's: mm, radians.
     pub tolerances: [Option<f64>; 2],
+    /// Lines of the CL file that the program is made of; none: all.
+    pub lines: Option<Range<u64>>,
 }
 
 /// What came of it.
@@ -46,6 +49,14 @@ pub struct Held {
     pub findings: Vec<Diagnostic>,
     /// Blocks that were run.
     pub blocks: u64,
+}
+
+impl Held {
+    /// The program does not do what it should, or that is not known.
+    pub fn is_wrong(&self) -> bool {
+        let mut findings = self.findings.iter();
+        findings.any(|finding| finding.severity == Severity::Error)
+    }
 }
 
 /// The words of a machine's control, as its dialect hands them over.
@@ -170,11 +181,9 @@ pub fn verify<R: Read + Seek>(
             .collect(),
         ..standard
     };
-    let mut verifier = Verifier::new(
-        machine,
-        rules,
-        ClCourse::new(settings, source.open()?.bytes),
-    );
+    let course = ClCourse::new(settings, source.open()?.bytes);
+    let course = Window::new(course, reading.lines.clone());
+    let mut verifier = Verifier::new(machine, rules, course);
     let unreadable = |error| FileFault::Read {
         name: name.to_owned(),
         error,

@@ -205,7 +205,8 @@ impl Motion {
         while (count as f64) < MOST_PIECES {
             let at = |place: u64| way.at(place as f64 / (4 * count) as f64);
             let strays = (0..count).any(|piece| {
-                let [first, a, b, c, last] = std::array::from_fn(|part| at(4 * piece + part as u64));
+                let [first, a, b, c, last] =
+                    std::array::from_fn(|part| at(4 * piece + part as u64));
                 [(a, 0.25), (b, 0.5), (c, 0.75)]
                     .iter()
                     .any(|(point, share)| (first + (last - first) * *share - point).norm() > chord)

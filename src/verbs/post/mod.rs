@@ -13,10 +13,14 @@ use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::DialectSession;
 use post_posting::report::Report;
 use post_posting::{Job, JobFacts, LookedAhead, Post};
+use post_readback::interpret::Limits;
+use post_readback::verify::Verification;
+use serde::Serialize;
 
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
+use crate::job::read_back::{self, Held, Reading};
 use crate::job::{self, plugin_finder};
 use crate::terminal;
 use parts::Split;
@@ -57,6 +61,11 @@ pub struct PostArguments {
     /// control.DIALECT.program_number=…
     #[arg(long, value_name = "N")]
     number: Option<u32>,
+
+    /// Reads each program back before it takes its name, runs it as the control does and holds it against the CL file
+    /// (`post verify`): what strays from it is not written.
+    #[arg(long)]
+    verify: bool,
 
     /// No summary, warnings and errors alone.
     #[arg(short, long)]
@@ -109,6 +118,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     // All are opened before the work begins: a program without its summary would be half a result.
     let mut files = AtomicFile::create(&targets)?;
     let mut reports = Vec::new();
+    let mut verifications = Vec::new();
     let mut findings = Vec::new();
     for (part, file) in parts.iter().zip(&mut files) {
         let (report, found) = post(arguments, part, &finder, ahead.as_ref(), &mut source, file)?;
@@ -122,12 +132,28 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             Some(report) => reports.push(report),
             None => return Err(findings.into()),
         }
+        if arguments.verify {
+            let held = read_back(arguments, part, &finder, &mut source, file)?;
+            if held.is_wrong() {
+                findings.extend(held.findings);
+                return Err(findings.into());
+            }
+            verifications.push(held.found);
+        }
     }
     let mut others = files[parts.len()..].iter_mut();
     if let (Some(_), Some(file)) = (&arguments.summary, others.next()) {
-        let json = match (arguments.split, reports.as_slice()) {
-            (None, [report]) => files::json(report),
-            (_, reports) => files::json(&reports),
+        let told: Vec<Told<'_>> = reports
+            .iter()
+            .enumerate()
+            .map(|(index, report)| Told {
+                report,
+                verification: verifications.get(index),
+            })
+            .collect();
+        let json = match (arguments.split, told.as_slice()) {
+            (None, [told]) => files::json(told),
+            (_, told) => files::json(&told),
         };
         file.write_bytes(json.as_bytes())?;
     }
@@ -162,8 +188,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         let name = name.map_or("standard input".to_owned(), |path| {
             path.display().to_string()
         });
-        for (part, report) in parts.iter().zip(&reports) {
-            let text = summary::text(report, &name, &part.target);
+        for (index, (part, report)) in parts.iter().zip(&reports).enumerate() {
+            let text = summary::text(report, verifications.get(index), &name, &part.target);
             if taken {
                 terminal::tell(&text);
             } else {
@@ -285,6 +311,38 @@ fn post(
         report.plugins = vec![dialect_use, model_use];
     }
     Ok((report, findings))
+}
+
+/// Reads a program back from the disk and holds it against the CL file.
+fn read_back(
+    arguments: &PostArguments,
+    part: &Part,
+    finder: &Finder,
+    source: &mut ClSource,
+    file: &mut AtomicFile,
+) -> Result<Held, Failure> {
+    let reading = Reading {
+        arguments: &arguments.job,
+        machine: &part.machine,
+        finder,
+        offsets: None,
+        limits: Limits::default(),
+        tolerances: [None, None],
+        lines: part.lines.clone(),
+    };
+    let name = file.name().to_owned();
+    let text = file.reread()?;
+    read_back::verify(&reading, source, &name, text, &mut |_| {})
+}
+
+/// What the summary tells as JSON.
+#[derive(Serialize)]
+struct Told<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    /// What reading the program back has found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verification: Option<&'a Verification>,
 }
 
 /// Where the program goes.

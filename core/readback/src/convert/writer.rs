@@ -120,7 +120,12 @@ impl ClWriter {
     ///
     /// # Errors
     /// What no record can ask for.
-    pub fn item(&mut self, item: &Item, tool: Tool, out: &mut String) -> Result<(), Box<Diagnostic>> {
+    pub fn item(
+        &mut self,
+        item: &Item,
+        tool: Tool,
+        out: &mut String,
+    ) -> Result<(), Box<Diagnostic>> {
         if self.ended {
             return Ok(());
         }
@@ -280,7 +285,10 @@ impl ClWriter {
         }
         self.end_cycle(out);
         let _ = write!(out, "LOADTL/{number}");
-        if let Some(register) = tool.register.filter(|register| *register != number && *register > 0) {
+        if let Some(register) = tool
+            .register
+            .filter(|register| *register != number && *register > 0)
+        {
             let _ = write!(out, ",ADJUST,{register}");
         }
         if let Some(length) = tool.length {
@@ -303,7 +311,8 @@ impl ClWriter {
                 self.stands = None;
             }
             None => {
-                let message = format!("{name} is not carried over: it has no number among work offsets");
+                let message =
+                    format!("{name} is not carried over: it has no number among work offsets");
                 self.notes.push(Diagnostic::warning("convert", message));
             }
         }
@@ -331,7 +340,8 @@ impl ClWriter {
         }
         self.end_cycle(out);
         if piece.kind == MotionKind::Thread {
-            let message = "a thread that is no cycle's: no record of a CL file ties a feed to the spindle";
+            let message =
+                "a thread that is no cycle's: no record of a CL file ties a feed to the spindle";
             return Err(Diagnostic::error("convert", message).boxed());
         }
         let feed = piece.feed;
@@ -422,9 +432,11 @@ impl ClWriter {
             let strays = (0..count).any(|place| {
                 let [first, a, b, c, last] =
                     std::array::from_fn(|part| at(4 * place + part as u32, 4 * count).tip);
-                [(a, 0.25), (b, 0.5), (c, 0.75)].iter().any(|(point, share)| {
-                    (first + (last - first) * *share - point).norm() > self.chord
-                })
+                [(a, 0.25), (b, 0.5), (c, 0.75)]
+                    .iter()
+                    .any(|(point, share)| {
+                        (first + (last - first) * *share - point).norm() > self.chord
+                    })
             });
             if !strays {
                 break;
@@ -495,8 +507,9 @@ impl ClWriter {
         let clearance = call.clearance.max(0.0);
         let depth = call.depth - clearance;
         let level = (height(&up) - depth).max(clearance);
-        let definition = definition(&call, depth, clearance, level)
-            .map_err(|message| Diagnostic::error("convert", format!("line {line}: {message}")).boxed())?;
+        let definition = definition(&call, depth, clearance, level).map_err(|message| {
+            Diagnostic::error("convert", format!("line {line}: {message}")).boxed()
+        })?;
         if self.cycle.as_ref() != Some(&definition) {
             out.push_str(&definition);
             self.cycle = Some(definition);
@@ -537,7 +550,9 @@ fn definition(
         CycleKind::Tap | CycleKind::TapLeft => "TAP",
         CycleKind::Ream => "REAM",
         CycleKind::Bore => "BORE,DRAG",
-        CycleKind::BoreFine => return Err("fine boring: how far the tool goes off the wall is not known"),
+        CycleKind::BoreFine => {
+            return Err("fine boring: how far the tool goes off the wall is not known");
+        }
         CycleKind::BoreBack => return Err("boring from behind has no cycle in a CL file"),
     };
     let mut out = format!("CYCLE/{kind},FEDTO,");
@@ -599,7 +614,9 @@ fn spindle_record(spindle: Spindle, out: &mut String) {
 fn is_nurbs(way: &SplineWay) -> bool {
     let [first, last] = way.range();
     let clamped = way.knots[..4].iter().all(|knot| *knot == first)
-        && way.knots[way.poles.len()..].iter().all(|knot| *knot == last);
+        && way.knots[way.poles.len()..]
+            .iter()
+            .all(|knot| *knot == last);
     let inner = &way.knots[4..way.poles.len()];
     let rises = inner.windows(3).all(|three| three[0] < three[2])
         && inner.iter().all(|knot| first < *knot && *knot < last);

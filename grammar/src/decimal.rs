@@ -39,6 +39,44 @@ fn near_the_end(text: &[u8]) -> Option<(f64, usize)> {
 /// exponent, and not at the very end of the text: without a loop, and without a branch on its sign and length.
 #[inline(always)]
 pub(crate) fn short_number(text: &[u8], at: usize) -> Option<(f64, usize)> {
+    let short = short(text, at)?;
+    (!is_exponent(text[short.end])).then_some((short.value, short.end))
+}
+
+/// A number without an exponent: what stands behind it is no concern of its.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Decimal {
+    pub(crate) value: f64,
+    /// It has a decimal point.
+    pub(crate) point: bool,
+    /// Where it ends.
+    pub(crate) end: usize,
+}
+
+/// The number at `at` of up to 19 digits, with or without a sign; none if there is none, or if it is longer.
+#[inline(always)]
+pub(crate) fn decimal(text: &[u8], at: usize) -> Option<Decimal> {
+    match short(text, at) {
+        Some(short) => Some(short),
+        None => long_decimal(text, at),
+    }
+}
+
+/// As [`decimal`], for a number that is long, near the end of the text, or has a `+`.
+#[inline(never)]
+fn long_decimal(text: &[u8], at: usize) -> Option<Decimal> {
+    let rest = text.get(at..)?;
+    let mantissa = mantissa(rest)?;
+    Some(Decimal {
+        value: mantissa.exact(rest)?,
+        point: mantissa.decimals.is_some(),
+        end: at + mantissa.end,
+    })
+}
+
+/// As [`decimal`], without the long ones.
+#[inline(always)]
+fn short(text: &[u8], at: usize) -> Option<Decimal> {
     let window: &[u8; 17] = text.get(at..at + 17)?.try_into().ok()?;
     let negative = window[0] == b'-';
     let begin = usize::from(negative);
@@ -50,14 +88,15 @@ pub(crate) fn short_number(text: &[u8], at: usize) -> Option<(f64, usize)> {
     if others == 0 {
         return None;
     }
-    let point = others.trailing_zeros() & 0x38;
-    let digits = (point / 8) as usize;
-    let mut mantissa = value(low << 8 << (56 - point));
+    let before = others.trailing_zeros() & 0x38;
+    let digits = (before / 8) as usize;
+    let mut mantissa = value(low << 8 << (56 - before));
     let mut decimals = 0;
     let mut length = digits;
-    if window[begin + digits] == b'.' {
+    let point = window[begin + digits] == b'.';
+    if point {
         // The eight characters behind the point.
-        let fraction = (low >> 8 >> point) | (high << (56 - point));
+        let fraction = (low >> 8 >> before) | (high << (56 - before));
         let others = self::others(fraction);
         if others == 0 {
             return None;
@@ -67,35 +106,69 @@ pub(crate) fn short_number(text: &[u8], at: usize) -> Option<(f64, usize)> {
         mantissa = mantissa * SHIFTS[decimals] + value(fraction << 8 << (56 - end));
         length += 1 + decimals;
     }
-    if digits + decimals == 0 || is_exponent(window[begin + length]) {
+    if digits + decimals == 0 {
         return None;
     }
     let value = mantissa as i64 as f64 / POWERS[decimals];
     let sign = u64::from(negative) << 63;
-    Some((f64::from_bits(value.to_bits() | sign), at + begin + length))
+    Some(Decimal {
+        value: f64::from_bits(value.to_bits() | sign),
+        point,
+        end: at + begin + length,
+    })
 }
 
 /// The number at the start of `text`, of any length, and its length.
 fn general(text: &[u8]) -> Option<(f64, usize)> {
+    let mantissa = mantissa(text)?;
+    let exponent = text
+        .get(mantissa.end)
+        .is_some_and(|&byte| is_exponent(byte));
+    match mantissa.exact(text) {
+        Some(value) if !exponent => Some((value, mantissa.end)),
+        _ => long(text, mantissa.end),
+    }
+}
+
+/// A number without its exponent.
+struct Mantissa {
+    /// Its digits as one number, if there are no more than [`MOST_DIGITS`].
+    digits: u64,
+    count: usize,
+    /// Those behind the point; none if there is no point.
+    decimals: Option<usize>,
+    end: usize,
+}
+
+/// The digits at the start of `text`, with or without a sign; none if there are none.
+fn mantissa(text: &[u8]) -> Option<Mantissa> {
     let begin = usize::from(matches!(text.first(), Some(b'-' | b'+')));
-    let (mut mantissa, mut end) = digits(text, begin, 0);
+    let (mut value, mut end) = digits(text, begin, 0);
     let mut count = end - begin;
-    let mut decimals = 0;
+    let mut decimals = None;
     if text.get(end) == Some(&b'.') {
         let point = end;
-        (mantissa, end) = digits(text, point + 1, mantissa);
-        decimals = end - point - 1;
-        count += decimals;
+        (value, end) = digits(text, point + 1, value);
+        decimals = Some(end - point - 1);
+        count += end - point - 1;
     }
-    if count == 0 {
-        return None;
+    (count > 0).then_some(Mantissa {
+        digits: value,
+        count,
+        decimals,
+        end,
+    })
+}
+
+impl Mantissa {
+    /// Its value, which the number in `text` begins with, where a double holds its digits exactly.
+    fn exact(&self, text: &[u8]) -> Option<f64> {
+        if self.count > MOST_DIGITS || self.digits >= 1 << 53 {
+            return None;
+        }
+        let value = self.digits as f64 / POWERS[self.decimals.unwrap_or_default()];
+        Some(if text[0] == b'-' { -value } else { value })
     }
-    let exponent = text.get(end).is_some_and(|&byte| is_exponent(byte));
-    if exponent || count > MOST_DIGITS || mantissa >= 1 << 53 {
-        return long(text, end);
-    }
-    let value = mantissa as f64 / POWERS[decimals];
-    Some((if text[0] == b'-' { -value } else { value }, end))
 }
 
 /// A number whose mantissa ends at `end`, by `str::parse`.

@@ -163,3 +163,58 @@ impl JobArguments {
         settings
     }
 }
+
+/// An NC program that is read back, and the machine that runs it.
+#[derive(Debug, Args)]
+pub struct ProgramArguments {
+    /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
+    #[arg(short, long, value_name = "MACHINE")]
+    pub machine: String,
+
+    /// Lengths of tools, work offsets and reference positions as the control's tables have them, a TOML file:
+    /// [work.G54] with X, Y, Z (mm from where `mount` of the machine file has the part) and what rotary axes show there
+    /// (degrees); [length] and [radius] by register, [tool] by tool number (mm); [reference.1] for G28, [reference.2]
+    /// for G30 (machine coordinates).
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "Reading")]
+    pub offsets: Option<PathArg>,
+
+    /// So many blocks are run, those of loops and subprograms each time; more are refused.
+    #[arg(long, value_name = "N", default_value_t = 100_000_000, value_parser = clap::value_parser!(u64).range(1..), help_heading = "Reading")]
+    pub most_blocks: u64,
+
+    /// Length of every tool that --offsets does not name, from the gauge point to the tip, mm, over what the machine file
+    /// says.
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = length, help_heading = "Machine")]
+    pub tool_length: Option<f64>,
+
+    /// Where the part origin sits for this job, all axes at zero, machine frame, mm.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point, help_heading = "Machine")]
+    pub mount: Option<[f64; 3]>,
+
+    /// Sets a parameter of the machine (`Lm=312`) or any key (`control.tcp="post"`).
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "Machine")]
+    pub set: Vec<Setting>,
+
+    /// Reads another dialect than the machine file names; short for --set control.dialect=… (`post plugin list`).
+    #[arg(long, value_name = "NAME", help_heading = "Machine")]
+    pub dialect: Option<String>,
+
+    /// A further folder of machine files; the environment variable POST_MACHINES adds more.
+    #[arg(long, value_name = "FOLDER", help_heading = "Machine")]
+    pub machines: Vec<PathBuf>,
+
+    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs
+    /// its code, so no folder is looked into that is not named here.
+    #[arg(long, value_name = "FOLDER", help_heading = "Plugins")]
+    pub plugins: Vec<PathBuf>,
+}
+
+impl ProgramArguments {
+    /// What the flags set over the machine file: `--set` first, then the short ones, which win.
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut settings = self.set.clone();
+        settings.extend(self.mount.map(Setting::Mount));
+        settings.extend(self.dialect.clone().map(Setting::Dialect));
+        settings
+    }
+}

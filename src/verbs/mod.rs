@@ -9,6 +9,7 @@ mod place;
 mod plugin;
 mod post;
 mod print_schema;
+mod read;
 mod study;
 mod verify;
 
@@ -27,6 +28,7 @@ use place::PlaceArguments;
 use plugin::PluginArguments;
 use post::PostArguments;
 use print_schema::SchemaArguments;
+use read::ReadArguments;
 use study::StudyArguments;
 use verify::VerifyArguments;
 
@@ -50,6 +52,7 @@ use verify::VerifyArguments;
   post check my-mill.toml --svg reach.svg
   post study part.cls --machine ac-trunnion
   post place part.cls --machine dmu50 --svg travel.svg
+  post read part.nc --machine ac-trunnion --csv motions.csv
   post verify part.nc --machine dmu50 --against part.cls --map map.json
   post plugin show fanuc
   post plugin new mine --iso
@@ -78,6 +81,7 @@ enum Verb {
     Place(Box<PlaceArguments>),
     Verify(Box<VerifyArguments>),
     Plugin(PluginArguments),
+    Read(Box<ReadArguments>),
 }
 
 impl CommandLine {
@@ -94,6 +98,7 @@ impl CommandLine {
             Some(Verb::Place(arguments)) => place::run(&arguments),
             Some(Verb::Verify(arguments)) => verify::run(&arguments),
             Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
+            Some(Verb::Read(arguments)) => read::run(&arguments),
         }
     }
 }

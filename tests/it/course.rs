@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 use post_grammar::{ReadError, Reader, Units};
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 use post_posting::program::{Command, Interpreter, Leg, Pace, Reading, Step, ToldSpindle};
+use post_readback::convert::{ClWriter, Tool};
 use post_readback::course::cl::{ClCourse, Settings};
 use post_readback::course::{Course, Curve, Item, Piece};
 use post_readback::{MotionKind, Told};
@@ -222,9 +223,9 @@ fn said(command: Command) -> Option<String> {
     })
 }
 
-/// As reading back takes it, with what it refuses.
-fn course(text: &[u8], how: &How) -> (Vec<Beat>, Vec<String>) {
-    let settings = Settings {
+/// How reading back takes a file.
+fn settings(how: &How) -> Settings {
+    Settings {
         file: "part.cls".to_owned(),
         units: how.units,
         apply_msys: how.apply_msys,
@@ -234,8 +235,12 @@ fn course(text: &[u8], how: &How) -> (Vec<Beat>, Vec<String>) {
         feed: how.feed,
         spindle: how.spindle,
         ..Settings::default()
-    };
-    let mut course = ClCourse::new(settings, Cursor::new(text));
+    }
+}
+
+/// As reading back takes it, with what it refuses.
+fn course(text: &[u8], how: &How) -> (Vec<Beat>, Vec<String>) {
+    let mut course = ClCourse::new(settings(how), Cursor::new(text));
     let (mut beats, mut faults) = (Vec::new(), Vec::new());
     loop {
         match course.next() {
@@ -639,5 +644,93 @@ fn counts_and_extents_are_those_of_the_files() {
                 "{name} {most:?}"
             );
         }
+    }
+}
+
+/// The CL file that is written from the course of another.
+fn written_anew(text: &[u8], how: &How) -> String {
+    let mut first = ClCourse::new(settings(how), Cursor::new(text));
+    while first.next().map_or(true, |item| item.is_some()) {}
+    let tools = first.tools().to_vec();
+    let mut course = ClCourse::new(settings(how), Cursor::new(text));
+    let mut writer = ClWriter::new(0.0005);
+    let mut out = String::new();
+    writer.begin("anew", &mut out);
+    let mut tool = Tool::default();
+    loop {
+        match course.next() {
+            Ok(Some(item)) => {
+                if let Item::Told {
+                    told: Told::ToolChange { number, .. },
+                    ..
+                } = &item
+                {
+                    let known = tools.iter().find(|known| Some(known.number) == *number);
+                    tool = known.map_or(Tool::default(), |known| Tool {
+                        register: Some(known.register),
+                        length: known.length,
+                    });
+                }
+                writer.item(&item, tool, &mut out).unwrap();
+            }
+            Ok(None) => break,
+            Err(_) => {}
+        }
+    }
+    writer.end(&mut out);
+    out
+}
+
+#[test]
+fn what_is_written_from_a_course_reads_back_as_it() {
+    let hows = [
+        How::default(),
+        How {
+            units: Some(Units::Inch),
+            apply_msys: true,
+            tool: Some(7),
+            turn: 0.3,
+            feed: Some(321.0),
+            ..How::default()
+        },
+    ];
+    let mut differences = Vec::new();
+    for path in files() {
+        let text = fs::read(&path).unwrap();
+        for (place, how) in hows.iter().enumerate() {
+            let (theirs, _) = course(&text, how);
+            let anew = written_anew(&text, how);
+            let (ours, faults) = course(anew.as_bytes(), &How::default());
+            assert_eq!(faults, Vec::<String>::new(), "{path:?}");
+            let at_home =
+                |beats: Vec<Beat>| -> Vec<Beat> { beats.into_iter().map(without_line).collect() };
+            if let Some(difference) = difference(&at_home(ours), &at_home(theirs)) {
+                let name = path.file_name().unwrap().to_string_lossy().into_owned();
+                differences.push(format!("{name} {place}: {difference}"));
+            }
+        }
+    }
+    assert!(differences.is_empty(), "{}", differences.join("\n"));
+}
+
+/// Lines are others in another file.
+fn without_line(beat: Beat) -> Beat {
+    match beat {
+        Beat::To {
+            rapid,
+            feed,
+            tip,
+            axis,
+            edge,
+            ..
+        } => Beat::To {
+            line: 0,
+            rapid,
+            feed,
+            tip,
+            axis,
+            edge,
+        },
+        other => other,
     }
 }

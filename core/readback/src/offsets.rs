@@ -1,5 +1,7 @@
 //! What stands in the control and not in the program: work offsets and tool lengths.
 
+mod file;
+
 use post_machine::kinematics::Joints;
 
 /// What stands in the control's tables.

@@ -8,9 +8,9 @@ use std::io::{Read, Seek};
 
 use super::block::{NcBlock, NcFlow, NcItem, NcSyntax, Notation};
 use super::fault::Unreadable;
-use super::lines::{Lines, NcMark, Physical};
+use super::lines::{Lines, NcMark, Physical, line_end};
 use super::search::Found;
-use super::{conversational, remarks, words};
+use super::{conversational, remarks, scan, words};
 use crate::fault::{ReadError, SyntaxFault};
 
 /// Longest block, in bytes of the file, lines that continue it counted: no control takes a longer one.
@@ -101,6 +101,14 @@ impl<R: Read + Seek> NcReader<R> {
         if !self.opened {
             self.open()?;
         }
+        block.line = self.lines.line();
+        if let Some(length) = self.plain(block) {
+            self.lines.pass(length);
+            self.began = true;
+            self.behind_percent = false;
+            return Ok(true);
+        }
+        block.clear();
         while let Some(physical) = self.lines.physical()? {
             block.line = self.lines.line();
             let line = self.lines.text(&physical);
@@ -133,6 +141,18 @@ impl<R: Read + Seek> NcReader<R> {
             return Ok(true);
         }
         Ok(false)
+    }
+
+    /// Reads a block of words and numbers; gives the length of its line. None if it is anything else, or if more of the
+    /// file must be read to know where it ends.
+    #[inline(always)]
+    fn plain(&self, block: &mut NcBlock) -> Option<usize> {
+        let pending = self.lines.pending();
+        let end = scan::plain(pending, self.syntax.notation, block)?;
+        if end > LONGEST {
+            return None;
+        }
+        line_end(&pending[end..], self.lines.ended()).map(|length| end + length)
     }
 
     /// Reads the block that begins with the line `first`, and goes behind it.
@@ -214,8 +234,7 @@ impl<R: Read + Seek> NcReader<R> {
                 }
                 program = Some(self.lines.mark());
             } else if listing.is_none() {
-                let line = line.to_vec();
-                listing = Some(!self.is_block(&line));
+                listing = Some(!self.is_block(line));
             }
             self.lines.consume(&physical)?;
         }
@@ -236,8 +255,7 @@ impl<R: Read + Seek> NcReader<R> {
                 return Ok(true);
             }
             if !listing && !is_blank(line) {
-                let line = line.to_vec();
-                if self.is_block(&line) {
+                if self.is_block(line) {
                     self.lines.go_to(behind)?;
                     return Ok(true);
                 }
@@ -250,23 +268,9 @@ impl<R: Read + Seek> NcReader<R> {
     }
 
     /// Whether a line can be a block, and is not just words of a text.
-    fn is_block(&mut self, line: &[u8]) -> bool {
+    fn is_block(&self, line: &[u8]) -> bool {
         let mut block = NcBlock::default();
-        let scratch = &mut self.scratch;
-        scratch.text.clear();
-        scratch.code.clear();
-        let read = scratch
-            .add(line, &self.syntax, &mut block)
-            .and_then(|()| check_depth(&scratch.code))
-            .and_then(|()| match self.syntax.notation {
-                Notation::Words => {
-                    let hash = self.syntax.hash_variables;
-                    words::parse(&scratch.code, &scratch.text, hash, &mut block)
-                }
-                Notation::Conversational => {
-                    conversational::parse(&scratch.code, &scratch.text, &mut block)
-                }
-            });
+        let read = Scratch::default().read(line, &self.syntax, &mut block);
         let names = |item: &NcItem| matches!(item, NcItem::Name(_));
         let prose =
             block.number.is_none() && block.items.len() > 1 && block.items.iter().all(names);
@@ -291,6 +295,27 @@ impl Scratch {
         remarks::take_out(&line, syntax, &mut self.code, &mut block.remarks)
     }
 
+    /// Reads the block in hand by its grammar.
+    fn parse(&self, syntax: &NcSyntax, block: &mut NcBlock) -> Result<(), Unreadable> {
+        let Self { text, code } = self;
+        check_depth(code)?;
+        match syntax.notation {
+            Notation::Words => words::parse(code, text, syntax.hash_variables, block),
+            Notation::Conversational => conversational::parse(code, text, block),
+        }
+    }
+
+    /// Reads a block of one line by its grammar.
+    fn read(
+        &mut self,
+        line: &[u8],
+        syntax: &NcSyntax,
+        block: &mut NcBlock,
+    ) -> Result<(), Unreadable> {
+        self.add(line, syntax, block)?;
+        self.parse(syntax, block)
+    }
+
     /// Takes off the `~` that joins the next line to this one; false if there is none. It may be the last character of
     /// the line's remark, if the block is more than a remark.
     fn joins(&mut self, block: &mut NcBlock) -> bool {
@@ -309,6 +334,20 @@ impl Scratch {
         }
         joined
     }
+}
+
+/// Reads a block of one line by the grammar alone, as [`NcReader`] does with all that is more than words and numbers.
+///
+/// # Errors
+/// What cannot be read in it.
+pub fn parse_block(line: &str, syntax: &NcSyntax) -> Result<NcBlock, SyntaxFault> {
+    let mut block = NcBlock {
+        line: 1,
+        ..NcBlock::default()
+    };
+    let read = Scratch::default().read(line.as_bytes(), syntax, &mut block);
+    read.map_err(|fault| fault.fault(line, 1))?;
+    Ok(block)
 }
 
 /// The text of a line. What is not UTF-8 is taken for Latin-1, which older systems write.

@@ -3,6 +3,7 @@
 mod chain;
 mod expression;
 mod files;
+mod nc;
 mod reader;
 mod statements;
 mod template;

@@ -18,6 +18,9 @@ const SAME_DIRECTION: f64 = 1e-12;
 /// Points nearer than this are one, mm.
 const SAME_POINT: f64 = 1e-9;
 
+/// Ends of an arc may differ by so much in their distance from its axis: readers take it as a spiral, up to 0.1 mm.
+const SPIRAL: f64 = 0.09;
+
 /// A change of the feed that is smaller is none: its share.
 const SAME_FEED: f64 = 1e-9;
 
@@ -59,7 +62,10 @@ pub struct ClWriter {
     hole: Option<(CycleCall, Option<Pose>)>,
     /// The definition in force.
     cycle: Option<String>,
+    /// An operation is open.
     operation: bool,
+    /// The operation that begins with the next record, which may name its tool.
+    begins: Option<String>,
     work_offset: Option<String>,
     /// Numbers of tools that have names alone, by the order in which they came.
     names: Vec<String>,
@@ -84,6 +90,7 @@ impl ClWriter {
             hole: None,
             cycle: None,
             operation: false,
+            begins: None,
             work_offset: None,
             names: Vec::new(),
             last_tool: None,
@@ -200,6 +207,7 @@ impl ClWriter {
             }
         }
         self.changes = false;
+        self.open_operation(None, out);
         if std::mem::take(&mut self.away) {
             self.end_cycle(out);
             out.push_str("GOHOME\n");
@@ -208,6 +216,9 @@ impl ClWriter {
     }
 
     fn told(&mut self, told: Told, tool: Tool, out: &mut String) {
+        if !matches!(told, Told::Operation(_) | Told::ToolChange { .. }) {
+            self.open_operation(None, out);
+        }
         match told {
             Told::ToolChange { number, name } => self.load(number, name, tool, out),
             Told::Preselect(number) => {
@@ -230,13 +241,7 @@ impl ClWriter {
             }
             Told::Stop => out.push_str("STOP\n"),
             Told::OptionalStop => out.push_str("OPSTOP\n"),
-            Told::Operation(name) => {
-                self.end_cycle(out);
-                self.end_operation(out);
-                let _ = writeln!(out, "TOOL PATH/{}", text::name(&name));
-                self.operation = true;
-                self.axis = Vector3::z();
-            }
+            Told::Operation(name) => self.begins = Some(name),
             Told::Remark(remark) | Told::Message(remark) => {
                 let remark = text::free(&remark);
                 if !remark.is_empty() {
@@ -268,6 +273,22 @@ impl ClWriter {
         }
     }
 
+    /// Begins the operation that waits, or one for a tool that has a name.
+    fn open_operation(&mut self, tool: Option<&str>, out: &mut String) {
+        let Some(name) = self.begins.take().or(tool.map(str::to_owned)) else {
+            return;
+        };
+        self.end_cycle(out);
+        self.end_operation(out);
+        let _ = write!(out, "TOOL PATH/{}", text::name(&name));
+        if let Some(tool) = tool {
+            let _ = write!(out, ",TOOL,{}", text::name(tool));
+        }
+        out.push('\n');
+        self.operation = true;
+        self.axis = Vector3::z();
+    }
+
     fn load(&mut self, number: Option<u32>, name: Option<String>, tool: Tool, out: &mut String) {
         let number = number.unwrap_or_else(|| {
             let name = name.clone().unwrap_or_default();
@@ -283,6 +304,7 @@ impl ClWriter {
         if self.last_tool.replace((number, tool)) == Some((number, tool)) {
             return;
         }
+        self.open_operation(name.as_deref().filter(|name| !name.is_empty()), out);
         self.end_cycle(out);
         let _ = write!(out, "LOADTL/{number}");
         if let Some(register) = tool
@@ -372,11 +394,11 @@ impl ClWriter {
             .is_some_and(|stands| (stands.tip - pose.tip).norm() < SAME_POINT)
     }
 
-    /// A `CIRCLE` says this arc: it starts where the tool stands, and both ends are equally far from its axis.
+    /// A `CIRCLE` says this arc: it starts where the tool stands, and both ends are equally far from its axis, or nearly.
     fn arc_fits(&self, piece: &Piece, centre: Vector3<f64>, normal: Vector3<f64>) -> bool {
         let radius = |tip: Vector3<f64>| normal.cross(&(tip - centre)).norm();
         let (from, to) = (radius(piece.from.tip), radius(piece.to.tip));
-        self.at(&piece.from) && libm::fabs(from - to) <= self.chord && from > SAME_POINT
+        self.at(&piece.from) && libm::fabs(from - to) <= SPIRAL && from > SAME_POINT
     }
 
     fn arc(
@@ -612,6 +634,9 @@ fn spindle_record(spindle: Spindle, out: &mut String) {
 
 /// NX's splines: cubic, clamped at both ends, all weights one, no knot more than twice.
 fn is_nurbs(way: &SplineWay) -> bool {
+    if way.degree != 3 || !way.is_sound() {
+        return false;
+    }
     let [first, last] = way.range();
     let clamped = way.knots[..4].iter().all(|knot| *knot == first)
         && way.knots[way.poles.len()..]
@@ -620,7 +645,7 @@ fn is_nurbs(way: &SplineWay) -> bool {
     let inner = &way.knots[4..way.poles.len()];
     let rises = inner.windows(3).all(|three| three[0] < three[2])
         && inner.iter().all(|knot| first < *knot && *knot < last);
-    way.degree == 3 && clamped && rises && way.poles.iter().all(|(_, weight)| *weight == 1.0)
+    clamped && rises && way.poles.iter().all(|(_, weight)| *weight == 1.0)
 }
 
 /// The number of a work offset: G54 is 1, G54.1 P1 is 7, a bare number itself.

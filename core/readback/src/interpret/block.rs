@@ -421,12 +421,13 @@ impl Control {
     /// The word swaps a head in.
     fn swap_head(&mut self, code: u16) -> Result<bool, Box<Diagnostic>> {
         let mut heads = self.heads.iter();
-        let head = heads.find(|(word, _)| word.as_deref().and_then(m_number) == Some(code));
-        let Some((_, machine)) = head else {
+        let head = heads.find(|head| head.word.as_deref().and_then(m_number) == Some(code));
+        let Some(head) = head else {
             return Ok(false);
         };
-        let machine = std::sync::Arc::clone(machine);
+        let (name, machine) = (head.name.clone(), std::sync::Arc::clone(&head.machine));
         self.head_changed(machine)?;
+        self.tell(Told::Head(name));
         Ok(true)
     }
 

@@ -12,7 +12,7 @@ use post_machine::tilted_plane::TiltedPlane;
 
 use super::ReadReport;
 use super::frame::{Frame, Frames};
-use super::state::{ArcPlane, Axes, Control, FeedMode, Modal, MotionMode, Orientation};
+use super::state::{ArcPlane, Axes, Control, FeedMode, Head, Modal, MotionMode, Orientation};
 use crate::lexicon::{Language, Lexicon};
 use crate::{Coolants, Done, Offsets, Spindle, State, Told};
 
@@ -70,7 +70,11 @@ impl Control {
         let solver = Arc::new(solver);
         let heads = machine.heads.iter();
         let heads = heads
-            .map(|head| (head.word.clone(), Arc::new(head.machine.clone())))
+            .map(|head| Head {
+                name: head.name.clone(),
+                word: head.word.clone(),
+                machine: Arc::new(head.machine.clone()),
+            })
             .collect();
         let mut control = Self {
             file: file.to_owned(),

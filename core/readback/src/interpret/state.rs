@@ -29,8 +29,8 @@ pub(super) struct Control {
     pub offsets: Offsets,
     /// The machine with the head that it has now.
     pub machine: Arc<Machine>,
-    /// Its heads: the line of the program that swaps each in, and the machine with it.
-    pub heads: Vec<(Option<String>, Arc<Machine>)>,
+    /// Its heads.
+    pub heads: Vec<Head>,
     /// Which word is which axis.
     pub axes: Axes,
     /// What is modal in its programs.
@@ -73,6 +73,17 @@ pub(super) struct Control {
     pub done: Vec<Done>,
     /// Solvers by length, so that none is made twice.
     pub(super) solvers: Vec<(f64, Arc<Solver>)>,
+}
+
+/// A head that a word swaps in.
+#[derive(Clone, Debug)]
+pub(super) struct Head {
+    /// Its name.
+    pub name: String,
+    /// The line of the program that swaps it in.
+    pub word: Option<String>,
+    /// The machine with it.
+    pub machine: Arc<Machine>,
 }
 
 /// Which word is which axis.

@@ -1,0 +1,133 @@
+//! An NC program that is read back: the machine that runs it, the words of its control, and what stands in its tables.
+
+use std::fs::File;
+use std::io::{self, Read as _, Seek, SeekFrom};
+
+use post_host::Finder;
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+use post_readback::Offsets;
+use post_readback::interpret::{Interpreter, Limits};
+use post_readback::lexicon::Lexicon;
+
+use super::{machine_files, plugin_finder, unused_options};
+use crate::arguments::ProgramArguments;
+use crate::failure::Failure;
+use crate::files::{FileFault, PathArg, read_files};
+
+/// Longest file of offsets that is read, bytes.
+const MOST_OFFSETS: u64 = 1 << 20;
+
+/// What is needed to run NC programs of a machine.
+#[derive(Debug)]
+pub struct NcControl {
+    /// The machine.
+    pub machine: Machine,
+    /// The words of its control.
+    pub lexicon: Lexicon,
+    /// What stands in its tables.
+    pub offsets: Offsets,
+    /// How far a program may go.
+    pub limits: Limits,
+}
+
+impl NcControl {
+    /// As the flags say.
+    pub fn new(arguments: &ProgramArguments) -> Result<Self, Failure> {
+        let machine = machine_files::load(
+            &arguments.machine,
+            &arguments.machines,
+            &arguments.settings(),
+        )?;
+        let finder = plugin_finder::finder(&arguments.plugins)?;
+        unused_options::warn(&machine, &finder);
+        let mut offsets = match &arguments.offsets {
+            Some(file) => offsets(file, &machine)?,
+            None => Offsets::default(),
+        };
+        offsets.length = arguments.tool_length;
+        Ok(Self {
+            lexicon: lexicon(&finder, &machine)?,
+            machine,
+            offsets,
+            limits: Limits {
+                blocks: arguments.most_blocks,
+                ..Limits::default()
+            },
+        })
+    }
+
+    /// The program `source`, ready to be run.
+    pub fn open(&self, source: &PathArg) -> Result<Interpreter<File>, Failure> {
+        let (name, file) = open(source)?;
+        let Self {
+            machine,
+            lexicon,
+            offsets,
+            limits,
+        } = self;
+        Interpreter::new(machine, lexicon, offsets, *limits, &name, file)
+            .map_err(|fault| Failure::from(*fault))
+    }
+}
+
+/// The words of a machine's control, as its dialect tells them.
+pub fn lexicon(finder: &Finder, machine: &Machine) -> Result<Lexicon, Failure> {
+    let (mut dialect, _) = plugin_finder::dialect(finder, machine, "READ", None)?;
+    let words = dialect
+        .vocabulary()
+        .map_err(|fault| Diagnostic::error("plugin", fault))?;
+    if words.is_empty() {
+        let message = format!(
+            "dialect {} tells no vocabulary, so that its programs cannot be read back",
+            machine.control.dialect
+        );
+        let help = "a dialect of your own tells it by `vocabulary` (plugins/README.md)";
+        return Err(Diagnostic::error("vocabulary", message).help(help).into());
+    }
+    Ok(Lexicon::new(&words))
+}
+
+/// The file of offsets.
+pub fn offsets(source: &PathArg, machine: &Machine) -> Result<Offsets, Failure> {
+    let (name, file) = open(source)?;
+    let mut text = String::new();
+    let read = file.take(MOST_OFFSETS + 1).read_to_string(&mut text);
+    read.map_err(|error| FileFault::Read {
+        name: name.clone(),
+        error,
+    })?;
+    Ok(Offsets::parse(&text, &name, machine)?)
+}
+
+/// Opens a file that can be gone back in: standard input and pipes are copied first.
+fn open(source: &PathArg) -> Result<(String, File), FileFault> {
+    let (Some(path), Some(named)) = (source.absolute(), source.path()) else {
+        let name = "standard input".to_owned();
+        let copied = copied(&mut io::stdin().lock());
+        return match copied {
+            Ok(file) => Ok((name, file)),
+            Err(error) => Err(FileFault::Read { name, error }),
+        };
+    };
+    let fault = |error| FileFault::read(named, error);
+    let mut file = File::open(path).map_err(fault)?;
+    let metadata = file.metadata().map_err(fault)?;
+    if metadata.is_dir() {
+        return Err(FileFault::ReadFolder(named.to_owned()));
+    }
+    let name = named.display().to_string();
+    if metadata.is_file() {
+        read_files::note("the NC program", path);
+        return Ok((name, file));
+    }
+    Ok((name, copied(&mut file).map_err(fault)?))
+}
+
+/// What `input` gives, in a file without a name.
+fn copied(input: &mut impl io::Read) -> io::Result<File> {
+    let mut file = tempfile::tempfile()?;
+    io::copy(input, &mut file)?;
+    file.seek(SeekFrom::Start(0))?;
+    Ok(file)
+}

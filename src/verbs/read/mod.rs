@@ -1,0 +1,128 @@
+//! `post read`: what an NC program makes its machine do.
+
+mod motions_csv;
+mod read_text;
+mod survey;
+
+use clap::Args;
+use post_machine::diagnostic::Diagnostic;
+
+use crate::arguments::ProgramArguments;
+use crate::failure::Failure;
+use crate::files::{AtomicFile, PathArg, Role};
+use crate::job::nc_program::NcControl;
+use crate::terminal;
+use motions_csv::MotionsCsv;
+use survey::Survey;
+
+/// So many refused blocks are told; reading ends with them.
+const MOST_REFUSED: usize = 50;
+
+/// Reads an NC program back: what it makes the machine do, block by block.
+///
+/// The words of the control come from its dialect, the axes from the machine file. A block that is not understood is
+/// refused by its line, never guessed; words that move nothing and that are not known are listed by name. What stands
+/// in the control and not in the program (work offsets, tool lengths, reference positions) is taken from --offsets, from
+/// --tool-length and [tools] of the machine file, and from where `mount` has the part: the work offsets are those with
+/// which the tip of the tool stands on the part origin.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  post read part.nc --machine ac-trunnion
+  post read part.h --machine dmu50 --offsets control.toml --csv motions.csv
+  post read part.ngc --machine xyzac-trt --dialect linuxcnc --tool-length 40 --csv - | head
+
+A file of offsets:
+  [work.G54]            # where the program's zero is against the part origin of the machine file, mm, along the
+  X = 10.0              # machine's linear axes; what a rotary axis shows there, degrees
+  C = 90.0
+  [work.\"G54.1 P3\"]
+  Z = -2.5
+  [length]              # by register (H), mm
+  1 = 120.0
+  [tool]                # by tool number, for controls that take the length from the tool's own table
+  1 = 120.0
+  [radius]              # by register (D), mm
+  1 = 5.0
+  [reference.1]         # where G28 leads, machine coordinates; [reference.2]: G30
+  Z = 500.0
+
+Exit codes: 0 read; 1 a block was refused, the messages say which and why; 2 the command line is wrong.")]
+pub struct ReadArguments {
+    #[command(flatten)]
+    program: ProgramArguments,
+
+    /// The NC program, `-` for standard input.
+    #[arg(value_name = "NC-FILE", value_parser = PathArg::parser())]
+    input: PathArg,
+
+    /// Writes every motion as a row: line, block, kind, way, the axes as the control shows them, tip (mm) and tool axis
+    /// in the part frame, feed (mm/min), minutes, tool, spindle (1/min), and whether the control keeps the tip; `-` is
+    /// standard output, alone there.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    csv: Option<PathArg>,
+}
+
+const MOTIONS: Role = Role {
+    what: "table of motions",
+    remedy: "name another file with --csv",
+};
+
+/// Does as the arguments say.
+pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
+    let control = NcControl::new(&arguments.program)?;
+    let mut program = control.open(&arguments.input)?;
+    let targets: Vec<(Role, &PathArg)> = arguments
+        .csv
+        .iter()
+        .map(|target| (MOTIONS, target))
+        .collect();
+    let mut files = AtomicFile::create(&targets)?;
+    let mut csv = files
+        .first_mut()
+        .map(|file| MotionsCsv::new(&control.machine, file));
+    let mut survey = Survey::new(&control.machine);
+    let mut refused: Vec<Diagnostic> = Vec::new();
+    let mut done = Vec::new();
+    loop {
+        done.clear();
+        let more = program.next(&mut done);
+        for what in &done {
+            survey.take(what);
+            if let Some(csv) = &mut csv {
+                csv.take(what)?;
+            }
+        }
+        match more {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(fault) => {
+                refused.push(*fault);
+                if refused.len() == MOST_REFUSED {
+                    let message = format!(
+                        "{MOST_REFUSED} blocks were refused; the rest of the program is not read"
+                    );
+                    refused.push(Diagnostic::error("nc-refused", message));
+                    break;
+                }
+            }
+        }
+    }
+    if let Some(csv) = csv {
+        csv.finish()?;
+    }
+    let taken = files.iter().any(AtomicFile::is_standard);
+    AtomicFile::finish(files)?;
+    let report = program.report();
+    terminal::findings(&report.notes);
+    let text = read_text::text(&control.machine, &survey, report, refused.len());
+    if taken {
+        terminal::tell(&text);
+    } else {
+        terminal::print(&text);
+    }
+    if refused.is_empty() {
+        Ok(())
+    } else {
+        Err(refused.into())
+    }
+}

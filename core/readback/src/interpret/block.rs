@@ -359,7 +359,11 @@ impl Control {
         }
     }
 
-    fn compensate(&mut self, side: i8, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn compensate(
+        &mut self,
+        side: i8,
+        words: &mut Gathered,
+    ) -> Result<(), Box<Diagnostic>> {
         let register = if side == 0 || self.lexicon.tools_have_edges() {
             None
         } else {
@@ -389,7 +393,7 @@ impl Control {
     }
 
     /// Takes an M code.
-    fn m_code(&mut self, code: u16, asked: &mut Asked) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn m_code(&mut self, code: u16, asked: &mut Asked) -> Result<(), Box<Diagnostic>> {
         if matches!(code, 67 | 68) && self.lexicon.language() == Language::Rs274 {
             let message = format!(
                 "M{code} is not run: its output may be wired to what switches the kinematics"
@@ -528,7 +532,7 @@ impl Control {
     }
 
     /// S changed while the spindle turns.
-    fn speed_changed(&mut self) {
+    pub(super) fn speed_changed(&mut self) {
         match self.state.spindle {
             Spindle::Clockwise(_) => self.turn_spindle(Turning::Clockwise),
             Spindle::CounterClockwise(_) => self.turn_spindle(Turning::CounterClockwise),
@@ -849,7 +853,7 @@ impl Control {
 
     /// What was not made use of: refused where it may change a motion, else counted by name.
     #[inline]
-    fn left_over(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn left_over(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
         let left = words.present & !words.used;
         if left == 0 {
             return Ok(());

@@ -2,6 +2,7 @@
 //! below, `job`, `files`, `terminal` and `arguments`.
 
 mod check;
+mod convert;
 mod list_machines;
 mod list_words;
 mod new;
@@ -21,6 +22,7 @@ use post_machine::diagnostic::nearest;
 
 use crate::failure::Failure;
 use check::CheckArguments;
+use convert::ConvertArguments;
 use list_machines::MachinesArguments;
 use list_words::WordsArguments;
 use new::NewArguments;
@@ -50,6 +52,7 @@ use verify::VerifyArguments;
   post words part.cls
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg
+  post convert part.h --from dmu50 --to ac-trunnion -o part.nc
   post study part.cls --machine ac-trunnion
   post place part.cls --machine dmu50 --svg travel.svg
   post read part.nc --machine ac-trunnion --csv motions.csv
@@ -76,6 +79,7 @@ enum Verb {
     Machines(MachinesArguments),
     Schema(SchemaArguments),
     Check(CheckArguments),
+    Convert(Box<ConvertArguments>),
     New(NewArguments),
     Study(Box<StudyArguments>),
     Place(Box<PlaceArguments>),
@@ -93,6 +97,7 @@ impl CommandLine {
             Some(Verb::Machines(arguments)) => list_machines::run(&arguments),
             Some(Verb::Schema(arguments)) => print_schema::run(&arguments),
             Some(Verb::Check(arguments)) => check::run(&arguments),
+            Some(Verb::Convert(arguments)) => convert::run(&arguments),
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),
             Some(Verb::Place(arguments)) => place::run(&arguments),

@@ -7,12 +7,12 @@ use post_grammar::nc::NcBlock;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::gathered::{Gathered, bit, which};
+use super::gathered::{Gathered, bit};
 use super::go::{Path, Target};
-use super::state::{ArcPlane, Control, FeedMode, MotionMode, Orientation};
+use super::state::{Control, FeedMode, MotionMode};
 use super::{cycles, frames, names, planes};
 use crate::lexicon::{Language, Sense};
-use crate::{MotionKind, Spindle, Told};
+use crate::{MotionKind, Told};
 
 /// What the words of one block ask for, besides what is modal.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,6 +39,8 @@ pub(super) struct Asked {
     pub work: Option<u16>,
     /// Length compensation on: ten times the number of its word, or 0 of a word without one.
     pub length_on: Option<u16>,
+    /// Length compensation by the length that the block names.
+    pub length_stated: bool,
     /// And off.
     pub length_off: bool,
     /// Tool centre point control on: ten times the number of its word, 0 of a word without G.
@@ -57,8 +59,8 @@ pub(super) struct Asked {
     pub coolant_off: bool,
     /// The program stops.
     pub stop: Option<Meaning>,
-    /// A thread or tap without a cycle: ten times the number.
-    pub thread: Option<u16>,
+    /// A thread or tap without a cycle: ten times the number of its word, and its meaning.
+    pub thread: Option<(u16, Meaning)>,
     /// A probing move.
     pub probe: bool,
     /// This block at rapid.
@@ -157,7 +159,7 @@ impl Control {
     }
 
     #[inline]
-    fn motion(&mut self, mode: MotionMode) {
+    pub(super) fn motion(&mut self, mode: MotionMode) {
         self.modal.motion = mode;
         if self.cycles.in_force() {
             cycles::end(self);
@@ -187,7 +189,7 @@ impl Control {
 
     /// A word whose meaning is known and that is not run; `code` is ten times the number behind G, 0 of other words.
     #[cold]
-    fn not_followed(&self, code: u16) -> Box<Diagnostic> {
+    pub(super) fn not_followed(&self, code: u16) -> Box<Diagnostic> {
         let word = if code == 0 {
             "a word of this block".to_owned()
         } else {
@@ -197,191 +199,16 @@ impl Control {
         self.refuse("nc-word", message)
     }
 
-    /// A code or name whose meaning the lexicon knows; `code` is ten times the number behind G, or 0.
-    pub(super) fn meant(
-        &mut self,
-        code: u16,
-        meaning: Meaning,
-        words: &mut Gathered,
-        asked: &mut Asked,
-    ) -> Result<(), Box<Diagnostic>> {
-        match meaning {
-            Meaning::Rapid => self.motion(MotionMode::Rapid),
-            Meaning::Linear => self.motion(MotionMode::Linear),
-            Meaning::ArcClockwise => self.motion(MotionMode::Clockwise),
-            Meaning::ArcCounterClockwise => self.motion(MotionMode::CounterClockwise),
-            Meaning::Millimetre => self.modal.unit = 1.0,
-            Meaning::Inch => self.modal.unit = 25.4,
-            Meaning::Absolute => self.modal.incremental = false,
-            Meaning::Incremental => self.modal.incremental = true,
-            Meaning::PlaneXy => self.modal.plane = ArcPlane::Xy,
-            Meaning::PlaneZx => self.modal.plane = ArcPlane::Zx,
-            Meaning::PlaneYz => self.modal.plane = ArcPlane::Yz,
-            Meaning::FeedPerMinute => self.feed_mode(FeedMode::PerMinute),
-            Meaning::InverseTime => self.feed_mode(FeedMode::Inverse),
-            Meaning::FeedPerRevolution => self.feed_mode(FeedMode::PerRevolution),
-            Meaning::MachineCoordinates => asked.machine = true,
-            Meaning::RapidBlock => asked.rapid = true,
-            Meaning::LengthOn => asked.length_on = Some(code),
-            Meaning::LengthOff => asked.length_off = true,
-            Meaning::CompensationOff => self.compensate(0, words)?,
-            Meaning::CompensationLeft => self.compensate(-1, words)?,
-            Meaning::CompensationRight => self.compensate(1, words)?,
-            Meaning::TcpOn => asked.tcp_on = Some(code),
-            Meaning::TcpVectorOn => {
-                asked.tcp_on = Some(code);
-                asked.vectors = true;
-            }
-            Meaning::TcpOff => asked.tcp_off = true,
-            Meaning::TiltedPlane => asked.plane = Some(code),
-            Meaning::TiltedPlaneTurn => asked.plane_turn = Some(code),
-            Meaning::TiltedPlaneOff => asked.plane_off = true,
-            Meaning::WorkOffset => asked.work = Some(code),
-            Meaning::Smoothing => {
-                let letter = self.lexicon.tolerance_letter(code);
-                let tolerance = letter.and_then(|letter| words.take(letter));
-                words.used |= bit(b'P') | bit(b'Q') | bit(b'R');
-                self.smooth(tolerance.map(|tolerance| tolerance * self.modal.unit));
-            }
-            Meaning::SmoothingOff => {
-                words.used |= bit(b'Q') | bit(b'P');
-                self.smooth(None);
-            }
-            Meaning::ToolChange => asked.change = true,
-            Meaning::SpindleClockwise => asked.spindle = Some(Turning::Clockwise),
-            Meaning::SpindleCounterClockwise => asked.spindle = Some(Turning::CounterClockwise),
-            Meaning::SpindleOff => asked.spindle = Some(Turning::Off),
-            Meaning::SpindleOrient => asked.spindle = Some(Turning::Oriented),
-            Meaning::CoolantOn => asked.coolant = Some(code / 10),
-            Meaning::CoolantOff => asked.coolant_off = true,
-            Meaning::Dwell => asked.dwell = true,
-            Meaning::Stop | Meaning::OptionalStop | Meaning::End => asked.stop = Some(meaning),
-            Meaning::Probe => asked.probe = true,
-            Meaning::CycleDrill
-            | Meaning::CycleDeep
-            | Meaning::CycleBreakChip
-            | Meaning::CycleTap
-            | Meaning::CycleTapLeft
-            | Meaning::CycleReam
-            | Meaning::CycleBore
-            | Meaning::CycleBoreFine
-            | Meaning::CycleBoreBack => asked.cycle = Some((code, meaning)),
-            Meaning::CycleOff => asked.cycle_off = true,
-            Meaning::ReturnStart => self.modal.return_start = true,
-            Meaning::ReturnClearance => self.modal.return_start = false,
-            Meaning::ReferenceReturn => asked.reference = Some(1),
-            Meaning::OtherReferenceReturn => asked.reference = Some(2),
-            Meaning::LocalOffset
-            | Meaning::LocalOffsetAdded
-            | Meaning::LocalOffsetOff
-            | Meaning::SetPosition
-            | Meaning::SetPositionOff
-            | Meaning::SetPositionAgain
-            | Meaning::TableData
-            | Meaning::TableDataOff
-            | Meaning::Rotation
-            | Meaning::RotationAdded
-            | Meaning::RotationOff => asked.frame = Some((code, meaning)),
-            Meaning::WorkOffsetOff => self.use_work_offset(&format!("G{}", code / 10))?,
-            Meaning::WorkOffsetBlock => asked.machine = true,
-            Meaning::CentreAbsolute => self.modal.centres_absolute = true,
-            Meaning::CentreIncremental => self.modal.centres_absolute = false,
-            Meaning::SurfaceSpeed => self.modal.surface_speed = true,
-            Meaning::SurfaceSpeedOff => self.modal.surface_speed = false,
-            Meaning::SpeedLimit => {}
-            Meaning::RotaryShortest => self.modal.shortest = Some(true),
-            Meaning::RotaryAsWritten => self.modal.shortest = Some(false),
-            Meaning::InchLengths => self.modal.unit = 25.4,
-            Meaning::MillimetreLengths => self.modal.unit = 1.0,
-            Meaning::SpindleClockwiseCoolant => {
-                asked.spindle = Some(Turning::Clockwise);
-                asked.coolant = Some(8);
-            }
-            Meaning::SpindleCounterClockwiseCoolant => {
-                asked.spindle = Some(Turning::CounterClockwise);
-                asked.coolant = Some(8);
-            }
-            // The tool axis under tool centre point control: how it goes between two blocks.
-            Meaning::OrientationAxes | Meaning::OrientationMachine => {
-                self.modal.orientation = Orientation::Axes;
-            }
-            Meaning::OrientationVector => self.modal.orientation = Orientation::Circle,
-            Meaning::OrientationPart => self.modal.orientation = Orientation::Usual,
-            Meaning::Thread | Meaning::ThreadAndBack | Meaning::ThreadBack => {
-                asked.thread = Some(code);
-            }
-            Meaning::Subprogram
-            | Meaning::LocalSubprogram
-            | Meaning::SubprogramEnd
-            | Meaning::Macro
-            | Meaning::MacroModal => {
-                return Err(self.refuse(
-                    "nc-flow",
-                    "a subprogram begins or ends here in a way that is not run",
-                ));
-            }
-            Meaning::Spline
-            | Meaning::Scale
-            | Meaning::Mirror
-            | Meaning::Polar
-            | Meaning::FaceTransformation
-            | Meaning::CylinderTransformation
-            | Meaning::Diameter
-            | Meaning::LengthNegative
-            | Meaning::LengthStated
-            | Meaning::LengthAdded
-            | Meaning::LengthAlongTool
-            | Meaning::OrientationAngles
-            | Meaning::CycleOther
-            | Meaning::BuilderCoordinates
-            | Meaning::ArcThrough
-            | Meaning::ArcTangent
-            | Meaning::Retract => return Err(self.not_followed(code)),
-            // Letters, remarks and what does nothing.
-            _ => {}
-        }
-        Ok(())
-    }
-
-    fn feed_mode(&mut self, mode: FeedMode) {
-        if self.modal.feed_mode != mode {
-            self.modal.feed_mode = mode;
-            // A number that was a speed is no time.
-            self.modal.feed = None;
-        }
-    }
-
-    fn compensate(&mut self, side: i8, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
-        let register = if side == 0 || self.lexicon.tools_have_edges() {
-            None
-        } else {
-            words
-                .take_number(b'D', self)?
-                .or(self.state.radius_register)
-        };
-        if self.state.compensation == side && (side == 0 || self.state.radius_register == register)
-        {
-            return Ok(());
-        }
-        self.state.compensation = side;
-        if side != 0 {
-            self.state.radius_register = register;
-        }
-        self.state_changed();
-        self.tell(Told::Compensation { side, register });
-        Ok(())
-    }
-
-    /// The control may leave the path by `tolerance` mm; none: it keeps it, or by how much is not said.
-    pub(super) fn smooth(&mut self, tolerance: Option<f64>) {
-        if self.state.smoothing != tolerance {
-            self.state.smoothing = tolerance;
-            self.state_changed();
-        }
-    }
-
     /// Takes an M code.
-    fn m_code(&mut self, code: u16, asked: &mut Asked) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn m_code(&mut self, code: u16, asked: &mut Asked) -> Result<(), Box<Diagnostic>> {
+        if matches!(code, 67 | 68) && self.lexicon.language() == Language::Rs274 {
+            let message = format!(
+                "M{code} is not run: its output may be wired to what switches the kinematics"
+            );
+            let help = "a remap by which the machine file switches (M428, M429) is followed";
+            let finding = Diagnostic::error("nc-word", message).help(help);
+            return Err(self.placed(finding).boxed());
+        }
         match self.lexicon.m(code) {
             Sense::Means(meaning) => {
                 // `meant` takes ten times the number, as of G.
@@ -479,247 +306,6 @@ impl Control {
         self.ended = true;
     }
 
-    fn tool_and_spindle(
-        &mut self,
-        words: &mut Gathered,
-        asked: &Asked,
-    ) -> Result<(), Box<Diagnostic>> {
-        if let Some(speed) = words.take(b'S') {
-            self.modal.speed = speed;
-            self.speed_changed();
-        }
-        if let Some(number) = words.take(b'T').filter(|number| !number.is_nan()) {
-            let number = which(b'T', number, self)?;
-            self.tools.ready = Some(number);
-            self.tools.ready_name = None;
-            if !self.lexicon.changes_by_word() {
-                self.change_tool(Some(number), None)?;
-            } else if !asked.change {
-                self.tell(Told::Preselect(number));
-            }
-        }
-        if asked.change {
-            let (number, name) = (self.tools.ready, self.tools.ready_name.clone());
-            self.change_tool(number, name)?;
-        }
-        match asked.spindle {
-            // It stops when the motion has come to its end; on RS-274/NGC before.
-            Some(Turning::Off) if self.lexicon.language() != Language::Rs274 => {}
-            Some(turning) => self.turn_spindle(turning),
-            None => {}
-        }
-        Ok(())
-    }
-
-    /// S changed while the spindle turns.
-    fn speed_changed(&mut self) {
-        match self.state.spindle {
-            Spindle::Clockwise(_) => self.turn_spindle(Turning::Clockwise),
-            Spindle::CounterClockwise(_) => self.turn_spindle(Turning::CounterClockwise),
-            Spindle::Surface { clockwise, .. } => self.turn_spindle(if clockwise {
-                Turning::Clockwise
-            } else {
-                Turning::CounterClockwise
-            }),
-            Spindle::Off | Spindle::Oriented => {}
-        }
-    }
-
-    /// What the spindle does from here on.
-    pub(super) fn turn_spindle(&mut self, turning: Turning) {
-        let spindle = match turning {
-            Turning::Clockwise | Turning::CounterClockwise if self.modal.surface_speed => {
-                Spindle::Surface {
-                    speed: self.modal.speed,
-                    most: self.modal.most_speed,
-                    clockwise: turning == Turning::Clockwise,
-                }
-            }
-            Turning::Clockwise => Spindle::Clockwise(self.modal.speed),
-            Turning::CounterClockwise => Spindle::CounterClockwise(self.modal.speed),
-            Turning::Off => Spindle::Off,
-            Turning::Oriented => Spindle::Oriented,
-        };
-        if self.state.spindle != spindle {
-            self.state.spindle = spindle;
-            self.state_changed();
-            self.tell(Told::Spindle(spindle));
-        }
-    }
-
-    /// Coolant of an M code from here on.
-    pub(super) fn coolant(&mut self, code: u16) {
-        let mut coolants = self.state.coolants;
-        match code {
-            7 => coolants.mist = true,
-            8 => coolants.flood = true,
-            _ => coolants.other = true,
-        }
-        self.flow_of_coolant(coolants);
-    }
-
-    /// No coolant from here on.
-    pub(super) fn coolant_off(&mut self) {
-        self.flow_of_coolant(crate::Coolants::default());
-    }
-
-    fn flow_of_coolant(&mut self, coolants: crate::Coolants) {
-        if self.state.coolants != coolants {
-            self.state.coolants = coolants;
-            self.state_changed();
-            self.tell(Told::Coolant(coolants));
-        }
-    }
-
-    /// G4: seconds, turns of the spindle where the control counts them.
-    fn dwell(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
-        let told = |time, revolutions| Told::Dwell { time, revolutions };
-        let told = match self.lexicon.language() {
-            Language::Names => match (words.take(b'F'), words.take(b'S')) {
-                (Some(time), _) => told(time, false),
-                (None, Some(turns)) => told(turns, true),
-                (None, None) => return Err(self.refuse("nc-dwell", "G4 says neither F nor S")),
-            },
-            language => {
-                let pointed = words.pointed & bit(b'P') != 0;
-                match (
-                    words.take(b'P'),
-                    words.take(b'X'),
-                    words.take(b'U'),
-                    words.get(b'F'),
-                ) {
-                    (Some(time), ..) if language == Language::Rs274 || pointed => told(time, false),
-                    (Some(milliseconds), ..) => told(milliseconds / 1000.0, false),
-                    (None, Some(time), ..) | (None, None, Some(time), _) => told(time, false),
-                    (None, None, None, Some(time)) => told(time, false),
-                    (None, None, None, None) => {
-                        return Err(self.refuse("nc-dwell", "the wait does not say how long"));
-                    }
-                }
-            }
-        };
-        // They were times, and are nothing else in this block.
-        words.present &= !(bit(b'F') | bit(b'S') | bit(b'X') | bit(b'U'));
-        self.tell(told);
-        Ok(())
-    }
-
-    /// Length, tool centre point control and edges.
-    fn compensations(
-        &mut self,
-        words: &mut Gathered,
-        asked: &Asked,
-    ) -> Result<(), Box<Diagnostic>> {
-        if self.lexicon.tools_have_edges() {
-            if let Some(edge) = words.take_number(b'D', self)? {
-                self.tools.by_tool = true;
-                self.tools.length_on = edge != 0;
-                self.state.length_register = (edge != 0).then_some(edge);
-                self.length_changed()?;
-            }
-        } else if let Some(register) = words.present_number(b'D', self)? {
-            words.used |= bit(b'D');
-            self.state.radius_register = Some(register);
-            self.state_changed();
-        }
-        if asked.tcp_off && self.state.tcp {
-            self.set_tcp(false, 0, false);
-        }
-        if asked.length_off {
-            words.used |= bit(b'H');
-            self.tools.length_on = false;
-            self.state.length_register = None;
-            if self.state.tcp && self.modal.tcp_by_length {
-                self.set_tcp(false, 0, false);
-            }
-            self.length_changed()?;
-        }
-        let on = asked.length_on.or(asked.tcp_on.filter(|code| *code != 0));
-        if on.is_some() {
-            self.length_by(words)?;
-        } else if self.tools.length_on
-            && !self.tools.by_tool
-            && asked.work.is_none()
-            && !asked.machine
-            && let Some(register) = words.take_number(b'H', self)?
-        {
-            self.state.length_register = Some(register);
-            self.length_changed()?;
-        }
-        if let Some(code) = asked.tcp_on {
-            self.set_tcp(true, code, asked.vectors);
-        }
-        Ok(())
-    }
-
-    /// Length compensation by a register.
-    fn length_by(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
-        let register = match words.take_number(b'H', self)? {
-            Some(register) => Some(register),
-            // `HL=1` was taken among the names.
-            None => self.modal.named_register.take(),
-        };
-        self.tools.length_on = true;
-        self.tools.by_tool = false;
-        self.state.length_register = match (register, self.lexicon.language()) {
-            (Some(register), _) => Some(register),
-            // Without H the tool in the spindle is meant.
-            (None, Language::Rs274) => self.state.tool,
-            (None, _) => self.state.length_register,
-        };
-        self.length_changed()
-    }
-
-    /// Tool centre point control on or off; `code` is ten times the number of its G word, 0 of any other.
-    pub(super) fn set_tcp(&mut self, on: bool, code: u16, vectors: bool) {
-        self.modal.tcp_by_length = on && code != 0;
-        // Some vocabularies have one meaning for both types: the second names vectors, G43.5.
-        self.modal.vectors = on && (vectors || code % 10 == 5);
-        if self.state.tcp != on {
-            self.state.tcp = on;
-            self.state_changed();
-        }
-    }
-
-    /// A work offset by its G word: `G54`, `G54.1 P3`, `G15 H1`.
-    fn work_offset(&mut self, code: u16, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
-        let number = f64::from(code) / 10.0;
-        let mut name = format!("G{number}");
-        for letter in [b'P', b'H'] {
-            let of_it = letter == b'P'
-                || self.lexicon.g(code) == Sense::Means(Meaning::WorkOffset) && code < 500;
-            if of_it && let Some(which) = words.take_number(letter, self)? {
-                name = format!("{name} {}{which}", char::from(letter));
-            }
-        }
-        self.use_work_offset(&name)
-    }
-
-    /// The work offset of this name from here on.
-    pub(super) fn use_work_offset(&mut self, name: &str) -> Result<(), Box<Diagnostic>> {
-        if self.state.work_offset.as_deref() == Some(name) {
-            return Ok(());
-        }
-        let place = self.offsets.work.iter().position(|work| work.name == name);
-        if place.is_none() && self.state.work_offset.is_some() {
-            let message = format!(
-                "the program uses several work offsets, and nothing is said of {name}: it is taken to be the machine file's mount, as all are"
-            );
-            self.note(
-                Diagnostic::warning("nc-work-offset", message)
-                    .help("state them by --offsets, in tables [work.G54] and so on"),
-            );
-        }
-        self.state.work_offset = Some(name.to_owned());
-        self.state_changed();
-        self.tell(Told::WorkOffset(name.to_owned()));
-        if self.work != place {
-            self.work = place;
-            return self.solver_changed();
-        }
-        Ok(())
-    }
-
     /// The motion, or what takes the words of axes instead.
     fn move_as_asked(
         &mut self,
@@ -741,11 +327,8 @@ impl Control {
         if asked.machine {
             return self.machine_move(words, asked.rapid);
         }
-        if let Some(code) = asked.thread {
-            return Err(self.refuse(
-                "nc-thread",
-                format!("G{} is not run", f64::from(code) / 10.0),
-            ));
+        if let Some((code, meaning)) = asked.thread {
+            return self.thread(code, meaning, words);
         }
         if asked.probe {
             return Err(self.refuse(
@@ -807,7 +390,7 @@ impl Control {
 
     /// What was not made use of: refused where it may change a motion, else counted by name.
     #[inline]
-    fn left_over(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn left_over(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
         let left = words.present & !words.used;
         if left == 0 {
             return Ok(());

@@ -14,6 +14,9 @@ use super::state::Control;
 /// decimals of an inch program, and the rounding of a centre far away.
 const OFF: [f64; 2] = [0.02, 0.001];
 
+/// A helix of more turns is none.
+const MOST_TURNS: f64 = 10_000.0;
+
 impl Control {
     /// The arc that the words of a block ask for.
     pub(super) fn arc_words(
@@ -56,7 +59,7 @@ impl Control {
             };
         }
         let flat = |point: Vector3<f64>| [point[first], point[second]];
-        let full_turns = words.turns.unwrap_or(0.0);
+        let full_turns = self.further_turns(clockwise, words)?;
         if let (Some(radius), false) = (radius, told) {
             let [cx, cy] = self.centre_by_radius(flat(from), flat(to), radius, clockwise)?;
             centre[first] = cx;
@@ -106,6 +109,21 @@ impl Control {
         } else {
             turn
         })
+    }
+
+    /// Full turns beside the arc's own: `TURN=2`, or P of RS-274/NGC, which counts the last part of a turn too.
+    fn further_turns(&self, clockwise: bool, words: &mut Gathered) -> Result<f64, Box<Diagnostic>> {
+        let code = if clockwise { 20 } else { 30 };
+        let counted = self.lexicon.letter_beside(code, b'P') == Some(Meaning::Turns);
+        let turns = match words.turns {
+            Some(turns) => turns,
+            None if counted => words.take(b'P').map_or(0.0, |turns| turns - 1.0),
+            None => 0.0,
+        };
+        if turns < 0.0 || turns > MOST_TURNS || turns != libm::floor(turns) {
+            return Err(self.refuse("nc-arc", format!("{turns} is no number of full turns")));
+        }
+        Ok(turns)
     }
 
     /// The centre of the arc of this radius; of the two the one whose arc is shorter than half a turn, or longer if the

@@ -89,6 +89,26 @@ impl AtomicFile {
         written.map_err(|error| FileFault::write_named(&self.target.name, error))
     }
 
+    /// What was written so far, to be read back from the disk; nothing more may be written then.
+    ///
+    /// # Errors
+    /// It cannot be written, or not be read.
+    pub fn reread(&mut self) -> Result<fs::File, FileFault> {
+        let again = || -> io::Result<fs::File> {
+            self.file.flush()?;
+            let mut file = self.file.get_ref().as_file()?.try_clone()?;
+            file.seek(SeekFrom::Start(0))?;
+            Ok(file)
+        };
+        let mut again = again;
+        again().map_err(|error| FileFault::write_named(&self.target.name, error))
+    }
+
+    /// As the user named the place.
+    pub fn name(&self) -> &str {
+        &self.target.name
+    }
+
     /// Puts the texts in their places: all of them, or none. What can be taken back comes last: first all texts are on
     /// the disk, then pipes and devices are written to, then files take their names.
     pub fn finish(texts: Vec<Self>) -> Result<(), FileFault> {

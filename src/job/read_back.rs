@@ -1,15 +1,16 @@
 //! A program of a machine's control held against a CL file, for whoever asks.
 
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::ops::Range;
 
 use post_host::Finder;
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::{Meaning, VocabularyWord};
 use post_posting::program::ToldSpindle;
 use post_readback::Offsets;
-use post_readback::course::CourseFacts;
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
+use post_readback::course::{Course, CourseFacts, Window};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
 use post_readback::verify::{BlockReport, Fault, Registers, Rules, Verification, Verifier};
@@ -35,6 +36,8 @@ pub struct Reading<'a> {
     pub limits: Limits,
     /// Largest deviations that are other than the machine file's: mm, radians.
     pub tolerances: [Option<f64>; 2],
+    /// Lines of the CL file that the program is made of; none: all.
+    pub lines: Option<Range<u64>>,
 }
 
 /// What came of it.
@@ -46,6 +49,14 @@ pub struct Held {
     pub findings: Vec<Diagnostic>,
     /// Blocks that were run.
     pub blocks: u64,
+}
+
+impl Held {
+    /// The program does not do what it should, or that is not known.
+    pub fn is_wrong(&self) -> bool {
+        let mut findings = self.findings.iter();
+        findings.any(|finding| finding.severity == Severity::Error)
+    }
 }
 
 /// The words of a machine's control, as its dialect hands them over.
@@ -138,22 +149,60 @@ pub fn verify<R: Read + Seek>(
     reading: &Reading<'_>,
     source: &mut ClSource,
     name: &str,
-    mut input: R,
+    input: R,
     listen: &mut dyn FnMut(&BlockReport),
 ) -> Result<Held, Failure> {
     let Reading {
         arguments, machine, ..
     } = reading;
-    let words = vocabulary(reading.finder, machine, name)?;
-    let lexicon = Lexicon::new(&words);
     // What the tools are called and how long they are stands anywhere in the CL file.
     let first = source.open()?;
     let cl_name = first.name.clone();
     let settings = course_settings(arguments, machine, &cl_name);
     let mut course = ClCourse::new(settings.clone(), first.bytes);
-    let (_, faults) = CourseFacts::of(&mut course);
-    let mut findings = faults;
+    let (_, mut findings) = CourseFacts::of(&mut course);
     let tools = course.tools().to_vec();
+    let course = ClCourse::new(settings, source.open()?.bytes);
+    let against = Against {
+        course: Window::new(course, reading.lines.clone()),
+        name: cl_name,
+        tools,
+    };
+    let held = hold(reading, against, name, input, listen)?;
+    findings.extend(held.findings);
+    Ok(Held { findings, ..held })
+}
+
+/// What a program is held against.
+pub struct Against<C> {
+    /// The path.
+    pub course: C,
+    /// The file that it comes from, as messages call it.
+    pub name: String,
+    /// Its tools.
+    pub tools: Vec<ClTool>,
+}
+
+/// Holds the program `name` from `input` against any course.
+///
+/// # Errors
+/// A file that cannot be read, or a machine or dialect that cannot be used.
+pub fn hold<C: Course, R: Read + Seek>(
+    reading: &Reading<'_>,
+    against: Against<C>,
+    name: &str,
+    mut input: R,
+    listen: &mut dyn FnMut(&BlockReport),
+) -> Result<Held, Failure> {
+    let machine = reading.machine;
+    let Against {
+        course,
+        name: cl_name,
+        tools,
+    } = against;
+    let words = vocabulary(reading.finder, machine, name)?;
+    let lexicon = Lexicon::new(&words);
+    let mut findings = Vec::new();
     let offsets = match &reading.offsets {
         Some(offsets) => offsets.clone(),
         None => offsets_of(reading, &tools),
@@ -170,11 +219,7 @@ pub fn verify<R: Read + Seek>(
             .collect(),
         ..standard
     };
-    let mut verifier = Verifier::new(
-        machine,
-        rules,
-        ClCourse::new(settings, source.open()?.bytes),
-    );
+    let mut verifier = Verifier::new(machine, rules, course);
     let unreadable = |error| FileFault::Read {
         name: name.to_owned(),
         error,

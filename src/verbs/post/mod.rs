@@ -11,12 +11,17 @@ use post_host::Finder;
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::DialectSession;
+use post_posting::LookedAhead;
 use post_posting::report::Report;
-use post_posting::{Job, JobFacts, LookedAhead, Post};
+use post_readback::interpret::Limits;
+use post_readback::verify::Verification;
+use serde::Serialize;
 
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
+use crate::job::one_program::OneProgram;
+use crate::job::read_back::{self, Held, Reading};
 use crate::job::{self, plugin_finder};
 use crate::terminal;
 use parts::Split;
@@ -57,6 +62,11 @@ pub struct PostArguments {
     /// control.DIALECT.program_number=…
     #[arg(long, value_name = "N")]
     number: Option<u32>,
+
+    /// Reads each program back before it takes its name, runs it as the control does and holds it against the CL file
+    /// (`post verify`): what strays from it is not written.
+    #[arg(long)]
+    verify: bool,
 
     /// No summary, warnings and errors alone.
     #[arg(short, long)]
@@ -109,9 +119,18 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     // All are opened before the work begins: a program without its summary would be half a result.
     let mut files = AtomicFile::create(&targets)?;
     let mut reports = Vec::new();
+    let mut verifications = Vec::new();
     let mut findings = Vec::new();
     for (part, file) in parts.iter().zip(&mut files) {
-        let (report, found) = post(arguments, part, &finder, ahead.as_ref(), &mut source, file)?;
+        let program = OneProgram {
+            arguments: &arguments.job,
+            machine: &part.machine,
+            finder: &finder,
+            target: &part.target,
+            lines: part.lines.clone(),
+            trust_model: arguments.trust_model,
+        };
+        let (report, found) = program.write(ahead.as_ref(), &mut source, file)?;
         // What is wrong with the file is found again in each of its parts.
         for finding in found {
             if !findings.contains(&finding) {
@@ -122,12 +141,28 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             Some(report) => reports.push(report),
             None => return Err(findings.into()),
         }
+        if arguments.verify {
+            let held = read_back(arguments, part, &finder, &mut source, file)?;
+            if held.is_wrong() {
+                findings.extend(held.findings);
+                return Err(findings.into());
+            }
+            verifications.push(held.found);
+        }
     }
     let mut others = files[parts.len()..].iter_mut();
     if let (Some(_), Some(file)) = (&arguments.summary, others.next()) {
-        let json = match (arguments.split, reports.as_slice()) {
-            (None, [report]) => files::json(report),
-            (_, reports) => files::json(&reports),
+        let told: Vec<Told<'_>> = reports
+            .iter()
+            .enumerate()
+            .map(|(index, report)| Told {
+                report,
+                verification: verifications.get(index),
+            })
+            .collect();
+        let json = match (arguments.split, told.as_slice()) {
+            (None, [told]) => files::json(told),
+            (_, told) => files::json(&told),
         };
         file.write_bytes(json.as_bytes())?;
     }
@@ -162,8 +197,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         let name = name.map_or("standard input".to_owned(), |path| {
             path.display().to_string()
         });
-        for (part, report) in parts.iter().zip(&reports) {
-            let text = summary::text(report, &name, &part.target);
+        for (index, (part, report)) in parts.iter().zip(&reports).enumerate() {
+            let text = summary::text(report, verifications.get(index), &name, &part.target);
             if taken {
                 terminal::tell(&text);
             } else {
@@ -232,59 +267,36 @@ fn the_parts(
         .collect()
 }
 
-/// Makes one program: its report, if all is good, and every finding.
-fn post(
+/// Reads a program back from the disk and holds it against the CL file.
+fn read_back(
     arguments: &PostArguments,
     part: &Part,
     finder: &Finder,
-    ahead: Option<&LookedAhead>,
     source: &mut ClSource,
     file: &mut AtomicFile,
-) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
-    let cl_file = arguments.job.input();
-    let program = job::program_name(cl_file, Some(&part.target));
-    // Of a part of the file other tools and extents are known than of the whole.
-    let part_ahead = match &part.lines {
-        Some(lines) if part.machine.program.looks_ahead => {
-            let lines = Some(lines.clone());
-            Some(job::look_ahead(
-                &arguments.job,
-                &part.machine,
-                finder,
-                source,
-                lines,
-            )?)
-        }
-        _ => None,
-    };
-    let ahead = match part.lines {
-        None => ahead,
-        Some(_) => part_ahead.as_ref(),
-    };
-    let (mut dialect, dialect_use) =
-        plugin_finder::dialect_knowing(finder, &part.machine, &program, Some(cl_file), ahead)?;
-    let (mut model, model_use) = plugin_finder::model(finder, &part.machine)?;
-    let planes = job::ahead(&arguments.job, source, &part.machine, &dialect)?;
-    let input = source.open()?;
-    let job = Job {
-        ahead: planes,
-        trust_model: arguments.trust_model,
-        facts: JobFacts {
-            program,
-            cl_file: plugin_finder::cl_name(cl_file),
-            ahead: ahead.cloned(),
-        },
+) -> Result<Held, Failure> {
+    let reading = Reading {
+        arguments: &arguments.job,
+        machine: &part.machine,
+        finder,
+        offsets: None,
+        limits: Limits::default(),
+        tolerances: [None, None],
         lines: part.lines.clone(),
-        ..job::posting(&arguments.job, &input.name)
     };
-    let mut post = Post::new(&part.machine, job, &mut dialect, &mut model, file)
-        .map_err(|finding| *finding)?;
-    job::read(input, &mut post)?;
-    let (mut report, findings) = post.finish();
-    if let Some(report) = &mut report {
-        report.plugins = vec![dialect_use, model_use];
-    }
-    Ok((report, findings))
+    let name = file.name().to_owned();
+    let text = file.reread()?;
+    read_back::verify(&reading, source, &name, text, &mut |_| {})
+}
+
+/// What the summary tells as JSON.
+#[derive(Serialize)]
+struct Told<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    /// What reading the program back has found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verification: Option<&'a Verification>,
 }
 
 /// Where the program goes.

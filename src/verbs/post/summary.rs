@@ -3,12 +3,19 @@
 use std::fmt::Write as _;
 
 use post_posting::report::{Deviation, LengthSource, Report};
+use post_readback::verify::Verification;
 
 use crate::files::PathArg;
 use crate::terminal::{clock, number};
 
-/// The summary of a program at `target` that was made from the CL file named `input`.
-pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
+/// The summary of a program at `target` that was made from the CL file named `input`, and what reading it back has found,
+/// if it was.
+pub fn text(
+    report: &Report,
+    read_back: Option<&Verification>,
+    input: &str,
+    target: &PathArg,
+) -> String {
     let mut text = String::new();
     let mut row = |name: &str, value: String| {
         // Writing to a String cannot fail.
@@ -83,6 +90,18 @@ pub fn text(report: &Report, input: &str, target: &PathArg) -> String {
             report.axis_tolerance_deg
         ),
     );
+    if let Some(found) = read_back {
+        row(
+            "read back",
+            format!(
+                "{} cuts and {} holes as the CL file asks; tip at most {} mm off, axis {}°",
+                found.cuts,
+                found.holes,
+                number(found.tip.value, 6),
+                number(found.axis.value, 5)
+            ),
+        );
+    }
     for axis in &report.axes {
         if axis.min > axis.max {
             continue;

@@ -3,7 +3,6 @@
 mod verify_text;
 
 use clap::Args;
-use post_machine::diagnostic::Severity;
 use post_readback::interpret::Limits;
 
 use crate::arguments::JobArguments;
@@ -100,6 +99,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
             ..Limits::default()
         },
         tolerances: [None, arguments.axis_tolerance.map(f64::to_radians)],
+        lines: None,
     };
     let mut map = arguments.map.as_ref().map(|_| Map::default());
     let held = {
@@ -129,9 +129,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
             terminal::print(&text);
         }
     }
-    let wrong =
-        |finding: &post_machine::diagnostic::Diagnostic| finding.severity == Severity::Error;
-    if held.findings.iter().any(wrong) {
+    if held.is_wrong() {
         return Err(held.findings.into());
     }
     terminal::findings(&held.findings);

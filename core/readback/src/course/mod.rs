@@ -15,6 +15,7 @@ pub mod done;
 mod facts;
 mod piece;
 mod spline;
+mod window;
 
 use std::sync::Arc;
 
@@ -27,6 +28,7 @@ use crate::{MotionKind, Told};
 
 pub use facts::{CourseFacts, Operation};
 pub(crate) use piece::{between, on_arc};
+pub use window::Window;
 
 /// A path that is handed out in order.
 pub trait Course {

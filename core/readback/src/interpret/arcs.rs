@@ -83,6 +83,21 @@ impl Control {
         })
     }
 
+    /// Full turns beside the arc's own: `TURN=2`, or P of RS-274/NGC, which counts the last part of a turn too.
+    fn further_turns(&self, clockwise: bool, words: &mut Gathered) -> Result<f64, Box<Diagnostic>> {
+        let code = if clockwise { 20 } else { 30 };
+        let counted = self.lexicon.letter_beside(code, b'P') == Some(Meaning::Turns);
+        let turns = match words.turns {
+            Some(turns) => turns,
+            None if counted => words.take(b'P').map_or(0.0, |turns| turns - 1.0),
+            None => 0.0,
+        };
+        if turns < 0.0 || turns > MOST_TURNS || turns != libm::floor(turns) {
+            return Err(self.refuse("nc-arc", format!("{turns} is no number of full turns")));
+        }
+        Ok(turns)
+    }
+
     /// The turn from a start to an end about a centre, radians, counter-clockwise positive; a full one where they are the same.
     pub(super) fn sweep(
         &self,
@@ -109,21 +124,6 @@ impl Control {
         } else {
             turn
         })
-    }
-
-    /// Full turns beside the arc's own: `TURN=2`, or P of RS-274/NGC, which counts the last part of a turn too.
-    fn further_turns(&self, clockwise: bool, words: &mut Gathered) -> Result<f64, Box<Diagnostic>> {
-        let code = if clockwise { 20 } else { 30 };
-        let counted = self.lexicon.letter_beside(code, b'P') == Some(Meaning::Turns);
-        let turns = match words.turns {
-            Some(turns) => turns,
-            None if counted => words.take(b'P').map_or(0.0, |turns| turns - 1.0),
-            None => 0.0,
-        };
-        if turns < 0.0 || turns > MOST_TURNS || turns != libm::floor(turns) {
-            return Err(self.refuse("nc-arc", format!("{turns} is no number of full turns")));
-        }
-        Ok(turns)
     }
 
     /// The centre of the arc of this radius; of the two the one whose arc is shorter than half a turn, or longer if the

@@ -3,6 +3,7 @@
 
 mod check;
 mod convert;
+mod diff;
 mod list_machines;
 mod list_words;
 mod new;
@@ -23,6 +24,7 @@ use post_machine::diagnostic::nearest;
 use crate::failure::Failure;
 use check::CheckArguments;
 use convert::ConvertArguments;
+use diff::DiffArguments;
 use list_machines::MachinesArguments;
 use list_words::WordsArguments;
 use new::NewArguments;
@@ -57,6 +59,7 @@ use verify::VerifyArguments;
   post place part.cls --machine dmu50 --svg travel.svg
   post read part.nc --machine ac-trunnion --csv motions.csv
   post verify part.nc --machine dmu50 --against part.cls --map map.json
+  post diff old.nc new.nc --machine ac-trunnion
   post plugin show fanuc
   post plugin new mine --iso
   post plugin test target/release/libpost_mine.so
@@ -80,6 +83,7 @@ enum Verb {
     Schema(SchemaArguments),
     Check(CheckArguments),
     Convert(Box<ConvertArguments>),
+    Diff(Box<DiffArguments>),
     New(NewArguments),
     Study(Box<StudyArguments>),
     Place(Box<PlaceArguments>),
@@ -98,6 +102,7 @@ impl CommandLine {
             Some(Verb::Schema(arguments)) => print_schema::run(&arguments),
             Some(Verb::Check(arguments)) => check::run(&arguments),
             Some(Verb::Convert(arguments)) => convert::run(&arguments),
+            Some(Verb::Diff(arguments)) => diff::run(&arguments),
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),
             Some(Verb::Place(arguments)) => place::run(&arguments),

@@ -1,7 +1,7 @@
 //! Expressions against a second evaluation, over random values, and what is refused.
 
 use post_grammar::nc::{BinaryOperator as B, NcExpression as E, UnaryOperator};
-use post_testkit::random::{Rng, seeded};
+use post_testkit::{Rng, seeded};
 
 use super::*;
 
@@ -75,7 +75,7 @@ fn stacked(program: &[Step]) -> Option<f64> {
         let value = match step {
             Step::Push(value) => *value,
             Step::Negate => -stack.pop()?,
-            Step::Sine => libm::sin(stack.pop()? * std::f64::consts::PI / 180.0),
+            Step::Sine => libm::sin(stack.pop()?.to_radians()),
             Step::Two(operator) => {
                 let (right, left) = (stack.pop()?, stack.pop()?);
                 match operator {

@@ -9,11 +9,13 @@ use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::{Meaning, VocabularyWord};
 use post_posting::program::ToldSpindle;
 use post_readback::Offsets;
+use post_readback::course::Window;
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
-use post_readback::course::{CourseFacts, Window};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
-use post_readback::verify::{BlockReport, Fault, Registers, Rules, Verification, Verifier};
+use post_readback::verify::{
+    BlockReport, CutPath, Fault, Registers, Rules, Verification, Verifier,
+};
 
 use super::plugin_finder;
 use crate::arguments::JobArguments;
@@ -162,8 +164,7 @@ pub fn verify<R: Read + Seek>(
     let cl_name = first.name.clone();
     let settings = course_settings(arguments, machine, &cl_name);
     let mut course = ClCourse::new(settings.clone(), first.bytes);
-    let (_, faults) = CourseFacts::of(&mut course);
-    let mut findings = faults;
+    let (cut_path, mut findings) = CutPath::of(&mut course, machine.control_point.along);
     let tools = course.tools().to_vec();
     let offsets = match &reading.offsets {
         Some(offsets) => offsets.clone(),
@@ -183,7 +184,7 @@ pub fn verify<R: Read + Seek>(
     };
     let course = ClCourse::new(settings, source.open()?.bytes);
     let course = Window::new(course, reading.lines.clone());
-    let mut verifier = Verifier::new(machine, rules, course);
+    let mut verifier = Verifier::new(machine, rules, course, cut_path);
     let unreadable = |error| FileFault::Read {
         name: name.to_owned(),
         error,

@@ -1,7 +1,7 @@
 //! Expressions against a second evaluation, over random values, and what is refused.
 
 use post_grammar::nc::{BinaryOperator as B, NcExpression as E, UnaryOperator};
-use post_testkit::random::{Rng, seeded};
+use post_testkit::{Rng, seeded};
 
 use super::*;
 

@@ -13,10 +13,12 @@ pub enum Failure {
     File(FileFault),
     /// Something that was read is refused: findings, each with its file and line, an error among them.
     Refused(Vec<Diagnostic>),
+    /// What was compared is not the same: all is told.
+    Different,
 }
 
 impl Failure {
-    /// What the program ends with, as `--help` documents it: 1 refused, 2 the command line is wrong, 141 the reader of a
+    /// What the program ends with, as `--help` documents it: 1 refused, or different, 2 the command line is wrong, 141 the reader of a
     /// pipe went away.
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -24,14 +26,14 @@ impl Failure {
             Self::Usage(_) => 0,
             // What shells say of a command whose reader went away.
             Self::File(FileFault::ReaderGone(_)) => 141,
-            Self::File(_) | Self::Refused(_) => 1,
+            Self::File(_) | Self::Refused(_) | Self::Different => 1,
         }
     }
 
     /// What is said to the user; a wrong command line is clap's to explain.
     pub fn findings(self) -> Vec<Diagnostic> {
         match self {
-            Self::Usage(_) => Vec::new(),
+            Self::Usage(_) | Self::Different => Vec::new(),
             Self::File(fault) => vec![fault.into()],
             Self::Refused(findings) => findings,
         }

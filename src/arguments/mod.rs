@@ -165,7 +165,7 @@ impl JobArguments {
 }
 
 /// An NC program that is read back, and the machine that runs it.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct ProgramArguments {
     /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
     #[arg(short, long, value_name = "MACHINE")]

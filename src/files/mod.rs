@@ -4,6 +4,7 @@
 //! [`read_files`]; whatever is written goes through [`AtomicFile`].
 
 mod atomic_file;
+pub mod chart;
 mod cl_input;
 mod cl_source;
 mod file_fault;
@@ -13,6 +14,7 @@ pub mod outcome;
 mod path_arg;
 pub mod read_files;
 mod rights;
+mod scale;
 pub mod standard;
 pub mod svg;
 mod target;

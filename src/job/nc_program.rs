@@ -60,13 +60,18 @@ impl NcControl {
     /// The program `source`, ready to be run.
     pub fn open(&self, source: &PathArg) -> Result<Interpreter<File>, Failure> {
         let (name, file) = open(source)?;
+        self.run(&name, file)
+    }
+
+    /// The program in `file`, which messages call `name`, from where it stands.
+    pub fn run(&self, name: &str, file: File) -> Result<Interpreter<File>, Failure> {
         let Self {
             machine,
             lexicon,
             offsets,
             limits,
         } = self;
-        Interpreter::new(machine, lexicon, offsets, *limits, &name, file)
+        Interpreter::new(machine, lexicon, offsets, *limits, name, file)
             .map_err(|fault| Failure::from(*fault))
     }
 }
@@ -100,8 +105,8 @@ pub fn offsets(source: &PathArg, machine: &Machine) -> Result<Offsets, Failure> 
     Ok(Offsets::parse(&text, &name, machine)?)
 }
 
-/// Opens a file that can be gone back in: standard input and pipes are copied first.
-fn open(source: &PathArg) -> Result<(String, File), FileFault> {
+/// Opens a file that can be gone back in, with its name for messages: standard input and pipes are copied first.
+pub fn open(source: &PathArg) -> Result<(String, File), FileFault> {
     let (Some(path), Some(named)) = (source.absolute(), source.path()) else {
         let name = "standard input".to_owned();
         let copied = copied(&mut io::stdin().lock());

@@ -9,8 +9,8 @@ use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::{Meaning, VocabularyWord};
 use post_posting::program::ToldSpindle;
 use post_readback::Offsets;
-use post_readback::course::Window;
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
+use post_readback::course::{Course, Window};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
 use post_readback::verify::{
@@ -151,14 +151,12 @@ pub fn verify<R: Read + Seek>(
     reading: &Reading<'_>,
     source: &mut ClSource,
     name: &str,
-    mut input: R,
+    input: R,
     listen: &mut dyn FnMut(&BlockReport),
 ) -> Result<Held, Failure> {
     let Reading {
         arguments, machine, ..
     } = reading;
-    let words = vocabulary(reading.finder, machine, name)?;
-    let lexicon = Lexicon::new(&words);
     // What the tools are called and how long they are stands anywhere in the CL file.
     let first = source.open()?;
     let cl_name = first.name.clone();
@@ -166,6 +164,51 @@ pub fn verify<R: Read + Seek>(
     let mut course = ClCourse::new(settings.clone(), first.bytes);
     let (cut_path, mut findings) = CutPath::of(&mut course, machine.control_point.along);
     let tools = course.tools().to_vec();
+    let course = ClCourse::new(settings, source.open()?.bytes);
+    let against = Against {
+        course: Window::new(course, reading.lines.clone()),
+        name: cl_name,
+        tools,
+        cut_path: Some(cut_path),
+    };
+    let held = hold(reading, against, name, input, listen)?;
+    findings.extend(held.findings);
+    Ok(Held { findings, ..held })
+}
+
+/// What a program is held against.
+pub struct Against<C> {
+    /// The path.
+    pub course: C,
+    /// The file that it comes from, as messages call it.
+    pub name: String,
+    /// Its tools.
+    pub tools: Vec<ClTool>,
+    /// Where all of it cuts, for how near rapids come; none: nothing is said of that.
+    pub cut_path: Option<CutPath>,
+}
+
+/// Holds the program `name` from `input` against any course.
+///
+/// # Errors
+/// A file that cannot be read, or a machine or dialect that cannot be used.
+pub fn hold<C: Course, R: Read + Seek>(
+    reading: &Reading<'_>,
+    against: Against<C>,
+    name: &str,
+    mut input: R,
+    listen: &mut dyn FnMut(&BlockReport),
+) -> Result<Held, Failure> {
+    let machine = reading.machine;
+    let Against {
+        course,
+        name: cl_name,
+        tools,
+        cut_path,
+    } = against;
+    let words = vocabulary(reading.finder, machine, name)?;
+    let lexicon = Lexicon::new(&words);
+    let mut findings = Vec::new();
     let offsets = match &reading.offsets {
         Some(offsets) => offsets.clone(),
         None => offsets_of(reading, &tools),
@@ -182,9 +225,10 @@ pub fn verify<R: Read + Seek>(
             .collect(),
         ..standard
     };
-    let course = ClCourse::new(settings, source.open()?.bytes);
-    let course = Window::new(course, reading.lines.clone());
-    let mut verifier = Verifier::new(machine, rules, course, cut_path);
+    let mut verifier = Verifier::new(machine, rules, course);
+    if let Some(cut_path) = cut_path {
+        verifier = verifier.near(cut_path);
+    }
     let unreadable = |error| FileFault::Read {
         name: name.to_owned(),
         error,

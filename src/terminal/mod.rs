@@ -82,6 +82,7 @@ pub fn explain(failure: Failure) {
                 Cow::Owned(legible) => tell(&legible),
             }
         }
+        Failure::Different => {}
         other => findings(&other.findings()),
     }
 }

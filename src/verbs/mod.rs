@@ -2,6 +2,7 @@
 //! below, `job`, `files`, `terminal` and `arguments`.
 
 mod check;
+mod diff;
 mod list_machines;
 mod list_words;
 mod new;
@@ -21,6 +22,7 @@ use post_machine::diagnostic::nearest;
 
 use crate::failure::Failure;
 use check::CheckArguments;
+use diff::DiffArguments;
 use list_machines::MachinesArguments;
 use list_words::WordsArguments;
 use new::NewArguments;
@@ -54,6 +56,7 @@ use verify::VerifyArguments;
   post place part.cls --machine dmu50 --svg travel.svg
   post read part.nc --machine ac-trunnion --csv motions.csv
   post verify part.nc --machine dmu50 --against part.cls --map map.json
+  post diff old.nc new.nc --machine ac-trunnion
   post plugin show fanuc
   post plugin new mine --iso
   post plugin test target/release/libpost_mine.so
@@ -76,6 +79,7 @@ enum Verb {
     Machines(MachinesArguments),
     Schema(SchemaArguments),
     Check(CheckArguments),
+    Diff(Box<DiffArguments>),
     New(NewArguments),
     Study(Box<StudyArguments>),
     Place(Box<PlaceArguments>),
@@ -93,6 +97,7 @@ impl CommandLine {
             Some(Verb::Machines(arguments)) => list_machines::run(&arguments),
             Some(Verb::Schema(arguments)) => print_schema::run(&arguments),
             Some(Verb::Check(arguments)) => check::run(&arguments),
+            Some(Verb::Diff(arguments)) => diff::run(&arguments),
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),
             Some(Verb::Place(arguments)) => place::run(&arguments),

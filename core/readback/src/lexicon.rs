@@ -159,6 +159,15 @@ impl Lexicon {
         })
     }
 
+    /// What a letter beside G and ten times a number means, if the dialect says so: P of `G4 P`, of `G2 P`.
+    pub(crate) fn letter_beside(&self, code: u16, letter: u8) -> Option<Meaning> {
+        let wanted = |choice: &&Choice| choice.code == code && choice.beside == [(letter, None)];
+        self.choices
+            .iter()
+            .find(wanted)
+            .map(|choice| choice.meaning)
+    }
+
     /// The sense of M and a number.
     #[inline]
     pub(crate) fn m(&self, code: u16) -> Sense {
@@ -225,6 +234,7 @@ impl Lexicon {
                 .insert(name.trim_end_matches('=').to_owned(), sense);
             return;
         };
+        let beside: Vec<(u8, Option<f64>)> = parts.filter_map(beside).collect();
         let place = self.place(sense);
         let table = if letter == b'G' {
             &mut self.g
@@ -232,11 +242,9 @@ impl Lexicon {
             &mut self.m
         };
         let at = if letter == b'G' { code } else { code / 10 };
-        let beside: Vec<(u8, Option<f64>)> = parts.filter_map(beside).collect();
-        let told = self.choices.iter().any(|choice| choice.code == code);
-        // With several senses the plain word is what no other words stand beside.
+        // What other words stand beside takes the plain word's place only where that has no sense.
         if let Some(entry) = table.get_mut(usize::from(at))
-            && (!told || beside.is_empty() || letter == b'M')
+            && (*entry == 0 || beside.is_empty() || letter == b'M')
         {
             *entry = place;
         }

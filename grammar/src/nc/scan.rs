@@ -33,7 +33,9 @@ fn words(text: &[u8], block: &mut NcBlock) -> Option<usize> {
             break;
         }
         let letter = first.to_ascii_uppercase();
-        if !letter.is_ascii_uppercase() || letter == b'O' {
+        // The number of a block may be parted from its letter.
+        let head = letter == b'N' && block.number.is_none() && block.items.is_empty();
+        if !letter.is_ascii_uppercase() || letter == b'O' || head {
             return None;
         }
         let next = *text.get(at + 1)?;
@@ -143,7 +145,9 @@ fn named(name: &'static str, number: NcNumber) -> NcItem {
 /// The number at `at`, and where it ends.
 #[inline(always)]
 fn value(text: &[u8], at: usize) -> Option<(NcNumber, usize)> {
-    let found = decimal(text, at)?;
+    // A `+` says nothing; what stands behind it has no sign.
+    let plus = usize::from(text.get(at) == Some(&b'+') && text.get(at + 1) != Some(&b'-'));
+    let found = decimal(text, at + plus)?;
     let number = NcNumber {
         value: found.value,
         point: found.point,

@@ -153,6 +153,16 @@ impl<'t> Line<'t> {
         }
     }
 
+    /// What stands behind the name `name`, blanks within angle brackets aside.
+    fn after_name(self, name: &str) -> Option<Self> {
+        let (first, angled) = name.split_at(name.find('<').unwrap_or(name.len()));
+        let mut line = self.after(first.as_bytes())?;
+        for byte in angled.as_bytes() {
+            line = line.after(std::slice::from_ref(byte))?;
+        }
+        Some(line)
+    }
+
     /// What stands behind `prefix`, in capitals, and blanks.
     fn after(self, prefix: &[u8]) -> Option<Self> {
         let (head, rest) = self.0.split_at_checked(prefix.len())?;
@@ -206,7 +216,7 @@ impl<'t> Line<'t> {
             let found = self.after(b"O").or(self.after(b":")).and_then(Line::whole);
             return found.is_some_and(|(found, rest)| found == number && !rest.is_o_word());
         }
-        self.after(name.as_bytes()).is_some_and(|rest| {
+        self.after_name(name).is_some_and(|rest| {
             let ends = name.ends_with('>') || rest.0.is_empty() || rest.0[0] == b'(';
             ends && !rest.is_o_word()
         })
@@ -243,7 +253,7 @@ impl<'t> Line<'t> {
         };
         let behind = match (line.whole(), name.parse::<u64>()) {
             (Some((found, rest)), Ok(number)) if found == number => Some(rest),
-            (None, Err(_)) => line.after(name.as_bytes()),
+            (None, Err(_)) => line.after_name(name),
             _ => None,
         };
         behind.is_some_and(|rest| rest.after(b"SUB").is_some())

@@ -11,8 +11,8 @@ use post_host::Finder;
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::DialectSession;
+use post_posting::LookedAhead;
 use post_posting::report::Report;
-use post_posting::{Job, JobFacts, LookedAhead, Post};
 use post_readback::interpret::Limits;
 use post_readback::verify::Verification;
 use serde::Serialize;
@@ -20,6 +20,7 @@ use serde::Serialize;
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
+use crate::job::one_program::OneProgram;
 use crate::job::read_back::{self, Held, Reading};
 use crate::job::{self, plugin_finder};
 use crate::terminal;
@@ -121,7 +122,15 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let mut verifications = Vec::new();
     let mut findings = Vec::new();
     for (part, file) in parts.iter().zip(&mut files) {
-        let (report, found) = post(arguments, part, &finder, ahead.as_ref(), &mut source, file)?;
+        let program = OneProgram {
+            arguments: &arguments.job,
+            machine: &part.machine,
+            finder: &finder,
+            target: &part.target,
+            lines: part.lines.clone(),
+            trust_model: arguments.trust_model,
+        };
+        let (report, found) = program.write(ahead.as_ref(), &mut source, file)?;
         // What is wrong with the file is found again in each of its parts.
         for finding in found {
             if !findings.contains(&finding) {
@@ -256,61 +265,6 @@ fn the_parts(
             })
         })
         .collect()
-}
-
-/// Makes one program: its report, if all is good, and every finding.
-fn post(
-    arguments: &PostArguments,
-    part: &Part,
-    finder: &Finder,
-    ahead: Option<&LookedAhead>,
-    source: &mut ClSource,
-    file: &mut AtomicFile,
-) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
-    let cl_file = arguments.job.input();
-    let program = job::program_name(cl_file, Some(&part.target));
-    // Of a part of the file other tools and extents are known than of the whole.
-    let part_ahead = match &part.lines {
-        Some(lines) if part.machine.program.looks_ahead => {
-            let lines = Some(lines.clone());
-            Some(job::look_ahead(
-                &arguments.job,
-                &part.machine,
-                finder,
-                source,
-                lines,
-            )?)
-        }
-        _ => None,
-    };
-    let ahead = match part.lines {
-        None => ahead,
-        Some(_) => part_ahead.as_ref(),
-    };
-    let (mut dialect, dialect_use) =
-        plugin_finder::dialect_knowing(finder, &part.machine, &program, Some(cl_file), ahead)?;
-    let (mut model, model_use) = plugin_finder::model(finder, &part.machine)?;
-    let planes = job::ahead(&arguments.job, source, &part.machine, &dialect)?;
-    let input = source.open()?;
-    let job = Job {
-        ahead: planes,
-        trust_model: arguments.trust_model,
-        facts: JobFacts {
-            program,
-            cl_file: plugin_finder::cl_name(cl_file),
-            ahead: ahead.cloned(),
-        },
-        lines: part.lines.clone(),
-        ..job::posting(&arguments.job, &input.name)
-    };
-    let mut post = Post::new(&part.machine, job, &mut dialect, &mut model, file)
-        .map_err(|finding| *finding)?;
-    job::read(input, &mut post)?;
-    let (mut report, findings) = post.finish();
-    if let Some(report) = &mut report {
-        report.plugins = vec![dialect_use, model_use];
-    }
-    Ok((report, findings))
 }
 
 /// Reads a program back from the disk and holds it against the CL file.

@@ -1,11 +1,9 @@
 //! `post study`: how far the tool strays on a CL file, and what each model and each placement makes of it.
 
-mod chart;
 mod move_pictures;
 mod notation;
 mod path_picture;
 mod pictures;
-mod scale;
 mod study_csv;
 mod study_text;
 mod sweep;

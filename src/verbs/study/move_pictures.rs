@@ -4,9 +4,9 @@ use post_machine::description::Machine;
 use post_plugin::{ModelSession, length};
 use post_study::{Kept, Rim, Stretch};
 
-use super::chart::{Chart, DASHED, GREY, LOOKS, Marker, Series};
 use super::notation::{FINE, HUGE, MICRO, digits, focus, sampled, tolerance};
 use super::{Models, Study};
+use crate::files::chart::{Chart, DASHED, GREY, LOOKS, Marker, Series};
 
 /// More points than this would run into one another.
 const MOST_POINTS: usize = 60;

@@ -3,9 +3,9 @@
 use post_plugin::ModelSession;
 use post_study::Kept;
 
-use super::chart::{Chart, GREY, LOOKS, Marker, Series};
 use super::notation::{FINE, focus};
 use super::{Models, Study};
+use crate::files::chart::{Chart, GREY, LOOKS, Marker, Series};
 
 /// Moves to each side of the one that is looked at.
 const SIDE: usize = 1;

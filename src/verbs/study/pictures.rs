@@ -3,9 +3,9 @@
 
 use post_study::{Survey, histogram};
 
-use super::chart::{Chart, DASHED, Draw, GREY, LOOKS, Series};
 use super::notation::{HUGE, MICRO, count_of_moves, focus, sampled, tolerance};
 use super::{File, Models, Study, move_pictures, path_picture};
+use crate::files::chart::{Chart, DASHED, Draw, GREY, LOOKS, Series};
 
 /// More moves than this are drawn as the largest of every few.
 const MOST_MOVES: usize = 300;

@@ -14,6 +14,9 @@ use super::state::Control;
 /// decimals of an inch program, and the rounding of a centre far away.
 const OFF: [f64; 2] = [0.02, 0.001];
 
+/// A helix of more turns is none.
+const MOST_TURNS: f64 = 10_000.0;
+
 impl Control {
     /// The arc that the words of a block ask for.
     pub(super) fn arc_words(
@@ -56,10 +59,9 @@ impl Control {
             };
         }
         let flat = |point: Vector3<f64>| [point[first], point[second]];
-        let ([x0, y0], [x1, y1]) = (flat(from), flat(to));
-        let full_turns = words.turns.unwrap_or(0.0);
+        let full_turns = self.further_turns(clockwise, words)?;
         if let (Some(radius), false) = (radius, told) {
-            let [cx, cy] = self.centre_by_radius([x0, y0], [x1, y1], radius, clockwise)?;
+            let [cx, cy] = self.centre_by_radius(flat(from), flat(to), radius, clockwise)?;
             centre[first] = cx;
             centre[second] = cy;
         } else if !told {
@@ -67,26 +69,7 @@ impl Control {
         } else if radius.is_some() {
             return Err(self.refuse("nc-arc", "the arc has both a centre and a radius"));
         }
-        let (ax, ay) = (x0 - centre[first], y0 - centre[second]);
-        let (bx, by) = (x1 - centre[first], y1 - centre[second]);
-        let (start, end) = (libm::hypot(ax, ay), libm::hypot(bx, by));
-        if libm::fabs(start - end) > OFF[0] + OFF[1] * start || start == 0.0 {
-            let message = format!(
-                "the arc begins {start:.4} mm from its centre and ends {end:.4} mm from it"
-            );
-            return Err(self.refuse("nc-arc", message));
-        }
-        let turn = libm::atan2(ax * by - ay * bx, ax * bx + ay * by);
-        let same = libm::hypot(x1 - x0, y1 - y0) < 1e-9 * (1.0 + start);
-        let mut sweep = if same {
-            if clockwise { -TAU } else { TAU }
-        } else if clockwise {
-            if turn >= 0.0 { turn - TAU } else { turn }
-        } else if turn <= 0.0 {
-            turn + TAU
-        } else {
-            turn
-        };
+        let mut sweep = self.sweep([flat(from), flat(to), flat(centre)], clockwise)?;
         sweep += if clockwise {
             -full_turns * TAU
         } else {
@@ -100,9 +83,52 @@ impl Control {
         })
     }
 
+    /// Full turns beside the arc's own: `TURN=2`, or P of RS-274/NGC, which counts the last part of a turn too.
+    fn further_turns(&self, clockwise: bool, words: &mut Gathered) -> Result<f64, Box<Diagnostic>> {
+        let code = if clockwise { 20 } else { 30 };
+        let counted = self.lexicon.letter_beside(code, b'P') == Some(Meaning::Turns);
+        let turns = match words.turns {
+            Some(turns) => turns,
+            None if counted => words.take(b'P').map_or(0.0, |turns| turns - 1.0),
+            None => 0.0,
+        };
+        if turns < 0.0 || turns > MOST_TURNS || turns != libm::floor(turns) {
+            return Err(self.refuse("nc-arc", format!("{turns} is no number of full turns")));
+        }
+        Ok(turns)
+    }
+
+    /// The turn from a start to an end about a centre, radians, counter-clockwise positive; a full one where they are the same.
+    pub(super) fn sweep(
+        &self,
+        [[x0, y0], [x1, y1], [x, y]]: [[f64; 2]; 3],
+        clockwise: bool,
+    ) -> Result<f64, Box<Diagnostic>> {
+        let (ax, ay) = (x0 - x, y0 - y);
+        let (bx, by) = (x1 - x, y1 - y);
+        let (start, end) = (libm::hypot(ax, ay), libm::hypot(bx, by));
+        if libm::fabs(start - end) > OFF[0] + OFF[1] * start || start == 0.0 {
+            let message = format!(
+                "the arc begins {start:.4} mm from its centre and ends {end:.4} mm from it"
+            );
+            return Err(self.refuse("nc-arc", message));
+        }
+        let turn = libm::atan2(ax * by - ay * bx, ax * bx + ay * by);
+        let same = libm::hypot(x1 - x0, y1 - y0) < 1e-9 * (1.0 + start);
+        Ok(if same {
+            if clockwise { -TAU } else { TAU }
+        } else if clockwise {
+            if turn >= 0.0 { turn - TAU } else { turn }
+        } else if turn <= 0.0 {
+            turn + TAU
+        } else {
+            turn
+        })
+    }
+
     /// The centre of the arc of this radius; of the two the one whose arc is shorter than half a turn, or longer if the
     /// radius is negative.
-    fn centre_by_radius(
+    pub(super) fn centre_by_radius(
         &self,
         [x0, y0]: [f64; 2],
         [x1, y1]: [f64; 2],

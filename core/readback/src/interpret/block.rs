@@ -39,6 +39,8 @@ pub(super) struct Asked {
     pub work: Option<u16>,
     /// Length compensation on: ten times the number of its word, or 0 of a word without one.
     pub length_on: Option<u16>,
+    /// Length compensation by the length that the block names.
+    pub length_stated: bool,
     /// And off.
     pub length_off: bool,
     /// Tool centre point control on: ten times the number of its word, 0 of a word without G.
@@ -57,8 +59,8 @@ pub(super) struct Asked {
     pub coolant_off: bool,
     /// The program stops.
     pub stop: Option<Meaning>,
-    /// A thread or tap without a cycle: ten times the number.
-    pub thread: Option<u16>,
+    /// A thread or tap without a cycle: ten times the number of its word, and its meaning.
+    pub thread: Option<(u16, Meaning)>,
     /// A probing move.
     pub probe: bool,
     /// This block at rapid.
@@ -223,6 +225,7 @@ impl Control {
             Meaning::MachineCoordinates => asked.machine = true,
             Meaning::RapidBlock => asked.rapid = true,
             Meaning::LengthOn => asked.length_on = Some(code),
+            Meaning::LengthStated => asked.length_stated = true,
             Meaning::LengthOff => asked.length_off = true,
             Meaning::CompensationOff => self.compensate(0, words)?,
             Meaning::CompensationLeft => self.compensate(-1, words)?,
@@ -254,7 +257,10 @@ impl Control {
             Meaning::SpindleOrient => asked.spindle = Some(Turning::Oriented),
             Meaning::CoolantOn => asked.coolant = Some(code / 10),
             Meaning::CoolantOff => asked.coolant_off = true,
-            Meaning::Dwell => asked.dwell = true,
+            Meaning::Dwell
+            | Meaning::DwellSeconds
+            | Meaning::DwellMilliseconds
+            | Meaning::DwellTurns => asked.dwell = true,
             Meaning::Stop | Meaning::OptionalStop | Meaning::End => asked.stop = Some(meaning),
             Meaning::Probe => asked.probe = true,
             Meaning::CycleDrill
@@ -288,7 +294,10 @@ impl Control {
             Meaning::CentreIncremental => self.modal.centres_absolute = false,
             Meaning::SurfaceSpeed => self.modal.surface_speed = true,
             Meaning::SurfaceSpeedOff => self.modal.surface_speed = false,
-            Meaning::SpeedLimit => {}
+            Meaning::SpeedLimit => {
+                self.modal.most_speed = words.take(b'S');
+                words.present &= !bit(b'S');
+            }
             Meaning::RotaryShortest => self.modal.shortest = Some(true),
             Meaning::RotaryAsWritten => self.modal.shortest = Some(false),
             Meaning::InchLengths => self.modal.unit = 25.4,
@@ -308,7 +317,7 @@ impl Control {
             Meaning::OrientationVector => self.modal.orientation = Orientation::Circle,
             Meaning::OrientationPart => self.modal.orientation = Orientation::Usual,
             Meaning::Thread | Meaning::ThreadAndBack | Meaning::ThreadBack => {
-                asked.thread = Some(code);
+                asked.thread = Some((code, meaning));
             }
             Meaning::Subprogram
             | Meaning::LocalSubprogram
@@ -328,7 +337,6 @@ impl Control {
             | Meaning::CylinderTransformation
             | Meaning::Diameter
             | Meaning::LengthNegative
-            | Meaning::LengthStated
             | Meaning::LengthAdded
             | Meaning::LengthAlongTool
             | Meaning::OrientationAngles
@@ -351,7 +359,11 @@ impl Control {
         }
     }
 
-    fn compensate(&mut self, side: i8, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn compensate(
+        &mut self,
+        side: i8,
+        words: &mut Gathered,
+    ) -> Result<(), Box<Diagnostic>> {
         let register = if side == 0 || self.lexicon.tools_have_edges() {
             None
         } else {
@@ -381,7 +393,15 @@ impl Control {
     }
 
     /// Takes an M code.
-    fn m_code(&mut self, code: u16, asked: &mut Asked) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn m_code(&mut self, code: u16, asked: &mut Asked) -> Result<(), Box<Diagnostic>> {
+        if matches!(code, 67 | 68) && self.lexicon.language() == Language::Rs274 {
+            let message = format!(
+                "M{code} is not run: its output may be wired to what switches the kinematics"
+            );
+            let help = "a remap by which the machine file switches (M428, M429) is followed";
+            let finding = Diagnostic::error("nc-word", message).help(help);
+            return Err(self.placed(finding).boxed());
+        }
         match self.lexicon.m(code) {
             Sense::Means(meaning) => {
                 // `meant` takes ten times the number, as of G.
@@ -512,7 +532,7 @@ impl Control {
     }
 
     /// S changed while the spindle turns.
-    fn speed_changed(&mut self) {
+    pub(super) fn speed_changed(&mut self) {
         match self.state.spindle {
             Spindle::Clockwise(_) => self.turn_spindle(Turning::Clockwise),
             Spindle::CounterClockwise(_) => self.turn_spindle(Turning::CounterClockwise),
@@ -580,28 +600,38 @@ impl Control {
                 (None, Some(turns)) => told(turns, true),
                 (None, None) => return Err(self.refuse("nc-dwell", "G4 says neither F nor S")),
             },
-            language => {
-                let pointed = words.pointed & bit(b'P') != 0;
-                match (
-                    words.take(b'P'),
-                    words.take(b'X'),
-                    words.take(b'U'),
-                    words.get(b'F'),
-                ) {
-                    (Some(time), ..) if language == Language::Rs274 || pointed => told(time, false),
-                    (Some(milliseconds), ..) => told(milliseconds / 1000.0, false),
-                    (None, Some(time), ..) | (None, None, Some(time), _) => told(time, false),
-                    (None, None, None, Some(time)) => told(time, false),
-                    (None, None, None, None) => {
-                        return Err(self.refuse("nc-dwell", "the wait does not say how long"));
-                    }
-                }
-            }
+            _ => self.letters_dwell(words)?,
         };
         // They were times, and are nothing else in this block.
         words.present &= !(bit(b'F') | bit(b'S') | bit(b'X') | bit(b'U'));
         self.tell(told);
         Ok(())
+    }
+
+    /// The time of a wait by its letter: as the dialect says of it, else X, U and F in seconds.
+    fn letters_dwell(&mut self, words: &mut Gathered) -> Result<Told, Box<Diagnostic>> {
+        const G4: u16 = 40;
+        for letter in [b'P', b'X', b'U', b'F', b'S'] {
+            let meaning = self.lexicon.letter_beside(G4, letter);
+            let usual = matches!(letter, b'X' | b'U' | b'F').then_some(Meaning::DwellSeconds);
+            let Some(meaning) = meaning.or(usual) else {
+                continue;
+            };
+            let Some(value) = words.take(letter) else {
+                continue;
+            };
+            let pointed = words.pointed & bit(letter) != 0;
+            let time = match meaning {
+                Meaning::DwellMilliseconds if !pointed => value / 1000.0,
+                _ => value,
+            };
+            let revolutions = meaning == Meaning::DwellTurns;
+            return Ok(Told::Dwell { time, revolutions });
+        }
+        Err(self.refuse(
+            "nc-dwell",
+            "the wait does not say how long in a way that is known",
+        ))
     }
 
     /// Length, tool centre point control and edges.
@@ -634,6 +664,9 @@ impl Control {
             }
             self.length_changed()?;
         }
+        if asked.length_stated {
+            return self.stated_length(words);
+        }
         let on = asked.length_on.or(asked.tcp_on.filter(|code| *code != 0));
         if on.is_some() {
             self.length_by(words)?;
@@ -652,6 +685,21 @@ impl Control {
         Ok(())
     }
 
+    /// Length compensation by Z of the block: G43.1.
+    fn stated_length(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+        let said = words.present & self.axes.mask;
+        let (Some(length), true) = (words.take(b'Z'), said == bit(b'Z')) else {
+            return Err(self.refuse("nc-length", "a length along other axes than Z is not run"));
+        };
+        self.tools.length_on = true;
+        self.tools.by_tool = false;
+        self.tools.stated = Some(length * self.modal.unit);
+        self.state.length_register = None;
+        // It is no coordinate.
+        words.present &= !bit(b'Z');
+        self.length_changed()
+    }
+
     /// Length compensation by a register.
     fn length_by(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
         let register = match words.take_number(b'H', self)? {
@@ -661,6 +709,7 @@ impl Control {
         };
         self.tools.length_on = true;
         self.tools.by_tool = false;
+        self.tools.stated = None;
         self.state.length_register = match (register, self.lexicon.language()) {
             (Some(register), _) => Some(register),
             // Without H the tool in the spindle is meant.
@@ -741,11 +790,8 @@ impl Control {
         if asked.machine {
             return self.machine_move(words, asked.rapid);
         }
-        if let Some(code) = asked.thread {
-            return Err(self.refuse(
-                "nc-thread",
-                format!("G{} is not run", f64::from(code) / 10.0),
-            ));
+        if let Some((code, meaning)) = asked.thread {
+            return self.thread(code, meaning, words);
         }
         if asked.probe {
             return Err(self.refuse(
@@ -807,7 +853,7 @@ impl Control {
 
     /// What was not made use of: refused where it may change a motion, else counted by name.
     #[inline]
-    fn left_over(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn left_over(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
         let left = words.present & !words.used;
         if left == 0 {
             return Ok(());

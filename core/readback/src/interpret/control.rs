@@ -89,6 +89,7 @@ impl Control {
             tools: super::tools::Tools::default(),
             variables: super::variables::Variables::new(lexicon.language()),
             cycles: super::cycles::Cycles::default(),
+            path: super::conversational::Path::default(),
             state: State {
                 solver: Arc::clone(&solver),
                 length: 0.0,

@@ -93,6 +93,8 @@ pub(super) struct Frames {
     pub plane: Option<Frame>,
     /// What is shifted or turned inside of the tilted plane.
     pub inner: Frame,
+    /// `G92` has a part in `outer`.
+    pub preset: bool,
 }
 
 impl Frames {

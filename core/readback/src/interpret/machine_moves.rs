@@ -6,12 +6,13 @@ use nalgebra::Vector3;
 use post_grammar::nc::Approach;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES};
+use post_plugin::Meaning;
 
 use super::gathered::{Gathered, bit};
 use super::go::{Path, Target, shorter};
 use super::state::{Control, MotionMode};
-use crate::MotionKind;
 use crate::lexicon::Language;
+use crate::{CycleCall, CycleKind, MotionKind, Spindle, Told};
 
 impl Control {
     /// A motion in machine coordinates: G53, SUPA. Words alone change nothing.
@@ -53,12 +54,14 @@ impl Control {
             }
         };
         let mut joints = self.at.joints;
+        let mut stated = words.named_axes;
         let mut left = said;
         while left != 0 {
             let letter = left.trailing_zeros() as usize % 26;
             left &= left - 1;
             let place = usize::from(self.axes.letters[letter]) % MAX_AXES;
             joints[place] = self.shown(place, words.values[letter]);
+            stated |= 1 << place;
             if self.axes.rotary & (1 << place) != 0 {
                 joints[place] = match words.approaches[letter]
                     .filter(|_| words.approached & (1 << letter) != 0)
@@ -73,15 +76,64 @@ impl Control {
                 *joint = words.named_values[place];
             }
         }
-        self.go_machine(kind, &joints);
-        Ok(())
+        self.go_machine(kind, &joints, stated)
     }
 
-    /// Goes to `joints`, which the program states as positions of the machine.
-    pub(super) fn go_machine(&mut self, kind: MotionKind, joints: &Joints) {
+    /// Goes to `joints`, which the program states as positions of the machine; those of the places in `said` are stated.
+    fn go_machine(
+        &mut self,
+        kind: MotionKind,
+        joints: &Joints,
+        said: u32,
+    ) -> Result<(), Box<Diagnostic>> {
         self.in_machine = true;
-        self.go_joints(kind, joints);
+        // A control whose kinematics are switched has no other coordinates than those of the tip then.
+        let went = if self.state.tcp && self.lexicon.language() == Language::Rs274 {
+            self.go_world(kind, joints, said)
+        } else {
+            self.go_joints(kind, joints);
+            Ok(())
+        };
         self.in_machine = false;
+        went
+    }
+
+    /// Machine coordinates of the kinematics that keep the tip: those of the axes with the rotary ones at zero, fixed to
+    /// the part.
+    fn go_world(
+        &mut self,
+        kind: MotionKind,
+        joints: &Joints,
+        said: u32,
+    ) -> Result<(), Box<Diagnostic>> {
+        let mut world = self.at.joints;
+        for (place, axis) in self.machine.axes.iter().enumerate() {
+            if axis.joint.rotary {
+                world[place] = -axis.zero;
+            }
+        }
+        let solver = std::sync::Arc::clone(&self.state.solver);
+        let turns = solver.chain().turns(&world);
+        if solver.place(self.at.pose.tip, &mut world, &turns).is_err() {
+            return Err(self.refuse(
+                "nc-reach",
+                "the linear axes do not place the tip with the rotary axes at zero",
+            ));
+        }
+        let mut target = Target::default();
+        for place in 0..self.machine.axes.len() {
+            if said & (1 << place) == 0 {
+                continue;
+            }
+            if self.axes.cartesian.contains(&Some(place)) {
+                world[place] = joints[place];
+            } else {
+                target.say(place, joints[place]);
+            }
+        }
+        let tip = self.to_part.inside(solver.chain().forward(&world).tip);
+        target.point = [Some(tip.x), Some(tip.y), Some(tip.z)];
+        self.go(kind, &Path::Straight, &target)
     }
 
     /// The axis value (from the drawing's zero, mm or radians) of a machine coordinate in program units.
@@ -131,11 +183,12 @@ impl Control {
             },
         )?;
         let mut joints = self.at.joints;
+        let mut stated = 0;
         for place in places {
             joints[place] = self.reference_position(which, place);
+            stated |= 1 << place;
         }
-        self.go_machine(MotionKind::Rapid, &joints);
-        Ok(())
+        self.go_machine(MotionKind::Rapid, &joints, stated)
     }
 
     /// Where an axis has its reference position: as `--offsets` says, else at machine coordinate 0.
@@ -155,6 +208,56 @@ impl Control {
             ),
         );
         -self.machine.axes[place].zero
+    }
+
+    /// A straight move tied to the spindle: `G33 Z K`; `G33.1` comes back with the spindle reversed.
+    pub(super) fn thread(
+        &mut self,
+        code: u16,
+        meaning: Meaning,
+        words: &mut Gathered,
+    ) -> Result<(), Box<Diagnostic>> {
+        let name = f64::from(code) / 10.0;
+        if meaning == Meaning::ThreadBack || self.lexicon.language() == Language::Names {
+            let message =
+                format!("G{name} is not run: how its pitch is stated hangs on the control");
+            return Err(self.refuse("nc-thread", message));
+        }
+        let Some(pitch) = words.take(b'K').filter(|pitch| *pitch > 0.0) else {
+            let message = format!("G{name} does not say its pitch K");
+            return Err(self.refuse("nc-thread", message));
+        };
+        let pitch = pitch * self.modal.unit;
+        let target = self.target(words)?;
+        let from = self.point();
+        let to = Vector3::from_fn(|row, _| target.point[row].unwrap_or(from[row]));
+        let tap = meaning == Meaning::ThreadAndBack;
+        if tap {
+            let left = matches!(self.state.spindle, Spindle::CounterClockwise(_));
+            self.tell(Told::Cycle(CycleCall {
+                kind: if left {
+                    CycleKind::TapLeft
+                } else {
+                    CycleKind::Tap
+                },
+                depth: (to - from).norm(),
+                feed: pitch,
+                per_revolution: true,
+                ..CycleCall::default()
+            }));
+        }
+        let before = (self.modal.feed, self.hole);
+        self.modal.feed = Some(pitch);
+        self.hole |= tap;
+        let mut went = self.go(MotionKind::Thread, &Path::Straight, &target);
+        if tap && went.is_ok() {
+            went = self.straight(MotionKind::Thread, from);
+        }
+        (self.modal.feed, self.hole) = before;
+        if tap {
+            self.tell(Told::CycleEnd);
+        }
+        went
     }
 
     /// The value to which a rotary axis goes where the word says how it turns.

@@ -92,7 +92,7 @@ impl Runner {
         self.control.line = block.line;
         self.control.number = block.number;
         if self.conversational {
-            conversational::run(&mut self.control, block)
+            conversational::run(&mut self.control, block, &mut self.words)
         } else {
             block::run(&mut self.control, block, &mut self.words)
         }

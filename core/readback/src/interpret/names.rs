@@ -4,7 +4,7 @@ use post_grammar::nc::{NcBlock, NcItem, NcValue};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::block::Asked;
+use super::block::{Asked, Turning};
 use super::gathered::{Gathered, which};
 use super::state::Control;
 use super::{cycles, frames, planes};
@@ -34,12 +34,15 @@ pub(super) fn take(
                     control.tools.ready = None;
                 }
             }
-            NcItem::Named { name, value } => control.named(name, value, words)?,
+            NcItem::Named { name, value } => control.named(name, value, words, asked)?,
             NcItem::Name(name) => {
-                modal_call = name == "MCALL"
-                    && matches!(items.peek(), Some(NcItem::Call { .. } | NcItem::Name(_)));
-                if !modal_call {
+                let sense = control.lexicon.name(name);
+                if sense != Sense::Means(Meaning::CycleCallModal) {
                     control.name(name, words, asked)?;
+                } else if matches!(items.peek(), Some(NcItem::Call { .. } | NcItem::Name(_))) {
+                    modal_call = true;
+                } else {
+                    asked.cycle_off = true;
                 }
             }
             NcItem::Call { name, arguments } => {
@@ -66,6 +69,7 @@ impl Control {
         name: &str,
         value: &NcValue,
         words: &mut Gathered,
+        asked: &mut Asked,
     ) -> Result<(), Box<Diagnostic>> {
         if let Some((_, place)) = self.axes.names.iter().find(|(known, _)| known == name) {
             let place = *place;
@@ -94,6 +98,7 @@ impl Control {
             Sense::Means(Meaning::SpeedLimit) => self.modal.most_speed = Some(worth(self)?),
             Sense::Means(Meaning::Nothing | Meaning::Smoothing) => {}
             Sense::Means(Meaning::SmoothingOff) => self.smooth(None),
+            Sense::Means(Meaning::SpindleOrient) => asked.spindle = Some(Turning::Oriented),
             Sense::Means(Meaning::Probe) => {
                 return Err(self.refuse(
                     "nc-probe",

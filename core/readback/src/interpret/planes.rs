@@ -1,10 +1,52 @@
-//! Tilted planes.
+//! Tilted planes: which frame the words are in, and the axes that turn to it.
+//!
+//! A plane is a frame of the part; under it the linear words are the tip in that frame. The axes turn to it by words of
+//! the program in front of it, or by the control: then it must be plain where to, else it is refused.
 
+use nalgebra::{Matrix3, Vector3};
 use post_grammar::nc::NcValue;
 use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::{Joints, Pose};
+use post_machine::tilted_plane::rotation;
 
+use super::frame::Frame;
 use super::gathered::Gathered;
+use super::go::nearest_turn;
 use super::state::Control;
+use crate::MotionKind;
+use crate::lexicon::Language;
+
+/// The tool stands upright on a plane if its axis misses the normal by no more, radians: words have few decimals.
+const UPRIGHT: f64 = 1e-4;
+
+/// Angles nearer than this are one, radians.
+const SAME: f64 = 1e-7;
+
+/// Which of two solutions is meant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Pick {
+    /// The program does not say.
+    #[default]
+    Any,
+    /// The axis that tilts stands on its positive side: `SEQ+`.
+    Plus,
+    /// On its negative side: `SEQ-`.
+    Minus,
+    /// The one next to where the axes stand, if no other is nearer in any of them; of two that are as near the positive.
+    Nearest,
+}
+
+/// How the axes turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Turn {
+    /// Not at all.
+    #[default]
+    Stay,
+    /// They turn alone.
+    Turn,
+    /// The linear axes keep the tip on its place.
+    Move,
+}
 
 /// A G code of a tilted plane (`G68.2 X Y Z I J K`, `G254`); `code` is ten times its number.
 pub(super) fn begin(
@@ -12,8 +54,44 @@ pub(super) fn begin(
     code: u16,
     words: &mut Gathered,
 ) -> Result<(), Box<Diagnostic>> {
-    let _ = (code, words);
-    Err(control.refuse("nc-plane", "tilted planes are not run"))
+    if control.frames.plane.is_some() {
+        return Err(control.refuse(
+            "nc-plane",
+            "a tilted plane begins inside of another, which must end before",
+        ));
+    }
+    match code {
+        2540 => {
+            let frame = as_it_stands(control)?;
+            lay(control, frame)
+        }
+        682 => {
+            if words.take(b'P').is_some_and(|form| form != 0.0) {
+                return Err(control.refuse(
+                    "nc-plane",
+                    "G68.2 with P: only Euler angles (P0, or no P) are run",
+                ));
+            }
+            if control.modal.incremental {
+                return Err(control.refuse(
+                    "nc-plane",
+                    "G68.2 under G91: whether its origin is a way is not settled",
+                ));
+            }
+            let mut number = |letter: u8| words.take(letter).unwrap_or(0.0);
+            let origin =
+                Vector3::new(number(b'X'), number(b'Y'), number(b'Z')) * control.modal.unit;
+            let angles = [b'I', b'J', b'K'].map(|letter| number(letter).to_radians());
+            lay(control, Frame::new(rotation([2, 0, 2], angles), origin))
+        }
+        _ => {
+            let name = f64::from(code) / 10.0;
+            Err(control.refuse(
+                "nc-plane",
+                format!("G{name} is a form of a tilted plane that is not run"),
+            ))
+        }
+    }
 }
 
 /// The axes turn to the plane in force: `G53.1`.
@@ -22,23 +100,341 @@ pub(super) fn turn(
     code: u16,
     words: &mut Gathered,
 ) -> Result<(), Box<Diagnostic>> {
-    let _ = (code, words);
-    Err(control.refuse("nc-plane", "tilted planes are not run"))
+    if control.frames.plane.is_none() {
+        let name = f64::from(code) / 10.0;
+        return Err(control.refuse(
+            "nc-plane",
+            format!("G{name} turns the axes to a tilted plane, and none is in force"),
+        ));
+    }
+    let pick = match words.take(b'P') {
+        Some(1.0) => Pick::Plus,
+        Some(2.0) => Pick::Minus,
+        _ => Pick::Any,
+    };
+    turn_to(control, Turn::Turn, pick, MotionKind::Rapid).map(|_| ())
 }
 
 /// It ends: `G69`, `G255`, `CYCLE800()`.
 pub(super) fn end(control: &mut Control) -> Result<(), Box<Diagnostic>> {
-    control.frames.plane = None;
+    // G69 ends a turn in the plane too.
+    let letters = matches!(
+        control.lexicon.language(),
+        Language::Macro | Language::Rs274
+    );
+    let turned = letters && !control.frames.inner.is_default();
+    if turned {
+        control.frames.inner = Frame::default();
+    }
+    if control.frames.plane.take().is_some() || turned {
+        control.frames_changed();
+    }
+    Ok(())
+}
+
+/// The words are in `frame` from here on, which is given in the coordinates of the program outside of any plane.
+pub(super) fn lay(control: &mut Control, frame: Frame) -> Result<(), Box<Diagnostic>> {
+    control.frames.plane = Some(frame);
     control.frames_changed();
     Ok(())
 }
 
-/// `CYCLE800(…)` with arguments.
+/// The frame of the machine's own directions as the axes stand now, with the origin of the program: G254, CYCLE800 with
+/// the rotary axes themselves.
+pub(super) fn as_it_stands(control: &Control) -> Result<Frame, Box<Diagnostic>> {
+    let [Some(x), Some(y), Some(z)] = control.axes.cartesian else {
+        return Err(control.refuse("nc-plane", "a tilted plane needs the axes X, Y and Z"));
+    };
+    let chain = control.state.solver.chain();
+    let ways = [x, y, z].map(|place| chain.way_of(place, &control.at.joints));
+    let axes = Matrix3::from_columns(&ways);
+    let across =
+        (axes.transpose() * axes - Matrix3::identity()).norm() < 1e-9 && axes.determinant() > 0.0;
+    if !across {
+        return Err(control.refuse("nc-plane", "X, Y and Z of this machine do not stand across one another as X, Y and Z of a frame do"));
+    }
+    Ok(Frame::new(
+        control.to_part.axes.transpose() * axes,
+        Vector3::zeros(),
+    ))
+}
+
+/// The normal of the plane in force, unit vector, part frame.
+fn normal(control: &Control) -> Vector3<f64> {
+    control.to_part.out_direction(Vector3::z())
+}
+
+/// The tool stands upright on the plane in force.
+pub(super) fn upright(control: &Control) -> bool {
+    let (axis, normal) = (control.at.pose.axis, normal(control));
+    axis.dot(&normal) > 0.0 && axis.cross(&normal).norm() <= UPRIGHT
+}
+
+/// Turns the axes to the plane in force; where they go is answered too.
+///
+/// # Errors
+/// The plane is out of reach, or it is not plain which solution the control takes.
+pub(super) fn turn_to(
+    control: &mut Control,
+    how: Turn,
+    pick: Pick,
+    kind: MotionKind,
+) -> Result<Joints, Box<Diagnostic>> {
+    let to = solution(control, pick)?;
+    let stands = (0..control.machine.axes.len()).all(|place| to[place] == control.at.joints[place]);
+    match how {
+        _ if stands => {}
+        Turn::Stay => {}
+        Turn::Turn => control.go_joints(kind, &to),
+        Turn::Move => control.turn_about_tip(kind, &to)?,
+    }
+    Ok(to)
+}
+
+/// Where the axes stand upright on the plane in force, the linear ones as they are.
+fn solution(control: &Control, pick: Pick) -> Result<Joints, Box<Diagnostic>> {
+    let last = control.at.joints;
+    let sided = matches!(pick, Pick::Plus | Pick::Minus);
+    let tilts = tilting(control);
+    let on_side = |joints: &Joints| match (pick, tilts) {
+        (Pick::Plus, Some(place)) => shown(control, place, joints) >= -SAME,
+        (Pick::Minus, Some(place)) => shown(control, place, joints) <= SAME,
+        _ => true,
+    };
+    if upright(control) && (!sided || on_side(&last)) {
+        return Ok(last);
+    }
+    let found = reachable(control)?;
+    let mut inside: Vec<Joints> = found.into_iter().filter(|joints| on_side(joints)).collect();
+    if inside.is_empty() {
+        return Err(control.refuse(
+            "nc-plane",
+            "no solution of the tilted plane lies within the travel of the rotary axes",
+        ));
+    }
+    if inside.len() > 1 && pick == Pick::Nearest {
+        let way = |joints: &Joints, place: usize| libm::fabs(joints[place] - last[place]);
+        let rotary: Vec<usize> = rotary(control).collect();
+        let nearer = |one: &Joints, other: &Joints| {
+            rotary
+                .iter()
+                .all(|&place| way(one, place) <= way(other, place) + SAME)
+        };
+        let best = inside.iter().position(|one| {
+            inside.iter().all(|other| {
+                let positive = tilts.is_some_and(|place| one[place] >= other[place]);
+                nearer(one, other) && (!nearer(other, one) || positive)
+            })
+        });
+        if let Some(best) = best {
+            return Ok(inside[best]);
+        }
+    }
+    match (inside.pop(), inside.is_empty()) {
+        (Some(only), true) => Ok(only),
+        _ => Err(control
+            .placed(
+                Diagnostic::error("nc-plane", "the rotary axes can turn to this plane in several ways, and which of them the control takes is not said")
+                    .help("turn them by words of their own in a block in front of it"),
+            )
+            .boxed()),
+    }
+}
+
+/// All ways in which the rotary axes stand upright on the plane in force, next to where they stand and within travel.
+fn reachable(control: &Control) -> Result<Vec<Joints>, Box<Diagnostic>> {
+    let last = control.at.joints;
+    let pose = Pose {
+        tip: control.at.pose.tip,
+        axis: normal(control),
+        edge: Vector3::zeros(),
+    };
+    let cannot = |_| control.refuse("nc-plane", "the rotary axes cannot turn to this plane");
+    let found = control
+        .state
+        .solver
+        .inverse(&pose, &last, UPRIGHT)
+        .map_err(cannot)?;
+    let mut inside: Vec<Joints> = Vec::new();
+    for solution in &found {
+        let mut joints = last;
+        let mut fits = true;
+        for place in rotary(control) {
+            let travel = control.machine.axes[place].travel;
+            joints[place] = nearest_turn(solution[place], last[place], travel);
+            if let Some([least, most]) = travel {
+                fits &= joints[place] >= least - 1e-9 && joints[place] <= most + 1e-9;
+            }
+        }
+        let same = |known: &Joints| {
+            rotary(control).all(|place| libm::fabs(known[place] - joints[place]) < SAME)
+        };
+        if fits && !inside.iter().any(same) {
+            inside.push(joints);
+        }
+    }
+    Ok(inside)
+}
+
+fn rotary(control: &Control) -> impl Iterator<Item = usize> + '_ {
+    (0..control.machine.axes.len()).filter(|place| control.axes.rotary & (1 << place) != 0)
+}
+
+/// What an axis shows there, radians.
+fn shown(control: &Control, place: usize, joints: &Joints) -> f64 {
+    joints[place] + control.machine.axes[place].zero
+}
+
+/// The rotary axis that tilts: the first one seen from the tool.
+fn tilting(control: &Control) -> Option<usize> {
+    rotary(control).last()
+}
+
+/// What each of A, B, C shows where the axes stand upright on the plane, degrees: Q120 to Q122.
+pub(super) fn angles(control: &Control, joints: &Joints) -> [f64; 3] {
+    [b'A', b'B', b'C'].map(|letter| {
+        control
+            .axis_of(letter)
+            .map_or(0.0, |place| shown(control, place, joints).to_degrees())
+    })
+}
+
+/// `CYCLE800(_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, _FR_I, _DMODE)`.
 pub(super) fn call(
     control: &mut Control,
     name: &str,
     arguments: &[Option<NcValue>],
 ) -> Result<(), Box<Diagnostic>> {
-    let _ = (name, arguments);
-    Err(control.refuse("nc-plane", "tilted planes are not run"))
+    if name != "CYCLE800" {
+        return Err(control.refuse(
+            "nc-plane",
+            format!("{name} is a form of a tilted plane that is not run"),
+        ));
+    }
+    if let Some(Some(NcValue::Text(record))) = arguments.get(1)
+        && record.trim() == "0"
+    {
+        return end(control);
+    }
+    let number = |place: usize| -> Result<f64, Box<Diagnostic>> {
+        match arguments.get(place) {
+            Some(Some(value)) => control
+                .variables
+                .worth(value)
+                .map_err(|finding| control.placed(*finding).boxed()),
+            _ => Ok(0.0),
+        }
+    };
+    let refuse = |what: String| Err(control.refuse("nc-plane", format!("CYCLE800: {what}")));
+    if number(0)? != 0.0 {
+        return refuse(format!(
+            "_FR = {} draws the tool back to a place that stands in the control",
+            number(0)?
+        ));
+    }
+    let status = number(2)?;
+    if libm::fmod(libm::fabs(status), 10.0) >= 1.0 && control.frames.plane.is_some() {
+        return refuse(format!(
+            "_ST = {status} adds to the plane in force, which is not run"
+        ));
+    }
+    let mode = number(3)?;
+    let numbers = |from: usize| -> Result<[f64; 3], Box<Diagnostic>> {
+        Ok([number(from)?, number(from + 1)?, number(from + 2)?])
+    };
+    let unit = control.modal.unit;
+    let (before, turns, behind) = (
+        Vector3::from(numbers(4)?) * unit,
+        numbers(7)?,
+        Vector3::from(numbers(10)?) * unit,
+    );
+    let direction = number(13)?;
+    // A plane that is in force is replaced.
+    end(control)?;
+    let turned = if mode == 192.0 {
+        stand_at(control, turns)?;
+        as_it_stands(control)?
+    } else {
+        let Some(order) = turns_of(mode) else {
+            return Err(control.refuse(
+                "nc-plane",
+                format!("CYCLE800: _MODE = {mode} is no sequence of turns about axes"),
+            ));
+        };
+        Frame::new(
+            rotation(order, turns.map(f64::to_radians)),
+            Vector3::zeros(),
+        )
+    };
+    let frame = Frame::shifted(before)
+        .around(&turned)
+        .around(&Frame::shifted(behind));
+    lay(control, frame)?;
+    if direction != 0.0 && mode != 192.0 {
+        // The axis whose sign it speaks of is told in the control's record of the head.
+        turn_to(control, Turn::Turn, Pick::Any, MotionKind::Rapid)?;
+    }
+    Ok(())
+}
+
+/// The axes of three turns, each about the frame that those before it have made: two bits of `mode` each, the lowest
+/// first, 1 for X, 2 for Y, 3 for Z; none if it is no such sequence.
+fn turns_of(mode: f64) -> Option<[usize; 3]> {
+    if !(0.0..64.0).contains(&mode) || libm::trunc(mode) != mode {
+        return None;
+    }
+    let bits = mode as usize;
+    let order = [bits & 3, bits >> 2 & 3, bits >> 4 & 3];
+    order
+        .iter()
+        .all(|axis| *axis > 0)
+        .then(|| order.map(|axis| axis - 1))
+}
+
+/// The rotary axes must stand where CYCLE800 names them: the first and second of the control's record, whose order the
+/// program does not say.
+fn stand_at(control: &Control, turns: [f64; 3]) -> Result<(), Box<Diagnostic>> {
+    let mut left: Vec<f64> = rotary(control)
+        .map(|place| shown(control, place, &control.at.joints).to_degrees())
+        .collect();
+    for turn in &turns[..left.len().min(2)] {
+        let found = left
+            .iter()
+            .position(|angle| libm::fabs(libm::remainder(angle - turn, 360.0)) < 0.01);
+        let Some(found) = found else {
+            let message = format!(
+                "CYCLE800 turns a rotary axis to {turn}, where none stands: which is meant stands in the control's record of the head"
+            );
+            return Err(control
+                .placed(
+                    Diagnostic::error("nc-plane", message)
+                        .help("turn the axes by words of their own in a block in front of it"),
+                )
+                .boxed());
+        };
+        left.remove(found);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_modes_of_the_manual_are_sequences_of_axes() {
+        for (mode, order) in [
+            (57.0, [0, 1, 2]),
+            (45.0, [0, 2, 1]),
+            (54.0, [1, 0, 2]),
+            (30.0, [1, 2, 0]),
+            (39.0, [2, 0, 1]),
+            (27.0, [2, 1, 0]),
+        ] {
+            assert_eq!(turns_of(mode), Some(order), "{mode}");
+        }
+        for mode in [0.0, 1.0, 64.0, 192.0, 57.5, -1.0] {
+            assert_eq!(turns_of(mode), None, "{mode}");
+        }
+    }
 }

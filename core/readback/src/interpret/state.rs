@@ -45,6 +45,8 @@ pub(super) struct Control {
     pub variables: Variables,
     /// The cycle that is in force, if there is one.
     pub cycles: Cycles,
+    /// What conversational path functions remember.
+    pub path: super::conversational::Path,
     /// What its motions share; handed on when something of it changes. After a change: [`Control::state_changed`].
     pub state: State,
     /// `state` as it was handed on last; none if it has changed since.

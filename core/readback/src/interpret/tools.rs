@@ -18,6 +18,8 @@ pub(super) struct Tools {
     pub by_tool: bool,
     /// What is added to the length of the table: DL, mm.
     pub longer: f64,
+    /// The length that a block has named: G43.1, mm.
+    pub stated: Option<f64>,
     /// Registers and tools of which was told that their length is taken for granted.
     told: Vec<u32>,
 }
@@ -56,6 +58,9 @@ impl Control {
 
     /// The length by register or tool.
     fn length_in_force(&mut self) -> Result<f64, Box<Diagnostic>> {
+        if let Some(length) = self.tools.stated {
+            return Ok(length);
+        }
         let find = |list: &[(u32, f64)], wanted: Option<u32>| {
             let mut entries = list.iter();
             wanted.and_then(|wanted| {

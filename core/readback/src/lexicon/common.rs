@@ -15,7 +15,7 @@ type Words = &'static [(&'static str, M)];
 pub(super) fn words(language: Language) -> impl Iterator<Item = (&'static str, Sense)> {
     let (tables, refused): (&[Words], &[&str]) = match language {
         Language::Macro => (&[SHARED, LETTERS, MACRO], &[]),
-        Language::Rs274 => (&[SHARED, LETTERS, RS274], REFUSED_RS274),
+        Language::Rs274 => (&[SHARED, LETTERS, RS274], &[]),
         Language::Names => (&[SHARED, NAMES], REFUSED_NAMES),
         Language::Conversational => (&[SHARED, CONVERSATIONAL], &[]),
     };
@@ -118,6 +118,7 @@ const MACRO: Words = &[
     ("G69", M::RotationOff),
     ("G92.1", M::SetPositionOff),
     ("M29", M::Nothing),
+    ("M129", M::TcpOff),
     ("M97", M::LocalSubprogram),
 ];
 
@@ -151,9 +152,6 @@ const RS274: Words = &[
     ("M428", M::TcpOn),
     ("M429", M::TcpOff),
 ];
-
-/// An output may be wired to what switches the kinematics.
-const REFUSED_RS274: &[&str] = &["M62", "M63", "M64", "M65", "M67", "M68"];
 
 const NAMES: Words = &[
     ("G0", M::Rapid),
@@ -230,7 +228,7 @@ const NAMES: Words = &[
     ("COMPCURV", M::Smoothing),
     ("COMPSURF", M::Smoothing),
     ("M17", M::End),
-    ("MCALL", M::CycleOff),
+    ("MCALL", M::CycleCallModal),
     ("LIMS", M::SpeedLimit),
     ("BRISK", M::Nothing),
     ("SOFT", M::Nothing),

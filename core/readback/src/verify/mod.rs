@@ -129,9 +129,8 @@ pub struct Verifier<'m, C> {
 }
 
 impl<'m, C: Course> Verifier<'m, C> {
-    /// A program of `machine` against `course`; `cut_path` is where all of it cuts, from a pass of its own: without it
-    /// nothing is said of how near rapids come.
-    pub fn new(machine: &'m Machine, rules: Rules, course: C, cut_path: CutPath) -> Self {
+    /// A program of `machine` against `course`.
+    pub fn new(machine: &'m Machine, rules: Rules, course: C) -> Self {
         let along = machine.control_point.along;
         let sag = Bound::new(rules.tolerance * SAG, rules.axis_tolerance * SAG);
         let widened = |mm: f64, angle: f64| {
@@ -161,7 +160,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             apart: true,
             stray: None,
             hole: None,
-            cut_path,
+            cut_path: CutPath::new(along),
             course_near: f64::INFINITY,
             drawn_back: None,
             places: Vec::new(),
@@ -171,6 +170,11 @@ impl<'m, C: Course> Verifier<'m, C> {
             found: Verification::default(),
             rules,
         }
+    }
+
+    /// Looks how near rapids come to where all of the course cuts, which a pass of its own has found.
+    pub fn near(self, cut_path: CutPath) -> Self {
+        Self { cut_path, ..self }
     }
 
     /// Takes what the program did next. `listen` hears of each line of the program once it is done.

@@ -213,7 +213,7 @@ fn verify(does: &Does, asks: Asks) -> (Verification, Vec<BlockReport>) {
     let mut verifier = {
         let mut path = CutPath::new(0.0);
         asks.items.iter().for_each(|item| path.take(item));
-        Verifier::new(&machine, rules, Written(asks.items), path)
+        Verifier::new(&machine, rules, Written(asks.items)).near(path)
     };
     let mut rows = Vec::new();
     for done in &does.done {

@@ -1,7 +1,7 @@
 //! Programs as posts of others wrote them, and our own of ten dialects, read without a fault.
 
 use super::{conversational, hash, names, read};
-use post_grammar::nc::{NcBlock, NcReader, NcSyntax, Notation, parse_block};
+use post_grammar::nc::{NcBlock, NcReader, NcSyntax, parse_block};
 use post_testkit::{repository, shared};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};

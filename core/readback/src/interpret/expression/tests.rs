@@ -75,7 +75,7 @@ fn stacked(program: &[Step]) -> Option<f64> {
         let value = match step {
             Step::Push(value) => *value,
             Step::Negate => -stack.pop()?,
-            Step::Sine => libm::sin(stack.pop()? * std::f64::consts::PI / 180.0),
+            Step::Sine => libm::sin(stack.pop()?.to_radians()),
             Step::Two(operator) => {
                 let (right, left) = (stack.pop()?, stack.pop()?);
                 match operator {

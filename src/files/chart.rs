@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 
 use super::scale::Scale;
-use crate::files::svg::{self, label, upright};
+use super::svg::{self, label, upright};
 
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 78.0;
@@ -129,6 +129,27 @@ impl Series {
 }
 
 impl Chart {
+    /// How high the picture is, px.
+    pub fn height(&self) -> f64 {
+        let rows = self.named().len().div_ceil(self.columns());
+        TOP + HEIGHT + 58.0 + ROW * rows as f64
+    }
+
+    /// What stands in the legend.
+    fn named(&self) -> Vec<&Series> {
+        let series = self.series.iter();
+        series.filter(|series| !series.name.is_empty()).collect()
+    }
+
+    /// Columns of the legend.
+    fn columns(&self) -> usize {
+        let names = self
+            .named()
+            .into_iter()
+            .map(|series| series.name.chars().count());
+        columns(names.max().unwrap_or(0))
+    }
+
     /// The picture.
     pub fn svg(&self) -> String {
         let corners: Vec<[f64; 2]> = self.series.iter().flat_map(Series::corners).collect();
@@ -139,12 +160,9 @@ impl Chart {
         } else {
             Scale::new(ups, 8.0, true)
         };
-        let named: Vec<&Series> = self.series.iter().filter(|s| !s.name.is_empty()).collect();
-        let longest = named.iter().map(|series| series.name.chars().count()).max();
-        let columns = columns(longest.unwrap_or(0));
-        let rows = named.len().div_ceil(columns);
-        let height = TOP + HEIGHT + 58.0 + ROW * rows as f64;
-        let mut svg = svg::open(WIDTH, height);
+        let named = self.named();
+        let columns = self.columns();
+        let mut svg = svg::open(WIDTH, self.height());
         label(&mut svg, [WIDTH / 2.0, 24.0], "middle", &self.title);
         label(&mut svg, [WIDTH / 2.0, 44.0], "middle", &self.note);
         axes(&mut svg, &x, &y);

@@ -1,0 +1,584 @@
+//! What was found on the way, by operation.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::outline::Part;
+use super::steps::{Event, Spot, Step};
+use super::{Of, Rules};
+use crate::{MotionKind, Spindle, State, Told};
+
+/// Stretches and states that are told apart in one operation; of further ones the number alone.
+const MOST: usize = 100;
+
+/// Steps of one side with fewer in common between them are one stretch.
+const SHORT: f64 = 1e-6;
+
+/// What two programs do differently.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Difference {
+    /// They do the same.
+    pub same: bool,
+    /// Operation by operation, in the order of the old program.
+    pub operations: Vec<Operation>,
+    /// Sums of the old program and of the new one.
+    pub sides: [Side; 2],
+    /// Words of either that are not understood: what they do is not compared.
+    pub unknown: [Vec<String>; 2],
+}
+
+/// One program, or its part in an operation.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Side {
+    /// Its first and last line.
+    pub lines: [u64; 2],
+    /// Motions.
+    pub motions: u64,
+    /// Way of the tip at feed, mm; of a curve that of its steps.
+    pub cut_mm: f64,
+    /// Time at the feeds as stated, waits included, seconds.
+    pub seconds: f64,
+}
+
+/// An operation of both, or of one of them.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Operation {
+    /// Its name, if the programs say one.
+    pub name: Option<String>,
+    /// Number of its tool.
+    pub tool: Option<u32>,
+    /// Nothing is different.
+    pub same: bool,
+    /// In the old program, and in the new one.
+    pub sides: [Option<Side>; 2],
+    /// The largest distance of the tips, mm.
+    pub tip: Worst,
+    /// The largest angle between the tool axes, degrees.
+    pub axis: Worst,
+    /// The largest difference of feeds, as a share of the larger.
+    pub feed: FeedWorst,
+    /// Of the rotary axes of one machine the largest difference each, degrees.
+    pub rotary: Vec<(String, Worst)>,
+    /// What holds while the tool moves, and is another.
+    pub states: Vec<StateDifference>,
+    /// Waits, stops and tool changes that have no counterpart.
+    pub events: Vec<EventDifference>,
+    /// Ways of the old program alone.
+    pub left_out: Vec<Stretch>,
+    /// Ways of the new program alone.
+    pub added: Vec<Stretch>,
+}
+
+/// The largest of a kind, and where.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Worst {
+    /// How large.
+    pub value: f64,
+    /// Line of the old program, and of the new one.
+    pub lines: [u64; 2],
+    /// The tip of the old program there, mm.
+    pub at: [f64; 3],
+    /// On how much of the old program's way it is a difference, mm.
+    pub on_mm: f64,
+}
+
+/// Feeds.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct FeedWorst {
+    /// The largest difference, and where.
+    pub worst: Worst,
+    /// mm/min there, in the old program and in the new one.
+    pub feeds: [f64; 2],
+}
+
+/// Something that holds, and is another.
+#[derive(Clone, Debug, Serialize)]
+pub struct StateDifference {
+    /// What: `spindle`, `coolant`, `tool` ….
+    pub what: &'static str,
+    /// In the old program, and in the new one.
+    pub values: [String; 2],
+    /// Lines where it is first so.
+    pub lines: [u64; 2],
+    /// On how much of the old program's way, mm.
+    pub on_mm: f64,
+}
+
+/// A wait, a stop or a tool change.
+#[derive(Clone, Debug, Serialize)]
+pub struct EventDifference {
+    /// In the old program, and in the new one.
+    pub events: [Option<String>; 2],
+    /// Their lines, 0 for none.
+    pub lines: [u64; 2],
+}
+
+/// A way that one program goes alone.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Stretch {
+    /// Its first and last line.
+    pub lines: [u64; 2],
+    /// How long, mm.
+    pub mm: f64,
+    /// How much of it at feed, mm.
+    pub cut_mm: f64,
+    /// Where it begins, mm.
+    pub at: [f64; 3],
+}
+
+/// A pair of places along the paths.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Number of the operation.
+    pub operation: usize,
+    /// The tips of the old program and of the new one, mm; none where one goes alone.
+    pub tips: [Option<[f64; 3]>; 2],
+    /// Way since the last sample, mm.
+    pub way: f64,
+    /// Distance of the tips, mm.
+    pub tip: f64,
+    /// Angle between the tool axes, degrees.
+    pub axis: f64,
+    /// Feeds, mm/min; 0 at rapid.
+    pub feeds: [f64; 2],
+}
+
+/// Where a step of one path was gone to, and the way there, mm.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub spot: Spot,
+    pub way: f64,
+}
+
+/// Finds what is different in an operation.
+pub(super) struct Tally<'t> {
+    rules: &'t Rules,
+    listen: &'t mut dyn FnMut(&Sample),
+    index: usize,
+    found: Operation,
+    /// By what and both values, the place in `found.states`.
+    states: BTreeMap<(&'static str, String, String), usize>,
+    /// The states that were compared last, and the kinds of motion.
+    compared: Option<([*const State; 2], [MotionKind; 2])>,
+    /// Those of `found.states` that hold.
+    hold: Vec<usize>,
+    /// The stretch at hand of either side.
+    open: [Option<Stretch>; 2],
+    ways: [f64; 2],
+    cuts: [f64; 2],
+}
+
+fn point(spot: &Spot) -> [f64; 3] {
+    spot.pose.tip.into()
+}
+
+impl Worst {
+    fn take(&mut self, value: f64, limit: f64, lines: [u64; 2], at: &Spot, way: f64) {
+        if value > self.value {
+            (self.value, self.lines, self.at) = (value, lines, point(at));
+        }
+        if value > limit {
+            self.on_mm += way;
+        }
+    }
+}
+
+impl<'t> Tally<'t> {
+    pub fn new(
+        rules: &'t Rules,
+        index: usize,
+        parts: [Option<&Part>; 2],
+        listen: &'t mut dyn FnMut(&Sample),
+    ) -> Self {
+        let named = parts[1].or(parts[0]);
+        let rotary = rules.rotary.iter().enumerate();
+        let rotary = rotary.filter(|(_, rotary)| **rotary && rules.one_machine);
+        Self {
+            rules,
+            listen,
+            index,
+            found: Operation {
+                name: named.and_then(|part| part.name.clone()),
+                tool: named.and_then(|part| part.tool),
+                sides: parts.map(|part| {
+                    part.map(|part| Side {
+                        lines: part.lines,
+                        motions: part.motions,
+                        ..Side::default()
+                    })
+                }),
+                rotary: rotary
+                    .map(|(place, _)| (rules.axes[place].clone(), Worst::default()))
+                    .collect(),
+                ..Operation::default()
+            },
+            states: BTreeMap::new(),
+            compared: None,
+            hold: Vec::new(),
+            open: [None, None],
+            ways: [0.0; 2],
+            cuts: [0.0; 2],
+        }
+    }
+
+    /// Both have gone on.
+    pub fn both(&mut self, steps: [&Step; 2], places: [Place; 2]) {
+        let [old, new] = steps;
+        let lines = [old.line, new.line];
+        let [spot, other] = [&places[0].spot, &places[1].spot];
+        let way = places[0].way;
+        for side in 0..2 {
+            self.ways[side] += places[side].way;
+            if steps[side].kind != MotionKind::Rapid {
+                self.cuts[side] += places[side].way;
+            }
+            if places[side].way > SHORT {
+                self.close(side);
+            }
+        }
+        let [tip, axis] = spot.apart(other);
+        self.found.tip.take(tip, self.rules.tip, lines, spot, way);
+        let angle = axis.to_degrees();
+        let limit = self.rules.axis.to_degrees();
+        self.found.axis.take(angle, limit, lines, spot, way);
+        let rotary = self.rules.rotary.iter().enumerate();
+        let rotary = rotary.filter(|(_, rotary)| **rotary);
+        for ((_, worst), (place, _)) in self.found.rotary.iter_mut().zip(rotary) {
+            let apart = libm::fabs(spot.joints[place] - other.joints[place]).to_degrees();
+            worst.take(apart, limit, lines, spot, way);
+        }
+        let cutting = |step: &Step| step.kind != MotionKind::Rapid && !step.hole;
+        if cutting(old) && cutting(new) && places[0].way > 0.0 {
+            let larger = old.feed.max(new.feed);
+            let apart = match larger > 0.0 {
+                true => libm::fabs(old.feed - new.feed) / larger,
+                false => 0.0,
+            };
+            if apart > self.found.feed.worst.value {
+                self.found.feed.feeds = [old.feed, new.feed];
+            }
+            let worst = &mut self.found.feed.worst;
+            worst.take(apart, self.rules.feed, lines, spot, way);
+        }
+        if way > 0.0 {
+            self.compare_states(steps, lines, way);
+        }
+        let feeds = [old, new].map(|step| match step.kind {
+            MotionKind::Rapid => 0.0,
+            _ => step.feed,
+        });
+        (self.listen)(&Sample {
+            operation: self.index,
+            tips: [Some(point(spot)), Some(point(other))],
+            way,
+            tip,
+            axis: angle,
+            feeds,
+        });
+    }
+
+    /// One has gone on alone, from `share` of a step to its end.
+    pub fn alone(&mut self, of: Of, step: &Step, share: f64) {
+        let side = usize::from(of == Of::New);
+        let way = step.length * (1.0 - share);
+        self.ways[side] += way;
+        let cut = match step.kind {
+            MotionKind::Rapid => 0.0,
+            _ => way,
+        };
+        self.cuts[side] += cut;
+        let stretch = self.open[side].get_or_insert(Stretch {
+            lines: [step.line; 2],
+            mm: 0.0,
+            cut_mm: 0.0,
+            at: point(&step.from.towards(&step.to, share)),
+        });
+        stretch.lines[1] = step.line;
+        stretch.mm += way;
+        stretch.cut_mm += cut;
+        let mut tips = [None, None];
+        tips[side] = Some(point(&step.to));
+        let mut feeds = [0.0; 2];
+        if step.kind != MotionKind::Rapid {
+            feeds[side] = step.feed;
+        }
+        (self.listen)(&Sample {
+            operation: self.index,
+            tips,
+            way: if side == 0 { way } else { 0.0 },
+            tip: 0.0,
+            axis: 0.0,
+            feeds,
+        });
+    }
+
+    /// The stretch at hand of a side is over. What is shorter than differences of positions are is none.
+    fn close(&mut self, side: usize) {
+        let Some(stretch) = self.open[side].take() else {
+            return;
+        };
+        let list = match side {
+            0 => &mut self.found.left_out,
+            _ => &mut self.found.added,
+        };
+        if stretch.mm > self.rules.tip && list.len() < MOST {
+            list.push(stretch);
+        }
+    }
+
+    fn compare_states(&mut self, steps: [&Step; 2], lines: [u64; 2], way: f64) {
+        let states = steps.map(|step| std::sync::Arc::as_ptr(&step.state));
+        let kinds = steps.map(|step| step.kind);
+        if self.compared != Some((states, kinds)) {
+            self.compared = Some((states, kinds));
+            self.hold.clear();
+            let facts = steps.map(|step| facts(step, self.rules.one_control));
+            let [old, new] = facts;
+            for ((what, old), (_, new)) in old.into_iter().zip(new) {
+                if old == new {
+                    continue;
+                }
+                let key = (what, old, new);
+                let count = self.found.states.len();
+                let place = match self.states.get(&key) {
+                    Some(place) => *place,
+                    None if count < MOST => {
+                        self.found.states.push(StateDifference {
+                            what,
+                            values: [key.1.clone(), key.2.clone()],
+                            lines,
+                            on_mm: 0.0,
+                        });
+                        self.states.insert(key, count);
+                        count
+                    }
+                    None => continue,
+                };
+                self.hold.push(place);
+            }
+        }
+        for place in &self.hold {
+            self.found.states[*place].on_mm += way;
+        }
+    }
+
+    /// What was found, with the minutes and the events of each side.
+    pub fn finish(mut self, sides: [(f64, Vec<Event>); 2]) -> Operation {
+        self.close(0);
+        self.close(1);
+        let [(old, old_events), (new, new_events)] = sides;
+        for (side, minutes) in [old, new].into_iter().enumerate() {
+            if let Some(part) = &mut self.found.sides[side] {
+                part.cut_mm = self.cuts[side];
+                part.seconds = minutes * 60.0;
+            }
+        }
+        let slack = 10.0 * self.found.tip.value + self.rules.apart;
+        self.found.events = events(&old_events, &new_events, slack);
+        let rules = self.rules;
+        let found = &mut self.found;
+        let turned = found.rotary.iter();
+        let turned = turned.map(|(_, worst)| worst.value).fold(0.0, f64::max);
+        let [old, new] = found.sides.map(|side| side.map(|side| side.seconds));
+        let seconds = match (old, new) {
+            (Some(old), Some(new)) => {
+                libm::fabs(old - new) <= (rules.feed * old.max(new)).max(LEAST_SECONDS)
+            }
+            _ => false,
+        };
+        found.same = seconds
+            && found.tip.value <= rules.tip
+            && found.axis.value.max(turned) <= rules.axis.to_degrees()
+            && found.feed.worst.value <= rules.feed
+            && found.states.is_empty()
+            && found.events.is_empty()
+            && found.left_out.is_empty()
+            && found.added.is_empty();
+        self.found
+    }
+}
+
+/// Times that differ by less are the same, seconds.
+const LEAST_SECONDS: f64 = 0.1;
+
+/// What holds during a step, in words.
+fn facts(step: &Step, one_control: bool) -> Vec<(&'static str, String)> {
+    let state = &step.state;
+    let number = |number: Option<u32>| number.map_or_else(|| "none".to_owned(), |n| n.to_string());
+    let spindle = match state.spindle {
+        Spindle::Off => "off".to_owned(),
+        Spindle::Clockwise(speed) => format!("clockwise {speed}"),
+        Spindle::CounterClockwise(speed) => format!("counter-clockwise {speed}"),
+        Spindle::Surface {
+            speed, clockwise, ..
+        } => {
+            let sense = if clockwise {
+                "clockwise"
+            } else {
+                "counter-clockwise"
+            };
+            format!("{sense} {speed} m/min")
+        }
+        Spindle::Oriented => "oriented".to_owned(),
+    };
+    let flows = [
+        (state.coolants.flood, "flood"),
+        (state.coolants.mist, "mist"),
+        (state.coolants.other, "other"),
+    ];
+    let flows: Vec<&str> = flows
+        .iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| *name)
+        .collect();
+    let coolant = match flows.is_empty() {
+        true => "off".to_owned(),
+        false => flows.join(", "),
+    };
+    let compensation = match state.compensation {
+        0 => "off",
+        side if side < 0 => "left",
+        _ => "right",
+    };
+    let motion = match step.kind {
+        MotionKind::Rapid => "rapid",
+        MotionKind::Feed => "feed",
+        MotionKind::Thread => "thread",
+    };
+    let mut facts = vec![
+        ("motion", motion.to_owned()),
+        ("tool", number(state.tool)),
+        ("spindle", spindle),
+        ("coolant", coolant),
+        ("compensation", compensation.to_owned()),
+    ];
+    if one_control {
+        let register = match state.compensation {
+            0 => None,
+            _ => state.radius_register,
+        };
+        facts.push(("radius register", number(register)));
+        facts.push(("length register", number(state.length_register)));
+        let offset = state.work_offset.clone();
+        facts.push(("work offset", offset.unwrap_or_else(|| "none".to_owned())));
+    }
+    facts
+}
+
+/// Events without a counterpart: the longest run of pairs in order is taken out.
+fn events(old: &[Event], new: &[Event], slack: f64) -> Vec<EventDifference> {
+    let alike = |one: &Event, other: &Event| {
+        let tools = matches!(one.told, Told::ToolChange { .. });
+        named(one) == named(other) && (tools || (one.at - other.at).norm() <= slack)
+    };
+    // Few stand in one operation; of more than this the first are looked at.
+    let (old, new) = (&old[..old.len().min(1000)], &new[..new.len().min(1000)]);
+    let columns = new.len() + 1;
+    let mut common = vec![0_u32; (old.len() + 1) * columns];
+    for row in (0..old.len()).rev() {
+        for column in (0..new.len()).rev() {
+            common[row * columns + column] = match alike(&old[row], &new[column]) {
+                true => common[(row + 1) * columns + column + 1] + 1,
+                false => {
+                    common[(row + 1) * columns + column].max(common[row * columns + column + 1])
+                }
+            };
+        }
+    }
+    let (mut row, mut column) = (0, 0);
+    let mut found: Vec<EventDifference> = Vec::new();
+    while row < old.len() || column < new.len() {
+        let both = row < old.len() && column < new.len();
+        if both && alike(&old[row], &new[column]) {
+            (row, column) = (row + 1, column + 1);
+            continue;
+        }
+        let skips_old = row < old.len()
+            && (column == new.len()
+                || common[(row + 1) * columns + column] >= common[row * columns + column + 1]);
+        let (side, event) = match skips_old {
+            true => (0, &old[row]),
+            false => (1, &new[column]),
+        };
+        row += usize::from(skips_old);
+        column += usize::from(!skips_old);
+        // One that is another stands beside it.
+        if let (1, Some(last)) = (side, found.last_mut())
+            && last.events[1].is_none()
+        {
+            last.events[1] = Some(named(event));
+            last.lines[1] = event.line;
+            continue;
+        }
+        let mut difference = EventDifference {
+            events: [None, None],
+            lines: [0; 2],
+        };
+        difference.events[side] = Some(named(event));
+        difference.lines[side] = event.line;
+        found.push(difference);
+    }
+    found
+}
+
+/// An event in words.
+fn named(event: &Event) -> String {
+    match &event.told {
+        Told::Dwell {
+            time,
+            revolutions: true,
+        } => format!("a wait of {time} turns"),
+        Told::Dwell { time, .. } => format!("a wait of {time} s"),
+        Told::Stop => "a stop".to_owned(),
+        Told::OptionalStop => "an optional stop".to_owned(),
+        Told::ToolChange { number, name } => {
+            let number = number.map(|number| number.to_string());
+            let tool = number.or_else(|| name.clone()).unwrap_or_default();
+            format!("tool {tool}")
+        }
+        _ => String::new(),
+    }
+}
+
+impl Difference {
+    pub(super) fn new(unknown: [Vec<String>; 2]) -> Self {
+        Self {
+            unknown,
+            ..Self::default()
+        }
+    }
+
+    /// Sums over the operations, and whether anything is different.
+    pub(super) fn sum_up(&mut self, rules: &Rules) {
+        // An operation in which nothing moves is none, unless something happens there.
+        self.operations.retain(|operation| {
+            let moves = operation
+                .sides
+                .iter()
+                .flatten()
+                .any(|side| side.motions > 0);
+            moves || !operation.events.is_empty()
+        });
+        for side in 0..2 {
+            let parts = self
+                .operations
+                .iter()
+                .filter_map(|operation| operation.sides[side]);
+            let mut sum = Side::default();
+            for part in parts {
+                sum.lines[0] = match sum.lines[0] {
+                    0 => part.lines[0],
+                    first => first.min(part.lines[0]),
+                };
+                sum.lines[1] = sum.lines[1].max(part.lines[1]);
+                sum.motions += part.motions;
+                sum.cut_mm += part.cut_mm;
+                sum.seconds += part.seconds;
+            }
+            self.sides[side] = sum;
+        }
+        let words = !rules.one_control || self.unknown[0] == self.unknown[1];
+        self.same = words && self.operations.iter().all(|operation| operation.same);
+    }
+}

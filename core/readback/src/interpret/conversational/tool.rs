@@ -1,0 +1,59 @@
+//! The tool: its call changes it and switches its length on.
+
+use super::{Answer, Said, feed_unit};
+use crate::Told;
+use crate::interpret::gathered::Gathered;
+use crate::interpret::state::Control;
+
+/// `TOOL CALL 5 Z S8000 F1200 DL+0.1`; without a tool it changes the speed alone.
+pub(super) fn call(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+    said.only(control, &["X", "Y", "Z"], &["DL", "DR", "DR2"])?;
+    if said.has("X") || said.has("Y") {
+        return Err(control.refuse("nc-tool", "a tool axis other than Z is not run"));
+    }
+    if let Some(speed) = words.take(b'S') {
+        control.modal.speed = speed;
+        control.speed_changed();
+    }
+    if let Some(feed) = words.take(b'F') {
+        control.modal.feed = Some(feed * feed_unit(control));
+    }
+    let longer = said.named(control, "DL")?.unwrap_or(0.0) * control.modal.unit;
+    let number = said.number().map(|number| number.value);
+    let name = said.text().map(str::to_owned);
+    let number = match number {
+        None => None,
+        Some(number) if number >= 0.0 && libm::trunc(number) == number && number < 1e9 => {
+            Some(number as u32)
+        }
+        Some(number) => {
+            return Err(control.refuse("nc-tool", format!("{number} is no number of a tool")));
+        }
+    };
+    if number.is_none() && name.is_none() {
+        return control.left_over(words);
+    }
+    if control.state.tcp || control.frames.plane.is_some() {
+        return Err(control.refuse(
+            "nc-tool",
+            "a tool call under M128 or in a tilted plane: both must end before",
+        ));
+    }
+    control.change_tool(number, name)?;
+    control.tools.by_tool = true;
+    control.tools.length_on = true;
+    control.tools.longer = longer;
+    control.length_changed()?;
+    control.left_over(words)
+}
+
+/// `TOOL DEF 5`: it is made ready.
+pub(super) fn prepare(control: &mut Control, said: &Said<'_>) -> Answer<()> {
+    if let Some(number) = said.number()
+        && number.value >= 0.0
+        && number.value < 1e9
+    {
+        control.tell(Told::Preselect(number.value as u32));
+    }
+    Ok(())
+}

@@ -1,0 +1,90 @@
+//! One CL file, or some of its lines, on one machine: one program.
+
+use std::ops::Range;
+
+use post_host::Finder;
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+use post_posting::report::Report;
+use post_posting::{Job, JobFacts, LookedAhead, Post};
+
+use super::plugin_finder;
+use crate::arguments::JobArguments;
+use crate::failure::Failure;
+use crate::files::{AtomicFile, ClSource, PathArg};
+
+/// What one program is made of.
+pub struct OneProgram<'a> {
+    /// The command line of the job.
+    pub arguments: &'a JobArguments,
+    /// The machine with its settings.
+    pub machine: &'a Machine,
+    /// Its plugins.
+    pub finder: &'a Finder,
+    /// Where it will stand.
+    pub target: &'a PathArg,
+    /// Lines of the CL file that it is made of; none: all.
+    pub lines: Option<Range<u64>>,
+    /// The error model's word is taken.
+    pub trust_model: bool,
+}
+
+impl OneProgram<'_> {
+    /// Writes it to `file`: its report, if all is good, and every finding. `ahead` is what a first pass over the whole CL
+    /// file has found, where the machine's texts ask for it.
+    pub fn write(
+        self,
+        ahead: Option<&LookedAhead>,
+        source: &mut ClSource,
+        file: &mut AtomicFile,
+    ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
+        let Self {
+            arguments,
+            machine,
+            finder,
+            target,
+            lines,
+            trust_model,
+        } = self;
+        let cl_file = arguments.input();
+        let program = super::program_name(cl_file, Some(target));
+        // Of a part of the file other tools and extents are known than of the whole.
+        let part_ahead = match &lines {
+            Some(lines) if machine.program.looks_ahead => {
+                let lines = Some(lines.clone());
+                Some(super::look_ahead(
+                    arguments, machine, finder, source, lines,
+                )?)
+            }
+            _ => None,
+        };
+        let ahead = match lines {
+            None => ahead,
+            Some(_) => part_ahead.as_ref(),
+        };
+        let (mut dialect, dialect_use) =
+            plugin_finder::dialect_knowing(finder, machine, &program, Some(cl_file), ahead)?;
+        let (mut model, model_use) = plugin_finder::model(finder, machine)?;
+        let planes = super::ahead(arguments, source, machine, &dialect)?;
+        let input = source.open()?;
+        let job = Job {
+            ahead: planes,
+            trust_model,
+            facts: JobFacts {
+                program,
+                cl_file: plugin_finder::cl_name(cl_file),
+                ahead: ahead.cloned(),
+            },
+            lines,
+            ..super::posting(arguments, &input.name)
+        };
+        let mut post =
+            Post::new(machine, job, &mut dialect, &mut model, file).map_err(|finding| *finding)?;
+        super::read(input, &mut post)?;
+        let (mut report, findings) = post.finish();
+        if let Some(report) = &mut report {
+            report.plugins = vec![dialect_use, model_use];
+        }
+        Ok((report, findings))
+    }
+}

@@ -17,7 +17,7 @@ use post_readback::verify::{
     BlockReport, CutPath, Fault, Registers, Rules, Verification, Verifier,
 };
 
-use super::plugin_finder;
+use super::nc_program;
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
@@ -59,30 +59,6 @@ impl Held {
         let mut findings = self.findings.iter();
         findings.any(|finding| finding.severity == Severity::Error)
     }
-}
-
-/// The words of a machine's control, as its dialect hands them over.
-///
-/// # Errors
-/// The dialect is not found, or its programs cannot be read back.
-pub fn vocabulary(
-    finder: &Finder,
-    machine: &Machine,
-    program: &str,
-) -> Result<Vec<VocabularyWord>, Failure> {
-    let (mut dialect, _) = plugin_finder::dialect(finder, machine, program, None)?;
-    let words = dialect
-        .vocabulary()
-        .map_err(|fault| Diagnostic::error("plugin", fault))?;
-    if words.is_empty() {
-        let name = &machine.control.dialect;
-        let message =
-            format!("the dialect {name} tells no vocabulary: its programs cannot be read back");
-        return Err(Diagnostic::error("vocabulary", message)
-            .help("name another with --dialect")
-            .into());
-    }
-    Ok(words)
 }
 
 /// Which register a length is compensated by.
@@ -206,7 +182,7 @@ pub fn hold<C: Course, R: Read + Seek>(
         tools,
         cut_path,
     } = against;
-    let words = vocabulary(reading.finder, machine, name)?;
+    let words = nc_program::vocabulary(reading.finder, machine)?;
     let lexicon = Lexicon::new(&words);
     let mut findings = Vec::new();
     let offsets = match &reading.offsets {

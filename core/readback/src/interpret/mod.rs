@@ -5,7 +5,8 @@
 //! | `state` | what a control remembers from block to block: `Control` |
 //! | `control` | how it begins; the solver, the zero and the frames that words count from |
 //! | `gathered` | the words of a block, by letter |
-//! | `block` | a block of words: modes first, then what moves |
+//! | `block`, `meanings` | a block of words: modes first, then what moves |
+//! | `compensation`, `spindle` | lengths, radii, work offsets; tools, spindle, coolant, waits |
 //! | `names` | names, calls and texts among the words |
 //! | `go`, `arcs`, `machine_moves` | from words to axis values, tip and tool axis |
 //! | `feed`, `tools` | time, tool lengths |
@@ -17,6 +18,7 @@ mod arcs;
 mod assigned;
 mod block;
 mod calls;
+mod compensation;
 mod control;
 mod conversational;
 mod cycles;
@@ -28,8 +30,10 @@ mod frames;
 mod gathered;
 mod go;
 mod machine_moves;
+mod meanings;
 mod names;
 mod planes;
+mod spindle;
 mod state;
 mod tools;
 mod variables;

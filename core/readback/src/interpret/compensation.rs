@@ -1,0 +1,180 @@
+//! Compensations of radius and length, tool centre point control, and work offsets.
+
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::Meaning;
+
+use super::block::Asked;
+use super::gathered::{Gathered, bit};
+use super::state::Control;
+use crate::Told;
+use crate::lexicon::{Language, Sense};
+
+impl Control {
+    pub(super) fn compensate(
+        &mut self,
+        side: i8,
+        words: &mut Gathered,
+    ) -> Result<(), Box<Diagnostic>> {
+        let register = if side == 0 || self.lexicon.tools_have_edges() {
+            None
+        } else {
+            words
+                .take_number(b'D', self)?
+                .or(self.state.radius_register)
+        };
+        if self.state.compensation == side && (side == 0 || self.state.radius_register == register)
+        {
+            return Ok(());
+        }
+        self.state.compensation = side;
+        if side != 0 {
+            self.state.radius_register = register;
+        }
+        self.state_changed();
+        self.tell(Told::Compensation { side, register });
+        Ok(())
+    }
+
+    /// The control may leave the path by `tolerance` mm; none: it keeps it, or by how much is not said.
+    pub(super) fn smooth(&mut self, tolerance: Option<f64>) {
+        if self.state.smoothing != tolerance {
+            self.state.smoothing = tolerance;
+            self.state_changed();
+        }
+    }
+
+    /// Length, tool centre point control and edges.
+    pub(super) fn compensations(
+        &mut self,
+        words: &mut Gathered,
+        asked: &Asked,
+    ) -> Result<(), Box<Diagnostic>> {
+        if self.lexicon.tools_have_edges() {
+            if let Some(edge) = words.take_number(b'D', self)? {
+                self.tools.by_tool = true;
+                self.tools.length_on = edge != 0;
+                self.state.length_register = (edge != 0).then_some(edge);
+                self.length_changed()?;
+            }
+        } else if let Some(register) = words.present_number(b'D', self)? {
+            words.used |= bit(b'D');
+            self.state.radius_register = Some(register);
+            self.state_changed();
+        }
+        if asked.tcp_off && self.state.tcp {
+            self.set_tcp(false, 0, false);
+        }
+        if asked.length_off {
+            words.used |= bit(b'H');
+            self.tools.length_on = false;
+            self.state.length_register = None;
+            if self.state.tcp && self.modal.tcp_by_length {
+                self.set_tcp(false, 0, false);
+            }
+            self.length_changed()?;
+        }
+        if asked.length_stated {
+            return self.stated_length(words);
+        }
+        let on = asked.length_on.or(asked.tcp_on.filter(|code| *code != 0));
+        if on.is_some() {
+            self.length_by(words)?;
+        } else if self.tools.length_on
+            && !self.tools.by_tool
+            && asked.work.is_none()
+            && !asked.machine
+            && let Some(register) = words.take_number(b'H', self)?
+        {
+            self.state.length_register = Some(register);
+            self.length_changed()?;
+        }
+        if let Some(code) = asked.tcp_on {
+            self.set_tcp(true, code, asked.vectors);
+        }
+        Ok(())
+    }
+
+    /// Length compensation by Z of the block: G43.1.
+    pub(super) fn stated_length(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+        let said = words.present & self.axes.mask;
+        let (Some(length), true) = (words.take(b'Z'), said == bit(b'Z')) else {
+            return Err(self.refuse("nc-length", "a length along other axes than Z is not run"));
+        };
+        self.tools.length_on = true;
+        self.tools.by_tool = false;
+        self.tools.stated = Some(length * self.modal.unit);
+        self.state.length_register = None;
+        // It is no coordinate.
+        words.present &= !bit(b'Z');
+        self.length_changed()
+    }
+
+    /// Length compensation by a register.
+    pub(super) fn length_by(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+        let register = match words.take_number(b'H', self)? {
+            Some(register) => Some(register),
+            // `HL=1` was taken among the names.
+            None => self.modal.named_register.take(),
+        };
+        self.tools.length_on = true;
+        self.tools.by_tool = false;
+        self.tools.stated = None;
+        self.state.length_register = match (register, self.lexicon.language()) {
+            (Some(register), _) => Some(register),
+            // Without H the tool in the spindle is meant.
+            (None, Language::Rs274) => self.state.tool,
+            (None, _) => self.state.length_register,
+        };
+        self.length_changed()
+    }
+
+    /// Tool centre point control on or off; `code` is ten times the number of its G word, 0 of any other.
+    pub(super) fn set_tcp(&mut self, on: bool, code: u16, vectors: bool) {
+        self.modal.tcp_by_length = on && code != 0;
+        // Some vocabularies have one meaning for both types: the second names vectors, G43.5.
+        self.modal.vectors = on && (vectors || code % 10 == 5);
+        if self.state.tcp != on {
+            self.state.tcp = on;
+            self.state_changed();
+        }
+    }
+
+    /// A work offset by its G word: `G54`, `G54.1 P3`, `G15 H1`.
+    pub(super) fn work_offset(&mut self, code: u16, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+        let number = f64::from(code) / 10.0;
+        let mut name = format!("G{number}");
+        for letter in [b'P', b'H'] {
+            let of_it = letter == b'P'
+                || self.lexicon.g(code) == Sense::Means(Meaning::WorkOffset) && code < 500;
+            if of_it && let Some(which) = words.take_number(letter, self)? {
+                name = format!("{name} {}{which}", char::from(letter));
+            }
+        }
+        self.use_work_offset(&name)
+    }
+
+    /// The work offset of this name from here on.
+    pub(super) fn use_work_offset(&mut self, name: &str) -> Result<(), Box<Diagnostic>> {
+        if self.state.work_offset.as_deref() == Some(name) {
+            return Ok(());
+        }
+        let place = self.offsets.work.iter().position(|work| work.name == name);
+        if place.is_none() && self.state.work_offset.is_some() {
+            let message = format!(
+                "the program uses several work offsets, and nothing is said of {name}: it is taken to be the machine file's mount, as all are"
+            );
+            self.note(
+                Diagnostic::warning("nc-work-offset", message)
+                    .help("state them by --offsets, in tables [work.G54] and so on"),
+            );
+        }
+        self.state.work_offset = Some(name.to_owned());
+        self.state_changed();
+        self.tell(Told::WorkOffset(name.to_owned()));
+        if self.work != place {
+            self.work = place;
+            return self.solver_changed();
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,170 @@
+//! What the words of the lexicon ask for.
+
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::Meaning;
+
+use super::block::{Asked, Turning};
+use super::gathered::{Gathered, bit};
+use super::state::{ArcPlane, Control, FeedMode, MotionMode, Orientation};
+
+impl Control {
+    /// A code or name whose meaning the lexicon knows; `code` is ten times the number behind G, or 0.
+    pub(super) fn meant(
+        &mut self,
+        code: u16,
+        meaning: Meaning,
+        words: &mut Gathered,
+        asked: &mut Asked,
+    ) -> Result<(), Box<Diagnostic>> {
+        match meaning {
+            Meaning::Rapid => self.motion(MotionMode::Rapid),
+            Meaning::Linear => self.motion(MotionMode::Linear),
+            Meaning::ArcClockwise => self.motion(MotionMode::Clockwise),
+            Meaning::ArcCounterClockwise => self.motion(MotionMode::CounterClockwise),
+            Meaning::Millimetre => self.modal.unit = 1.0,
+            Meaning::Inch => self.modal.unit = 25.4,
+            Meaning::Absolute => self.modal.incremental = false,
+            Meaning::Incremental => self.modal.incremental = true,
+            Meaning::PlaneXy => self.modal.plane = ArcPlane::Xy,
+            Meaning::PlaneZx => self.modal.plane = ArcPlane::Zx,
+            Meaning::PlaneYz => self.modal.plane = ArcPlane::Yz,
+            Meaning::FeedPerMinute => self.feed_mode(FeedMode::PerMinute),
+            Meaning::InverseTime => self.feed_mode(FeedMode::Inverse),
+            Meaning::FeedPerRevolution => self.feed_mode(FeedMode::PerRevolution),
+            Meaning::MachineCoordinates => asked.machine = true,
+            Meaning::RapidBlock => asked.rapid = true,
+            Meaning::LengthOn => asked.length_on = Some(code),
+            Meaning::LengthStated => asked.length_stated = true,
+            Meaning::LengthOff => asked.length_off = true,
+            Meaning::CompensationOff => self.compensate(0, words)?,
+            Meaning::CompensationLeft => self.compensate(-1, words)?,
+            Meaning::CompensationRight => self.compensate(1, words)?,
+            Meaning::TcpOn => asked.tcp_on = Some(code),
+            Meaning::TcpVectorOn => {
+                asked.tcp_on = Some(code);
+                asked.vectors = true;
+            }
+            Meaning::TcpOff => asked.tcp_off = true,
+            Meaning::TiltedPlane => asked.plane = Some(code),
+            Meaning::TiltedPlaneTurn => asked.plane_turn = Some(code),
+            Meaning::TiltedPlaneOff => asked.plane_off = true,
+            Meaning::WorkOffset => asked.work = Some(code),
+            Meaning::Smoothing => {
+                let letter = self.lexicon.tolerance_letter(code);
+                let tolerance = letter.and_then(|letter| words.take(letter));
+                words.used |= bit(b'P') | bit(b'Q') | bit(b'R');
+                self.smooth(tolerance.map(|tolerance| tolerance * self.modal.unit));
+            }
+            Meaning::SmoothingOff => {
+                words.used |= bit(b'Q') | bit(b'P');
+                self.smooth(None);
+            }
+            Meaning::ToolChange => asked.change = true,
+            Meaning::SpindleClockwise => asked.spindle = Some(Turning::Clockwise),
+            Meaning::SpindleCounterClockwise => asked.spindle = Some(Turning::CounterClockwise),
+            Meaning::SpindleOff => asked.spindle = Some(Turning::Off),
+            Meaning::SpindleOrient => asked.spindle = Some(Turning::Oriented),
+            Meaning::CoolantOn => asked.coolant = Some(code / 10),
+            Meaning::CoolantOff => asked.coolant_off = true,
+            Meaning::Dwell
+            | Meaning::DwellSeconds
+            | Meaning::DwellMilliseconds
+            | Meaning::DwellTurns => asked.dwell = true,
+            Meaning::Stop | Meaning::OptionalStop | Meaning::End => asked.stop = Some(meaning),
+            Meaning::Probe => asked.probe = true,
+            Meaning::CycleDrill
+            | Meaning::CycleDeep
+            | Meaning::CycleBreakChip
+            | Meaning::CycleTap
+            | Meaning::CycleTapLeft
+            | Meaning::CycleReam
+            | Meaning::CycleBore
+            | Meaning::CycleBoreFine
+            | Meaning::CycleBoreBack => asked.cycle = Some((code, meaning)),
+            Meaning::CycleOff => asked.cycle_off = true,
+            Meaning::ReturnStart => self.modal.return_start = true,
+            Meaning::ReturnClearance => self.modal.return_start = false,
+            Meaning::ReferenceReturn => asked.reference = Some(1),
+            Meaning::OtherReferenceReturn => asked.reference = Some(2),
+            Meaning::LocalOffset
+            | Meaning::LocalOffsetAdded
+            | Meaning::LocalOffsetOff
+            | Meaning::SetPosition
+            | Meaning::SetPositionOff
+            | Meaning::SetPositionAgain
+            | Meaning::TableData
+            | Meaning::TableDataOff
+            | Meaning::Rotation
+            | Meaning::RotationAdded
+            | Meaning::RotationOff => asked.frame = Some((code, meaning)),
+            Meaning::WorkOffsetOff => self.use_work_offset(&format!("G{}", code / 10))?,
+            Meaning::WorkOffsetBlock => asked.machine = true,
+            Meaning::CentreAbsolute => self.modal.centres_absolute = true,
+            Meaning::CentreIncremental => self.modal.centres_absolute = false,
+            Meaning::SurfaceSpeed => self.modal.surface_speed = true,
+            Meaning::SurfaceSpeedOff => self.modal.surface_speed = false,
+            Meaning::SpeedLimit => {
+                self.modal.most_speed = words.take(b'S');
+                words.present &= !bit(b'S');
+            }
+            Meaning::RotaryShortest => self.modal.shortest = Some(true),
+            Meaning::RotaryAsWritten => self.modal.shortest = Some(false),
+            Meaning::InchLengths => self.modal.unit = 25.4,
+            Meaning::MillimetreLengths => self.modal.unit = 1.0,
+            Meaning::SpindleClockwiseCoolant => {
+                asked.spindle = Some(Turning::Clockwise);
+                asked.coolant = Some(8);
+            }
+            Meaning::SpindleCounterClockwiseCoolant => {
+                asked.spindle = Some(Turning::CounterClockwise);
+                asked.coolant = Some(8);
+            }
+            // The tool axis under tool centre point control: how it goes between two blocks.
+            Meaning::OrientationAxes | Meaning::OrientationMachine => {
+                self.modal.orientation = Orientation::Axes;
+            }
+            Meaning::OrientationVector => self.modal.orientation = Orientation::Circle,
+            Meaning::OrientationPart => self.modal.orientation = Orientation::Usual,
+            Meaning::Thread | Meaning::ThreadAndBack | Meaning::ThreadBack => {
+                asked.thread = Some((code, meaning));
+            }
+            Meaning::Subprogram
+            | Meaning::LocalSubprogram
+            | Meaning::SubprogramEnd
+            | Meaning::Macro
+            | Meaning::MacroModal => {
+                return Err(self.refuse(
+                    "nc-flow",
+                    "a subprogram begins or ends here in a way that is not run",
+                ));
+            }
+            Meaning::Spline
+            | Meaning::Scale
+            | Meaning::Mirror
+            | Meaning::Polar
+            | Meaning::FaceTransformation
+            | Meaning::CylinderTransformation
+            | Meaning::Diameter
+            | Meaning::LengthNegative
+            | Meaning::LengthAdded
+            | Meaning::LengthAlongTool
+            | Meaning::OrientationAngles
+            | Meaning::CycleOther
+            | Meaning::BuilderCoordinates
+            | Meaning::ArcThrough
+            | Meaning::ArcTangent
+            | Meaning::Retract => return Err(self.not_followed(code)),
+            // Letters, remarks and what does nothing.
+            _ => {}
+        }
+        Ok(())
+    }
+
+    pub(super) fn feed_mode(&mut self, mode: FeedMode) {
+        if self.modal.feed_mode != mode {
+            self.modal.feed_mode = mode;
+            // A number that was a speed is no time.
+            self.modal.feed = None;
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Tool changes, spindle, coolant and waits.
+
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::Meaning;
+
+use super::block::{Asked, Turning};
+use super::gathered::{Gathered, bit, which};
+use super::state::Control;
+use crate::lexicon::Language;
+use crate::{Spindle, Told};
+
+impl Control {
+    pub(super) fn tool_and_spindle(
+        &mut self,
+        words: &mut Gathered,
+        asked: &Asked,
+    ) -> Result<(), Box<Diagnostic>> {
+        if let Some(speed) = words.take(b'S') {
+            self.modal.speed = speed;
+            self.speed_changed();
+        }
+        if let Some(number) = words.take(b'T').filter(|number| !number.is_nan()) {
+            let number = which(b'T', number, self)?;
+            self.tools.ready = Some(number);
+            self.tools.ready_name = None;
+            if !self.lexicon.changes_by_word() {
+                self.change_tool(Some(number), None)?;
+            } else if !asked.change {
+                self.tell(Told::Preselect(number));
+            }
+        }
+        if asked.change {
+            let (number, name) = (self.tools.ready, self.tools.ready_name.clone());
+            self.change_tool(number, name)?;
+        }
+        match asked.spindle {
+            // It stops when the motion has come to its end; on RS-274/NGC before.
+            Some(Turning::Off) if self.lexicon.language() != Language::Rs274 => {}
+            Some(turning) => self.turn_spindle(turning),
+            None => {}
+        }
+        Ok(())
+    }
+
+    /// S changed while the spindle turns.
+    pub(super) fn speed_changed(&mut self) {
+        match self.state.spindle {
+            Spindle::Clockwise(_) => self.turn_spindle(Turning::Clockwise),
+            Spindle::CounterClockwise(_) => self.turn_spindle(Turning::CounterClockwise),
+            Spindle::Surface { clockwise, .. } => self.turn_spindle(if clockwise {
+                Turning::Clockwise
+            } else {
+                Turning::CounterClockwise
+            }),
+            Spindle::Off | Spindle::Oriented => {}
+        }
+    }
+
+    /// What the spindle does from here on.
+    pub(super) fn turn_spindle(&mut self, turning: Turning) {
+        let spindle = match turning {
+            Turning::Clockwise | Turning::CounterClockwise if self.modal.surface_speed => {
+                Spindle::Surface {
+                    speed: self.modal.speed,
+                    most: self.modal.most_speed,
+                    clockwise: turning == Turning::Clockwise,
+                }
+            }
+            Turning::Clockwise => Spindle::Clockwise(self.modal.speed),
+            Turning::CounterClockwise => Spindle::CounterClockwise(self.modal.speed),
+            Turning::Off => Spindle::Off,
+            Turning::Oriented => Spindle::Oriented,
+        };
+        if self.state.spindle != spindle {
+            self.state.spindle = spindle;
+            self.state_changed();
+            self.tell(Told::Spindle(spindle));
+        }
+    }
+
+    /// Coolant of an M code from here on.
+    pub(super) fn coolant(&mut self, code: u16) {
+        let mut coolants = self.state.coolants;
+        match code {
+            7 => coolants.mist = true,
+            8 => coolants.flood = true,
+            _ => coolants.other = true,
+        }
+        self.flow_of_coolant(coolants);
+    }
+
+    /// No coolant from here on.
+    pub(super) fn coolant_off(&mut self) {
+        self.flow_of_coolant(crate::Coolants::default());
+    }
+
+    pub(super) fn flow_of_coolant(&mut self, coolants: crate::Coolants) {
+        if self.state.coolants != coolants {
+            self.state.coolants = coolants;
+            self.state_changed();
+            self.tell(Told::Coolant(coolants));
+        }
+    }
+
+    /// G4: seconds, turns of the spindle where the control counts them.
+    pub(super) fn dwell(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+        let told = |time, revolutions| Told::Dwell { time, revolutions };
+        let told = match self.lexicon.language() {
+            Language::Names => match (words.take(b'F'), words.take(b'S')) {
+                (Some(time), _) => told(time, false),
+                (None, Some(turns)) => told(turns, true),
+                (None, None) => return Err(self.refuse("nc-dwell", "G4 says neither F nor S")),
+            },
+            _ => self.letters_dwell(words)?,
+        };
+        // They were times, and are nothing else in this block.
+        words.present &= !(bit(b'F') | bit(b'S') | bit(b'X') | bit(b'U'));
+        self.tell(told);
+        Ok(())
+    }
+
+    /// The time of a wait by its letter: as the dialect says of it, else X, U and F in seconds.
+    pub(super) fn letters_dwell(&mut self, words: &mut Gathered) -> Result<Told, Box<Diagnostic>> {
+        const G4: u16 = 40;
+        for letter in [b'P', b'X', b'U', b'F', b'S'] {
+            let meaning = self.lexicon.letter_beside(G4, letter);
+            let usual = matches!(letter, b'X' | b'U' | b'F').then_some(Meaning::DwellSeconds);
+            let Some(meaning) = meaning.or(usual) else {
+                continue;
+            };
+            let Some(value) = words.take(letter) else {
+                continue;
+            };
+            let pointed = words.pointed & bit(letter) != 0;
+            let time = match meaning {
+                Meaning::DwellMilliseconds if !pointed => value / 1000.0,
+                _ => value,
+            };
+            let revolutions = meaning == Meaning::DwellTurns;
+            return Ok(Told::Dwell { time, revolutions });
+        }
+        Err(self.refuse(
+            "nc-dwell",
+            "the wait does not say how long in a way that is known",
+        ))
+    }
+}

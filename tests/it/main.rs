@@ -13,6 +13,7 @@ mod command;
 mod common;
 mod course;
 mod dialects;
+mod diff;
 mod files;
 mod frame;
 mod guide;

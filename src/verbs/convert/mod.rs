@@ -236,6 +236,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         course: DoneCourse::new(from.open(&arguments.input)?, finer),
         name: name.clone(),
         tools: read.tools().to_vec(),
+        cut_path: None,
     };
     let reading = Reading {
         arguments: &job,

@@ -16,6 +16,7 @@ mod dialects;
 mod files;
 mod frame;
 mod guide;
+mod languages;
 mod library;
 #[cfg(target_os = "linux")]
 mod linuxcnc;

@@ -163,7 +163,7 @@ impl<R: Read + Seek> Flow<R> {
             "{count} blocks were read, and the program has not come to its end: a loop may never end"
         );
         Diagnostic::error("nc-limit", message)
-            .help("a higher count is set by --blocks")
+            .help("a higher count is set by --most-blocks")
             .boxed()
     }
 

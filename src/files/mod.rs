@@ -21,7 +21,6 @@ mod target;
 mod temporary;
 
 use std::fs;
-use std::path::Path;
 
 use target::{Target, refuse_losses};
 
@@ -70,18 +69,4 @@ pub fn json(value: &impl serde::Serialize) -> String {
 /// A value as JSON on one line.
 pub fn json_line(value: &impl serde::Serialize) -> String {
     serde_json::to_string(value).unwrap_or_default()
-}
-
-/// An NC program that is read, and its name in messages. Nothing is written to it from here on.
-///
-/// # Errors
-/// It cannot be read.
-pub fn open_program(named: &Path) -> Result<(String, fs::File), FileFault> {
-    let fault = |error| FileFault::read(named, error);
-    let file = fs::File::open(named).map_err(fault)?;
-    if file.metadata().map_err(fault)?.is_dir() {
-        return Err(FileFault::ReadFolder(named.to_owned()));
-    }
-    read_files::note("the NC program", named);
-    Ok((named.display().to_string(), file))
 }

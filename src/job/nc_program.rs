@@ -6,6 +6,7 @@ use std::io::{self, Read as _, Seek, SeekFrom};
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
+use post_plugin::VocabularyWord;
 use post_readback::Offsets;
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
@@ -76,8 +77,13 @@ impl NcControl {
     }
 }
 
-/// The words of a machine's control, as its dialect tells them.
+/// The words of a machine's control, ready to be looked up.
 pub fn lexicon(finder: &Finder, machine: &Machine) -> Result<Lexicon, Failure> {
+    Ok(Lexicon::new(&vocabulary(finder, machine)?))
+}
+
+/// The words of a machine's control, as its dialect tells them.
+pub fn vocabulary(finder: &Finder, machine: &Machine) -> Result<Vec<VocabularyWord>, Failure> {
     let (mut dialect, _) = plugin_finder::dialect(finder, machine, "READ", None)?;
     let words = dialect
         .vocabulary()
@@ -90,7 +96,7 @@ pub fn lexicon(finder: &Finder, machine: &Machine) -> Result<Lexicon, Failure> {
         let help = "a dialect of your own tells it by `vocabulary` (plugins/README.md)";
         return Err(Diagnostic::error("vocabulary", message).help(help).into());
     }
-    Ok(Lexicon::new(&words))
+    Ok(words)
 }
 
 /// The file of offsets.

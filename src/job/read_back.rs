@@ -10,12 +10,14 @@ use post_plugin::{Meaning, VocabularyWord};
 use post_posting::program::ToldSpindle;
 use post_readback::Offsets;
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
-use post_readback::course::{Course, CourseFacts, Window};
+use post_readback::course::{Course, Window};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
-use post_readback::verify::{BlockReport, Fault, Registers, Rules, Verification, Verifier};
+use post_readback::verify::{
+    BlockReport, CutPath, Fault, Registers, Rules, Verification, Verifier,
+};
 
-use super::plugin_finder;
+use super::nc_program;
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
@@ -57,30 +59,6 @@ impl Held {
         let mut findings = self.findings.iter();
         findings.any(|finding| finding.severity == Severity::Error)
     }
-}
-
-/// The words of a machine's control, as its dialect hands them over.
-///
-/// # Errors
-/// The dialect is not found, or its programs cannot be read back.
-pub fn vocabulary(
-    finder: &Finder,
-    machine: &Machine,
-    program: &str,
-) -> Result<Vec<VocabularyWord>, Failure> {
-    let (mut dialect, _) = plugin_finder::dialect(finder, machine, program, None)?;
-    let words = dialect
-        .vocabulary()
-        .map_err(|fault| Diagnostic::error("plugin", fault))?;
-    if words.is_empty() {
-        let name = &machine.control.dialect;
-        let message =
-            format!("the dialect {name} tells no vocabulary: its programs cannot be read back");
-        return Err(Diagnostic::error("vocabulary", message)
-            .help("name another with --dialect")
-            .into());
-    }
-    Ok(words)
 }
 
 /// Which register a length is compensated by.
@@ -160,13 +138,14 @@ pub fn verify<R: Read + Seek>(
     let cl_name = first.name.clone();
     let settings = course_settings(arguments, machine, &cl_name);
     let mut course = ClCourse::new(settings.clone(), first.bytes);
-    let (_, mut findings) = CourseFacts::of(&mut course);
+    let (cut_path, mut findings) = CutPath::of(&mut course, machine.control_point.along);
     let tools = course.tools().to_vec();
     let course = ClCourse::new(settings, source.open()?.bytes);
     let against = Against {
         course: Window::new(course, reading.lines.clone()),
         name: cl_name,
         tools,
+        cut_path: Some(cut_path),
     };
     let held = hold(reading, against, name, input, listen)?;
     findings.extend(held.findings);
@@ -181,6 +160,8 @@ pub struct Against<C> {
     pub name: String,
     /// Its tools.
     pub tools: Vec<ClTool>,
+    /// Where all of it cuts, for how near rapids come; none: nothing is said of that.
+    pub cut_path: Option<CutPath>,
 }
 
 /// Holds the program `name` from `input` against any course.
@@ -199,8 +180,9 @@ pub fn hold<C: Course, R: Read + Seek>(
         course,
         name: cl_name,
         tools,
+        cut_path,
     } = against;
-    let words = vocabulary(reading.finder, machine, name)?;
+    let words = nc_program::vocabulary(reading.finder, machine)?;
     let lexicon = Lexicon::new(&words);
     let mut findings = Vec::new();
     let offsets = match &reading.offsets {
@@ -220,6 +202,9 @@ pub fn hold<C: Course, R: Read + Seek>(
         ..standard
     };
     let mut verifier = Verifier::new(machine, rules, course);
+    if let Some(cut_path) = cut_path {
+        verifier = verifier.near(cut_path);
+    }
     let unreadable = |error| FileFault::Read {
         name: name.to_owned(),
         error,

@@ -10,7 +10,7 @@ use crate::arguments::flag_values::positive;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
 use crate::job::read_back::{self, Reading};
-use crate::job::{self, plugin_finder};
+use crate::job::{self, nc_program, plugin_finder};
 use crate::terminal;
 
 /// Holds an NC program against a CL file: does the machine do what was asked?
@@ -38,9 +38,9 @@ Exit codes: 0 the program does what the CL file asks for; 1 it does not, the mes
 read; 2 the command line is wrong."
 )]
 pub struct VerifyArguments {
-    /// The NC program.
-    #[arg(value_name = "NC-FILE", required = true)]
-    program: Option<std::path::PathBuf>,
+    /// The NC program, `-` for standard input.
+    #[arg(value_name = "NC-FILE", required = true, value_parser = PathArg::parser())]
+    program: Option<PathArg>,
 
     #[command(flatten)]
     job: JobArguments,
@@ -48,6 +48,11 @@ pub struct VerifyArguments {
     /// Largest deviation of the tool axis in a cut, degrees, over the machine file's.
     #[arg(long, value_name = "DEG", value_parser = positive, help_heading = "Machine")]
     axis_tolerance: Option<f64>,
+
+    /// What stands in the control's tables, a TOML file: work offsets, lengths by register or tool. Without it lengths are
+    /// those of --tool-length, the machine file and the CL file.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "Machine")]
+    offsets: Option<PathArg>,
 
     /// Writes a table as JSON: of each line of the program the line of the CL file that asks for it, the solution of the
     /// machine, the deviation, and what makes it slower than asked; `-` is standard output.
@@ -82,8 +87,12 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let machine = job::machine(&arguments.job, &[])?;
     let finder = plugin_finder::finder(&arguments.job.plugins)?;
     job::say_what_is_left(&arguments.job, &machine, &finder);
-    let named = arguments.program.clone().unwrap_or_default();
-    let (name, program) = files::open_program(&named)?;
+    let named = arguments.program.as_ref().unwrap_or(&PathArg::Standard);
+    let (name, program) = nc_program::open(named)?;
+    let offsets = match &arguments.offsets {
+        Some(file) => Some(nc_program::offsets(file, &machine)?),
+        None => None,
+    };
     let mut source = ClSource::new(arguments.job.input(), true)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.map.iter().map(|map| (MAP, map)));
@@ -93,7 +102,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         arguments: &arguments.job,
         machine: &machine,
         finder: &finder,
-        offsets: None,
+        offsets,
         limits: Limits {
             blocks: arguments.most_blocks,
             ..Limits::default()

@@ -15,6 +15,7 @@
 
 mod axes;
 mod chop;
+mod cut_path;
 mod hole;
 mod place;
 mod rapid;
@@ -31,6 +32,7 @@ use post_machine::diagnostic::Diagnostic;
 use crate::course::Course;
 use crate::{Done, Motion, MotionKind, Told};
 use axes::Axes;
+pub use cut_path::CutPath;
 use hole::HoleRun;
 use place::{Apart, Bound, Place, Span};
 pub use report::{BlockReport, Fault, Verification, Worst};
@@ -100,6 +102,7 @@ pub struct Verifier<'m, C> {
     /// How far the guided point stands above the tip, mm.
     along: f64,
     sag: Bound,
+    rapid_sag: Bound,
     bound: Bound,
     rapid_bound: Bound,
     track: Track<C>,
@@ -111,6 +114,10 @@ pub struct Verifier<'m, C> {
     apart: bool,
     stray: Option<Stray>,
     hole: Option<HoleRun>,
+    /// Where the course cuts.
+    cut_path: CutPath,
+    /// How near the course's own rapids come to its cuts since the last one, mm.
+    course_near: f64,
     /// Where the tool left a cut at feed along its own axis.
     drawn_back: Option<Place>,
     /// Ends of the pieces of the motion at hand, its beginning first.
@@ -138,6 +145,10 @@ impl<'m, C: Course> Verifier<'m, C> {
             machine,
             along,
             sag,
+            rapid_sag: Bound::new(
+                rules.rapid_tolerance.max(rules.tolerance) * SAG,
+                RAPID_TURN * SAG,
+            ),
             bound: widened(rules.tolerance, rules.axis_tolerance),
             rapid_bound: widened(
                 rules.rapid_tolerance.max(rules.tolerance),
@@ -149,6 +160,8 @@ impl<'m, C: Course> Verifier<'m, C> {
             apart: true,
             stray: None,
             hole: None,
+            cut_path: CutPath::new(along),
+            course_near: f64::INFINITY,
             drawn_back: None,
             places: Vec::new(),
             spare: Vec::new(),
@@ -157,6 +170,11 @@ impl<'m, C: Course> Verifier<'m, C> {
             found: Verification::default(),
             rules,
         }
+    }
+
+    /// Looks how near rapids come to where all of the course cuts, which a pass of its own has found.
+    pub fn near(self, cut_path: CutPath) -> Self {
+        Self { cut_path, ..self }
     }
 
     /// Takes what the program did next. `listen` hears of each line of the program once it is done.
@@ -215,7 +233,11 @@ impl<'m, C: Course> Verifier<'m, C> {
         let mut places = std::mem::take(&mut self.places);
         places.clear();
         places.push(Place::new(&motion.from.pose, self.along));
-        chop::motion(motion, self.along, &self.sag, &mut places);
+        let sag = match motion.kind {
+            MotionKind::Rapid => self.rapid_sag,
+            _ => self.sag,
+        };
+        chop::motion(motion, self.along, &sag, &mut places);
         if let Some(fault) = self.axes.over_travel(self.machine, motion) {
             self.axis_fault(motion, fault);
         }

@@ -20,6 +20,58 @@ impl<C: Course> Verifier<'_, C> {
         self.leave_cut();
         self.pass(motion, places);
         self.apart = true;
+        self.look_how_near(motion, places);
+    }
+
+    /// A rapid must not come nearer to the cuts than its ends, unless the course's own does.
+    fn look_how_near(&mut self, motion: &Motion, places: &[Place]) {
+        let ends = [&places[0], &places[places.len() - 1]];
+        let ends = ends.map(|end| self.cut_path.distance(end.point));
+        let slack = self.rapid_bound.point + self.cut_path.blur();
+        let least = ends[0].min(ends[1]) - slack;
+        if least <= 0.0 || !least.is_finite() {
+            return;
+        }
+        let mut near = f64::INFINITY;
+        for ends in places.windows(2) {
+            near = near.min(self.cut_path.least_on(ends[0].point, ends[1].point, least));
+        }
+        if near >= least {
+            return;
+        }
+        if near >= self.course_is_near(near - slack) - slack {
+            return;
+        }
+        let message = format!(
+            "a rapid comes to {near:.1} mm of what is cut, from {:.1} mm to {:.1} mm at its ends",
+            ends[0], ends[1]
+        );
+        self.fault(
+            "rapid",
+            message,
+            Some(motion),
+            None,
+            Some(least + slack - near),
+        );
+    }
+
+    /// How near the rapids of the course come to its cuts between the last cut and the next, mm; exact where it is more than
+    /// `least`.
+    fn course_is_near(&mut self, least: f64) -> f64 {
+        let mut near = self.course_near;
+        let mut index = self.next.unwrap_or(0);
+        while let Some(element) = self.track.get(index) {
+            match element.what {
+                What::Way => {
+                    let (from, to) = (element.from.point, element.to.point);
+                    near = near.min(self.cut_path.least_on(from, to, least));
+                }
+                What::Cut | What::Thread | What::Hole(_) => break,
+                _ => {}
+            }
+            index += 1;
+        }
+        near
     }
 
     /// Where a cut of the course may have ended, what comes behind it may be passed.
@@ -90,6 +142,11 @@ impl<C: Course> Verifier<'_, C> {
                         let near = nearest(&element.to, &ends[0], &ends[1], &span);
                         least = span.from;
                         let line = element.line;
+                        if matches!(element.what, What::Way) {
+                            let (from, to) = (element.from.point, element.to.point);
+                            let way = self.cut_path.least_on(from, to, 0.0);
+                            self.course_near = self.course_near.min(way);
+                        }
                         self.found.rapid.take(near.point, motion.line, line);
                         self.block.cl_line = Some(line);
                     }
@@ -182,6 +239,7 @@ impl<C: Course> Verifier<'_, C> {
         }
         self.next = None;
         self.apart = false;
+        self.course_near = f64::INFINITY;
         self.miss_events(motion);
     }
 

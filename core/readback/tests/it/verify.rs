@@ -8,7 +8,7 @@ use post_machine::description::{Machine, Source, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_readback::course::{Course, Curve, Item, Piece, Reach};
-use post_readback::verify::{BlockReport, Registers, Rules, Verification, Verifier};
+use post_readback::verify::{BlockReport, CutPath, Registers, Rules, Verification, Verifier};
 use post_readback::{
     Coolants, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State, Told, Way,
 };
@@ -174,6 +174,7 @@ impl Does {
             feed: 500.0,
             minutes,
             hole: false,
+            machine: false,
             state: Arc::clone(&self.state),
         }));
         self.at = to;
@@ -209,7 +210,11 @@ fn verify(does: &Does, asks: Asks) -> (Verification, Vec<BlockReport>) {
         registers: Registers::OfTool,
         ..Rules::of(&machine)
     };
-    let mut verifier = Verifier::new(&machine, rules, Written(asks.items));
+    let mut verifier = {
+        let mut path = CutPath::new(0.0);
+        asks.items.iter().for_each(|item| path.take(item));
+        Verifier::new(&machine, rules, Written(asks.items)).near(path)
+    };
     let mut rows = Vec::new();
     for done in &does.done {
         verifier.take(done, &mut |row| rows.push(row.clone()));
@@ -625,4 +630,43 @@ fn strays_are_those_of_the_frechet_distance() {
         }
     }
     assert!(on > 300 && off > 300, "{on} {off}");
+}
+
+#[test]
+fn a_rapid_that_comes_near_what_is_cut_is_told() {
+    let asks = || {
+        Asks::default()
+            .rapid(0.0, 0.0, 0.0)
+            .cut(10.0, 0.0, 0.0)
+            .rapid(10.0, 0.0, 50.0)
+            .rapid(100.0, 0.0, 50.0)
+            .rapid(100.0, 0.0, 0.0)
+            .cut(110.0, 0.0, 0.0)
+            .rapid(110.0, 0.0, 50.0)
+    };
+    let does = |through: bool| {
+        let does = Does::at(0.0, 0.0, 60.0)
+            .rapid(0.0, 0.0, 0.0)
+            .cut(10.0, 0.0, 0.0)
+            .rapid(10.0, 0.0, 50.0);
+        let does = match through {
+            // Below the first cut and out again.
+            true => does
+                .rapid(50.0, 0.0, 50.0)
+                .rapid(-20.0, 0.0, -30.0)
+                .rapid(40.0, 0.0, 50.0),
+            false => does,
+        };
+        does.rapid(100.0, 0.0, 50.0)
+            .rapid(100.0, 0.0, 0.0)
+            .cut(110.0, 0.0, 0.0)
+            .rapid(110.0, 0.0, 50.0)
+    };
+    assert!(
+        codes(&does(false), asks())
+            .iter()
+            .all(|found| found.0 == "over-travel")
+    );
+    let found = codes(&does(true), asks());
+    assert!(found.contains(&("rapid", 5, 0)), "{found:?}");
 }

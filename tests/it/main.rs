@@ -17,6 +17,7 @@ mod diff;
 mod files;
 mod frame;
 mod guide;
+mod languages;
 mod library;
 #[cfg(target_os = "linux")]
 mod linuxcnc;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use post_host::Finder;
 use post_machine::description::Machine;
-use post_machine::diagnostic::{Diagnostic, Severity};
+use post_machine::diagnostic::{Diagnostic, Place, Severity};
 use post_plugin::{Meaning, VocabularyWord};
 use post_posting::program::ToldSpindle;
 use post_readback::Offsets;
@@ -61,8 +61,24 @@ impl Held {
     }
 }
 
+/// The operator changes the tool at a stop: the control knows no lengths, and the work offset is set with the tool in the
+/// spindle.
+fn lengths_in_the_offset(words: &[VocabularyWord]) -> bool {
+    let means = |word: &VocabularyWord, meaning: Meaning| {
+        let mut words = words.iter();
+        words.any(|other| other.word == word.word && other.meaning == meaning)
+    };
+    let mut changes = words
+        .iter()
+        .filter(|word| word.meaning == Meaning::ToolChange);
+    changes.any(|change| means(change, Meaning::Stop))
+}
+
 /// Which register a length is compensated by.
 fn registers(words: &[VocabularyWord]) -> Registers {
+    if lengths_in_the_offset(words) {
+        return Registers::None;
+    }
     let has = |letter: &str| {
         let mut words = words.iter();
         words.any(|word| word.meaning == Meaning::LengthRegister && word.word == letter)
@@ -189,6 +205,15 @@ pub fn hold<C: Course, R: Read + Seek>(
         Some(offsets) => offsets.clone(),
         None => offsets_of(reading, &tools),
     };
+    let mut machine = machine.clone();
+    if lengths_in_the_offset(&words)
+        && let Some(length) = offsets
+            .length
+            .or(offsets.tools.first().map(|(_, length)| *length))
+    {
+        machine.gauge -= machine.tool_axis * length;
+    }
+    let machine = &machine;
     let [tolerance, axis_tolerance] = reading.tolerances;
     let standard = Rules::of(machine);
     let rules = Rules {
@@ -249,6 +274,14 @@ pub fn hold<C: Course, R: Read + Seek>(
     let blocks = report.blocks;
     drop(program);
     let found = verifier.finish(listen);
+    if let Some((line, message)) = &found.nearest_rapid {
+        let more = match found.near_rapids {
+            1 => String::new(),
+            count => format!("; so in {count} places"),
+        };
+        let place = Place::new(name, *line, "", 0..0);
+        findings.push(Diagnostic::warning("rapid", format!("{message}{more}")).at(Some(place)));
+    }
     let texts = lines_of(&mut input, &found.faults).map_err(unreadable)?;
     for fault in &found.faults {
         let text = fault

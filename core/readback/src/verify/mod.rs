@@ -116,6 +116,8 @@ pub struct Verifier<'m, C> {
     hole: Option<HoleRun>,
     /// Where the course cuts.
     cut_path: CutPath,
+    /// The tool has come to a point of the course.
+    placed: bool,
     /// How near the course's own rapids come to its cuts since the last one, mm.
     course_near: f64,
     /// Where the tool left a cut at feed along its own axis.
@@ -161,6 +163,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             stray: None,
             hole: None,
             cut_path: CutPath::new(along),
+            placed: false,
             course_near: f64::INFINITY,
             drawn_back: None,
             places: Vec::new(),

@@ -14,6 +14,9 @@ const SHARE: f64 = 0.005;
 /// Half of the last place of a feed or speed without decimals.
 const PLACE: f64 = 0.51;
 
+/// The ends of a way are rounded: so much of it, mm.
+const ROUNDED: f64 = 0.003;
+
 /// Times of dwells are rounded, s.
 const DWELL: f64 = 0.01;
 
@@ -155,14 +158,16 @@ impl<C: Course> Verifier<'_, C> {
             return;
         }
         let feed = way / motion.minutes;
-        let allowed = asked * (1.0 + SHARE) + PLACE;
+        // Of a short way a rounded word is much.
+        let rounded = ROUNDED / way;
+        let allowed = asked * (1.0 + SHARE + rounded) + PLACE;
         if feed > allowed {
             let message = format!("the feed is above that of the CL file, {asked} mm/min");
             let told = format!("{message}: {feed:.1} mm/min");
             self.limit_fault("feed", message, told, motion, element.line, feed - asked);
             return;
         }
-        if feed < asked * (1.0 - SHARE) - PLACE {
+        if feed < asked * (1.0 - SHARE - rounded) - PLACE {
             let needed = self.axes.least_minutes(self.machine, motion);
             match needed {
                 Some((minutes, joint)) if motion.minutes <= minutes * 1.05 => {

@@ -6,7 +6,7 @@ use std::ops::Range;
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
-use post_plugin::{Meaning, VocabularyWord};
+use post_plugin::{DialectSession as _, Meaning, VocabularyWord};
 use post_posting::program::ToldSpindle;
 use post_readback::Offsets;
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
@@ -17,7 +17,7 @@ use post_readback::verify::{
     BlockReport, CutPath, Fault, Registers, Rules, Verification, Verifier,
 };
 
-use super::nc_program;
+use super::{nc_program, plugin_finder};
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
@@ -199,6 +199,8 @@ pub fn hold<C: Course, R: Read + Seek>(
         cut_path,
     } = against;
     let words = nc_program::vocabulary(reading.finder, machine)?;
+    let (dialect, _) = plugin_finder::dialect(reading.finder, machine, name, None)?;
+    let most_by_time = dialect.format().most_inverse_time;
     let lexicon = Lexicon::new(&words);
     let mut findings = Vec::new();
     let offsets = match &reading.offsets {
@@ -220,6 +222,7 @@ pub fn hold<C: Course, R: Read + Seek>(
         tolerance: tolerance.unwrap_or(standard.tolerance),
         axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
         registers: registers(&words),
+        least_minutes: most_by_time.map_or(0.0, |most| 1.0 / most),
         tool_registers: tools
             .iter()
             .map(|tool| (tool.number, tool.register))

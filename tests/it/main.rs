@@ -22,6 +22,7 @@ mod linuxcnc;
 #[cfg(target_os = "linux")]
 mod memory;
 mod messages;
+mod mutations;
 mod names;
 mod new;
 mod order;
@@ -40,6 +41,7 @@ mod snapshots;
 mod strangers;
 mod study;
 mod summary;
+mod verified;
 mod vocabularies;
 mod words;
 mod writable;

@@ -204,6 +204,30 @@ impl<C: Course> Verifier<'_, C> {
         due
     }
 
+    /// A cut that was left goes on here, or the next one begins.
+    pub(super) fn may_begin(&mut self, place: &Place) -> bool {
+        let bound = self.bound;
+        let kept = self.reach.iter().zip(self.track.kept());
+        let goes_on = kept.filter(|(span, element)| !span.is_empty() && element.is_cut());
+        let mut goes_on = goes_on
+            .map(|(span, element)| span.meet(&free(place, &element.from, &element.to, &bound)));
+        if goes_on.any(|span| !span.is_empty()) {
+            return true;
+        }
+        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
+            return false;
+        };
+        let rapid = self.rapid_bound;
+        self.track
+            .get(index)
+            .is_some_and(|element| match element.what {
+                What::Way | What::Reach => {
+                    !free(place, &element.from, &element.to, &rapid).is_empty()
+                }
+                _ => place.within(&element.from, &bound),
+            })
+    }
+
     /// A cut begins: where on the course may that be?
     pub(super) fn begin_cut(&mut self, motion: &Motion, place: &Place) {
         let (bound, rapid) = (self.bound, self.rapid_bound);

@@ -3,6 +3,7 @@
 
 use std::error::Error;
 use std::fs::File;
+use std::io::{Write, stdout};
 use std::time::Instant;
 
 use post_grammar::nc::{NcBlock, NcReader, NcSyntax, Notation};
@@ -33,22 +34,23 @@ fn main() -> Result<(), Box<dyn Error>> {
                 blocks += 1;
                 items += block.items.len();
                 if verbose {
-                    println!("{block:?}");
+                    writeln!(stdout(), "{block:?}")?;
                 }
             }
             Err(fault) => {
                 faults += 1;
-                println!("{fault}");
+                writeln!(stdout(), "{fault}")?;
             }
         }
     }
     let seconds = begin.elapsed().as_secs_f64();
-    println!(
+    writeln!(
+        stdout(),
         "{blocks} blocks with {items} items and {faults} faults in {:.1} ms, {:.0} ns a block, {} + {} lines skipped",
         1e3 * seconds,
         1e9 * seconds / blocks as f64,
         reader.header_lines(),
         reader.trailer_lines()
-    );
+    )?;
     Ok(())
 }

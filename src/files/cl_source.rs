@@ -1,6 +1,6 @@
 //! A CL file that is read more than once: a file as often as it is asked for, a stream from a copy.
 
-use std::io::{self, Seek, SeekFrom};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 
 use super::temporary::Temporary;
 use super::{ClInput, FileFault, PathArg};
@@ -39,6 +39,33 @@ impl ClSource {
         source.name = input.name;
         source.copy = Some(copy);
         Ok(source)
+    }
+
+    /// Of a text that is made here and now, and that messages call `name`: `make` is given what takes it piece by piece.
+    ///
+    /// # Errors
+    /// There is no place for it, or what `make` fails with.
+    pub fn of_text<T>(
+        name: String,
+        make: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<(), FileFault>) -> Result<T, FileFault>,
+    ) -> Result<(Self, T), FileFault> {
+        let folder = std::env::temp_dir();
+        let fault = |error: io::Error| FileFault::NoWaiting {
+            name: name.clone(),
+            folder: folder.clone(),
+            error: error.kind().into(),
+        };
+        let mut copy = BufWriter::new(Temporary::private(&folder).map_err(fault)?);
+        let made = make(&mut |text| copy.write_all(text).map_err(fault))?;
+        let copy = copy
+            .into_inner()
+            .map_err(|error| fault(error.into_error()))?;
+        let source = Self {
+            argument: PathArg::Standard,
+            copy: Some(copy),
+            name,
+        };
+        Ok((source, made))
     }
 
     /// From its start.

@@ -4,6 +4,7 @@ mod dry_run;
 mod look_ahead;
 pub mod machine_files;
 pub mod nc_program;
+pub mod nc_to_cl;
 pub mod one_program;
 pub mod other_dialect;
 pub mod plugin_finder;

@@ -2,6 +2,7 @@
 //! below, `job`, `files`, `terminal` and `arguments`.
 
 mod check;
+mod convert;
 mod diff;
 mod list_machines;
 mod list_words;
@@ -22,6 +23,7 @@ use post_machine::diagnostic::nearest;
 
 use crate::failure::Failure;
 use check::CheckArguments;
+use convert::ConvertArguments;
 use diff::DiffArguments;
 use list_machines::MachinesArguments;
 use list_words::WordsArguments;
@@ -52,6 +54,7 @@ use verify::VerifyArguments;
   post words part.cls
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg
+  post convert part.h --from dmu50 --to ac-trunnion -o part.nc
   post study part.cls --machine ac-trunnion
   post place part.cls --machine dmu50 --svg travel.svg
   post read part.nc --machine ac-trunnion --csv motions.csv
@@ -79,6 +82,7 @@ enum Verb {
     Machines(MachinesArguments),
     Schema(SchemaArguments),
     Check(CheckArguments),
+    Convert(Box<ConvertArguments>),
     Diff(Box<DiffArguments>),
     New(NewArguments),
     Study(Box<StudyArguments>),
@@ -97,6 +101,7 @@ impl CommandLine {
             Some(Verb::Machines(arguments)) => list_machines::run(&arguments),
             Some(Verb::Schema(arguments)) => print_schema::run(&arguments),
             Some(Verb::Check(arguments)) => check::run(&arguments),
+            Some(Verb::Convert(arguments)) => convert::run(&arguments),
             Some(Verb::Diff(arguments)) => diff::run(&arguments),
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),

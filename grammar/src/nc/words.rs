@@ -256,7 +256,7 @@ impl Builder<'_> {
                 let mut parts = pair.into_inner();
                 let name = due(&mut parts)?.as_str().to_owned();
                 let first = self.expression(due(&mut parts)?)?;
-                if parts.len() == 0 {
+                if parts.is_empty() {
                     let index = Box::new(first);
                     return Ok(NcExpression::Indexed { name, index });
                 }

@@ -6,7 +6,7 @@
 //! no place of the part, and rapids are left out until each has one; then the tool [reaches](Item::Reach) where it is.
 
 use std::collections::VecDeque;
-use std::io::{BufRead, Seek};
+use std::io::{Read, Seek};
 use std::sync::Arc;
 
 use post_machine::diagnostic::Diagnostic;
@@ -25,7 +25,7 @@ pub trait Program {
     fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>>;
 }
 
-impl<R: BufRead + Seek> Program for Interpreter<R> {
+impl<R: Read + Seek> Program for Interpreter<R> {
     fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
         Interpreter::next(self, done)
     }
@@ -55,6 +55,9 @@ pub struct DoneCourse<P> {
     chords: Chords,
     done: Vec<Done>,
     waiting: VecDeque<(Option<Arc<State>>, Item)>,
+    /// A pose that is reached, and what was told since: if the tool leaves again before it goes anywhere from there, it was
+    /// not reached for the part.
+    held: VecDeque<(Option<Arc<State>>, Item)>,
     /// What held during the item that was handed out last.
     state: Option<Arc<State>>,
     /// What holds in the program.
@@ -74,6 +77,7 @@ impl<P: Program> DoneCourse<P> {
             chords,
             done: Vec::new(),
             waiting: VecDeque::new(),
+            held: VecDeque::new(),
             state: None,
             latest: None,
             stands: None,
@@ -96,11 +100,7 @@ impl<P: Program> DoneCourse<P> {
         match done {
             Done::State(state) => self.latest = Some(state),
             Done::Told { line, told } => {
-                // The tool comes from the changer, another head has another chain, and a subprogram goes anywhere.
-                if matches!(
-                    told,
-                    Told::ToolChange { .. } | Told::Head(_) | Told::Subprogram(_)
-                ) {
+                if leaves(&told) {
                     self.stands = None;
                     self.astray = u32::MAX;
                 }
@@ -111,7 +111,23 @@ impl<P: Program> DoneCourse<P> {
     }
 
     fn hand_on(&mut self, item: Item) {
-        self.waiting.push_back((self.latest.clone(), item));
+        let leaves = match &item {
+            Item::Told { told, .. } => leaves(told),
+            Item::Away { .. } => true,
+            Item::Reach(_) | Item::Piece(_) => false,
+        };
+        let told = matches!(item, Item::Told { .. });
+        if leaves {
+            self.held
+                .retain(|(_, held)| !matches!(held, Item::Reach(_)));
+        }
+        let next = (self.latest.clone(), item);
+        if matches!(next.1, Item::Reach(_)) || (told && !leaves && !self.held.is_empty()) {
+            self.held.push_back(next);
+            return;
+        }
+        self.waiting.append(&mut self.held);
+        self.waiting.push_back(next);
     }
 
     fn motion(&mut self, motion: &Motion) {
@@ -212,6 +228,15 @@ impl<P: Program> DoneCourse<P> {
     }
 }
 
+/// The tool comes from the changer, another head has another chain, a subprogram goes anywhere, and at the end nothing is
+/// left to do.
+fn leaves(told: &Told) -> bool {
+    matches!(
+        told,
+        Told::ToolChange { .. } | Told::Head(_) | Told::Subprogram(_) | Told::End
+    )
+}
+
 /// Arcs turn right-handed by an angle above zero.
 fn arc(centre: nalgebra::Vector3<f64>, normal: nalgebra::Vector3<f64>, sweep: f64) -> Curve {
     let normal = match sweep < 0.0 {
@@ -256,6 +281,9 @@ impl<P: Program> Course for DoneCourse<P> {
             done.drain(..).for_each(|done| self.take(done));
             self.done = done;
             self.ended = !more?;
+            if self.ended {
+                self.waiting.append(&mut self.held);
+            }
         }
     }
 }

@@ -64,6 +64,8 @@ pub struct Operation {
     pub states: Vec<StateDifference>,
     /// Waits, stops and tool changes that have no counterpart.
     pub events: Vec<EventDifference>,
+    /// Ways of both between places where they part and meet again: of the old program, and of the new one.
+    pub other_ways: Vec<[Stretch; 2]>,
     /// Ways of the old program alone.
     pub left_out: Vec<Stretch>,
     /// Ways of the new program alone.
@@ -165,6 +167,8 @@ pub(super) struct Tally<'t> {
     hold: Vec<usize>,
     /// The stretch at hand of either side.
     open: [Option<Stretch>; 2],
+    /// Both are on different ways.
+    parted: bool,
     ways: [f64; 2],
     cuts: [f64; 2],
 }
@@ -217,6 +221,7 @@ impl<'t> Tally<'t> {
             compared: None,
             hold: Vec::new(),
             open: [None, None],
+            parted: false,
             ways: [0.0; 2],
             cuts: [0.0; 2],
         }
@@ -229,13 +234,13 @@ impl<'t> Tally<'t> {
         let [spot, other] = [&places[0].spot, &places[1].spot];
         let way = places[0].way;
         for side in 0..2 {
-            self.ways[side] += places[side].way;
-            if steps[side].kind != MotionKind::Rapid {
-                self.cuts[side] += places[side].way;
-            }
-            if places[side].way > SHORT {
+            if self.parted {
+                let Place { spot, way } = places[side];
+                self.stretch(side, steps[side], &spot, way);
+            } else if places[side].way > SHORT {
                 self.close(side);
             }
+            self.go(side, steps[side], places[side].way);
         }
         let [tip, axis] = spot.apart(other);
         self.found.tip.take(tip, self.rules.tip, lines, spot, way);
@@ -248,7 +253,7 @@ impl<'t> Tally<'t> {
             let apart = libm::fabs(spot.joints[place] - other.joints[place]).to_degrees();
             worst.take(apart, limit, lines, spot, way);
         }
-        let cutting = |step: &Step| step.kind != MotionKind::Rapid && !step.hole;
+        let cutting = |step: &Step| step.kind != MotionKind::Rapid && !step.hole && !self.parted;
         if cutting(old) && cutting(new) && places[0].way > 0.0 {
             let larger = old.feed.max(new.feed);
             let apart = match larger > 0.0 {
@@ -261,7 +266,7 @@ impl<'t> Tally<'t> {
             let worst = &mut self.found.feed.worst;
             worst.take(apart, self.rules.feed, lines, spot, way);
         }
-        if way > 0.0 {
+        if way > 0.0 && !self.parted {
             self.compare_states(steps, lines, way);
         }
         let feeds = [old, new].map(|step| match step.kind {
@@ -282,21 +287,8 @@ impl<'t> Tally<'t> {
     pub fn alone(&mut self, of: Of, step: &Step, share: f64) {
         let side = usize::from(of == Of::New);
         let way = step.length * (1.0 - share);
-        self.ways[side] += way;
-        let cut = match step.kind {
-            MotionKind::Rapid => 0.0,
-            _ => way,
-        };
-        self.cuts[side] += cut;
-        let stretch = self.open[side].get_or_insert(Stretch {
-            lines: [step.line; 2],
-            mm: 0.0,
-            cut_mm: 0.0,
-            at: point(&step.from.towards(&step.to, share)),
-        });
-        stretch.lines[1] = step.line;
-        stretch.mm += way;
-        stretch.cut_mm += cut;
+        self.stretch(side, step, &step.from.towards(&step.to, share), way);
+        self.go(side, step, way);
         let mut tips = [None, None];
         tips[side] = Some(point(&step.to));
         let mut feeds = [0.0; 2];
@@ -311,6 +303,52 @@ impl<'t> Tally<'t> {
             axis: 0.0,
             feeds,
         });
+    }
+
+    /// From here on both are on different ways, until [`Tally::met`].
+    pub fn part(&mut self) {
+        self.close(0);
+        self.close(1);
+        self.parted = true;
+    }
+
+    /// They are together again.
+    pub fn met(&mut self) {
+        self.parted = false;
+        match self.open.each_mut().map(Option::take) {
+            [Some(old), Some(new)] => {
+                if self.found.other_ways.len() < MOST {
+                    self.found.other_ways.push([old, new]);
+                }
+            }
+            open => {
+                self.open = open;
+                self.close(0);
+                self.close(1);
+            }
+        }
+    }
+
+    fn go(&mut self, side: usize, step: &Step, way: f64) {
+        self.ways[side] += way;
+        if step.kind != MotionKind::Rapid {
+            self.cuts[side] += way;
+        }
+    }
+
+    /// The stretch at hand goes on by a way of a step, from `at`.
+    fn stretch(&mut self, side: usize, step: &Step, at: &Spot, way: f64) {
+        let stretch = self.open[side].get_or_insert(Stretch {
+            lines: [step.line; 2],
+            mm: 0.0,
+            cut_mm: 0.0,
+            at: point(at),
+        });
+        stretch.lines[1] = step.line;
+        stretch.mm += way;
+        if step.kind != MotionKind::Rapid {
+            stretch.cut_mm += way;
+        }
     }
 
     /// The stretch at hand of a side is over. What is shorter than differences of positions are is none.
@@ -393,6 +431,7 @@ impl<'t> Tally<'t> {
             && found.feed.worst.value <= rules.feed
             && found.states.is_empty()
             && found.events.is_empty()
+            && found.other_ways.is_empty()
             && found.left_out.is_empty()
             && found.added.is_empty();
         self.found
@@ -488,38 +527,36 @@ fn events(old: &[Event], new: &[Event], slack: f64) -> Vec<EventDifference> {
     }
     let (mut row, mut column) = (0, 0);
     let mut found: Vec<EventDifference> = Vec::new();
-    while row < old.len() || column < new.len() {
+    // Those without a counterpart since the last pair: what takes the place of one another stands side by side.
+    let mut open: [Vec<&Event>; 2] = [Vec::new(), Vec::new()];
+    loop {
         let both = row < old.len() && column < new.len();
-        if both && alike(&old[row], &new[column]) {
+        let pair = both && alike(&old[row], &new[column]);
+        let over = row == old.len() && column == new.len();
+        if pair || over {
+            let [left_out, added] = std::mem::take(&mut open);
+            for place in 0..left_out.len().max(added.len()) {
+                let events = [left_out.get(place), added.get(place)];
+                found.push(EventDifference {
+                    events: events.map(|event| event.map(|event| named(event))),
+                    lines: events.map(|event| event.map_or(0, |event| event.line)),
+                });
+            }
+            if over {
+                return found;
+            }
             (row, column) = (row + 1, column + 1);
             continue;
         }
-        let skips_old = row < old.len()
-            && (column == new.len()
-                || common[(row + 1) * columns + column] >= common[row * columns + column + 1]);
-        let (side, event) = match skips_old {
-            true => (0, &old[row]),
-            false => (1, &new[column]),
-        };
-        row += usize::from(skips_old);
-        column += usize::from(!skips_old);
-        // One that is another stands beside it.
-        if let (1, Some(last)) = (side, found.last_mut())
-            && last.events[1].is_none()
-        {
-            last.events[1] = Some(named(event));
-            last.lines[1] = event.line;
-            continue;
+        let [below, beside] = [(row + 1) * columns + column, row * columns + column + 1];
+        if column == new.len() || row < old.len() && common[below] >= common[beside] {
+            open[0].push(&old[row]);
+            row += 1;
+        } else {
+            open[1].push(&new[column]);
+            column += 1;
         }
-        let mut difference = EventDifference {
-            events: [None, None],
-            lines: [0; 2],
-        };
-        difference.events[side] = Some(named(event));
-        difference.lines[side] = event.line;
-        found.push(difference);
     }
-    found
 }
 
 /// An event in words.

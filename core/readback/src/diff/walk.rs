@@ -12,6 +12,7 @@ use super::outline::{Pairs, Part};
 use super::steps::{Spot, Step, Steps};
 use super::tally::{Difference, Place, Tally};
 use super::{Of, Program, Rules, Sample};
+use crate::MotionKind;
 
 /// Compares operation by operation.
 pub(super) fn all<P: Program>(
@@ -244,16 +245,36 @@ impl<P: Program> Walk<'_, '_, '_, P> {
         match met {
             Some([0, new]) => self.alone(Of::New, new),
             Some([old, 0]) => self.alone(Of::Old, old),
-            Some(counts) => self.by_length(counts),
+            Some(counts) => self.around(counts),
             None => {
                 let counts = [self.old.steps().len(), self.new.steps().len()];
                 let whole = self.old.source.ended && self.new.source.ended;
                 match whole && counts[0] < LOOK && counts[1] < LOOK {
-                    true => self.by_length(counts),
+                    true => self.around(counts),
                     // Somewhere else all along: gone along as it comes, and looked again later.
                     false => self.rest = LOOK / 2,
                 }
             }
+        }
+    }
+
+    /// Goes along so many steps of each, up to where they meet. Ways of the same kind and length are one that was moved;
+    /// others have nothing in common but their ends.
+    fn around(&mut self, counts: [usize; 2]) {
+        let ways = [self.old.way(counts[0]), self.new.way(counts[1])];
+        let longer = ways[0].max(ways[1]);
+        let kinds = [
+            kinds(self.old.steps(), counts[0]),
+            kinds(self.new.steps(), counts[1]),
+        ];
+        let moved = kinds[0] == kinds[1]
+            && libm::fabs(ways[0] - ways[1]) <= ALIKE * longer + self.rules.apart;
+        if !moved {
+            self.tally.part();
+        }
+        self.by_length(counts);
+        if !moved {
+            self.tally.met();
         }
     }
 
@@ -280,6 +301,16 @@ impl<P: Program> Walk<'_, '_, '_, P> {
         self.alone(Of::Old, old);
         self.alone(Of::New, new);
     }
+}
+
+/// Ways whose lengths differ by no more than this share may be one that was moved.
+const ALIKE: f64 = 0.02;
+
+/// The kinds of motion of so many steps, each where it begins.
+fn kinds(steps: &VecDeque<Step>, count: usize) -> Vec<MotionKind> {
+    let mut kinds: Vec<MotionKind> = steps.iter().take(count).map(|step| step.kind).collect();
+    kinds.dedup();
+    kinds
 }
 
 /// The shares of two steps that are gone to next: one of them at least to its end, the two as near as can be.

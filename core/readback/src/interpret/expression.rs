@@ -10,6 +10,9 @@ use crate::lexicon::Language;
 /// Expressions inside one another.
 const DEEPEST: usize = 100;
 
+/// Bytes of a text that is put together.
+const LONGEST_TEXT: usize = 10_000;
+
 /// Two numbers that differ by less than this share of the larger, and are not equal: whether a control takes them for
 /// equal hangs on how many digits it keeps.
 const CLOSE: f64 = 1e-9;
@@ -140,7 +143,7 @@ impl Variables {
     fn binary(&self, operator: BinaryOperator, left: Value, right: Value) -> Answer<Value> {
         use BinaryOperator as B;
         if operator == B::Join {
-            return Ok(Value::Text(format!("{}{}", text(left), text(right))));
+            return joined(text(left), &text(right));
         }
         let (left, right) = match (left, right) {
             (Value::Number(left), Value::Number(right)) => (left, right),
@@ -348,6 +351,16 @@ fn text(value: Value) -> String {
         Value::Number(number) => format!("{number}"),
         Value::Text(text) => text,
     }
+}
+
+/// One text behind the other.
+fn joined(mut left: String, right: &str) -> Answer<Value> {
+    left.push_str(right);
+    if left.len() > LONGEST_TEXT {
+        let message = format!("a text of more than {LONGEST_TEXT} bytes is put together");
+        return Err(fault(&message));
+    }
+    Ok(Value::Text(left))
 }
 
 fn truth(holds: bool) -> f64 {

@@ -81,6 +81,8 @@ pub(super) struct Flow<R> {
     limits: Limits,
     /// Blocks read so far, lines looked through among them.
     read: u64,
+    /// Too many were read, and that was said.
+    over: bool,
     /// Where the block stands that was handed out last.
     here: NcMark,
     running: Vec<Running>,
@@ -102,6 +104,7 @@ impl<R: Read + Seek> Flow<R> {
             language,
             limits,
             read: 0,
+            over: false,
             here,
             running: Vec::new(),
             pending: None,
@@ -129,7 +132,7 @@ impl<R: Read + Seek> Flow<R> {
         }
         loop {
             self.here = self.reader.mark();
-            if !self.take(block)? {
+            if !self.take(block)? || is_tape_end(block) {
                 return self.ended();
             }
             if !calls::leads(block, self.language, variables) {
@@ -146,25 +149,26 @@ impl<R: Read + Seek> Flow<R> {
     fn take(&mut self, block: &mut NcBlock) -> Answer<bool> {
         self.read += 1;
         if self.read > self.limits.blocks {
-            return Err(self.too_many());
+            return self.too_many();
         }
         let read = self.reader.next_block(block);
         read.map_err(|error| self.failed(error))
     }
 
-    /// The count is passed.
+    /// The count is passed: said once, and then the program is at its end.
     #[cold]
-    fn too_many(&mut self) -> Box<Diagnostic> {
-        // Whoever reads on has as many again.
-        self.read = 0;
+    fn too_many(&mut self) -> Answer<bool> {
         self.running.clear();
+        if std::mem::replace(&mut self.over, true) {
+            return Ok(false);
+        }
         let count = self.limits.blocks;
         let message = format!(
             "{count} blocks were read, and the program has not come to its end: a loop may never end"
         );
-        Diagnostic::error("nc-limit", message)
-            .help("a higher count is set by --blocks")
-            .boxed()
+        Err(Diagnostic::error("nc-limit", message)
+            .help("a higher count is set by --most-blocks")
+            .boxed())
     }
 
     fn go_to(&mut self, mark: NcMark) -> Answer<()> {
@@ -856,6 +860,12 @@ impl<R: Read + Seek> Flow<R> {
         self.passed = block;
         found.ok_or_else(|| fault("what begins here does not end in this file"))
     }
+}
+
+/// `%` between two programs: the one that runs ends there.
+#[inline]
+fn is_tape_end(block: &NcBlock) -> bool {
+    matches!(block.items.as_slice(), [NcItem::Name(name)] if name == "%")
 }
 
 /// Kinds of loops.

@@ -110,8 +110,8 @@ fn assert_scanned_as_parsed(text: &[u8], syntax: &NcSyntax, name: &str) {
 /// Snapshots of programs, in all folders below.
 fn snapshots(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
+    for entry in fs::read_dir(folder).expect("the folder is there") {
+        let path = entry.expect("the entry is there").path();
         if path.is_dir() {
             found.extend(snapshots(&path));
         } else if path

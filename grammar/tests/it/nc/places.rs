@@ -11,7 +11,8 @@ fn reader(text: &str, syntax: &NcSyntax) -> NcReader<Cursor<String>> {
 /// Reads the next block, and gives its line.
 fn next<R: std::io::Read + std::io::Seek>(reader: &mut NcReader<R>) -> Option<u64> {
     let mut block = NcBlock::default();
-    reader.next_block(&mut block).unwrap().then_some(block.line)
+    let read = reader.next_block(&mut block).expect("the block reads");
+    read.then_some(block.line)
 }
 
 fn line(found: Option<NcMark>) -> Option<u64> {

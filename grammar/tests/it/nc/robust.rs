@@ -127,7 +127,7 @@ struct Endless {
 
 impl Read for Endless {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let left = usize::try_from(self.length - self.at).unwrap();
+        let left = usize::try_from(self.length - self.at).unwrap_or(usize::MAX);
         let count = buffer.len().min(left);
         buffer[..count].fill(b'X');
         self.at += count as u64;
@@ -180,7 +180,12 @@ fn real_lines() -> Vec<(Vec<u8>, NcSyntax)> {
         ("nxpost_dmc100_millplus_mm.ptp", conversational()),
         ("nxpost_dmu70evo_840d_in.ptp", names()),
     ]
-    .map(|(name, syntax)| (fs::read(folder.join(name)).unwrap(), syntax))
+    .map(|(name, syntax)| {
+        (
+            fs::read(folder.join(name)).expect("the file is there"),
+            syntax,
+        )
+    })
     .into()
 }
 

@@ -1,0 +1,78 @@
+//! What an NC program did, written as a CL file.
+
+use post_machine::diagnostic::Diagnostic;
+use post_readback::convert::{ClWriter, Tool};
+use post_readback::course::Course;
+use post_readback::course::done::{DoneCourse, Program};
+
+use crate::files::FileFault;
+
+/// So many bytes are written at once.
+const BUFFER: usize = 1 << 16;
+
+/// So many blocks that are refused are told; then the rest of the program is not read.
+const MOST_REFUSED: usize = 50;
+
+/// What came of it.
+#[derive(Debug, Default)]
+pub struct Written {
+    /// Blocks that are refused, and what no CL file can ask for: there is a fault in it, and the text is worth nothing.
+    pub faults: Vec<Diagnostic>,
+    /// What was not carried over, and what was taken for granted.
+    pub notes: Vec<Diagnostic>,
+}
+
+/// Writes the path of a program as a CL file of the part `part` to `sink`. Chords of curves that no record has stay within
+/// `chord` mm; `length` is that of tools whose length the program does not compensate, mm.
+///
+/// # Errors
+/// The text cannot be written.
+pub fn write<P: Program>(
+    course: &mut DoneCourse<P>,
+    part: &str,
+    chord: f64,
+    length: Option<f64>,
+    sink: &mut dyn FnMut(&[u8]) -> Result<(), FileFault>,
+) -> Result<Written, FileFault> {
+    let mut writer = ClWriter::new(chord);
+    let mut written = Written::default();
+    let mut text = String::with_capacity(2 * BUFFER);
+    writer.begin(part, &mut text);
+    loop {
+        let done = match course.next() {
+            Ok(None) => break,
+            Ok(Some(item)) => {
+                let state = course.state();
+                let compensated = state
+                    .map(|state| state.length)
+                    .filter(|length| *length != 0.0);
+                let tool = Tool {
+                    register: state.and_then(|state| state.length_register),
+                    length: compensated.or(length),
+                };
+                writer.item(&item, tool, &mut text)
+            }
+            Err(fault) => Err(fault),
+        };
+        if let Err(fault) = done {
+            written.faults.push(*fault);
+            if written.faults.len() == MOST_REFUSED {
+                let message = format!(
+                    "{MOST_REFUSED} blocks were refused; the rest of the program is not read"
+                );
+                written
+                    .faults
+                    .push(Diagnostic::error("nc-refused", message));
+                break;
+            }
+        }
+        if text.len() > BUFFER {
+            sink(text.as_bytes())?;
+            text.clear();
+        }
+    }
+    writer.end(&mut text);
+    sink(text.as_bytes())?;
+    written.notes.extend(writer.notes().iter().cloned());
+    Ok(written)
+}

@@ -1,0 +1,376 @@
+//! `post convert`: an NC program moved to another machine.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use post_machine::description::{Machine, Setting, Tcp};
+use post_machine::diagnostic::Diagnostic;
+use post_posting::program::{ToldSpindle, Unknown};
+use post_posting::report::Report;
+use post_readback::course::CourseFacts;
+use post_readback::course::cl::{ClCourse, Settings};
+use post_readback::course::done::{Chords, DoneCourse};
+use post_readback::interpret::Limits;
+
+use crate::arguments::flag_values::{
+    Msys, TcpWord, feed, length, point, positive, setting, spindle, word,
+};
+use crate::arguments::{JobArguments, ProgramArguments};
+use crate::failure::Failure;
+use crate::files::{AtomicFile, ClSource, PathArg, Role};
+use crate::job::nc_program::NcControl;
+use crate::job::one_program::OneProgram;
+use crate::job::read_back::{self, Against, Held, Reading};
+use crate::job::{self, nc_to_cl, plugin_finder};
+use crate::terminal::{self, clock, number, table};
+
+/// Moves an NC program to another machine.
+///
+/// The program is run on the machine --from, as its control runs it. What the tool does against the part is written as a
+/// CL file, with tools, speeds, feeds of the tip, curves, cycles and remarks, and posted on the machine --to. The new
+/// program is then run as well, and held against the path of the first: it takes its name only if the tool goes the same
+/// way within the tolerance.
+///
+/// What the first program does for its own machine alone stays behind: ways in machine coordinates and the turn of rotary
+/// axes on the way to the next approach are made anew, as the machine --to retracts and approaches.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  post convert boat.ngc --from xyzac-trt --to xyzbc-trt -o boat-b.ngc
+  post convert part.h --from dmu50 --offsets control.toml --to ac-trunnion -o part.nc --cl part.cls
+
+Exit codes: 0 the program is written, and makes the tool go the way of the first; 1 refused, the messages say why;
+2 the command line is wrong.")]
+pub struct ConvertArguments {
+    /// The NC program.
+    #[arg(value_name = "NC-FILE", value_parser = PathArg::parser())]
+    input: PathArg,
+
+    /// The machine that it was made for: a TOML file, or a name (`post machines`).
+    #[arg(long, value_name = "MACHINE")]
+    from: String,
+
+    /// The machine that it shall run on.
+    #[arg(long, value_name = "MACHINE")]
+    to: String,
+
+    /// The new program, `-` for standard output.
+    #[arg(short, long, value_name = "FILE", value_parser = PathArg::parser())]
+    output: PathArg,
+
+    /// Writes the CL file too that stands between the two programs.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    cl: Option<PathArg>,
+
+    /// No summary, warnings and errors alone.
+    #[arg(short, long)]
+    quiet: bool,
+
+    /// Lengths of tools, work offsets and reference positions of the first machine's control: see `post read`.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "First machine")]
+    offsets: Option<PathArg>,
+
+    /// Length of every tool that --offsets does not name, from the gauge point to the tip, mm.
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = length, help_heading = "First machine")]
+    tool_length: Option<f64>,
+
+    /// Where the part origin sits on the first machine, all axes at zero, machine frame, mm.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point, help_heading = "First machine")]
+    from_mount: Option<[f64; 3]>,
+
+    /// Sets a parameter of the first machine, or any key.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "First machine")]
+    from_set: Vec<Setting>,
+
+    /// Reads another dialect than the first machine's file names.
+    #[arg(long, value_name = "NAME", help_heading = "First machine")]
+    from_dialect: Option<String>,
+
+    /// So many blocks are run, those of loops and subprograms each time; more are refused.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().blocks, value_parser = clap::value_parser!(u64).range(1..), help_heading = "First machine")]
+    most_blocks: u64,
+
+    /// Where the part origin sits on the second machine, all axes at zero, machine frame, mm.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point, help_heading = "Second machine")]
+    mount: Option<[f64; 3]>,
+
+    /// Sets a parameter of the second machine, or any key.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "Second machine")]
+    set: Vec<Setting>,
+
+    /// Posts in another dialect than the second machine's file names.
+    #[arg(long, value_name = "NAME", help_heading = "Second machine")]
+    dialect: Option<String>,
+
+    /// Who keeps the tip on its path on the second machine.
+    #[arg(long, value_parser = word::<TcpWord, Tcp>(), value_name = "WHO", help_heading = "Second machine")]
+    tcp: Option<Tcp>,
+
+    /// Largest deviation of the tip in a cut from the first program's path, mm.
+    #[arg(long, value_name = "MM", value_parser = positive, help_heading = "Second machine")]
+    tolerance: Option<f64>,
+
+    /// Speed that the spindle is switched on at for each tool for which the first program does not; `off`: it stands.
+    #[arg(long, value_name = "RPM", value_parser = spindle, help_heading = "Second machine")]
+    spindle: Option<ToldSpindle>,
+
+    /// Feed of the cuts for which the first program has none, mm/min.
+    #[arg(long, value_name = "MM_A_MINUTE", value_parser = feed, help_heading = "Second machine")]
+    feed: Option<f64>,
+
+    /// Number of the tool, for a program that loads none.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Second machine")]
+    tool: Option<u32>,
+
+    /// A further folder of machine files; the environment variable POST_MACHINES adds more.
+    #[arg(long, value_name = "FOLDER", help_heading = "Machines and plugins")]
+    machines: Vec<PathBuf>,
+
+    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more.
+    #[arg(long, value_name = "FOLDER", help_heading = "Machines and plugins")]
+    plugins: Vec<PathBuf>,
+}
+
+const CL: Role = Role {
+    what: "CL file",
+    remedy: "name another file with --cl",
+};
+
+/// Of the tolerance so much is left for the CL file's chords: the rest is what posting may use.
+const CHORDS: f64 = 0.1;
+
+/// The path that the new program is held against has chords so much finer than the CL file's.
+const FINER: f64 = 0.1;
+
+/// Rapids may stray by so much more than cuts, and by no less than so many mm: they are off the part.
+const RAPIDS: (f64, f64) = (100.0, 0.5);
+
+/// Converts as the arguments say.
+pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
+    if !arguments
+        .input
+        .absolute()
+        .is_some_and(|path| path.is_file())
+    {
+        let message = "post convert runs the program twice, and needs it as a file";
+        return Err(Diagnostic::error("convert", message)
+            .help("give the path of a file, not standard input or a pipe")
+            .into());
+    }
+    let from = NcControl::new(&arguments.first())?;
+    let job = arguments.second();
+    let asked = job::machine(&job, &[])?;
+    let [tolerance, axis_tolerance] = [asked.accuracy.tolerance, asked.accuracy.axis_tolerance];
+    let left = 1.0 - CHORDS;
+    let more = [
+        Setting::Tolerance(tolerance * left),
+        Setting::Number {
+            name: "accuracy.axis_tolerance".to_owned(),
+            value: axis_tolerance.to_degrees() * left,
+        },
+    ];
+    let machine = job::machine(&job, &more)?;
+    let finder = plugin_finder::finder(&job.plugins)?;
+    job::say_what_is_left(&job, &machine, &finder);
+
+    let mut targets = vec![(Role::PROGRAM, &arguments.output)];
+    targets.extend(arguments.cl.iter().map(|cl| (CL, cl)));
+    let mut files = AtomicFile::create(&targets)?;
+    let (program, cl_file) = files.split_at_mut(1);
+    let program = &mut program[0];
+
+    let chords = Chords {
+        tip: tolerance * CHORDS,
+        axis: axis_tolerance * CHORDS,
+        rapid: (tolerance * RAPIDS.0).max(RAPIDS.1),
+    };
+    let (name, part) = arguments.names();
+    let mut course = DoneCourse::new(from.open(&arguments.input)?, chords);
+    let (mut source, written) = ClSource::of_text(format!("{name} as CL file"), |copy| {
+        nc_to_cl::write(
+            &mut course,
+            &part,
+            chords.tip,
+            arguments.tool_length,
+            &mut |text| {
+                copy(text)?;
+                match cl_file.first_mut() {
+                    Some(file) => file.write_bytes(text),
+                    None => Ok(()),
+                }
+            },
+        )
+    })?;
+    let mut notes = written.notes;
+    notes.extend(course.program().report().notes.iter().cloned());
+    if !written.faults.is_empty() {
+        notes.extend(written.faults);
+        return Err(notes.into());
+    }
+
+    let ahead = match machine.program.looks_ahead {
+        true => Some(job::look_ahead(&job, &machine, &finder, &mut source, None)?),
+        false => None,
+    };
+    let one = OneProgram {
+        arguments: &job,
+        machine: &machine,
+        finder: &finder,
+        target: &arguments.output,
+        lines: None,
+        trust_model: false,
+    };
+    let (report, findings) = one.write(ahead.as_ref(), &mut source, program)?;
+    notes.extend(findings);
+    let Some(report) = report else {
+        return Err(notes.into());
+    };
+
+    let finer = Chords {
+        tip: chords.tip * FINER,
+        axis: chords.axis * FINER,
+        rapid: chords.rapid,
+    };
+    let mut read = ClCourse::new(Settings::of(&machine, &name), source.open()?.bytes);
+    let (facts, _) = CourseFacts::of(&mut read);
+    let against = Against {
+        course: DoneCourse::new(from.open(&arguments.input)?, finer),
+        name: name.clone(),
+        tools: read.tools().to_vec(),
+        cut_path: None,
+    };
+    let reading = Reading {
+        arguments: &job,
+        machine: &machine,
+        finder: &finder,
+        offsets: None,
+        limits: Limits::default(),
+        tolerances: [Some(tolerance), Some(axis_tolerance)],
+        lines: None,
+    };
+    let told = program.name().to_owned();
+    let text = program.reread()?;
+    let held = read_back::hold(&reading, against, &told, text, &mut |_| {})?;
+    if held.is_wrong() {
+        notes.extend(held.findings);
+        return Err(notes.into());
+    }
+    notes.extend(held.findings.iter().cloned());
+    let taken = files.iter().any(AtomicFile::is_standard);
+    AtomicFile::finish(files)?;
+    terminal::findings(&notes);
+    if !arguments.quiet {
+        let text = summary(
+            &name,
+            &from.machine,
+            (&machine, &told),
+            &report,
+            &held,
+            &facts,
+        );
+        if taken {
+            terminal::tell(&text);
+        } else {
+            terminal::print(&text);
+        }
+    }
+    Ok(())
+}
+
+impl ConvertArguments {
+    /// The program's file as messages name it, and the part as the CL file does.
+    fn names(&self) -> (String, String) {
+        let path = self.input.path();
+        let name = path.map_or_else(String::new, |path| path.display().to_string());
+        (name, self.input.stem().unwrap_or_default())
+    }
+
+    /// How the first program is read.
+    fn first(&self) -> ProgramArguments {
+        ProgramArguments {
+            machine: self.from.clone(),
+            offsets: self.offsets.clone(),
+            most_blocks: self.most_blocks,
+            tool_length: self.tool_length,
+            mount: self.from_mount,
+            set: self.from_set.clone(),
+            dialect: self.from_dialect.clone(),
+            machines: self.machines.clone(),
+            plugins: self.plugins.clone(),
+        }
+    }
+
+    /// How its path is posted.
+    fn second(&self) -> JobArguments {
+        JobArguments {
+            machine: Some(self.to.clone()),
+            input: Some(self.input.clone()),
+            units: None,
+            msys: Msys::default(),
+            unknown: Unknown::default(),
+            allow: Vec::new(),
+            tool: self.tool,
+            tool_from_cutter: false,
+            spindle: self.spindle,
+            feed: self.feed,
+            mount: self.mount,
+            turn: None,
+            tool_length: None,
+            set: self.set.clone(),
+            tolerance: self.tolerance,
+            tcp: self.tcp,
+            dialect: self.dialect.clone(),
+            machines: self.machines.clone(),
+            plugins: self.plugins.clone(),
+        }
+    }
+}
+
+/// What was done, as a table.
+fn summary(
+    name: &str,
+    from: &Machine,
+    (to, target): (&Machine, &str),
+    report: &Report,
+    held: &Held,
+    facts: &CourseFacts,
+) -> String {
+    let found = &held.found;
+    let mut rows: Vec<[String; 2]> = Vec::new();
+    let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
+    row(
+        "from",
+        format!("{name}, {} ({})", from.name, from.control.dialect),
+    );
+    row(
+        "to",
+        format!("{target}, {} ({})", to.name, to.control.dialect),
+    );
+    row(
+        "path",
+        format!(
+            "{} pieces at feed ({} arcs, {} splines), {} rapids, {} holes",
+            facts.cuts, facts.arcs, facts.splines, facts.rapids, facts.holes
+        ),
+    );
+    row(
+        "program",
+        format!(
+            "{} blocks, {} points put in",
+            report.blocks, report.points_added
+        ),
+    );
+    row(
+        "tip",
+        format!(
+            "within {} mm of the first program's path, tolerance {} mm",
+            number(found.tip.value, 6),
+            number(report.tolerance_mm / (1.0 - CHORDS), 6)
+        ),
+    );
+    row(
+        "tool axis",
+        format!("within {}°", number(found.axis.value, 5)),
+    );
+    row("time", clock(report.time_s));
+    table(&rows, 2)
+}

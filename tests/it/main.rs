@@ -24,6 +24,7 @@ mod linuxcnc;
 #[cfg(target_os = "linux")]
 mod memory;
 mod messages;
+mod mutations;
 mod names;
 mod new;
 mod order;
@@ -42,6 +43,7 @@ mod snapshots;
 mod strangers;
 mod study;
 mod summary;
+mod verified;
 mod vocabularies;
 mod words;
 mod writable;

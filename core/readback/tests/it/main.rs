@@ -1,3 +1,4 @@
 //! Tests of reading back on hand-made programs and courses.
 
+mod course;
 mod verify;

@@ -140,7 +140,11 @@ impl Control {
     }
 
     /// A work offset by its G word: `G54`, `G54.1 P3`, `G15 H1`.
-    pub(super) fn work_offset(&mut self, code: u16, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn work_offset(
+        &mut self,
+        code: u16,
+        words: &mut Gathered,
+    ) -> Result<(), Box<Diagnostic>> {
         let number = f64::from(code) / 10.0;
         let mut name = format!("G{number}");
         for letter in [b'P', b'H'] {

@@ -285,6 +285,3 @@ fn modes(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer
     }
     Ok(kind)
 }
-
-#[cfg(test)]
-mod tests;

@@ -163,7 +163,7 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
     let back = running.meaning == M::CycleBoreBack;
     if up != back {
         let message = format!(
-            "G{} goes from the level {} to {}: {}",
+            "G{} goes from the level {:.4} to {:.4}: {}",
             f64::from(running.code) / 10.0,
             running.clearance,
             running.bottom,
@@ -239,8 +239,12 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         },
         M::CycleBore => Hole {
             kind: CycleKind::Bore,
-            // G88: the operator draws it out.
-            stop: running.code == 880,
+            ..hole
+        },
+        // G88, and G87 of some: the operator draws it out.
+        M::CycleOther => Hole {
+            kind: CycleKind::Bore,
+            stop: true,
             ..hole
         },
         M::CycleBoreFine => Hole {

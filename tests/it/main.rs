@@ -17,12 +17,14 @@ mod diff;
 mod files;
 mod frame;
 mod guide;
+mod languages;
 mod library;
 #[cfg(target_os = "linux")]
 mod linuxcnc;
 #[cfg(target_os = "linux")]
 mod memory;
 mod messages;
+mod mutations;
 mod names;
 mod new;
 mod order;
@@ -41,6 +43,7 @@ mod snapshots;
 mod strangers;
 mod study;
 mod summary;
+mod verified;
 mod vocabularies;
 mod words;
 mod writable;

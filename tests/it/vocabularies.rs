@@ -79,17 +79,8 @@ fn meaning_called(name: &str) -> Option<&'static str> {
     all.find(|known| *known == name)
 }
 
-/// What the plugin hands over, and what each of its words means.
-fn handed_over(dialect: &str) -> Words {
-    let mut words = Words::new();
-    for told in vocabulary(dialect) {
-        let meanings = words.entry(told.word.into_owned()).or_default();
-        meanings.insert(told.meaning.name());
-    }
-    words
-}
-
-fn vocabulary(dialect: &str) -> Vec<VocabularyWord> {
+/// What the plugin hands over, as it does.
+pub fn vocabulary(dialect: &str) -> Vec<VocabularyWord> {
     let plugin = Plugin::linked(post_stock::plugin(dialect).unwrap()).unwrap();
     let word = |name: &str| ProgramWord {
         name: name.to_owned(),
@@ -118,6 +109,16 @@ fn vocabulary(dialect: &str) -> Vec<VocabularyWord> {
         ..ProgramSetup::default()
     };
     plugin.dialect(&setup).unwrap().vocabulary().unwrap()
+}
+
+/// What the plugin hands over.
+fn handed_over(dialect: &str) -> Words {
+    let mut words = Words::new();
+    for told in vocabulary(dialect) {
+        let meanings = words.entry(told.word.into_owned()).or_default();
+        meanings.insert(told.meaning.name());
+    }
+    words
 }
 
 /// It neither moves an axis nor changes where or when one moves.

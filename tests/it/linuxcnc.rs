@@ -3,6 +3,7 @@
 //! The tip is computed from the joints by the laws of LinuxCNC's kinematics modules, not by the product.
 
 mod arcs;
+mod flow;
 mod read;
 
 use std::fs;

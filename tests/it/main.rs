@@ -13,15 +13,18 @@ mod command;
 mod common;
 mod course;
 mod dialects;
+mod diff;
 mod files;
 mod frame;
 mod guide;
+mod languages;
 mod library;
 #[cfg(target_os = "linux")]
 mod linuxcnc;
 #[cfg(target_os = "linux")]
 mod memory;
 mod messages;
+mod mutations;
 mod names;
 mod new;
 mod order;
@@ -40,6 +43,7 @@ mod snapshots;
 mod strangers;
 mod study;
 mod summary;
+mod verified;
 mod vocabularies;
 mod words;
 mod writable;

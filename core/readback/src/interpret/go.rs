@@ -195,7 +195,14 @@ impl Control {
             self.at.pose.tip
         };
         let turned = self.take_said(target);
-        self.place(tip, turned)
+        self.place(tip, turned)?;
+        if !self.state.tcp && !super::planes::upright(self) {
+            let message = "the tool does not stand upright on the tilted plane in force: where words of the plane lead then hangs on the control";
+            let finding = Diagnostic::error("nc-plane", message);
+            let help = "turn the axes to the plane first, by G53.1, TURN, or their words";
+            return Err(self.placed(finding.help(help)).boxed());
+        }
+        Ok(())
     }
 
     /// Takes the axes that `target` says; true where a rotary one is among them.

@@ -217,7 +217,7 @@ impl Control {
                 } else {
                     0
                 };
-                return self.meant(code, meaning, &mut Gathered::default(), asked);
+                self.meant(code, meaning, &mut Gathered::default(), asked)
             }
             Sense::Refused => Err(self.refuse(
                 "nc-word",

@@ -145,9 +145,9 @@ impl Control {
             pose: self.at.pose,
         };
         let tip = self.at.pose.tip;
-        for place in 0..self.machine.axes.len() {
+        for (place, joint) in joints.iter().enumerate() {
             if self.axes.rotary & (1 << place) != 0 {
-                self.at.joints[place] = joints[place];
+                self.at.joints[place] = *joint;
             }
         }
         self.place(tip, true)?;

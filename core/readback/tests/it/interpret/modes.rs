@@ -247,7 +247,7 @@ fn reference_positions_are_approached_by_way_of_the_point() {
         done.report
             .notes
             .iter()
-            .any(|note| note.message.contains("reference position 1 of Z"))
+            .any(|note| note.message.contains("reference positions"))
     );
 }
 

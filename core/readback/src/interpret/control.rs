@@ -86,6 +86,7 @@ impl Control {
             modal: Modal::new(lexicon.language(), machine.control.units),
             frames: Frames::default(),
             work: None,
+            offsets_told: false,
             tools: super::tools::Tools::default(),
             variables: super::variables::Variables::new(lexicon.language()),
             cycles: super::cycles::Cycles::default(),

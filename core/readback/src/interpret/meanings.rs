@@ -131,9 +131,10 @@ impl Control {
             Meaning::Thread | Meaning::ThreadAndBack | Meaning::ThreadBack => {
                 asked.thread = Some((code, meaning));
             }
+            // What was called has led back before: here it ends the program.
+            Meaning::SubprogramEnd => asked.stop = Some(Meaning::End),
             Meaning::Subprogram
             | Meaning::LocalSubprogram
-            | Meaning::SubprogramEnd
             | Meaning::Macro
             | Meaning::MacroModal => {
                 return Err(self.refuse(

@@ -5,7 +5,7 @@ mod places;
 
 use std::io::Cursor;
 
-use post_machine::description::{Machine, Setting, Source, load};
+use post_machine::description::{Machine, Source, load};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Meaning as M, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};
@@ -57,18 +57,14 @@ const NAMES: &[(&str, M)] = &[
     ("TRAFOOF", M::TcpOff),
 ];
 
-/// A machine of the library, with settings.
-pub fn machine(name: &str, settings: &[&str]) -> Machine {
+/// A machine of the library.
+pub fn machine(name: &str) -> Machine {
     let path = |name: &str| repository().join(format!("machines/{name}.toml"));
     let source = |name: &str| Source {
         name: format!("{name}.toml"),
         text: std::fs::read_to_string(path(name)).unwrap(),
     };
-    let settings: Vec<Setting> = settings
-        .iter()
-        .map(|setting| Setting::Written((*setting).to_owned()))
-        .collect();
-    load(source(name), &settings, &mut |parent| Ok(source(parent))).unwrap()
+    load(source(name), &[], &mut |parent| Ok(source(parent))).unwrap()
 }
 
 /// What a program did, what was refused, and what was found.

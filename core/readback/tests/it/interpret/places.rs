@@ -46,7 +46,7 @@ const MACHINES: &[&str] = &[
 #[test]
 fn machine_coordinates_are_what_the_axes_show() {
     for name in MACHINES {
-        let machine = machine(name, &[]);
+        let machine = machine(name);
         let (rounds, mut rng) = randomised(20, 11);
         for _ in rounds {
             let mut joints = Joints::default();
@@ -74,7 +74,7 @@ fn machine_coordinates_are_what_the_axes_show() {
 #[test]
 fn words_of_axes_count_from_where_the_tip_stands_on_the_part() {
     for name in MACHINES {
-        let machine = machine(name, &[]);
+        let machine = machine(name);
         let offsets = Offsets {
             lengths: vec![(3, 87.5)],
             ..Offsets::default()
@@ -109,7 +109,7 @@ fn words_of_axes_count_from_where_the_tip_stands_on_the_part() {
 #[test]
 fn where_the_control_keeps_the_tip_words_are_the_tip() {
     for name in MACHINES {
-        let machine = machine(name, &[]);
+        let machine = machine(name);
         let offsets = Offsets {
             lengths: vec![(3, 87.5)],
             ..Offsets::default()
@@ -155,7 +155,7 @@ fn where_the_control_keeps_the_tip_words_are_the_tip() {
 
 #[test]
 fn a_vector_points_the_tool_and_the_axes_go_the_shorter_way() {
-    let machine = machine("ac-trunnion", &[]);
+    let machine = machine("ac-trunnion");
     let text = "TRAFOOF\nG1 F500 X0 Y0 Z50 A0 C0\nTRAORI\nORIVECT\nX10 Y5 Z3 A3=0 B3=0.6 C3=0.8\n";
     let offsets = Offsets {
         length: Some(100.0),
@@ -174,7 +174,7 @@ fn a_vector_points_the_tool_and_the_axes_go_the_shorter_way() {
 
 #[test]
 fn work_offsets_shift_and_turn_the_program() {
-    let machine = machine("ac-trunnion", &[]);
+    let machine = machine("ac-trunnion");
     let (x, c) = (place(&machine, "X"), place(&machine, "C"));
     let mut work = WorkOffset {
         name: "G55".to_owned(),
@@ -209,7 +209,7 @@ fn work_offsets_shift_and_turn_the_program() {
 
 #[test]
 fn rotary_words_turn_as_they_are_told() {
-    let machine = machine("bc-trunnion", &[]);
+    let machine = machine("bc-trunnion");
     let c = place(&machine, "C");
     let offsets = Offsets {
         length: Some(0.0),
@@ -233,7 +233,7 @@ fn rotary_words_turn_as_they_are_told() {
 
 #[test]
 fn a_head_that_is_swapped_in_is_the_chain_from_there_on() {
-    let machine = machine("head-change", &[]);
+    let machine = machine("head-change");
     let done = letters(
         &machine,
         "M61\nG0 G53 X0 Y0 Z-100. C0\nM62\nG53 X10. C90.\n",
@@ -249,7 +249,7 @@ fn a_head_that_is_swapped_in_is_the_chain_from_there_on() {
 
 #[test]
 fn arcs_of_axis_positions_lie_as_the_axes_do_on_the_part() {
-    let machine = machine("xyzac-trt", &[]);
+    let machine = machine("xyzac-trt");
     for plane in [
         "G17 G3 X20. Y10. I10. J0",
         "G18 G2 X20. Z10. I10. K0",
@@ -275,7 +275,7 @@ fn arcs_of_axis_positions_lie_as_the_axes_do_on_the_part() {
             "G18" => ["X", "Z"],
             _ => ["Y", "Z"],
         };
-        let [first, second] = names.map(|name| super::places::place(&machine, name));
+        let [first, second] = names.map(|name| place(&machine, name));
         let centre = {
             let mut centre = motion.from.joints;
             centre[first] += 10.0;

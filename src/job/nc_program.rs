@@ -135,6 +135,19 @@ pub fn open(source: &PathArg) -> Result<(String, File), FileFault> {
     Ok((name, copied(&mut file).map_err(fault)?))
 }
 
+/// The open file `name` once more, from its beginning: whoever read it before is done.
+pub fn again(name: &str, file: &File) -> Result<File, FileFault> {
+    let again = || -> io::Result<File> {
+        let mut again = file.try_clone()?;
+        again.seek(SeekFrom::Start(0))?;
+        Ok(again)
+    };
+    again().map_err(|error| FileFault::Read {
+        name: name.to_owned(),
+        error,
+    })
+}
+
 /// What `input` gives, in a file without a name.
 fn copied(input: &mut impl io::Read) -> io::Result<File> {
     let mut file = tempfile::tempfile()?;

@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use post_host::Finder;
 use post_machine::description::Machine;
-use post_machine::diagnostic::{Diagnostic, Severity};
-use post_plugin::{Meaning, VocabularyWord};
+use post_machine::diagnostic::{Diagnostic, Place, Severity};
+use post_plugin::{DialectSession as _, Meaning, VocabularyWord};
 use post_posting::program::ToldSpindle;
 use post_readback::Offsets;
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
@@ -17,7 +17,7 @@ use post_readback::verify::{
     BlockReport, CutPath, Fault, Registers, Rules, Verification, Verifier,
 };
 
-use super::nc_program;
+use super::{nc_program, plugin_finder};
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
@@ -61,8 +61,24 @@ impl Held {
     }
 }
 
+/// The operator changes the tool at a stop: the control knows no lengths, and the work offset is set with the tool in the
+/// spindle.
+fn lengths_in_the_offset(words: &[VocabularyWord]) -> bool {
+    let means = |word: &VocabularyWord, meaning: Meaning| {
+        let mut words = words.iter();
+        words.any(|other| other.word == word.word && other.meaning == meaning)
+    };
+    let mut changes = words
+        .iter()
+        .filter(|word| word.meaning == Meaning::ToolChange);
+    changes.any(|change| means(change, Meaning::Stop))
+}
+
 /// Which register a length is compensated by.
 fn registers(words: &[VocabularyWord]) -> Registers {
+    if lengths_in_the_offset(words) {
+        return Registers::None;
+    }
     let has = |letter: &str| {
         let mut words = words.iter();
         words.any(|word| word.meaning == Meaning::LengthRegister && word.word == letter)
@@ -183,18 +199,30 @@ pub fn hold<C: Course, R: Read + Seek>(
         cut_path,
     } = against;
     let words = nc_program::vocabulary(reading.finder, machine)?;
+    let (dialect, _) = plugin_finder::dialect(reading.finder, machine, name, None)?;
+    let most_by_time = dialect.format().most_inverse_time;
     let lexicon = Lexicon::new(&words);
     let mut findings = Vec::new();
     let offsets = match &reading.offsets {
         Some(offsets) => offsets.clone(),
         None => offsets_of(reading, &tools),
     };
+    let mut machine = machine.clone();
+    if lengths_in_the_offset(&words)
+        && let Some(length) = offsets
+            .length
+            .or(offsets.tools.first().map(|(_, length)| *length))
+    {
+        machine.gauge -= machine.tool_axis * length;
+    }
+    let machine = &machine;
     let [tolerance, axis_tolerance] = reading.tolerances;
     let standard = Rules::of(machine);
     let rules = Rules {
         tolerance: tolerance.unwrap_or(standard.tolerance),
         axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
         registers: registers(&words),
+        least_minutes: most_by_time.map_or(0.0, |most| 1.0 / most),
         tool_registers: tools
             .iter()
             .map(|tool| (tool.number, tool.register))
@@ -249,6 +277,14 @@ pub fn hold<C: Course, R: Read + Seek>(
     let blocks = report.blocks;
     drop(program);
     let found = verifier.finish(listen);
+    if let Some((line, message)) = &found.nearest_rapid {
+        let more = match found.near_rapids {
+            1 => String::new(),
+            count => format!("; so in {count} places"),
+        };
+        let place = Place::new(name, *line, "", 0..0);
+        findings.push(Diagnostic::warning("rapid", format!("{message}{more}")).at(Some(place)));
+    }
     let texts = lines_of(&mut input, &found.faults).map_err(unreadable)?;
     for fault in &found.faults {
         let text = fault

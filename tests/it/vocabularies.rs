@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
 use post_host::{GivenValue, Plugin, ProgramSetup, ProgramWord};
-use post_plugin::Meaning;
+use post_plugin::{Meaning, VocabularyWord};
 
 use crate::common::root;
 
@@ -76,8 +76,8 @@ fn meaning_called(name: &str) -> Option<&'static str> {
     all.find(|known| *known == name)
 }
 
-/// What the plugin hands over.
-fn handed_over(dialect: &str) -> Words {
+/// What the plugin hands over, as it does.
+pub fn vocabulary(dialect: &str) -> Vec<VocabularyWord> {
     let plugin = Plugin::linked(post_stock::plugin(dialect).unwrap()).unwrap();
     let word = |name: &str| ProgramWord {
         name: name.to_owned(),
@@ -105,8 +105,13 @@ fn handed_over(dialect: &str) -> Words {
         tcp: dialect != "grbl",
         ..ProgramSetup::default()
     };
+    plugin.dialect(&setup).unwrap().vocabulary().unwrap()
+}
+
+/// What the plugin hands over.
+fn handed_over(dialect: &str) -> Words {
     let mut words = Words::new();
-    for told in plugin.dialect(&setup).unwrap().vocabulary().unwrap() {
+    for told in vocabulary(dialect) {
         let meanings = words.entry(told.word.into_owned()).or_default();
         meanings.insert(told.meaning.name());
     }

@@ -40,6 +40,25 @@ pub struct Chords {
     pub axis: f64,
     /// Of the tip at rapid, mm.
     pub rapid: f64,
+    /// Of the tool axis at rapid, radians.
+    pub rapid_axis: f64,
+}
+
+/// Rapids may stray by so much more than cuts, but by half a millimetre, and their tool axis by 10°: they are off the part.
+const RAPIDS: f64 = 100.0;
+const RAPID: f64 = 0.5;
+const RAPID_AXIS: f64 = 10.0 / 180.0 * std::f64::consts::PI;
+
+impl Chords {
+    /// Cuts within `tip` mm and `axis` radians.
+    pub fn within(tip: f64, axis: f64) -> Self {
+        Self {
+            tip,
+            axis,
+            rapid: (tip * RAPIDS).max(RAPID),
+            rapid_axis: RAPID_AXIS,
+        }
+    }
 }
 
 /// Poses nearer than this are one: mm, and of unit vectors.
@@ -181,11 +200,17 @@ impl<P: Program> DoneCourse<P> {
 
     /// The pieces of a motion.
     fn pieces(&mut self, motion: &Motion, feed: Option<f64>) {
-        let chord = match motion.kind {
-            MotionKind::Rapid => self.chords.rapid,
-            MotionKind::Feed | MotionKind::Thread => self.chords.tip,
+        let Chords {
+            tip,
+            axis,
+            rapid,
+            rapid_axis,
+        } = self.chords;
+        let (chord, angle) = match motion.kind {
+            MotionKind::Rapid => (rapid, rapid_axis),
+            MotionKind::Feed | MotionKind::Thread => (tip, axis),
         };
-        let mut count = motion.pieces(chord, self.chords.axis);
+        let mut count = motion.pieces(chord, angle);
         // A spline stays one where the tool axis does.
         let along = match &motion.way {
             Way::Spline(_) if motion.turns() => {

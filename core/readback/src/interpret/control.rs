@@ -182,6 +182,13 @@ impl Control {
         }
     }
 
+    /// A block stands behind `/`.
+    #[cold]
+    pub fn say_skipped(&mut self) {
+        let message = "blocks behind / are run, as with the operator's switch off";
+        self.note(Diagnostic::warning("nc-skip", message));
+    }
+
     /// A word that nobody knows and that moves nothing.
     pub fn unknown(&mut self, word: &str) {
         let known = self

@@ -52,8 +52,8 @@ pub struct Rules {
     pub registers: Registers,
     /// Length register that belongs to a tool where it is not the tool's number.
     pub tool_registers: Vec<(u32, u32)>,
-    /// A block by time takes no longer than this, minutes: slower ones say nothing of the feed.
-    pub longest_minutes: f64,
+    /// A feed by time cannot be so large that a block takes less than this, minutes.
+    pub least_minutes: f64,
     /// So many faults are told apart; then it is given up.
     pub most_faults: usize,
 }
@@ -79,7 +79,7 @@ impl Rules {
             rapid_tolerance: machine.accuracy.rapid_tolerance,
             registers: Registers::None,
             tool_registers: Vec::new(),
-            longest_minutes: f64::INFINITY,
+            least_minutes: 0.0,
             most_faults: 50,
         }
     }
@@ -116,10 +116,10 @@ pub struct Verifier<'m, C> {
     hole: Option<HoleRun>,
     /// Where the course cuts.
     cut_path: CutPath,
+    /// The tool has come to a point of the course.
+    placed: bool,
     /// How near the course's own rapids come to its cuts since the last one, mm.
     course_near: f64,
-    /// Where the tool left a cut at feed along its own axis.
-    drawn_back: Option<Place>,
     /// Ends of the pieces of the motion at hand, its beginning first.
     places: Vec<Place>,
     spare: Vec<Span>,
@@ -161,8 +161,8 @@ impl<'m, C: Course> Verifier<'m, C> {
             stray: None,
             hole: None,
             cut_path: CutPath::new(along),
+            placed: false,
             course_near: f64::INFINITY,
-            drawn_back: None,
             places: Vec::new(),
             spare: Vec::new(),
             axes: Axes::new(machine),
@@ -361,6 +361,12 @@ impl<'m, C: Course> Verifier<'m, C> {
             (None, Some(next)) => next,
             (None, None) => 0,
         };
+        // Where nothing is cut it is not late yet for what was not met.
+        let waits = self.track.kept().iter().take(behind);
+        let waits = waits
+            .enumerate()
+            .find(|(_, element)| self.apart && matches!(element.what, What::Event(_, false)));
+        let behind = waits.map_or(behind, |(index, _)| index);
         for _ in 0..behind {
             let Some(element) = self.track.pop() else {
                 break;

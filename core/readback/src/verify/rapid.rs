@@ -24,7 +24,13 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// A rapid must not come nearer to the cuts than its ends, unless the course's own does.
+    ///
+    /// Where the tool stands before it comes to its first point is not known, and how machines turn off the part is often
+    /// their own: what comes near is told, and what touches is a fault.
     fn look_how_near(&mut self, motion: &Motion, places: &[Place]) {
+        if !self.placed {
+            return;
+        }
         let ends = [&places[0], &places[places.len() - 1]];
         let ends = ends.map(|end| self.cut_path.distance(end.point));
         let slack = self.rapid_bound.point + self.cut_path.blur();
@@ -90,7 +96,8 @@ impl<C: Course> Verifier<'_, C> {
                 continue;
             };
             if matches!(element.what, What::Way) {
-                self.next = Some(index);
+                self.found.rapids_at_feed += 1;
+                self.next = Some(index + usize::from(span.to >= 1.0));
                 return;
             }
             if span.to < 1.0 {
@@ -147,6 +154,7 @@ impl<C: Course> Verifier<'_, C> {
                             let way = self.cut_path.least_on(from, to, 0.0);
                             self.course_near = self.course_near.min(way);
                         }
+                        self.placed = true;
                         self.found.rapid.take(near.point, motion.line, line);
                         self.block.cl_line = Some(line);
                     }
@@ -194,6 +202,30 @@ impl<C: Course> Verifier<'_, C> {
             self.set_kind("rapid");
         }
         due
+    }
+
+    /// A cut that was left goes on here, or the next one begins.
+    pub(super) fn may_begin(&mut self, place: &Place) -> bool {
+        let bound = self.bound;
+        let kept = self.reach.iter().zip(self.track.kept());
+        let goes_on = kept.filter(|(span, element)| !span.is_empty() && element.is_cut());
+        let mut goes_on = goes_on
+            .map(|(span, element)| span.meet(&free(place, &element.from, &element.to, &bound)));
+        if goes_on.any(|span| !span.is_empty()) {
+            return true;
+        }
+        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
+            return false;
+        };
+        let rapid = self.rapid_bound;
+        self.track
+            .get(index)
+            .is_some_and(|element| match element.what {
+                What::Way | What::Reach => {
+                    !free(place, &element.from, &element.to, &rapid).is_empty()
+                }
+                _ => place.within(&element.from, &bound),
+            })
     }
 
     /// A cut begins: where on the course may that be?

@@ -16,6 +16,10 @@ pub struct Verification {
     pub holes: u64,
     /// Motions at feed that the course asks for at rapid.
     pub rapids_at_feed: u64,
+    /// Rapids that come nearer to what is cut than their ends and the course's own rapids, and do not touch it.
+    pub near_rapids: u64,
+    /// Line of the first of them, and how near.
+    pub nearest_rapid: Option<(u64, String)>,
     /// Times that the tool left a cut and came back to where it left.
     pub excursions: u64,
     /// Cuts that are slower than the course asks, because an axis could not go faster.

@@ -48,9 +48,6 @@ impl<C: Course> Verifier<'_, C> {
         if self.hole.is_some() {
             return self.hole_motion(motion, places);
         }
-        if self.drawn_back.is_some() && self.comes_back(motion, places) {
-            return;
-        }
         self.come_back_to_the_course(&places[0]);
         if self.apart {
             // Where a hole is due, a feed motion is its business unless the tool is elsewhere.
@@ -59,6 +56,11 @@ impl<C: Course> Verifier<'_, C> {
             }
             if self.reaches_at_feed(motion, places) {
                 return;
+            }
+            if !self.may_begin(&places[0])
+                && (draws_back(places, &self.bound) || self.comes_down(places))
+            {
+                return self.set_kind("rapid");
             }
             self.begin_cut(motion, &places[0]);
         }
@@ -80,8 +82,11 @@ impl<C: Course> Verifier<'_, C> {
                 }
                 Swept::Nowhere => self.reach.clone_from(&begun),
             }
-            if self.draws_back(places) {
-                return;
+            if draws_back(places, &self.bound) {
+                self.reach = begun;
+                self.leave_cut();
+                self.apart = true;
+                return self.set_kind("rapid");
             }
             if !self.widen(motion, places, &begun) {
                 self.reach = begun;
@@ -394,43 +399,21 @@ impl<C: Course> Verifier<'_, C> {
         self.apart = true;
     }
 
-    /// Drawn back along its own axis at feed, a tool leaves its cut for a while.
-    fn draws_back(&mut self, places: &[Place]) -> bool {
+    /// Along its own axis at feed to where a cut may begin, or a point of the course stands.
+    fn comes_down(&mut self, places: &[Place]) -> bool {
         let (from, to) = (&places[0], &places[places.len() - 1]);
-        let way = to.point - from.point;
-        let along = way.dot(&from.axis);
-        let straight = (way - from.axis * along).norm() <= self.bound.point
-            && (to.axis - from.axis).norm() <= self.bound.axis;
-        if along > 0.0 && straight {
-            self.drawn_back = Some(*from);
-            self.set_kind("rapid");
-            return true;
-        }
-        false
+        draws_back(&[*to, *from], &self.bound) && self.may_begin(to)
     }
+}
 
-    /// Back where a cut was left, along the axis of the tool. False if the motion is none of that.
-    fn comes_back(&mut self, motion: &Motion, places: &[Place]) -> bool {
-        let Some(left) = self.drawn_back else {
-            return false;
-        };
-        let to = &places[places.len() - 1];
-        let bound = self.bound;
-        if to.within(&left, &bound) {
-            self.drawn_back = None;
-            self.apart = true;
-            return true;
-        }
-        let offset = to.point - left.point;
-        let above = offset.dot(&left.axis);
-        if above > -bound.point {
-            return true;
-        }
-        self.drawn_back = None;
-        let message = "the tool left its cut along its own axis, and cuts on elsewhere".to_owned();
-        self.fault("excursion", message, Some(motion), None, None);
-        false
-    }
+/// Along the tool's own axis to the holder: a tool that leaves what it cuts so does no harm, at whatever feed.
+fn draws_back(places: &[Place], bound: &Bound) -> bool {
+    let (from, to) = (&places[0], &places[places.len() - 1]);
+    let way = to.point - from.point;
+    let along = way.dot(&from.axis);
+    along > 0.0
+        && (way - from.axis * along).norm() <= bound.point
+        && (to.axis - from.axis).norm() <= bound.axis
 }
 
 /// What became of a piece.

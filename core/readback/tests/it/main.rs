@@ -1,3 +1,5 @@
 //! Tests of reading back on hand-made programs and courses.
 
+mod course;
+mod interpret;
 mod verify;

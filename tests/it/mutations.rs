@@ -1,0 +1,659 @@
+//! What verification sees: thousands of programs with one thing changed at random, and whether that was caught.
+//!
+//! Whether the machine does something else is judged apart from the verification: both programs are run, what they have in
+//! common before and behind the change is left out, and the rest is sampled densely and compared point by point.
+
+use crate::common::{post, root, sample};
+use crate::vocabularies;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Cursor;
+use std::path::Path;
+
+use nalgebra::Vector3;
+use post_machine::description::{Machine, Setting, Source, Tcp, load};
+use post_plugin::{Meaning, VocabularyWord};
+use post_readback::course::cl::{ClCourse, Settings};
+use post_readback::interpret::{Interpreter, Limits};
+use post_readback::lexicon::Lexicon;
+use post_readback::verify::{CutPath, Registers, Rules, Verifier};
+use post_readback::{Done, Motion, MotionKind, Offsets, Told};
+use post_testkit::{Rng, seeded};
+
+/// A program, and all that is needed to run it and to hold it against its CL file.
+struct Job {
+    name: String,
+    machine: Machine,
+    lexicon: Lexicon,
+    registers: Registers,
+    cl: Vec<u8>,
+    cl_name: String,
+    lines: Vec<String>,
+    length: f64,
+    done: Vec<Done>,
+}
+
+fn machine(name: &str, settings: &[Setting]) -> Machine {
+    let find = |name: &str| {
+        let path = root().join("machines").join(format!("{name}.toml"));
+        fs::read_to_string(&path).map(|text| Source {
+            name: name.to_owned(),
+            text,
+        })
+    };
+    let source = find(name).unwrap();
+    load(source, settings, &mut |name| {
+        find(name).map_err(|error| error.to_string())
+    })
+    .unwrap()
+}
+
+fn registers(words: &[VocabularyWord]) -> Registers {
+    let has = |letter: &str| {
+        let mut words = words.iter();
+        words.any(|word| word.meaning == Meaning::LengthRegister && word.word == letter)
+    };
+    match (has("H"), has("D")) {
+        (true, _) => Registers::OfTool,
+        (false, true) => Registers::Edges,
+        (false, false) => Registers::None,
+    }
+}
+
+impl Job {
+    fn new(dialect: &str, name: &str, file: &str, tcp: &str) -> Option<Self> {
+        let length = 100.0;
+        let path = sample(file);
+        let mut arguments = vec![
+            "-q",
+            "-m",
+            name,
+            "--dialect",
+            dialect,
+            "--tool-length",
+            "100",
+            "-o",
+            "-",
+        ];
+        let mut settings = vec![Setting::Dialect(dialect.to_owned())];
+        if !tcp.is_empty() {
+            arguments.extend(["--tcp", tcp]);
+            settings.push(Setting::Tcp(match tcp {
+                "control" => Tcp::Control,
+                _ => Tcp::Post,
+            }));
+        }
+        arguments.push(path.to_str().unwrap());
+        let run = post(&arguments);
+        if run.code != 0 {
+            return None;
+        }
+        let machine = machine(name, &settings);
+        let words = vocabularies::vocabulary(dialect);
+        let mut job = Self {
+            name: format!("{dialect} {name} {file} {tcp}"),
+            lexicon: Lexicon::new(&words),
+            registers: registers(&words),
+            cl: fs::read(root().join(&path)).unwrap(),
+            cl_name: file.to_owned(),
+            lines: run.out.lines().map(str::to_owned).collect(),
+            length,
+            machine,
+            done: Vec::new(),
+        };
+        let (done, faults) = job.run(&job.lines, length);
+        assert_eq!(faults, Vec::<String>::new(), "{}", job.name);
+        job.done = done;
+        Some(job)
+    }
+
+    fn course(&self) -> ClCourse<Cursor<Vec<u8>>> {
+        let settings = Settings::of(&self.machine, &self.cl_name);
+        ClCourse::new(settings, Cursor::new(self.cl.clone()))
+    }
+
+    /// What the program of these lines does, and what is wrong with it.
+    fn run(&self, lines: &[String], length: f64) -> (Vec<Done>, Vec<String>) {
+        let text = lines.join("\n") + "\n";
+        let offsets = Offsets {
+            length: Some(length),
+            ..Offsets::default()
+        };
+        let (near, _) = CutPath::of(&mut self.course(), self.machine.control_point.along);
+        let rules = Rules {
+            registers: self.registers,
+            ..Rules::of(&self.machine)
+        };
+        let mut verifier = Verifier::new(&self.machine, rules, self.course()).near(near);
+        let program = Interpreter::new(
+            &self.machine,
+            &self.lexicon,
+            &offsets,
+            Limits {
+                blocks: 100_000,
+                ..Limits::default()
+            },
+            "mutant.nc",
+            Cursor::new(text.into_bytes()),
+        );
+        let mut program = program.unwrap();
+        let (mut all, mut faults) = (Vec::new(), Vec::new());
+        let mut done = Vec::new();
+        loop {
+            done.clear();
+            match program.next(&mut done) {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(fault) => {
+                    faults.push(fault.message);
+                    if faults.len() > 20 {
+                        break;
+                    }
+                }
+            }
+            for done in &done {
+                verifier.take(done, &mut |_| {});
+            }
+            all.append(&mut done);
+        }
+        let found = verifier.finish(&mut |_| {});
+        faults.extend(found.faults.into_iter().map(|fault| {
+            format!(
+                "{}: {} (line {:?}, CL line {:?})",
+                fault.code, fault.message, fault.nc_line, fault.cl_line
+            )
+        }));
+        (all, faults)
+    }
+}
+
+/// What is changed.
+const KINDS: &[&str] = &[
+    "digit", "sign", "left out", "swapped", "doubled", "register", "length", "tcp late", "arc",
+    "feed", "speed", "tool", "coolant", "spindle", "rapid", "dwell",
+];
+
+/// Places of numbers behind one of `letters`, outside remarks: line, first byte, byte behind the last.
+fn numbers(lines: &[String], letters: &str) -> Vec<(usize, usize, usize)> {
+    let mut places = Vec::new();
+    for (index, line) in lines.iter().enumerate() {
+        let bytes = line.as_bytes();
+        let (mut at, mut remark) = (0, false);
+        while at < bytes.len() {
+            match bytes[at] {
+                b'(' => remark = true,
+                b')' => remark = false,
+                b';' => break,
+                letter if !remark && letters.as_bytes().contains(&letter) => {
+                    let alone = at == 0 || !bytes[at - 1].is_ascii_alphabetic();
+                    let mut end = at + 1;
+                    if end < bytes.len() && matches!(bytes[end], b'+' | b'-') {
+                        end += 1;
+                    }
+                    let digits = end;
+                    while end < bytes.len() && (bytes[end].is_ascii_digit() || bytes[end] == b'.') {
+                        end += 1;
+                    }
+                    if alone && end > digits {
+                        places.push((index, at + 1, end));
+                    }
+                }
+                _ => {}
+            }
+            at += 1;
+        }
+    }
+    places
+}
+
+/// Another digit in one of the numbers behind these letters.
+fn change_digit(random: &mut Rng, lines: &mut [String], letters: &str) -> Option<()> {
+    let places = numbers(lines, letters);
+    if places.is_empty() {
+        return None;
+    }
+    let (line, from, to) = places[random.pick(places.len())];
+    let digits: Vec<usize> = (from..to)
+        .filter(|at| lines[line].as_bytes()[*at].is_ascii_digit())
+        .collect();
+    let at = digits[random.pick(digits.len())];
+    let old = lines[line].as_bytes()[at] - b'0';
+    let new = (old + 1 + random.pick(9) as u8) % 10;
+    lines[line].replace_range(at..=at, &new.to_string());
+    Some(())
+}
+
+/// One of the lines in which a word stands, the word replaced.
+fn replace_word(random: &mut Rng, lines: &mut [String], pairs: &[(&str, &str)]) -> Option<()> {
+    let mut places = Vec::new();
+    for (index, line) in lines.iter().enumerate() {
+        for (old, new) in pairs {
+            for (at, _) in line.match_indices(old) {
+                let end = at + old.len();
+                let bytes = line.as_bytes();
+                let ends = end == bytes.len() || !matches!(bytes[end], b'0'..=b'9' | b'.');
+                let begins = at == 0 || !bytes[at - 1].is_ascii_alphanumeric();
+                if ends && begins && !line.starts_with('(') && !line.contains(';') {
+                    places.push((index, at, end, *new));
+                }
+            }
+        }
+    }
+    if places.is_empty() {
+        return None;
+    }
+    let (line, from, to, new) = places[random.pick(places.len())];
+    lines[line].replace_range(from..to, new);
+    Some(())
+}
+
+/// Changes one thing; none if the program has none such.
+fn mutate(kind: &str, random: &mut Rng, lines: &mut Vec<String>, length: &mut f64) -> Option<()> {
+    match kind {
+        "digit" => change_digit(random, lines, "XYZABCIJKR"),
+        "sign" => {
+            let places = numbers(lines, "XYZABCIJK");
+            let (line, from, _) = *places.get(random.pick(places.len().max(1)))?;
+            match lines[line].as_bytes()[from] {
+                b'-' => lines[line].replace_range(from..=from, "+"),
+                b'+' => lines[line].replace_range(from..=from, "-"),
+                _ => lines[line].insert(from, '-'),
+            }
+            Some(())
+        }
+        "left out" => {
+            let at = random.pick(lines.len());
+            lines.remove(at);
+            Some(())
+        }
+        "swapped" => {
+            let at = random.pick(lines.len() - 1);
+            lines.swap(at, at + 1);
+            Some(())
+        }
+        "doubled" => {
+            let at = random.pick(lines.len());
+            let line = lines[at].clone();
+            let to = random.pick(lines.len());
+            lines.insert(to, line);
+            Some(())
+        }
+        "register" => change_digit(random, lines, "HD"),
+        "length" => {
+            *length += random.range(-2.0, 2.0);
+            Some(())
+        }
+        "tcp late" => {
+            const WORDS: &[&str] = &["G43.4", "G43.5", "TRAORI", "M128", "G234", "G169", "M200"];
+            let has = |line: &String| WORDS.iter().any(|word| line.contains(word));
+            let at = lines.iter().position(has)?;
+            let next = (at + 1).min(lines.len() - 1);
+            lines.swap(at, next);
+            Some(())
+        }
+        "arc" => replace_word(
+            random,
+            lines,
+            &[("G2", "G3"), ("G3", "G2"), ("DR+", "DR-"), ("DR-", "DR+")],
+        ),
+        "feed" => change_digit(random, lines, "F"),
+        "speed" => change_digit(random, lines, "S"),
+        "tool" => change_digit(random, lines, "T"),
+        "coolant" => replace_word(random, lines, &[("M8", "M9"), ("M7", "M9"), ("M9", "M8")]),
+        "spindle" => replace_word(random, lines, &[("M3", "M4"), ("M5", "M3"), ("M3", "M5")]),
+        "rapid" => replace_word(
+            random,
+            lines,
+            &[("G0", "G1"), ("G1", "G0"), (" FMAX", " F500")],
+        ),
+        _ => change_digit(random, lines, "P"),
+    }
+}
+
+/// What a changed program does otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Difference {
+    /// Nothing beyond the tolerances.
+    None,
+    /// Rapids alone.
+    Rapids,
+    /// What is cut, or how.
+    Cut,
+}
+
+/// A point of a way: tip and tool axis.
+type At = (Vector3<f64>, Vector3<f64>);
+
+/// Points of motions, close together; a list for each unbroken way.
+fn dense(motions: &[&Motion], rapid: bool) -> Vec<At> {
+    let mut points = Vec::new();
+    for motion in motions {
+        if (motion.kind == MotionKind::Rapid) != rapid {
+            continue;
+        }
+        let way = (motion.to.pose.tip - motion.from.pose.tip).norm();
+        let turn = (0..8)
+            .map(|joint| (motion.to.joints[joint] - motion.from.joints[joint]).abs())
+            .fold(0.0, f64::max);
+        let bent = !matches!(
+            motion.way,
+            post_readback::Way::Axes | post_readback::Way::Tip
+        );
+        let count = 2.0 + way / 0.5 + if bent { 40.0 } else { 0.0 } + turn.min(10.0) * 10.0;
+        let count = (count as u32).min(400);
+        for step in 0..=count {
+            let pose = motion.at(f64::from(step) / f64::from(count));
+            points.push((pose.tip, pose.axis));
+        }
+    }
+    points
+}
+
+/// How far a point is from a way, in tolerances.
+fn off(point: &At, way: &[At], tolerances: [f64; 2]) -> f64 {
+    let mut best = f64::INFINITY;
+    for ends in way.windows(2) {
+        let ((a, axis_a), (b, axis_b)) = (ends[0], ends[1]);
+        let line = b - a;
+        let square = line.norm_squared();
+        let share = if square > 0.0 {
+            ((point.0 - a).dot(&line) / square).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let tip = (point.0 - a - line * share).norm() / tolerances[0];
+        if tip >= best {
+            continue;
+        }
+        let axis = axis_a + (axis_b - axis_a) * share;
+        let angle = (point.1 - axis).norm() / tolerances[1];
+        best = best.min(tip.max(angle));
+    }
+    best
+}
+
+/// The larger of the two one-sided distances of two ways, in tolerances.
+fn apart(one: &[At], other: &[At], tolerances: [f64; 2]) -> f64 {
+    match (one.is_empty(), other.is_empty()) {
+        (true, true) => return 0.0,
+        (false, false) => {}
+        // Nothing, or a point: no metal.
+        _ => {
+            let way = if one.is_empty() { other } else { one };
+            return length(way) / tolerances[0];
+        }
+    }
+    let side = |from: &[At], to: &[At]| {
+        from.iter()
+            .map(|point| off(point, to, tolerances))
+            .fold(0.0, f64::max)
+    };
+    side(one, other).max(side(other, one))
+}
+
+fn length(way: &[At]) -> f64 {
+    way.windows(2)
+        .map(|ends| (ends[1].0 - ends[0].0).norm())
+        .sum()
+}
+
+/// What holds in a cut, as text.
+fn state(motion: &Motion) -> String {
+    let state = &motion.state;
+    format!(
+        "{:?} {:?} {:?} {:?} {:?} {:?}",
+        state.tool,
+        state.length_register,
+        state.spindle,
+        state.coolants,
+        state.compensation,
+        (state.compensation != 0).then_some(state.radius_register)
+    )
+}
+
+fn same_step(one: &Done, other: &Done) -> bool {
+    match (one, other) {
+        (Done::Motion(a), Done::Motion(b)) => {
+            let near = |a: &post_readback::Stance, b: &post_readback::Stance| {
+                (0..8).all(|joint| (a.joints[joint] - b.joints[joint]).abs() < 1e-9)
+            };
+            a.kind == b.kind
+                && near(&a.from, &b.from)
+                && near(&a.to, &b.to)
+                && a.way == b.way
+                && (a.minutes - b.minutes).abs() < 1e-9
+                && state(a) == state(b)
+                && (a.state.length - b.state.length).abs() < 1e-9
+        }
+        (Done::Told { told: a, .. }, Done::Told { told: b, .. }) => a == b,
+        (Done::State(_), Done::State(_)) => true,
+        _ => false,
+    }
+}
+
+/// Whether two programs differ in what the machine does.
+fn difference(job: &Job, one: &[Done], other: &[Done]) -> Difference {
+    let counts = |done: &&Done| match done {
+        Done::Motion(_) => true,
+        Done::Told { told, .. } => {
+            matches!(told, Told::Stop | Told::OptionalStop | Told::Dwell { .. })
+        }
+        Done::State(_) => false,
+    };
+    let one: Vec<&Done> = one.iter().filter(counts).collect();
+    let other: Vec<&Done> = other.iter().filter(counts).collect();
+    let before = one
+        .iter()
+        .zip(&other)
+        .take_while(|(a, b)| same_step(a, b))
+        .count();
+    let behind = one[before..]
+        .iter()
+        .rev()
+        .zip(other[before..].iter().rev())
+        .take_while(|(a, b)| same_step(a, b))
+        .count();
+    let one = &one[before..one.len() - behind];
+    let other = &other[before..other.len() - behind];
+    let motions = |done: &[&Done]| -> Vec<Motion> {
+        let motions = done.iter().filter_map(|done| match done {
+            Done::Motion(motion) => Some(motion.clone()),
+            _ => None,
+        });
+        motions.collect()
+    };
+    let told = |done: &[&Done]| -> Vec<String> {
+        let told = done.iter().filter_map(|done| match done {
+            Done::Told { told, .. } => Some(format!("{told:?}")),
+            _ => None,
+        });
+        told.collect()
+    };
+    if told(one) != told(other) {
+        return Difference::Cut;
+    }
+    let (one, other) = (motions(one), motions(other));
+    let (one, other): (Vec<&Motion>, Vec<&Motion>) = (one.iter().collect(), other.iter().collect());
+    let accuracy = &job.machine.accuracy;
+    let tolerances = [accuracy.tolerance, accuracy.axis_tolerance];
+    let [cut, new] = [&one, &other].map(|motions| dense(motions, false));
+    if apart(&cut, &new, tolerances) > 1.0 {
+        return Difference::Cut;
+    }
+    // To and fro lies on the same line. Of ways whose ends are rounded the lengths differ a little.
+    let [long, new_long] = [&cut, &new].map(|way| length(way));
+    if (long - new_long).abs() > 0.02 + 0.002 * long {
+        return Difference::Cut;
+    }
+    let by_state = |motions: &[&Motion]| {
+        let mut lengths: BTreeMap<String, (f64, f64)> = BTreeMap::new();
+        for motion in motions {
+            if motion.kind != MotionKind::Rapid {
+                let way = length(&dense(&[motion], false));
+                let sum = lengths.entry(state(motion)).or_default();
+                sum.0 += way;
+                sum.1 += motion.minutes;
+            }
+        }
+        lengths
+    };
+    let (old_states, new_states) = (by_state(&one), by_state(&other));
+    let keys: std::collections::BTreeSet<&String> =
+        old_states.keys().chain(new_states.keys()).collect();
+    for key in keys {
+        let (a, b) = (
+            old_states.get(key).copied().unwrap_or_default(),
+            new_states.get(key).copied().unwrap_or_default(),
+        );
+        if (a.0 - b.0).abs() > 0.02 + 0.002 * a.0.max(b.0) {
+            return Difference::Cut;
+        }
+        // Feeds are compared to half a per cent and half a millimetre a minute, and short ways are rounded.
+        let slack = 0.02 * a.1 + 0.01 / 200.0;
+        if (a.1 - b.1).abs() > slack {
+            return Difference::Cut;
+        }
+    }
+    let [rapid, new_rapid] = [&one, &other].map(|motions| dense(motions, true));
+    let tolerances = [accuracy.rapid_tolerance, 1f64.to_radians()];
+    if apart(&rapid, &new_rapid, tolerances) > 1.0 {
+        return Difference::Rapids;
+    }
+    Difference::None
+}
+
+/// Of each kind: how many, and of each difference caught and not.
+#[derive(Default)]
+struct Tally {
+    by: BTreeMap<&'static str, BTreeMap<(Difference, bool), u64>>,
+    missed: Vec<String>,
+}
+
+fn study(jobs: &[Job], each: u64, own: u64) -> Tally {
+    let mut tally = Tally::default();
+    for (index, job) in jobs.iter().enumerate() {
+        let mut random = seeded(own + index as u64);
+        for kind in KINDS {
+            for _ in 0..each {
+                let mut lines = job.lines.clone();
+                let mut length = job.length;
+                if mutate(kind, &mut random, &mut lines, &mut length).is_none() {
+                    break;
+                }
+                let (done, faults) = job.run(&lines, length);
+                let differs = difference(job, &job.done, &done);
+                let caught = !faults.is_empty();
+                let row = tally.by.entry(kind).or_default();
+                *row.entry((differs, caught)).or_default() += 1;
+                if differs == Difference::Cut && !caught {
+                    let changed = job.lines.iter().zip(&lines).find(|(old, new)| old != new);
+                    tally
+                        .missed
+                        .push(format!("{}: {kind}: {changed:?} {length}", job.name));
+                }
+            }
+        }
+    }
+    tally
+}
+
+fn table(tally: &Tally) -> String {
+    let mut text = format!(
+        "{:<10} {:>6} | {:>7} {:>6} | {:>7} {:>8} | {:>5} {:>6}\n{:<10} {:>6} | {:^14} | {:^16} | {:^12}\n",
+        "",
+        "",
+        "caught",
+        "missed",
+        "caught",
+        "let pass",
+        "caught",
+        "passed",
+        "change",
+        "count",
+        "cut differs",
+        "rapids differ",
+        "no difference"
+    );
+    let mut sums = [0; 7];
+    for (kind, row) in &tally.by {
+        let of = |differs, caught| row.get(&(differs, caught)).copied().unwrap_or(0);
+        let cells = [
+            row.values().sum::<u64>(),
+            of(Difference::Cut, true),
+            of(Difference::Cut, false),
+            of(Difference::Rapids, true),
+            of(Difference::Rapids, false),
+            of(Difference::None, true),
+            of(Difference::None, false),
+        ];
+        for (sum, cell) in sums.iter_mut().zip(cells) {
+            *sum += cell;
+        }
+        text.push_str(&line(kind, &cells));
+    }
+    text.push_str(&line("all", &sums));
+    text
+}
+
+fn line(name: &str, cells: &[u64; 7]) -> String {
+    let [count, a, b, c, d, e, f] = cells;
+    format!("{name:<10} {count:>6} | {a:>7} {b:>6} | {c:>7} {d:>8} | {e:>5} {f:>6}\n")
+}
+
+/// Machine, sample, who keeps the tip.
+const JOBS: &[(&str, &str, &str)] = &[
+    ("vmc", "flange.ncl", ""),
+    ("ac-trunnion", "facets.apt", "control"),
+    ("ac-trunnion", "facets.apt", "post"),
+    ("ac-trunnion", "blade.cls", "control"),
+    ("head-head", "blade.cls", "post"),
+    ("head-head", "facets.apt", "post"),
+];
+
+fn jobs(dialects: &[&str], rows: &[(&str, &str, &str)]) -> Vec<Job> {
+    let rows = dialects
+        .iter()
+        .flat_map(|dialect| rows.iter().map(move |row| (*dialect, *row)));
+    rows.filter_map(|(dialect, (machine, file, tcp))| Job::new(dialect, machine, file, tcp))
+        .collect()
+}
+
+#[test]
+fn what_differs_is_caught() {
+    assert!(Path::new("tests/samples").exists());
+    let jobs = jobs(&["fanuc", "heidenhain"], &JOBS[..3]);
+    let tally = study(&jobs, 3, 1);
+    println!("{}", table(&tally));
+    assert!(
+        tally.missed.is_empty(),
+        "{}\n{}",
+        table(&tally),
+        tally.missed.join("\n")
+    );
+}
+
+/// The study: `cargo test --test it mutations -- --ignored --nocapture`.
+#[test]
+#[ignore = "thousands of programs: minutes"]
+fn thousands_of_changes() {
+    let dialects = [
+        "fanuc",
+        "haas",
+        "mazak",
+        "mitsubishi",
+        "okuma",
+        "hurco",
+        "linuxcnc",
+        "siemens",
+        "heidenhain",
+        "grbl",
+    ];
+    let jobs = jobs(&dialects, JOBS);
+    let tally = study(&jobs, 25, 1000);
+    println!("{} programs\n{}", jobs.len(), table(&tally));
+    for missed in &tally.missed {
+        println!("missed: {missed}");
+    }
+    assert!(tally.missed.is_empty());
+}

@@ -1,0 +1,224 @@
+//! Every program of these tests, read back and held against its CL file in the run that makes it.
+
+use crate::common::{CASES, check_numbers, command, post, root, run};
+use crate::library::LIBRARY;
+
+use std::fs;
+
+use serde_json::Value;
+
+#[test]
+fn every_sample_on_every_machine_does_what_its_cl_file_asks_for() {
+    for case in CASES {
+        let (run, summary) = case.post(&["--verify"]);
+        check_numbers(&run.out);
+        let found = &summary["verification"];
+        assert_eq!(found["faults"], Value::Array(Vec::new()), "{}", case.name());
+        let value = |of: &Value, key: &str| of[key]["value"].as_f64().unwrap();
+        // Two ways to the same number: what is found is no more than what was certified, but for the pieces that curves
+        // are cut into.
+        let certified = value(&summary, "tip_deviation_mm");
+        let slack = summary["tolerance_mm"].as_f64().unwrap() / 16.0;
+        assert!(
+            value(found, "tip") <= certified + slack,
+            "{}: {found}, certified {certified}",
+            case.name()
+        );
+    }
+}
+
+#[test]
+fn every_machine_of_the_library_does_what_its_cl_file_asks_for() {
+    let mut failed = Vec::new();
+    for row in LIBRARY {
+        let length = row.length.to_string();
+        let file = format!("tests/machines/{}.{}", row.machine, row.ending);
+        let run = post(&[
+            "-q",
+            "--verify",
+            "-m",
+            row.machine,
+            "--tool-length",
+            &length,
+            "-o",
+            "-",
+            &file,
+        ]);
+        if run.code != 0 {
+            failed.push(format!("{}:\n{}", row.machine, run.err));
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+const PLATE: &str = "tests/samples/plate.ncl";
+
+/// A folder with the plate's program.
+fn plate() -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("plate.nc");
+    let program = program.to_str().unwrap().to_owned();
+    let run = post(&[
+        "-q",
+        "-m",
+        "vmc",
+        "--tool-length",
+        "80",
+        "-o",
+        &program,
+        PLATE,
+    ]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    (folder, program)
+}
+
+fn verify(program: &str, more: &[&str]) -> crate::common::Run {
+    let arguments = ["verify", program, "-m", "vmc", "--against", PLATE];
+    post(&[&arguments[..], more].concat())
+}
+
+#[test]
+fn the_verb_tells_what_it_finds_and_where() {
+    let (folder, program) = plate();
+    let length = ["--tool-length", "80"];
+    let good = verify(&program, &length);
+    assert_eq!((good.code, good.err.as_str()), (0, ""), "{}", good.out);
+    assert!(
+        good.out.contains("10 cuts, 36 rapids, 4 holes"),
+        "{}",
+        good.out
+    );
+    assert!(good.out.contains("faults           none"), "{}", good.out);
+    let text = fs::read_to_string(&program).unwrap();
+    let bad = folder.path().join("bad.nc");
+    let bad_name = bad.to_str().unwrap();
+    fs::write(&bad, text.replace("Y19.050\n", "Y19.150\n")).unwrap();
+    let json = folder.path().join("found.json");
+    let json = json.to_str().unwrap();
+    let found = verify(bad_name, &[&length[..], &["--summary", json]].concat());
+    assert_eq!(found.code, 1);
+    assert!(found.err.contains("error[deviation]"), "{}", found.err);
+    assert!(found.err.contains("bad.nc:20:1"), "{}", found.err);
+    assert!(found.err.contains("plate.ncl, line 24"), "{}", found.err);
+    let summary: Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
+    assert_eq!(summary["faults"][0]["code"], "deviation");
+    assert_eq!(summary["faults"][0]["nc_line"], 20);
+    // Within a wider tolerance it is good.
+    let wide = verify(bad_name, &[&length[..], &["--tolerance", "0.2"]].concat());
+    assert_eq!(wide.code, 0, "{}", wide.err);
+}
+
+#[test]
+fn the_map_leads_from_the_program_to_the_cl_file() {
+    let (folder, program) = plate();
+    let map = folder.path().join("map.json");
+    let map_name = map.to_str().unwrap();
+    let length = ["--tool-length", "80", "--map", map_name];
+    assert_eq!(verify(&program, &length).code, 0);
+    let first = fs::read_to_string(&map).unwrap();
+    let rows: Vec<Value> = serde_json::from_str(&first).unwrap();
+    let row = |line: u64| rows.iter().find(|row| row["nc_line"] == line).unwrap();
+    assert_eq!(
+        (&row(20)["cl_line"], &row(20)["kind"]),
+        (&24.into(), &"cut".into())
+    );
+    assert_eq!(
+        (&row(42)["cl_line"], &row(42)["kind"]),
+        (&53.into(), &"hole".into())
+    );
+    assert_eq!(verify(&program, &length).code, 0);
+    assert_eq!(fs::read_to_string(&map).unwrap(), first);
+}
+
+#[test]
+fn a_wrong_length_in_the_tables_shows_where_the_head_turns() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("blade.nc");
+    let program = program.to_str().unwrap();
+    let blade = "tests/samples/blade.cls";
+    let machine = ["-m", "head-head"];
+    let posted = post(
+        &[
+            &["-q", "--tool-length", "100", "-o", program, blade],
+            &machine[..],
+        ]
+        .concat(),
+    );
+    assert_eq!(posted.code, 0, "{}", posted.err);
+    let offsets = folder.path().join("offsets.toml");
+    let verify = |length: &str| {
+        fs::write(
+            &offsets,
+            format!(
+                "[length]\n1 = {length}\n2 = {length}\n3 = {length}\n4 = {length}\n5 = {length}\n"
+            ),
+        )
+        .unwrap();
+        let offsets = offsets.to_str().unwrap();
+        post(
+            &[
+                &["verify", program, "--against", blade, "--offsets", offsets],
+                &machine[..],
+            ]
+            .concat(),
+        )
+    };
+    let good = verify("100.0");
+    assert_eq!(good.code, 0, "{}", good.err);
+    let bad = verify("100.5");
+    assert_eq!(bad.code, 1);
+    assert!(bad.err.contains("error[deviation]"), "{}", bad.err);
+}
+
+#[test]
+fn what_is_split_is_verified_part_by_part() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("plate.nc");
+    let program = program.to_str().unwrap();
+    let run = post(&[
+        "-q",
+        "--verify",
+        "-m",
+        "vmc",
+        "--tool-length",
+        "80",
+        "--split",
+        "tool",
+        "-o",
+        program,
+        PLATE,
+    ]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let count = fs::read_dir(folder.path()).unwrap().count();
+    assert_eq!(count, 2);
+}
+
+/// A control that reads otherwise than the dialect writes: nothing is written.
+#[test]
+fn what_does_not_keep_to_the_cl_file_is_not_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("plate.nc");
+    // A line of the machine's own that makes inches of what follows.
+    let run = run(
+        command()
+            .args([
+                "-q",
+                "--verify",
+                "-m",
+                "vmc",
+                "--tool-length",
+                "80",
+                "--set",
+                "program.header=[\"G20\"]",
+                "-o",
+            ])
+            .arg(&program)
+            .arg(root().join(PLATE)),
+        b"",
+    );
+    if run.code == 0 {
+        return;
+    }
+    assert_eq!(run.code, 1, "{}", run.err);
+    assert!(!program.exists());
+}

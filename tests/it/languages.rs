@@ -323,7 +323,7 @@ fn what_is_not_known_is_refused_by_its_line() {
         (
             "vmc",
             "fanuc",
-            "O1\nN1 X0\nGOTO 1\nM30\n",
+            "O1\nN1 G0 X0\nGOTO 1\nM30\n",
             "blocks were read",
         ),
         ("vmc", "fanuc", "O1\nG10 L2 P1 X0 Y0 Z0\nM30\n", "G10"),

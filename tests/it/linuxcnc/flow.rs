@@ -96,7 +96,7 @@ fn cycles(seed: u64) -> String {
 
 /// What LinuxCNC's interpreter asks for; none where it is not there.
 fn theirs(file: &Path) -> Option<Vec<End>> {
-    let done = Command::new(shared("linuxcnc/interpret"))
+    let done = Command::new(shared("linuxcnc/interpret")?)
         .arg(file)
         .args(["--metric", "--tool", "1=40"])
         .output();

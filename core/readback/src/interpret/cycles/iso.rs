@@ -117,14 +117,18 @@ pub(super) fn hole(
     let hidden = words.present & bit(letter(axis));
     words.present &= !bit(letter(axis));
     let made = (0..count).try_for_each(|turn| {
-        let target = if turn == 0 || incremental {
+        let mut target = if turn == 0 || incremental {
             control.target(words)?
         } else {
             Target::default()
         };
         let hole = levels(control, &running)?;
-        if control.lexicon.language() == Language::Rs274 {
-            rise(control, axis, hole.clearance)?;
+        if control.lexicon.language() == Language::Rs274 && control.point()[axis] < hole.clearance {
+            // Up to R at once with the way to the next hole; in front of the first it goes straight up.
+            match before {
+                Some(_) => target.point[axis] = Some(hole.clearance),
+                None => rise(control, axis, hole.clearance)?,
+            }
         }
         if target.point[first].is_some() || target.point[second].is_some() || target.said != 0 {
             control.go(MotionKind::Rapid, &Path::Straight, &target)?;
@@ -135,12 +139,9 @@ pub(super) fn hole(
     made
 }
 
-/// LinuxCNC goes up to R before it goes to the place, where it stands below it.
+/// Straight up to a level.
 fn rise(control: &mut Control, axis: usize, level: f64) -> Result<(), Box<Diagnostic>> {
     let mut point: Vector3<f64> = control.point();
-    if point[axis] >= level {
-        return Ok(());
-    }
     point[axis] = level;
     control.straight(MotionKind::Rapid, point)
 }
@@ -186,6 +187,8 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         away,
         feed,
         wait: Wait::seconds(running.dwell),
+        // LinuxCNC feeds all the way out.
+        out_all: control.lexicon.language() == Language::Rs274,
         ..Hole::default()
     };
     let pecks = |out_after: u32| Pecks {

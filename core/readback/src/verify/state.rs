@@ -168,7 +168,8 @@ impl<C: Course> Verifier<'_, C> {
                 .map(|(index, _)| motion.to.joints[index] - motion.from.joints[index])
                 .map(|way| way * way)
                 .sum();
-            rounded += PLACE * motion.minutes / square.sqrt().max(1e-6);
+            // Rounded down, so that it is never above what is asked.
+            rounded += 2.0 * PLACE * motion.minutes / square.sqrt().max(1e-6);
         }
         let allowed = asked * (1.0 + SHARE + rounded) + PLACE;
         if feed > allowed {

@@ -1,0 +1,196 @@
+//! Both paths, and along them how far they are apart and how fast they are gone.
+
+use std::fmt::Write as _;
+
+use post_readback::diff::{Difference, Operation};
+
+use super::along::{Along, Bin};
+use crate::files::chart::{Chart, DASHED, GREY, LOOKS, Series};
+use crate::files::svg::{self, label};
+
+const WIDTH: f64 = 760.0;
+const TOP: f64 = 84.0;
+/// Of the paths, px.
+const SIZE: [f64; 2] = [700.0, 460.0];
+const LEFT: f64 = 30.0;
+
+/// The picture.
+pub fn draw(names: [&str; 2], found: &Difference, along: &Along) -> String {
+    let charts = charts(along);
+    let charts: Vec<(f64, String)> = charts
+        .iter()
+        .map(|chart| (chart.height(), chart.svg()))
+        .collect();
+    let below: f64 = charts.iter().map(|(height, _)| height).sum();
+    let start = TOP + SIZE[1] + 30.0;
+    let mut picture = svg::open(WIDTH, start + below);
+    let [old, new] = names;
+    let titles = [
+        format!("{old} and {new}"),
+        match found.same {
+            true => "they make the machine do the same".to_owned(),
+            false => "wide grey: the old path; thin black: the new one; dashed: rapids; rings: where an operation differs most".to_owned(),
+        },
+    ];
+    for (line, title) in titles.iter().enumerate() {
+        let up = 24.0 + 20.0 * line as f64;
+        label(&mut picture, [WIDTH / 2.0, up], "middle", title);
+    }
+    paths(&mut picture, found, along);
+    let mut up = start;
+    for (height, chart) in charts {
+        let _ = writeln!(
+            picture,
+            "<g transform=\"translate(0 {up:.2})\">\n{chart}</g>"
+        );
+        up += height;
+    }
+    picture.push_str("</svg>\n");
+    picture
+}
+
+/// Both paths in the plane of two axes in which they are largest.
+fn paths(picture: &mut String, found: &Difference, along: &Along) {
+    let points = || {
+        let pieces = along.paths.iter().flat_map(|path| &path.pieces);
+        pieces
+            .filter(|(cut, _)| *cut)
+            .flat_map(|(_, points)| points)
+    };
+    let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    for point in points() {
+        for (end, value) in ends.iter_mut().zip(point) {
+            *end = [end[0].min(*value), end[1].max(*value)];
+        }
+    }
+    if ends[0][0] > ends[0][1] {
+        ends = [[0.0, 1.0]; 3];
+    }
+    let size = |axis: usize| (ends[axis][1] - ends[axis][0]).max(1e-3);
+    // X to the right and Y up, unless the part is flat there.
+    let planes = [[0, 1], [0, 2], [1, 2]];
+    let area = |[across, up]: [usize; 2]| size(across) * size(up);
+    let plane = planes.into_iter().fold([0, 1], |best, plane| {
+        if area(plane) > 1.5 * area(best) {
+            plane
+        } else {
+            best
+        }
+    });
+    let [across, up] = plane;
+    let scale = 0.94 * (SIZE[0] / size(across)).min(SIZE[1] / size(up));
+    let middle = plane.map(|axis| 0.5 * (ends[axis][0] + ends[axis][1]));
+    let place = |point: &[f64; 3]| {
+        [
+            LEFT + SIZE[0] / 2.0 + scale * (point[across] - middle[0]),
+            TOP + SIZE[1] / 2.0 - scale * (point[up] - middle[1]),
+        ]
+    };
+    let _ = writeln!(
+        picture,
+        "<clipPath id=\"paths\"><rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\"/></clipPath>\n<g clip-path=\"url(#paths)\" fill=\"none\">",
+        SIZE[0], SIZE[1]
+    );
+    let looks = [("#bdbdbd", 4.0, 1.6), ("#000000", 0.9, 0.5)];
+    for (path, (grey, cut_width, rapid_width)) in along.paths.iter().zip(looks) {
+        for (cut, points) in &path.pieces {
+            let mut text = String::new();
+            for [x, y] in points.iter().map(place) {
+                let _ = write!(text, "{x:.1},{y:.1} ");
+            }
+            let (width, dash) = match cut {
+                true => (cut_width, ""),
+                false => (rapid_width, " stroke-dasharray=\"5 4\""),
+            };
+            let _ = writeln!(
+                picture,
+                "<polyline points=\"{}\" stroke=\"{grey}\" stroke-width=\"{width}\"{dash}/>",
+                text.trim_end()
+            );
+        }
+    }
+    picture.push_str("</g>\n");
+    for operation in found.operations.iter().filter(|operation| !operation.same) {
+        for (ring, at) in marks(operation) {
+            let [x, y] = place(&at);
+            let _ = writeln!(
+                picture,
+                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"8\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1.4\"/>"
+            );
+            label(picture, [x + 11.0, y - 6.0], "start", &ring);
+        }
+    }
+    let _ = writeln!(
+        picture,
+        "<rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1\"/>",
+        SIZE[0], SIZE[1]
+    );
+    let names = ["X", "Y", "Z"];
+    let text = format!(
+        "{} to the right from {:.1} to {:.1} mm, {} up from {:.1} to {:.1} mm",
+        names[across], ends[across][0], ends[across][1], names[up], ends[up][0], ends[up][1]
+    );
+    label(picture, [WIDTH / 2.0, TOP - 10.0], "middle", &text);
+}
+
+/// Where an operation differs most, and in what.
+fn marks(operation: &Operation) -> Vec<(String, [f64; 3])> {
+    let worst = [
+        (&operation.tip, operation.tip.on_mm > 0.0, "position"),
+        (&operation.axis, operation.axis.on_mm > 0.0, "tool axis"),
+        (
+            &operation.feed.worst,
+            operation.feed.worst.on_mm > 0.0,
+            "feed",
+        ),
+    ];
+    let worst = worst.into_iter().filter(|(_, differs, _)| *differs);
+    let worst = worst.map(|(worst, _, what)| (what.to_owned(), worst.at));
+    let alone = [
+        (&operation.left_out, "left out"),
+        (&operation.added, "added"),
+    ];
+    let longest = alone.into_iter().filter_map(|(stretches, what)| {
+        let longest = stretches.iter().max_by(|a, b| a.mm.total_cmp(&b.mm))?;
+        Some((what.to_owned(), longest.at))
+    });
+    worst.chain(longest).collect()
+}
+
+/// What is drawn along the way.
+fn charts(along: &Along) -> Vec<Chart> {
+    let line = |value: &dyn Fn(&Bin) -> f64| -> Vec<[f64; 2]> {
+        let bins = along.bins.iter().enumerate();
+        bins.map(|(place, bin)| [(place as f64 + 0.5) * along.width, value(bin)])
+            .collect()
+    };
+    let chart = |title: &str, y: &str, series: Vec<Series>| Chart {
+        title: title.to_owned(),
+        note: "the largest on each share of the way".to_owned(),
+        x: "way along the old program, mm".to_owned(),
+        y: y.to_owned(),
+        logarithmic: false,
+        series,
+    };
+    let mut charts = vec![chart(
+        "How far the tips are apart",
+        "mm",
+        vec![Series::line("", line(&|bin| bin.tip), LOOKS[0])],
+    )];
+    if along.bins.iter().any(|bin| bin.axis > 1e-6) {
+        charts.push(chart(
+            "Angle between the tool axes",
+            "degrees",
+            vec![Series::line("", line(&|bin| bin.axis), LOOKS[0])],
+        ));
+    }
+    charts.push(chart(
+        "Feeds",
+        "mm/min",
+        vec![
+            Series::line("old", line(&|bin| bin.feeds[0]), GREY),
+            Series::line("new", line(&|bin| bin.feeds[1]), DASHED),
+        ],
+    ));
+    charts
+}

@@ -1,0 +1,226 @@
+//! What was found, for people: a row for each operation, and below it what is different in those that differ.
+
+use std::fmt::Write as _;
+
+use post_readback::diff::{Difference, Operation, Rules, Side, Stretch, Worst};
+
+use crate::terminal::{clock, number, table};
+
+/// Stretches, states and events of an operation that are told one by one.
+const MOST_TOLD: usize = 8;
+
+/// The text.
+pub fn text(names: [&str; 2], machines: [&str; 2], rules: &Rules, found: &Difference) -> String {
+    let mut text = String::new();
+    for (what, side) in ["old", "new"].iter().zip(0..) {
+        let Side {
+            motions,
+            cut_mm,
+            seconds,
+            ..
+        } = found.sides[side];
+        let _ = writeln!(
+            text,
+            "{what:<10} {} on {}: {motions} motions, {} mm at feed, {}",
+            names[side],
+            machines[side],
+            number(cut_mm, 1),
+            clock(seconds)
+        );
+    }
+    let _ = writeln!(
+        text,
+        "the same   to {} mm, {}°, {} % of the feed\n",
+        rules.tip,
+        number(rules.axis.to_degrees(), 4),
+        number(100.0 * rules.feed, 2),
+    );
+    if !found.operations.is_empty() {
+        let head = [
+            "operation",
+            "old lines",
+            "new lines",
+            "tip, mm",
+            "axis, °",
+            "feed, %",
+            "old time",
+            "new time",
+            "",
+        ];
+        let mut rows = vec![head.map(str::to_owned)];
+        let all = found.operations.iter().enumerate();
+        rows.extend(all.map(|(index, operation)| row(index, operation)));
+        text.push_str(&table(&rows, 3));
+    }
+    for (index, operation) in found.operations.iter().enumerate() {
+        if !operation.same {
+            let _ = writeln!(text, "\n{}", title(index, operation));
+            details(&mut text, operation, rules);
+        }
+    }
+    text.push('\n');
+    let different = found.operations.iter().filter(|operation| !operation.same);
+    match (found.same, different.count()) {
+        (true, _) => text.push_str("Both programs make the machine do the same.\n"),
+        (false, 0) => text.push_str("The programs have different words that are not known.\n"),
+        (false, count) => {
+            let _ = writeln!(
+                text,
+                "{count} of {} operations {} different.",
+                found.operations.len(),
+                if count == 1 { "is" } else { "are" }
+            );
+        }
+    }
+    text
+}
+
+fn title(index: usize, operation: &Operation) -> String {
+    let name = operation.name.clone();
+    let name = name.unwrap_or_else(|| format!("operation {}", index + 1));
+    match operation.tool {
+        Some(tool) => format!("{name} (T{tool})"),
+        None => name,
+    }
+}
+
+fn row(index: usize, operation: &Operation) -> [String; 9] {
+    let [old, new] = operation.sides;
+    let lines = |side: Option<Side>| {
+        side.map_or_else(
+            || "-".to_owned(),
+            |side| format!("{}-{}", side.lines[0], side.lines[1]),
+        )
+    };
+    let time = |side: Option<Side>| side.map_or_else(|| "-".to_owned(), |side| clock(side.seconds));
+    let both = old.is_some() && new.is_some();
+    let value = |value: f64, decimals: u8| match both {
+        true => number(value, decimals),
+        false => "-".to_owned(),
+    };
+    let result = match (operation.same, old.is_some(), new.is_some()) {
+        (true, ..) => "same",
+        (_, true, false) => "left out",
+        (_, false, true) => "added",
+        _ => "different",
+    };
+    [
+        title(index, operation),
+        lines(old),
+        lines(new),
+        value(operation.tip.value, 4),
+        value(operation.axis.value, 4),
+        value(100.0 * operation.feed.worst.value, 2),
+        time(old),
+        time(new),
+        result.to_owned(),
+    ]
+}
+
+/// `lines 120 and 121, at X 1.000 Y 2.000 Z 3.000`.
+fn place(worst: &Worst) -> String {
+    let [x, y, z] = worst.at.map(|part| number(part, 3));
+    let [old, new] = worst.lines;
+    format!("lines {old} and {new}, at X{x} Y{y} Z{z}")
+}
+
+fn details(text: &mut String, operation: &Operation, rules: &Rules) {
+    let mut told = |what: &str, value: String| {
+        let _ = writeln!(text, "  {what:<10} {value}");
+    };
+    let on = |mm: f64| format!("on {} mm of the way", number(mm, 1));
+    let degrees = rules.axis.to_degrees();
+    if operation.tip.value > rules.tip {
+        let worst = &operation.tip;
+        let far = number(worst.value, 4);
+        told(
+            "position",
+            format!(
+                "up to {far} mm apart, {}; {}",
+                place(worst),
+                on(worst.on_mm)
+            ),
+        );
+    }
+    if operation.axis.value > degrees {
+        let worst = &operation.axis;
+        let far = number(worst.value, 4);
+        told(
+            "tool axis",
+            format!("up to {far}° apart, {}; {}", place(worst), on(worst.on_mm)),
+        );
+    }
+    for (name, worst) in &operation.rotary {
+        if worst.value > degrees {
+            let far = number(worst.value, 3);
+            told(
+                &format!("axis {name}"),
+                format!("up to {far}° apart, {}; {}", place(worst), on(worst.on_mm)),
+            );
+        }
+    }
+    let feed = &operation.feed;
+    if feed.worst.value > rules.feed {
+        let [old, new] = feed.feeds.map(|feed| number(feed, 1));
+        told(
+            "feed",
+            format!(
+                "{old} and {new} mm/min, {}; {}",
+                place(&feed.worst),
+                on(feed.worst.on_mm)
+            ),
+        );
+    }
+    for state in operation.states.iter().take(MOST_TOLD) {
+        let ([old, new], [line, other]) = (&state.values, state.lines);
+        told(
+            state.what,
+            format!(
+                "{old}, now {new}, from lines {line} and {other} on; {}",
+                on(state.on_mm)
+            ),
+        );
+    }
+    for event in operation.events.iter().take(MOST_TOLD) {
+        let [line, other] = event.lines;
+        let value = match &event.events {
+            [Some(old), Some(new)] => format!("{old}, now {new}, lines {line} and {other}"),
+            [Some(old), None] => format!("{old} is left out, line {line}"),
+            [None, Some(new)] => format!("{new} is added, line {other}"),
+            [None, None] => continue,
+        };
+        told("event", value);
+    }
+    for (what, stretches) in [
+        ("left out", &operation.left_out),
+        ("added", &operation.added),
+    ] {
+        for stretch in stretches.iter().take(MOST_TOLD) {
+            told(what, way(stretch));
+        }
+        if let Some(more) = stretches
+            .len()
+            .checked_sub(MOST_TOLD)
+            .filter(|more| *more > 0)
+        {
+            told(what, format!("and {more} further ways (--json has them)"));
+        }
+    }
+    if let [Some(old), Some(new)] = operation.sides {
+        let later = new.seconds - old.seconds;
+        if libm::fabs(later) > 0.05 {
+            let word = if later > 0.0 { "longer" } else { "shorter" };
+            told("time", format!("{} {word}", clock(libm::fabs(later))));
+        }
+    }
+}
+
+fn way(stretch: &Stretch) -> String {
+    let [first, last] = stretch.lines;
+    let [x, y, z] = stretch.at.map(|part| number(part, 3));
+    format!(
+        "{} mm, {} of them at feed, lines {first} to {last}, from X{x} Y{y} Z{z}",
+        number(stretch.mm, 3),
+        number(stretch.cut_mm, 3)
+    )
+}

@@ -1,0 +1,228 @@
+//! `post diff`: what two NC programs make the machine do differently.
+
+mod along;
+mod diff_picture;
+mod diff_text;
+
+use std::fs::File;
+use std::io::{Seek as _, SeekFrom};
+
+use clap::Args;
+use post_machine::diagnostic::Diagnostic;
+use post_readback::diff::{Rules, Unread, compare};
+use post_readback::interpret::Interpreter;
+
+use crate::arguments::{ProgramArguments, flag_values};
+use crate::failure::Failure;
+use crate::files::{self, FileFault, PathArg, Role};
+use crate::job::nc_program::{self, NcControl};
+use crate::terminal;
+use along::Along;
+
+/// So many blocks of a program that cannot be read are told; then it is given up.
+const MOST_UNREAD: usize = 20;
+
+/// Compares what two NC programs make the machine do, not their texts.
+///
+/// Both are read back and their paths gone along together in the part frame, operation by operation: position of the tip,
+/// tool axis, feed, what holds (tool, spindle, coolant, compensation), waits and stops, time, and ways that one of them
+/// goes alone. Remarks, numbers of blocks, repeated words, where blocks end, and whether the control or the words keep the
+/// tip make no difference. On one machine rotary axes, registers and positions of the machine count too; with
+/// --machine-new only what the part sees. Distances are never told below the Fréchet distance of the paths.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  post diff old.nc new.nc --machine ac-trunnion
+  post diff old.nc new.h --machine ac-trunnion --machine-new dmu50 --tool-length 120
+  post diff old.nc new.nc --machine vmc --json - --svg difference.svg
+
+Exit codes, as those of diff: 0 the machine does the same; 1 it does not, or a program is refused, the messages say
+why; 2 the command line is wrong.")]
+pub struct DiffArguments {
+    /// The program as it was.
+    #[arg(value_name = "OLD", value_parser = PathArg::parser())]
+    old: PathArg,
+
+    /// The program as it is.
+    #[arg(value_name = "NEW", value_parser = PathArg::parser())]
+    new: PathArg,
+
+    #[command(flatten)]
+    program: ProgramArguments,
+
+    /// The machine of the new program, if it is another.
+    #[arg(long, value_name = "MACHINE", help_heading = "New program")]
+    machine_new: Option<String>,
+
+    /// The dialect of the new program, if it is another than the machine file names.
+    #[arg(long, value_name = "NAME", help_heading = "New program")]
+    dialect_new: Option<String>,
+
+    /// What stands in the control's tables for the new program, if it is something else.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "New program")]
+    offsets_new: Option<PathArg>,
+
+    /// Length of every tool of the new program, if it is another, mm.
+    #[arg(long, value_name = "MM", value_parser = flag_values::not_negative, help_heading = "New program")]
+    tool_length_new: Option<f64>,
+
+    /// Where the part origin sits for the new program, if it is elsewhere.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = flag_values::point, help_heading = "New program")]
+    mount_new: Option<[f64; 3]>,
+
+    /// Positions that differ by no more are the same, mm.
+    #[arg(long, value_name = "MM", default_value_t = post_readback::diff::SAME, value_parser = flag_values::positive)]
+    tolerance: f64,
+
+    /// Tool axes and rotary axes that differ by no more are the same, degrees.
+    #[arg(long, value_name = "DEGREES", default_value_t = post_readback::diff::SAME, value_parser = flag_values::positive)]
+    axis_tolerance: f64,
+
+    /// Feeds that differ by no more are the same, percent.
+    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * post_readback::diff::SAME_FEED, value_parser = flag_values::positive)]
+    feed_tolerance: f64,
+
+    /// Writes all that was found as JSON, with all digits; `-` is standard output, alone there.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    json: Option<PathArg>,
+
+    /// Draws both paths, how far they are apart along the way, and their feeds.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    svg: Option<PathArg>,
+}
+
+const JSON: Role = Role {
+    what: "JSON",
+    remedy: "name another file with --json",
+};
+
+const PICTURE: Role = Role {
+    what: "picture",
+    remedy: "name another file with --svg",
+};
+
+/// One of the programs, ready to be read as often as it takes.
+struct Side {
+    name: String,
+    file: File,
+}
+
+impl Side {
+    fn open(source: &PathArg) -> Result<Self, Failure> {
+        let (name, file) = nc_program::open(source)?;
+        Ok(Self { name, file })
+    }
+
+    /// From its beginning.
+    fn read(&self, control: &NcControl) -> Result<Interpreter<File>, Failure> {
+        let again = || {
+            let mut file = self.file.try_clone()?;
+            file.seek(SeekFrom::Start(0))?;
+            Ok(file)
+        };
+        let file = again().map_err(|error| FileFault::Read {
+            name: self.name.clone(),
+            error,
+        })?;
+        control.run(&self.name, file)
+    }
+}
+
+/// Does as the arguments say.
+pub fn run(arguments: &DiffArguments) -> Result<(), Failure> {
+    let controls = [
+        NcControl::new(&arguments.program)?,
+        NcControl::new(&of_new(arguments))?,
+    ];
+    let sides = [Side::open(&arguments.old)?, Side::open(&arguments.new)?];
+    let [old, new] = &controls;
+    let rules = rules(arguments, [old, new]);
+    let mut along = Along::new(rules.tip);
+    let opened = |new: bool| sides[usize::from(new)].read(&controls[usize::from(new)]);
+    let (found, unread) = compare(&rules, opened, &mut |sample| along.take(sample))?;
+    let Unread {
+        old: mut refused,
+        new: more,
+    } = unread;
+    refused.extend(more);
+    if !refused.is_empty() {
+        // What stands behind a block that is not run counts from elsewhere.
+        return Err(refused.into());
+    }
+    let names = sides.each_ref().map(|side| side.name.as_str());
+    let machines = [old, new].map(|control| control.machine.name.as_str());
+    let picture = diff_picture::draw(names, &found, &along);
+    let json = files::json(&found);
+    let mut texts = Vec::new();
+    if let Some(target) = &arguments.json {
+        texts.push((JSON, target, json.as_str()));
+    }
+    if let Some(target) = &arguments.svg {
+        texts.push((PICTURE, target, picture.as_str()));
+    }
+    let taken = files::write(&texts)?;
+    warn(&found.unknown);
+    let text = diff_text::text(names, machines, &rules, &found);
+    if taken {
+        terminal::tell(&text);
+    } else {
+        terminal::print(&text);
+    }
+    match found.same {
+        true => Ok(()),
+        false => Err(Failure::Different),
+    }
+}
+
+/// The flags of the new program.
+fn of_new(arguments: &DiffArguments) -> ProgramArguments {
+    let mut program = arguments.program.clone();
+    if let Some(machine) = &arguments.machine_new {
+        program.machine.clone_from(machine);
+        // What was set is a key of the other machine, and its dialect the other's.
+        program.set.clear();
+        program.dialect = None;
+        program.mount = None;
+    }
+    let given = &arguments.offsets_new;
+    program.offsets = given.clone().or(program.offsets);
+    program.dialect = arguments.dialect_new.clone().or(program.dialect);
+    program.tool_length = arguments.tool_length_new.or(program.tool_length);
+    program.mount = arguments.mount_new.or(program.mount);
+    program
+}
+
+fn rules(arguments: &DiffArguments, [old, new]: [&NcControl; 2]) -> Rules {
+    let axes = |control: &NcControl| -> Vec<(String, bool)> {
+        let axes = control.machine.axes.iter();
+        axes.map(|axis| (axis.name.clone(), axis.joint.rotary))
+            .collect()
+    };
+    let one_machine = arguments.machine_new.is_none() && axes(old) == axes(new);
+    let (axes, rotary) = axes(old).into_iter().unzip();
+    Rules {
+        tip: arguments.tolerance,
+        axis: arguments.axis_tolerance.to_radians(),
+        feed: arguments.feed_tolerance / 100.0,
+        apart: post_readback::diff::APART.max(4.0 * arguments.tolerance),
+        one_machine,
+        one_control: one_machine && old.machine.control.dialect == new.machine.control.dialect,
+        axes,
+        rotary,
+        most_faults: MOST_UNREAD,
+    }
+}
+
+/// Words that are not understood may make a difference that is not seen.
+fn warn(unknown: &[Vec<String>; 2]) {
+    let mut words: Vec<&str> = unknown.iter().flatten().map(String::as_str).collect();
+    words.sort_unstable();
+    words.dedup();
+    if words.is_empty() {
+        return;
+    }
+    let message = format!(
+        "what {} does is not known, and not compared",
+        words.join(", ")
+    );
+    terminal::findings(&[Diagnostic::warning("nc-unknown", message)]);
+}

@@ -244,6 +244,7 @@ impl<'m, C: Course> Verifier<'m, C> {
         if let Some(fault) = self.axes.over_travel(self.machine, motion) {
             self.axis_fault(motion, fault);
         }
+        self.look_for_length(motion);
         match motion.kind {
             MotionKind::Rapid => {
                 self.found.rapids += 1;

@@ -191,6 +191,13 @@ impl<C: Course> Verifier<'_, C> {
                 .sum();
             // Rounded down, so that it is never above what is asked.
             rounded += 2.0 * PLACE * motion.minutes / square.sqrt().max(1e-6);
+            // Where rotary axes turn the tip goes another way than the points that its time was counted by, within the
+            // tolerance.
+            let turned = |joint: usize| motion.to.joints[joint] != motion.from.joints[joint];
+            let chain = motion.state.solver.chain().joints();
+            if (0..chain.len()).any(|joint| chain[joint].rotary && turned(joint)) {
+                rounded += 2.0 * self.rules.tolerance / way;
+            }
         }
         let allowed = asked * (1.0 + SHARE + rounded) + PLACE;
         if feed > allowed {
@@ -202,7 +209,11 @@ impl<C: Course> Verifier<'_, C> {
         if feed < asked * (1.0 - SHARE - rounded) - PLACE {
             let needed = self.axes.least_minutes(self.machine, motion);
             match needed {
-                Some((minutes, joint)) if motion.minutes <= minutes * 1.05 => {
+                // Of a slow feed the last place is much, and it is rounded down.
+                Some((minutes, joint))
+                    if motion.minutes <= minutes * 1.05
+                        || feed + 2.0 * PLACE >= 0.95 * way / minutes =>
+                {
                     self.found.limited += 1;
                     let name = &self.machine.axes[joint].name;
                     self.block.limited_by = Some(format!("max_feed of {name}"));

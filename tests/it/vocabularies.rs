@@ -208,13 +208,15 @@ fn programs() -> Vec<(String, String, String)> {
             };
             let text = fs::read_to_string(&path).unwrap();
             let body = text.splitn(3, "---\n").nth(2).unwrap();
+            if body.contains("nothing was written") {
+                continue;
+            }
             // What was told on the way stands in front of the program.
             let told = |line: &&str| {
                 let first = ["post ", "warning", "error", " ", "|"];
                 line.is_empty()
                     || first.iter().any(|first| line.starts_with(first))
                     || line.contains(" records, ")
-                    || line.contains("nothing was written")
             };
             let lines: Vec<&str> = body.lines().skip_while(told).collect();
             programs.push((dialect(name), name.to_owned(), lines.join("\n") + "\n"));
@@ -265,6 +267,8 @@ const BESIDE_OPENER: &[&str] = &[
     "DIST",
     "MB",
     "PA",
+    "IPA",
+    "IPR",
     "PR",
     "ROT",
     "SCL",

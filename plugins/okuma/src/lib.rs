@@ -123,6 +123,7 @@ const OWN: &[(&str, Meaning)] = &[
     ("G54", Meaning::LengthOn),
     ("G55", Meaning::LengthOn),
     ("HA", Meaning::LengthRegister),
+    ("HL", Meaning::LengthRegister),
     ("G92", Meaning::SetPosition),
     ("G11", Meaning::Rotation),
     ("G10", Meaning::RotationOff),

@@ -58,12 +58,6 @@ impl NcControl {
         })
     }
 
-    /// The program `source`, ready to be run.
-    pub fn open(&self, source: &PathArg) -> Result<Interpreter<File>, Failure> {
-        let (name, file) = open(source)?;
-        self.run(&name, file)
-    }
-
     /// The program in `file`, which messages call `name`, from where it stands.
     pub fn run(&self, name: &str, file: File) -> Result<Interpreter<File>, Failure> {
         let Self {

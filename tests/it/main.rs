@@ -11,6 +11,7 @@ mod check;
 mod check_posts;
 mod command;
 mod common;
+mod convert;
 mod course;
 mod dialects;
 mod diff;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use post_machine::description::{Machine, Setting, Tcp};
+use post_machine::diagnostic::Diagnostic;
 use post_posting::program::{ToldSpindle, Unknown};
 use post_posting::report::Report;
 use post_readback::course::CourseFacts;
@@ -148,6 +149,18 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
     let run = || -> Result<_, Failure> { from.run(&name, nc_program::again(&name, &input)?) };
     let job = arguments.second();
     let asked = job::machine(&job, &[])?;
+    for machine in [&from.machine, &asked] {
+        if machine.turn != 0.0 {
+            let message = format!(
+                "on {} the part sits turned by {}° about its Z: the paths of the two programs have no frame in common",
+                machine.name,
+                number(machine.turn.to_degrees(), 3)
+            );
+            return Err(Diagnostic::error("convert", message)
+                .help("--from-set workpiece.turn=0 or --set workpiece.turn=0, and the part clamped along the machine's axes")
+                .into());
+        }
+    }
     let [tolerance, axis_tolerance] = [asked.accuracy.tolerance, asked.accuracy.axis_tolerance];
     let left = 1.0 - CHORDS;
     let more = [
@@ -232,6 +245,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         offsets: None,
         limits: Limits::default(),
         tolerances: [Some(tolerance), Some(axis_tolerance)],
+        solutions: false,
         lines: None,
     };
     let told = program.name().to_owned();

@@ -60,13 +60,13 @@ fn cycles(seed: u64) -> String {
     let mut random = seeded(seed);
     let mut program = String::from("G21 G17 G90 G94\nS800 M3\nG0 X0 Y0 Z40\n");
     for _ in 0..12 {
-        let code = ["G73", "G81", "G82", "G83", "G85", "G89"][random.pick(6)];
+        let code = ["G73", "G81", "G82", "G83", "G84", "G85", "G86", "G89"][random.pick(8)];
         let back = ["G98", "G99"][random.pick(2)];
         let clear = random.range(1.0, 6.0);
         let bottom = random.range(-30.0, -1.0);
         let more = match code {
             "G73" | "G83" => format!(" Q{:.3}", random.range(1.5, 9.0)),
-            "G82" | "G89" => " P0.2".to_owned(),
+            "G82" | "G86" | "G89" => " P0.2".to_owned(),
             _ => String::new(),
         };
         let [x, y] = [(); 2].map(|()| random.range(-40.0, 40.0));

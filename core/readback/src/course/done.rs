@@ -79,6 +79,8 @@ pub struct DoneCourse<P> {
     held: VecDeque<(Option<Arc<State>>, Item)>,
     /// What held during the item that was handed out last.
     state: Option<Arc<State>>,
+    /// What a cycle does at a point, up to its end.
+    hole: Option<Vec<(Option<Arc<State>>, Item)>>,
     /// What holds in the program.
     latest: Option<Arc<State>>,
     /// Where the tool stands.
@@ -98,6 +100,7 @@ impl<P: Program> DoneCourse<P> {
             waiting: VecDeque::new(),
             held: VecDeque::new(),
             state: None,
+            hole: None,
             latest: None,
             stands: None,
             astray: u32::MAX,
@@ -130,6 +133,32 @@ impl<P: Program> DoneCourse<P> {
     }
 
     fn hand_on(&mut self, item: Item) {
+        match (&mut self.hole, &item) {
+            (
+                Some(_),
+                Item::Told {
+                    told: Told::CycleEnd,
+                    ..
+                },
+            ) => {
+                let done = self.hole.take().unwrap_or_default();
+                let done = in_one_go(done);
+                self.waiting.append(&mut self.held);
+                self.waiting.extend(done);
+            }
+            (Some(hole), _) => {
+                hole.push((self.latest.clone(), item));
+                return;
+            }
+            (
+                None,
+                Item::Told {
+                    told: Told::Cycle(_),
+                    ..
+                },
+            ) => self.hole = Some(Vec::new()),
+            (None, _) => {}
+        }
         let leaves = match &item {
             Item::Told { told, .. } => leaves(told),
             Item::Away { .. } => true,
@@ -275,6 +304,42 @@ fn arc(centre: nalgebra::Vector3<f64>, normal: nalgebra::Vector3<f64>, sweep: f6
     }
 }
 
+/// A hole without its pecks: the ways to where the feed begins, one down to the bottom, what is waited for there, and the
+/// ways out of it.
+fn in_one_go(done: Vec<(Option<Arc<State>>, Item)>) -> Vec<(Option<Arc<State>>, Item)> {
+    let piece = |item: &Item| match item {
+        Item::Piece(piece) => Some(piece.clone()),
+        _ => None,
+    };
+    let cuts = |(_, item): &(Option<Arc<State>>, Item)| {
+        piece(item).is_some_and(|piece| piece.kind != MotionKind::Rapid)
+    };
+    let Some(first) = done.iter().position(cuts) else {
+        return done;
+    };
+    let Some(begin) = piece(&done[first].1) else {
+        return done;
+    };
+    let height = |pose: &Pose| begin.from.axis.dot(&(pose.tip - begin.from.tip));
+    let (mut last, mut bottom) = (first, begin.to);
+    for (place, (_, item)) in done.iter().enumerate().skip(first) {
+        if let Some(piece) = piece(item)
+            && piece.kind != MotionKind::Rapid
+            && height(&piece.to) <= height(&bottom) + SAME
+        {
+            (last, bottom) = (place, piece.to);
+        }
+    }
+    let down = Piece {
+        to: bottom,
+        ..begin
+    };
+    let mut whole: Vec<_> = done[..first].to_vec();
+    whole.push((done[first].0.clone(), Item::Piece(down)));
+    whole.extend(done[last + 1..].iter().cloned());
+    whole
+}
+
 /// Bits of the linear axes that go elsewhere.
 fn moved(motion: &Motion) -> u32 {
     let differs = |place: &usize| motion.from.joints[*place] != motion.to.joints[*place];
@@ -307,6 +372,7 @@ impl<P: Program> Course for DoneCourse<P> {
             self.done = done;
             self.ended = !more?;
             if self.ended {
+                self.waiting.extend(self.hole.take().unwrap_or_default());
                 self.waiting.append(&mut self.held);
             }
         }

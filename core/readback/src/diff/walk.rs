@@ -107,6 +107,7 @@ impl<'a, P: Program> Path<'a, P> {
                 if std::mem::take(&mut jumped) {
                     step.from = step.to;
                     step.length = 0.0;
+                    step.arrives = true;
                 }
                 self.source.steps.push_back(step);
             }
@@ -140,6 +141,13 @@ impl<'a, P: Program> Path<'a, P> {
         if share >= 1.0 {
             self.source.steps.pop_front();
             self.share = 0.0;
+        }
+    }
+
+    /// It has come where it arrives.
+    fn drop_arrival(&mut self) {
+        if self.front().is_some_and(|step| step.arrives) {
+            self.go(1.0);
         }
     }
 
@@ -182,9 +190,37 @@ impl<P: Program> Walk<'_, '_, '_, P> {
                 (false, false) => return,
                 (true, false) => self.alone(Of::Old, 1),
                 (false, true) => self.alone(Of::New, 1),
+                (true, true) if self.arrived() => {}
                 (true, true) => self.together(),
             }
         }
+    }
+
+    /// One of the controls comes to a place by a way of its own: so does the other, by whatever rapids. True if steps were
+    /// left behind by that.
+    fn arrived(&mut self) -> bool {
+        let arrives = |path: &Path<'_, P>| path.front().is_some_and(|step| step.arrives);
+        let (path, place) = match (arrives(&self.old), arrives(&self.new)) {
+            (true, false) => (&mut self.new, self.old.front()),
+            (false, true) => (&mut self.old, self.new.front()),
+            _ => return false,
+        };
+        let Some(place) = place.map(|step| step.to) else {
+            return false;
+        };
+        let Some(step) = path.front() else {
+            return false;
+        };
+        let there = step.to.distance(&place) <= self.rules.apart;
+        if step.kind != MotionKind::Rapid {
+            return false;
+        }
+        path.go(1.0);
+        if there {
+            self.old.drop_arrival();
+            self.new.drop_arrival();
+        }
+        true
     }
 
     /// Goes over steps of one path alone.

@@ -2,4 +2,5 @@
 
 mod course;
 mod interpret;
+mod robust;
 mod verify;

@@ -123,11 +123,13 @@ pub(super) fn hole(
             Target::default()
         };
         let hole = levels(control, &running)?;
-        if control.lexicon.language() == Language::Rs274 && control.point()[axis] < hole.clearance {
-            // Up to R at once with the way to the next hole; in front of the first it goes straight up.
-            match before {
-                Some(_) => target.point[axis] = Some(hole.clearance),
-                None => rise(control, axis, hole.clearance)?,
+        if control.lexicon.language() == Language::Rs274 && control.point()[axis] < hole.away {
+            // From under the level of return: straight up to R where the cycles began under it, else on the way to the
+            // hole.
+            if running.start < hole.clearance && control.point()[axis] < hole.clearance {
+                rise(control, axis, hole.clearance)?;
+            } else {
+                target.point[axis] = Some(hole.away);
             }
         }
         if target.point[first].is_some() || target.point[second].is_some() || target.said != 0 {
@@ -187,8 +189,8 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         away,
         feed,
         wait: Wait::seconds(running.dwell),
-        // LinuxCNC feeds all the way out.
-        out_all: control.lexicon.language() == Language::Rs274,
+        // LinuxCNC feeds all the way out, but for G85.
+        out_all: control.lexicon.language() == Language::Rs274 && running.code != 850,
         ..Hole::default()
     };
     let pecks = |out_after: u32| Pecks {

@@ -102,6 +102,7 @@ pub(super) fn run(
     }
     let mut asked = Asked::default();
     if words.more {
+        control.modal.named_register = None;
         names::take(control, block, words, &mut asked)?;
     }
     for index in 0..words.g.list().len() {

@@ -149,12 +149,7 @@ fn joints(machine: &Machine, program: &Path, tcp_on: bool) -> Option<Vec<Row>> {
 }
 
 /// Runs a program from the joints of `start`; none where LinuxCNC is not.
-fn joints_from(
-    machine: &Machine,
-    program: &Path,
-    tcp_on: bool,
-    start: &str,
-) -> Option<Vec<Row>> {
+fn joints_from(machine: &Machine, program: &Path, tcp_on: bool, start: &str) -> Option<Vec<Row>> {
     let folder = program.parent().unwrap();
     let recorded = folder.join("joints.csv");
     let tilting = machine.tilting;

@@ -194,7 +194,11 @@ impl Hole {
     }
 
     fn out_level(&self) -> f64 {
-        if self.out_all { self.away } else { self.clearance }
+        if self.out_all {
+            self.away
+        } else {
+            self.clearance
+        }
     }
 
     fn depth(&self) -> f64 {

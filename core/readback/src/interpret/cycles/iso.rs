@@ -123,10 +123,10 @@ pub(super) fn hole(
             Target::default()
         };
         let hole = levels(control, &running)?;
-        if control.lexicon.language() == Language::Rs274 && control.point()[axis] < hole.away {
-            // From under the level of return: straight up to R where the cycles began under it, else on the way to the
-            // hole.
-            if running.start < hole.clearance && control.point()[axis] < hole.clearance {
+        if control.lexicon.language() == Language::Rs274 && control.point()[axis] < hole.clearance {
+            // From under R straight up to it where the cycles began under it, else on the way to the hole to the level of
+            // return.
+            if running.start < hole.clearance {
                 rise(control, axis, hole.clearance)?;
             } else {
                 target.point[axis] = Some(hole.away);

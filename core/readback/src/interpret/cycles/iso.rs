@@ -123,12 +123,12 @@ pub(super) fn hole(
             Target::default()
         };
         let hole = levels(control, &running)?;
-        if control.lexicon.language() == Language::Rs274 && control.point()[axis] < hole.away {
-            // From under the level of return: straight up to R where the cycles began under it, else on the way to the
-            // hole.
-            if running.start < hole.clearance && control.point()[axis] < hole.clearance {
-                rise(control, axis, hole.clearance)?;
-            } else {
+        if control.lexicon.language() == Language::Rs274 {
+            // Straight to R where the cycles began under it; else from under it on the way to the hole to the level of
+            // return.
+            if running.start < hole.clearance {
+                to_level(control, axis, hole.clearance)?;
+            } else if control.point()[axis] < hole.clearance {
                 target.point[axis] = Some(hole.away);
             }
         }
@@ -141,8 +141,8 @@ pub(super) fn hole(
     made
 }
 
-/// Straight up to a level.
-fn rise(control: &mut Control, axis: usize, level: f64) -> Result<(), Box<Diagnostic>> {
+/// Straight up or down to a level.
+fn to_level(control: &mut Control, axis: usize, level: f64) -> Result<(), Box<Diagnostic>> {
     let mut point: Vector3<f64> = control.point();
     point[axis] = level;
     control.straight(MotionKind::Rapid, point)

@@ -38,6 +38,8 @@ pub struct Reading<'a> {
     pub limits: Limits,
     /// Largest deviations that are other than the machine file's: mm, radians.
     pub tolerances: [Option<f64>; 2],
+    /// Each line is told with the solution of the machine that it ends in.
+    pub solutions: bool,
     /// Lines of the CL file that the program is made of; none: all.
     pub lines: Option<Range<u64>>,
 }
@@ -222,6 +224,7 @@ pub fn hold<C: Course, R: Read + Seek>(
         tolerance: tolerance.unwrap_or(standard.tolerance),
         axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
         registers: registers(&words),
+        solutions: reading.solutions,
         least_minutes: most_by_time.map_or(0.0, |most| 1.0 / most),
         tool_registers: tools
             .iter()

@@ -329,7 +329,11 @@ type At = (Vector3<f64>, Vector3<f64>);
 fn dense(motions: &[&Motion], rapid: bool) -> Vec<At> {
     let mut points = Vec::new();
     for motion in motions {
-        if (motion.kind == MotionKind::Rapid) != rapid {
+        // Out along its axis a tool does no harm at whatever feed.
+        let way = motion.to.pose.tip - motion.from.pose.tip;
+        let out = way.dot(&motion.from.pose.axis) > 0.999_999 * way.norm()
+            && motion.from.pose.axis == motion.to.pose.axis;
+        if (motion.kind == MotionKind::Rapid || out) != rapid {
             continue;
         }
         let way = (motion.to.pose.tip - motion.from.pose.tip).norm();
@@ -465,6 +469,11 @@ fn difference(job: &Job, one: &[Done], other: &[Done]) -> Difference {
     };
     let told = |done: &[&Done]| -> Vec<String> {
         let told = done.iter().filter_map(|done| match done {
+            // Hundredths of a second are rounded.
+            Done::Told {
+                told: Told::Dwell { time, .. },
+                ..
+            } => Some(format!("dwell {:.0}", time * 50.0)),
             Done::Told { told, .. } => Some(format!("{told:?}")),
             _ => None,
         });

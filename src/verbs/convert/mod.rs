@@ -245,6 +245,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         offsets: None,
         limits: Limits::default(),
         tolerances: [Some(tolerance), Some(axis_tolerance)],
+        solutions: false,
         lines: None,
     };
     let told = program.name().to_owned();

@@ -282,6 +282,7 @@ fn read_back(
         offsets: None,
         limits: Limits::default(),
         tolerances: [None, None],
+        solutions: false,
         lines: part.lines.clone(),
     };
     let name = file.name().to_owned();

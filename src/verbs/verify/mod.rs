@@ -108,6 +108,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
             ..Limits::default()
         },
         tolerances: [None, arguments.axis_tolerance.map(f64::to_radians)],
+        solutions: arguments.map.is_some(),
         lines: None,
     };
     let mut map = arguments.map.as_ref().map(|_| Map::default());

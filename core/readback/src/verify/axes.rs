@@ -1,5 +1,7 @@
 //! What a motion asks of the machine's axes: their travel, at its ends and on its way, and their largest feeds.
 
+use std::f64::consts::TAU;
+
 use post_machine::description::{Axis, Machine};
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, KeptTip, MAX_AXES, Slides, Solver, Trace};
@@ -11,6 +13,9 @@ const ROUNDED: f64 = 0.0015;
 
 /// Printed feeds are rounded: an axis may be so much faster than its largest feed.
 const SHARE: f64 = 0.01;
+
+/// Angles of one solution, radians: beside a pole they are known no better.
+const SAME: f64 = 1e-4;
 
 /// Places of a curve at which its axis values are looked at.
 const LOOKS: u32 = 16;
@@ -136,6 +141,26 @@ impl Axes {
         }
         slowest
     }
+}
+
+/// Which of the solutions for its last pose a motion ends in, counted from 1; none where there is one alone.
+pub(super) fn solution(machine: &Machine, motion: &Motion) -> Option<usize> {
+    let solver = &motion.state.solver;
+    let branches = solver.orient(&motion.to.pose, SAME).ok()?;
+    if branches.count() < 2 {
+        return None;
+    }
+    let pointing = machine.pointing();
+    (0..branches.count())
+        .find(|branch| {
+            let set = solver.angles(&branches, *branch);
+            pointing.iter().all(|joint| {
+                let apart = set.joints[*joint] - motion.to.joints[*joint];
+                let turns = libm::rint(apart / TAU);
+                set.free >> joint & 1 == 1 || libm::fabs(apart - turns * TAU) <= SAME
+            })
+        })
+        .map(|branch| branch + 1)
 }
 
 fn told(axis: &Axis, value: f64, limit: f64) -> String {

@@ -54,6 +54,8 @@ pub struct Rules {
     pub tool_registers: Vec<(u32, u32)>,
     /// A feed by time cannot be so large that a block takes less than this, minutes.
     pub least_minutes: f64,
+    /// Each line of the program is told with the solution that it ends in.
+    pub solutions: bool,
     /// So many faults are told apart; then it is given up.
     pub most_faults: usize,
 }
@@ -80,6 +82,7 @@ impl Rules {
             registers: Registers::None,
             tool_registers: Vec::new(),
             least_minutes: 0.0,
+            solutions: false,
             most_faults: 50,
         }
     }
@@ -241,6 +244,7 @@ impl<'m, C: Course> Verifier<'m, C> {
         if let Some(fault) = self.axes.over_travel(self.machine, motion) {
             self.axis_fault(motion, fault);
         }
+        self.look_for_length(motion);
         match motion.kind {
             MotionKind::Rapid => {
                 self.found.rapids += 1;
@@ -255,6 +259,9 @@ impl<'m, C: Course> Verifier<'m, C> {
             }
         }
         self.places = places;
+        if self.rules.solutions {
+            self.block.solution = axes::solution(self.machine, motion);
+        }
     }
 
     /// A line of the program that cuts is told as a cut.

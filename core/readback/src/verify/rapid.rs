@@ -52,13 +52,15 @@ impl<C: Course> Verifier<'_, C> {
             "a rapid comes to {near:.1} mm of what is cut, from {:.1} mm to {:.1} mm at its ends",
             ends[0], ends[1]
         );
-        self.fault(
-            "rapid",
-            message,
-            Some(motion),
-            None,
-            Some(least + slack - near),
-        );
+        if near <= slack {
+            let by = least + slack - near;
+            self.fault("rapid", message, Some(motion), None, Some(by));
+        } else {
+            self.found.near_rapids += 1;
+            self.found
+                .nearest_rapid
+                .get_or_insert((motion.line, message));
+        }
     }
 
     /// How near the rapids of the course come to its cuts between the last cut and the next, mm; exact where it is more than

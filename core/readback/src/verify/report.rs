@@ -115,9 +115,10 @@ pub struct BlockReport {
     pub cl_line: Option<u64>,
     /// `cut`, `rapid` or `hole`.
     pub kind: &'static str,
-    /// Which of the machine's solutions it ends in: for each free rotary axis the side of its zero.
-    #[serde(skip_serializing_if = "String::is_empty")]
-    pub solution: String,
+    /// Which of the machine's solutions it ends in, counted from 1 as the inverse of its chain gives them; none where there
+    /// is one alone, or it was not asked for ([`super::Rules::solutions`]).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solution: Option<usize>,
     /// Largest deviation of the guided point, mm.
     pub tip_deviation_mm: f64,
     /// Largest deviation of the tool axis, degrees.

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use post_machine::axis_words::is_depth;
+
 use super::place::{Place, free};
 use super::track::Element;
 use super::{Registers, Verifier};
@@ -142,6 +144,25 @@ impl<C: Course> Verifier<'_, C> {
         self.fault("register", message, Some(motion), Some(element.line), None);
     }
 
+    /// Words of the depth mean nothing known before the length of the tool is compensated: the tip is lower than they say.
+    pub(super) fn look_for_length(&mut self, motion: &Motion) {
+        if self.rules.registers == Registers::None
+            || motion.machine
+            || motion.state.length_register.is_some()
+        {
+            return;
+        }
+        let deeper = |joint: &usize| {
+            let way = motion.to.joints[*joint] - motion.from.joints[*joint];
+            libm::fabs(way) > SHORT && is_depth(self.machine, *joint)
+        };
+        if let Some(joint) = (0..self.machine.axes.len()).find(deeper) {
+            let name = &self.machine.axes[joint].name;
+            let message = format!("{name} moves without length compensation");
+            self.fault("register", message, Some(motion), None, None);
+        }
+    }
+
     /// Compares the feed: never faster than asked, and slower only where an axis could not go faster.
     pub(super) fn compare_feed(&mut self, motion: &Motion, places: &[Place], element: &Element) {
         let Some(asked) = element.feed else {
@@ -168,7 +189,8 @@ impl<C: Course> Verifier<'_, C> {
                 .map(|(index, _)| motion.to.joints[index] - motion.from.joints[index])
                 .map(|way| way * way)
                 .sum();
-            rounded += PLACE * motion.minutes / square.sqrt().max(1e-6);
+            // Rounded down, so that it is never above what is asked.
+            rounded += 2.0 * PLACE * motion.minutes / square.sqrt().max(1e-6);
         }
         let allowed = asked * (1.0 + SHARE + rounded) + PLACE;
         if feed > allowed {
@@ -232,7 +254,8 @@ pub(super) fn same_event(asked: &Told, done: &Told) -> bool {
 }
 
 fn same_spindle(has: Spindle, wants: Spindle) -> bool {
-    let same = |a: f64, b: f64| libm::fabs(a - b) <= PLACE + SHARE * b;
+    // Printed without decimals, or with some.
+    let same = |a: f64, b: f64| libm::fabs(a - b) <= PLACE;
     match (has, wants) {
         (Spindle::Clockwise(a), Spindle::Clockwise(b))
         | (Spindle::CounterClockwise(a), Spindle::CounterClockwise(b)) => same(a, b),

@@ -58,7 +58,9 @@ impl<C: Course> Verifier<'_, C> {
                 return;
             }
             if !self.may_begin(&places[0])
-                && (draws_back(places, &self.bound) || self.comes_down(places))
+                && (draws_back(places, &self.bound)
+                    || self.comes_down(places)
+                    || turns(places, self.rapid_bound.point))
             {
                 return self.set_kind("rapid");
             }
@@ -414,6 +416,13 @@ fn draws_back(places: &[Place], bound: &Bound) -> bool {
     along > 0.0
         && (way - from.axis * along).norm() <= bound.point
         && (to.axis - from.axis).norm() <= bound.axis
+}
+
+/// The tool turns about where it stands, off the part: a rewind turns so at feed.
+fn turns(places: &[Place], most: f64) -> bool {
+    let from = &places[0];
+    let stays = |to: &Place| (to.point - from.point).norm() <= most;
+    places[places.len() - 1].axis != from.axis && places.iter().all(stays)
 }
 
 /// What became of a piece.

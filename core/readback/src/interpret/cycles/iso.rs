@@ -123,12 +123,13 @@ pub(super) fn hole(
             Target::default()
         };
         let hole = levels(control, &running)?;
-        if control.lexicon.language() == Language::Rs274 && control.point()[axis] < hole.clearance {
-            // From under R straight up, where the cycles began under it; else on the way to the hole.
-            if running.start < hole.clearance {
+        if control.lexicon.language() == Language::Rs274 && control.point()[axis] < hole.away {
+            // From under the level of return: straight up to R where the cycles began under it, else on the way to the
+            // hole.
+            if running.start < hole.clearance && control.point()[axis] < hole.clearance {
                 rise(control, axis, hole.clearance)?;
             } else {
-                target.point[axis] = Some(hole.clearance);
+                target.point[axis] = Some(hole.away);
             }
         }
         if target.point[first].is_some() || target.point[second].is_some() || target.said != 0 {

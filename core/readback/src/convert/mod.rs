@@ -4,6 +4,7 @@
 //! as the same course. Programs move to another machine so: their path is written down, and posted there.
 
 mod number;
+mod records;
 mod text;
 mod writer;
 

@@ -81,11 +81,8 @@ fn strays(motion: &Motion, count: u64, piece: u64, t: f64) -> (f64, f64) {
         hole: false,
     };
     let [wanted, found] = [straight.at(t, 0.0), at(low + (high - low) * t)];
-    let angle = wanted
-        .axis
-        .cross(&found.axis)
-        .norm()
-        .atan2(wanted.axis.dot(&found.axis));
+    let across = wanted.axis.cross(&found.axis).norm();
+    let angle = libm::atan2(across, wanted.axis.dot(&found.axis));
     ((wanted.tip - found.tip).norm(), angle)
 }
 
@@ -181,7 +178,7 @@ fn a_table_that_turns_under_a_standing_tool_draws_a_circle() {
     }
     // The sagitta of a chord over a turn of a: r(1 - cos(a/2)).
     let count = whole.pieces(0.01, 1e-3);
-    let sagitta = |count: f64| 30.0 * (1.0 - (TAU / count / 2.0).cos());
+    let sagitta = |count: f64| 30.0 * (1.0 - libm::cos(TAU / count / 2.0));
     assert!(sagitta(count as f64) <= 0.01);
     assert!(sagitta(count as f64 * 0.9) > 0.01, "{count}");
     // The tool points where it did: its axis asks for no pieces.
@@ -273,7 +270,7 @@ fn a_control_point_above_the_tip_goes_straight() {
     assert!(middle.norm() < 1e-12);
     // Halfway on the great circle: 22.5° from either end.
     let axis = piece.at(0.5, 0.0).axis;
-    assert!((axis.dot(&V::z()) - (TAU / 16.0).cos()).abs() < 1e-12);
+    assert!((axis.dot(&V::z()) - libm::cos(TAU / 16.0)).abs() < 1e-12);
 }
 
 /// What was done, block by block.

@@ -72,7 +72,7 @@ impl<R: Read> Course for ClCourse<R> {
                 Ok(Some(record)) => self.modal.record(&record, &mut self.waiting)?,
                 Ok(None) => {
                     self.ended = true;
-                    self.modal.finish(&mut self.waiting)?;
+                    self.modal.finish()?;
                 }
                 Err(ReadError::Syntax(fault)) => {
                     return Err(unreadable(self.modal.file(), &fault).boxed());

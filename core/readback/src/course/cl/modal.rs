@@ -107,7 +107,7 @@ impl Modal {
     }
 
     /// What is left open at the end of the file.
-    pub(super) fn finish(&mut self, _out: &mut Out) -> Meant {
+    pub(super) fn finish(&mut self) -> Meant {
         match self.pending.take() {
             None => Ok(()),
             Some(pending) => {
@@ -183,7 +183,7 @@ impl Modal {
             | Statement::Control { .. } => self.curve_word(record, out),
             Statement::WorkOffset { number, set } => self.work_offset(record, (*number, *set), out),
             Statement::Subprogram(number) => {
-                if !self.does_nothing(record, "CALSUB", &[Argument::Number((*number).into())]) {
+                if !self.does_nothing("CALSUB", &[Argument::Number((*number).into())]) {
                     self.lost();
                     self.tell(record, Told::Subprogram(*number), out);
                 }
@@ -269,7 +269,7 @@ impl Modal {
                 word, arguments, ..
             } => {
                 let refused = record.statement.usage() == Usage::Refused;
-                if !refused || self.does_nothing(record, word, arguments) {
+                if !refused || self.does_nothing(word, arguments) {
                     return Ok(());
                 }
                 let message = format!(
@@ -281,7 +281,7 @@ impl Modal {
     }
 
     /// The machine file has lines for the word, or the user takes it upon himself.
-    fn does_nothing(&self, _record: &Record<'_>, word: &str, arguments: &[Argument]) -> bool {
+    fn does_nothing(&self, word: &str, arguments: &[Argument]) -> bool {
         let rules = &self.settings.rules;
         rules
             .iter()
@@ -525,9 +525,9 @@ impl Modal {
         let nothing = match set {
             true => {
                 let arguments = [Argument::Word("OFSETL".to_owned()), value];
-                self.does_nothing(record, "SET", &arguments)
+                self.does_nothing("SET", &arguments)
             }
-            false => self.does_nothing(record, "OFSETL", &[value]),
+            false => self.does_nothing("OFSETL", &[value]),
         };
         if !nothing && self.offset.replace(number) != Some(number) {
             self.lost();

@@ -48,6 +48,9 @@ impl<C: Course> Verifier<'_, C> {
         if self.hole.is_some() {
             return self.hole_motion(motion, places);
         }
+        if self.pecks_again(motion, places) {
+            return;
+        }
         self.come_back_to_the_course(&places[0]);
         if self.apart {
             // Where a hole is due, a feed motion is its business unless the tool is elsewhere.

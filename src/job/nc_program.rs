@@ -58,12 +58,6 @@ impl NcControl {
         })
     }
 
-    /// The program `source`, ready to be run.
-    pub fn open(&self, source: &PathArg) -> Result<Interpreter<File>, Failure> {
-        let (name, file) = open(source)?;
-        self.run(&name, file)
-    }
-
     /// The program in `file`, which messages call `name`, from where it stands.
     pub fn run(&self, name: &str, file: File) -> Result<Interpreter<File>, Failure> {
         let Self {
@@ -133,6 +127,19 @@ pub fn open(source: &PathArg) -> Result<(String, File), FileFault> {
         return Ok((name, file));
     }
     Ok((name, copied(&mut file).map_err(fault)?))
+}
+
+/// The open file `name` once more, from its beginning: whoever read it before is done.
+pub fn again(name: &str, file: &File) -> Result<File, FileFault> {
+    let again = || -> io::Result<File> {
+        let mut again = file.try_clone()?;
+        again.seek(SeekFrom::Start(0))?;
+        Ok(again)
+    };
+    again().map_err(|error| FileFault::Read {
+        name: name.to_owned(),
+        error,
+    })
 }
 
 /// What `input` gives, in a file without a name.

@@ -734,3 +734,35 @@ fn without_line(beat: Beat) -> Beat {
         other => other,
     }
 }
+
+#[test]
+fn a_curve_from_where_the_tool_was_only_said_to_stand_is_cut_from_its_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let curves = [
+        "CIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0",
+        "NURBS\nKNOT/1\nCNTRL/10,5,0\nCNTRL/5,10,0\nCNTRL/0,10,0",
+    ];
+    for curve in curves {
+        let file = folder.path().join("from.cls");
+        let text = format!(
+            "UNITS/MM\nLOADTL/1\nSPINDL/1000,CLW\nFEDRAT/100\nFROM/10,0,0\n{curve}\nRAPID\nGOTO/0,10,50\nFINI\n"
+        );
+        fs::write(&file, text).unwrap();
+        let file = file.to_str().unwrap();
+        for machine in ["vmc", "ac-trunnion"] {
+            let arguments = [
+                "-q",
+                "-m",
+                machine,
+                "--tool-length",
+                "50",
+                "--verify",
+                file,
+                "-o",
+                "-",
+            ];
+            let run = crate::common::post(&arguments);
+            assert_eq!(run.code, 0, "{machine} {curve}\n{}", run.err);
+        }
+    }
+}

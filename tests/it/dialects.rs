@@ -35,7 +35,7 @@ pub fn samples() -> impl Iterator<Item = &'static str> {
 }
 
 /// What the machine file of a control must name, since its maker's default is beyond doubt nowhere.
-fn named(dialect: &str) -> &'static [&'static str] {
+pub fn named(dialect: &str) -> &'static [&'static str] {
     match dialect {
         "grbl" => &["--set", "control.grbl.hal=true"],
         "siemens" => &["--set", "control.siemens.swivel=true"],

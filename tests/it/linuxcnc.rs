@@ -3,6 +3,7 @@
 //! The tip is computed from the joints by the laws of LinuxCNC's kinematics modules, not by the product.
 
 mod arcs;
+mod flow;
 mod read;
 
 use std::fs;
@@ -141,15 +142,21 @@ struct Row {
     length: f64,
 }
 
-/// Runs a program; none where LinuxCNC is not.
+/// Runs a program from a place where nothing stands at zero; none where LinuxCNC is not.
 fn joints(machine: &Machine, program: &Path, tcp_on: bool) -> Option<Vec<Row>> {
+    let start = format!("Z=-5,{}=-30,C=90", machine.tilting);
+    joints_from(machine, program, tcp_on, &start)
+}
+
+/// Runs a program from the joints of `start`; none where LinuxCNC is not.
+fn joints_from(machine: &Machine, program: &Path, tcp_on: bool, start: &str) -> Option<Vec<Row>> {
     let folder = program.parent().unwrap();
     let recorded = folder.join("joints.csv");
     let tilting = machine.tilting;
     let mut linuxcnc = Command::new(shared("linuxcnc/run")?);
     linuxcnc.arg(program).args(["--machine", machine.name]);
     linuxcnc.args(["--tool", "1=40,10", "--tool", "2=25,10"]);
-    linuxcnc.args(["--start", &format!("Z=-5,{tilting}=-30,C=90")]);
+    linuxcnc.args(["--start", start]);
     linuxcnc.args(["--before", &format!("G10 L2 P1 X0 Y0 Z{}", machine.part)]);
     for axis in ['X', 'Y', 'Z'] {
         linuxcnc.args(["--max-feed", &format!("{axis}={LINEAR}")]);

@@ -11,11 +11,14 @@ mod check;
 mod check_posts;
 mod command;
 mod common;
+mod convert;
 mod course;
 mod dialects;
+mod diff;
 mod files;
 mod frame;
 mod guide;
+mod languages;
 mod library;
 #[cfg(target_os = "linux")]
 mod linuxcnc;

@@ -4,9 +4,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::io::Cursor;
 
+use post_grammar::nc::{NcBlock, NcItem, NcReader, NcValue};
 use post_host::{GivenValue, Plugin, ProgramSetup, ProgramWord};
 use post_plugin::{Meaning, VocabularyWord};
+use post_readback::lexicon::Lexicon;
 
 use crate::common::root;
 
@@ -186,4 +189,149 @@ fn the_words_of_each_dialect_mean_what_the_facts_say() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     assert_eq!(found, named);
+}
+
+/// Programs under review: dialect, name and text.
+fn programs() -> Vec<(String, String, String)> {
+    let mut programs = Vec::new();
+    let mut take = |folder: &str, dialect: &dyn Fn(&str) -> String| {
+        for entry in fs::read_dir(root().join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            let Some(name) = path
+                .file_name()
+                .unwrap()
+                .to_str()
+                .unwrap()
+                .strip_suffix(".snap")
+            else {
+                continue;
+            };
+            let text = fs::read_to_string(&path).unwrap();
+            let body = text.splitn(3, "---\n").nth(2).unwrap();
+            // What was told on the way stands in front of the program.
+            let told = |line: &&str| {
+                let first = ["post ", "warning", "error", " ", "|"];
+                line.is_empty()
+                    || first.iter().any(|first| line.starts_with(first))
+                    || line.contains(" records, ")
+                    || line.contains("nothing was written")
+            };
+            let lines: Vec<&str> = body.lines().skip_while(told).collect();
+            programs.push((dialect(name), name.to_owned(), lines.join("\n") + "\n"));
+        }
+    };
+    take("tests/snapshots/dialects", &|name| {
+        name.split_once('_').unwrap().1.to_owned()
+    });
+    take("tests/snapshots", &|name| {
+        let cases = crate::common::CASES.iter();
+        let case = cases.into_iter().find(|case| case.name() == name).unwrap();
+        let file = root().join(format!("machines/{}.toml", case.machine));
+        dialect_of(&fs::read_to_string(file).unwrap())
+    });
+    programs
+}
+
+/// The dialect that a machine file names, or the machine that it extends.
+fn dialect_of(machine: &str) -> String {
+    let value = |key: &str| {
+        let mut lines = machine.lines();
+        let line = lines.find_map(|line| line.split('#').next()?.trim().strip_prefix(key));
+        line.and_then(|line| line.trim().strip_prefix('='))
+            .map(|text| text.trim().trim_matches('"').to_owned())
+    };
+    value("dialect").unwrap_or_else(|| {
+        let base = root().join(format!("machines/{}.toml", value("extends").unwrap()));
+        dialect_of(&fs::read_to_string(base).unwrap())
+    })
+}
+
+/// Addresses of axes, and those that belong to the word beside them: of cycles, waits, calls and planes.
+const BESIDE: &[&str] = &[
+    "A", "B", "C", "E", "L", "P", "Q", "U", "V", "W", "X", "Y", "Z", "R", "I", "J", "K",
+];
+
+/// Words of conversational blocks that belong to the one that opens them.
+const BESIDE_OPENER: &[&str] = &[
+    "SPA",
+    "SPB",
+    "SPC",
+    "STAY",
+    "SEQ",
+    "SEQ+",
+    "SEQ-",
+    "TABLE ROT",
+    "COORD ROT",
+    "DIST",
+    "MB",
+    "PA",
+    "PR",
+    "ROT",
+    "SCL",
+    "T",
+    "TA",
+    "HSC-MODE",
+    "DL",
+    "DR",
+    "DR2",
+    "H",
+];
+
+#[test]
+fn every_word_of_every_program_is_in_the_vocabulary_of_its_dialect() {
+    let mut lacking = BTreeSet::new();
+    let mut read = 0;
+    for (dialect, name, text) in programs() {
+        let words = vocabulary(&dialect);
+        let known: BTreeSet<&str> = words
+            .iter()
+            .filter_map(|word| word.word.split(' ').next())
+            .collect();
+        let whole: BTreeSet<&str> = words.iter().map(|word| &*word.word).collect();
+        let syntax = Lexicon::new(&words).syntax().clone();
+        let mut reader = NcReader::new(Cursor::new(text), syntax);
+        let mut block = NcBlock::default();
+        while reader
+            .next_block(&mut block)
+            .unwrap_or_else(|fault| panic!("{name}: {fault:?}"))
+        {
+            read += 1;
+            for (place, item) in block.items.iter().enumerate() {
+                let number = match block.items.get(place + 1) {
+                    Some(NcItem::Number(number)) => format!(" {}", libm::trunc(number.value)),
+                    _ => String::new(),
+                };
+                let word = match item {
+                    NcItem::Word(word) => {
+                        let letter = char::from(word.letter);
+                        match &word.value {
+                            NcValue::Number(number) if matches!(letter, 'G' | 'M') => {
+                                format!("{letter}{}", number.value)
+                            }
+                            _ => letter.to_string(),
+                        }
+                    }
+                    NcItem::Named { name, .. } => name.to_string(),
+                    NcItem::Call { name, .. } => name.clone(),
+                    NcItem::Name(name) => name.to_string(),
+                    _ => continue,
+                };
+                let beside = BESIDE.contains(&word.as_str());
+                let opened = whole.contains("BEGIN PGM")
+                    && (BESIDE_OPENER.contains(&word.as_str()) || word.starts_with('Q'));
+                let told = whole.contains(word.as_str())
+                    || known.contains(word.as_str()) && !word.contains(' ')
+                    || whole.contains(format!("{word}{number}").as_str());
+                if !beside && !opened && !told {
+                    lacking.insert(format!(
+                        "{dialect}: `{word}{number}` ({name}, line {})",
+                        block.line
+                    ));
+                }
+            }
+        }
+    }
+    assert!(read > 2000, "{read} blocks");
+    let lacking: Vec<String> = lacking.into_iter().collect();
+    assert!(lacking.is_empty(), "{}", lacking.join("\n"));
 }

@@ -8,6 +8,17 @@ use post_machine::kinematics::{Joints, Pose, Trace};
 use crate::State;
 use crate::course::{between, on_arc};
 
+/// Bounds on second derivatives along a motion, by its parameter.
+struct Bend {
+    /// Of the tip against the part, mm.
+    tip: f64,
+    /// Of the difference of a direction of the tool and its great circle.
+    axis: f64,
+}
+
+/// A piece is looked at in so many places.
+const LOOKS: u64 = 8;
+
 /// More pieces than this are made of no motion.
 const MOST_PIECES: f64 = 1e6;
 
@@ -145,17 +156,68 @@ impl Motion {
     /// axis between their ends stay within `chord` mm and `angle` radians of it; of arcs and splines, whose tip is on no
     /// straight line, the tool axis alone counts.
     ///
-    /// A chord over 1/n strays by no more than an eighth of the second derivative over n². Of the tip that derivative is
-    /// bounded joint by joint from the tool to the part: a turn by w over an arm r of speed s and bend b makes the bend
-    /// w²·r + 2·w·s + b and the speed w·r + s; an arm is never longer than at its ends but for an eighth of its bend. Of the
-    /// tool axis it is at most the square of all turns together, and the great circle strays as much from the chord again.
+    /// What strays is zero at both ends of a piece. Between two places where it was looked at it is larger than there by no
+    /// more than an eighth of its second derivative over the square of their distance, and that is [bounded](Bend).
     pub fn pieces(&self, chord: f64, angle: f64) -> u64 {
-        let chain = self.state.solver.chain();
-        let axes = chain.joints();
-        let turn = |place: usize| libm::fabs(self.to.joints[place] - self.from.joints[place]);
         if self.way == Way::TipAndAxis || !self.turns() {
             return 1;
         }
+        let bend = self.bend();
+        // The chord over the whole of a piece, looked at nowhere.
+        let blind = libm::sqrt((bend.tip / (8.0 * chord)).max(bend.axis / (8.0 * angle)));
+        let blind = libm::ceil(blind).clamp(1.0, MOST_PIECES) as u64;
+        let mut count = 1;
+        while count < blind {
+            let between = (count * LOOKS) as f64;
+            let unseen = |bend: f64| bend / (8.0 * between * between);
+            let (tip, turn) = self.strays(count);
+            let tip = (tip + unseen(bend.tip)) / chord;
+            let turn = (turn + unseen(bend.axis)) / angle;
+            let share = tip.max(turn);
+            if share <= 1.0 {
+                break;
+            }
+            let wanted = libm::ceil(count as f64 * libm::sqrt(share)).min(MOST_PIECES);
+            count = (wanted as u64).max(count + 1).min(blind);
+        }
+        count
+    }
+
+    /// How far the motion strays at most from straight lines and great circles of `count` pieces of it, where it is looked
+    /// at: mm, and of unit vectors.
+    fn strays(&self, count: u64) -> (f64, f64) {
+        let straight = self.way == Way::Axes;
+        let mut worst: (f64, f64) = (0.0, 0.0);
+        let mut from = self.at(0.0);
+        for piece in 0..count {
+            let at = |look: u64| self.at((piece * LOOKS + look) as f64 / (count * LOOKS) as f64);
+            let to = at(LOOKS);
+            for look in 1..LOOKS {
+                let share = look as f64 / LOOKS as f64;
+                let pose = at(look);
+                if straight {
+                    let chord = from.tip + (to.tip - from.tip) * share;
+                    worst.0 = worst.0.max((pose.tip - chord).norm());
+                }
+                worst.1 = worst
+                    .1
+                    .max((pose.axis - between(from.axis, to.axis, share)).norm());
+                if pose.edge != Vector3::zeros() {
+                    worst.1 = worst
+                        .1
+                        .max((pose.edge - between(from.edge, to.edge, share)).norm());
+                }
+            }
+            from = to;
+        }
+        worst
+    }
+
+    /// Bounds on how the tip and the directions of the tool bend on the way.
+    fn bend(&self) -> Bend {
+        let chain = self.state.solver.chain();
+        let axes = chain.joints();
+        let turn = |place: usize| libm::fabs(self.to.joints[place] - self.from.joints[place]);
         let ends = [&self.from.joints, &self.to.joints].map(|joints| {
             let mut trace = Trace {
                 joints: *joints,
@@ -172,27 +234,32 @@ impl Motion {
             turn(place) > 0.0 && (across.norm() > 1e-12 || chain.edge().is_some())
         };
         let all: f64 = rotary().map(turn).sum();
-        let mut count: f64 = match rotary().any(points) {
-            true => libm::sqrt(all * all / (4.0 * angle)),
-            false => 1.0,
+        let mut bend = Bend {
+            tip: 0.0,
+            // That of the axis is at most the square of all turns together, and that of the great circle no larger.
+            axis: match rotary().any(points) {
+                true => 2.0 * all * all,
+                false => 0.0,
+            },
         };
         if self.way == Way::Axes {
-            let (mut speed, mut bend) = (0.0, 0.0);
+            // Joint by joint from the tool to the part: a turn by w over an arm r of speed s and bend b makes the bend
+            // w²·r + 2·w·s + b and the speed w·r + s; an arm is never longer than at its ends but for an eighth of its
+            // bend.
+            let mut speed = 0.0;
             for place in (0..axes.len()).rev() {
+                let w = turn(place);
                 if !axes[place].rotary {
-                    speed += turn(place);
+                    speed += w;
                     continue;
                 }
-                let w = turn(place);
-                let arm = |trace: &Trace| trace.tip_rates[place].norm();
-                let arm = arm(&ends[0]).max(arm(&ends[1])) + bend / 8.0;
-                bend += w * (w * arm + 2.0 * speed);
+                let [first, last] = ends.each_ref().map(|trace| trace.tip_rates[place].norm());
+                let arm = first.max(last) + bend.tip / 8.0;
+                bend.tip += w * (w * arm + 2.0 * speed);
                 speed += w * arm;
             }
-            count = count.max(libm::sqrt(bend / (8.0 * chord)));
         }
-        // Bounded, whatever a program says: a million pieces of one block.
-        libm::ceil(count).clamp(1.0, MOST_PIECES) as u64
+        bend
     }
 
     /// Pieces whose chords stay within `chord` mm of a spline, as far as points on it tell: doubled until the middles of

@@ -51,7 +51,15 @@ impl NcBlock {
     pub fn clear(&mut self) {
         self.skipped = false;
         self.number = None;
-        self.items.clear();
+        // Most own nothing: to find that out here is cheaper than to have each dropped.
+        while let Some(item) = self.items.pop() {
+            match &item {
+                NcItem::Word(word) if matches!(word.value, NcValue::Number(_)) => {
+                    std::mem::forget(item);
+                }
+                _ => drop(item),
+            }
+        }
         self.remarks.clear();
     }
 }

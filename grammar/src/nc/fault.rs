@@ -1,5 +1,6 @@
 //! What is wrong with a block, before it is known where the block stands.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use crate::fault::SyntaxFault;
@@ -37,9 +38,36 @@ impl Unreadable {
     pub(super) fn fault(self, text: &str, line: u64) -> SyntaxFault {
         let whole = text.len() - text.trim_start().len()..text.trim_end().len();
         let span = self.span.unwrap_or(whole);
-        let mut fault = SyntaxFault::new(text, span, self.message);
+        let (shown, span) = excerpt(text, span);
+        let mut fault = SyntaxFault::new(&shown, span, self.message);
         fault.help = self.help;
         fault.line = line;
         fault
     }
+}
+
+/// So much of a long block is shown, bytes.
+const SHOWN: usize = 400;
+
+/// The part of a long block in which `span` begins, and where that is in it.
+fn excerpt(text: &str, span: Range<usize>) -> (Cow<'_, str>, Range<usize>) {
+    if text.len() <= SHOWN {
+        return (Cow::Borrowed(text), span);
+    }
+    let from = text.floor_char_boundary(span.start.saturating_sub(SHOWN / 2));
+    let to = text.ceil_char_boundary((from + SHOWN).min(text.len()));
+    let (mut shown, mut lead) = (String::new(), 0);
+    if from > 0 {
+        shown.push('…');
+        lead = shown.len();
+    }
+    shown.push_str(&text[from..to]);
+    let end = span.end.clamp(span.start, to);
+    if to < text.len() {
+        shown.push('…');
+    }
+    (
+        Cow::Owned(shown),
+        lead + span.start - from..lead + end - from,
+    )
 }

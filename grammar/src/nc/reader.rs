@@ -419,9 +419,7 @@ fn check_depth(code: &str) -> Result<(), Unreadable> {
 }
 
 fn overlong_block(text: &str, line: u64) -> SyntaxFault {
-    let mut shown: String = text.chars().take(80).collect();
-    shown.push('…');
     Unreadable::new(format!("a block of more than {LONGEST} bytes"))
         .help("is this a program of this control?")
-        .fault(&shown, line)
+        .fault(text, line)
 }

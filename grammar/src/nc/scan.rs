@@ -39,20 +39,12 @@ fn words(text: &[u8], block: &mut NcBlock) -> Option<usize> {
             return None;
         }
         let next = *text.get(at + 1)?;
-        let item = if next == b'=' {
-            let (number, end) = value(text, at + 2)?;
-            at = end;
-            word(letter, number)
-        } else if let Some(name) = address(letter, next)
-            && text.get(at + 2) == Some(&b'=')
-        {
-            let (number, end) = value(text, at + 3)?;
-            at = end;
-            named(name, number)
+        let item;
+        (item, at) = if next == b'=' || text.get(at + 2) == Some(&b'=') {
+            set(text, at, letter)?
         } else {
             let (number, end) = value(text, skip_blanks(text, at + 1))?;
-            at = end;
-            word(letter, number)
+            (word(letter, number), end)
         };
         if !ends_value(*text.get(at)?) {
             return None;
@@ -61,6 +53,18 @@ fn words(text: &[u8], block: &mut NcBlock) -> Option<usize> {
         at = skip_blanks(text, at);
     }
     (!block.items.is_empty()).then_some(at)
+}
+
+/// `X=10`, `A3=0.5`, and where it ends.
+#[inline(never)]
+fn set(text: &[u8], at: usize, letter: u8) -> Option<(NcItem, usize)> {
+    if text[at + 1] == b'=' {
+        let (number, end) = value(text, at + 2)?;
+        return Some((word(letter, number), end));
+    }
+    let name = address(letter, text[at + 1])?;
+    let (number, end) = value(text, at + 3)?;
+    Some((named(name, number), end))
 }
 
 /// `12 L X+10 Y-5.5 R0 FMAX M91`

@@ -11,6 +11,7 @@ use post_readback::course::CourseFacts;
 use post_readback::course::cl::{ClCourse, Settings};
 use post_readback::course::done::{Chords, DoneCourse};
 use post_readback::interpret::Limits;
+use post_readback::verify::CutPath;
 
 use crate::arguments::flag_values::{
     Msys, TcpWord, feed, length, point, positive, setting, spindle, word,
@@ -18,7 +19,7 @@ use crate::arguments::flag_values::{
 use crate::arguments::{JobArguments, ProgramArguments};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg, Role};
-use crate::job::nc_program::NcControl;
+use crate::job::nc_program::{self, NcControl};
 use crate::job::one_program::OneProgram;
 use crate::job::read_back::{self, Against, Held, Reading};
 use crate::job::{self, nc_to_cl, plugin_finder};
@@ -41,7 +42,7 @@ use crate::terminal::{self, clock, number, table};
 Exit codes: 0 the program is written, and makes the tool go the way of the first; 1 refused, the messages say why;
 2 the command line is wrong.")]
 pub struct ConvertArguments {
-    /// The NC program.
+    /// The NC program, `-` for standard input.
     #[arg(value_name = "NC-FILE", value_parser = PathArg::parser())]
     input: PathArg,
 
@@ -141,24 +142,25 @@ const CHORDS: f64 = 0.1;
 /// The path that the new program is held against has chords so much finer than the CL file's.
 const FINER: f64 = 0.1;
 
-/// Rapids may stray by so much more than cuts, and by no less than so many mm: they are off the part.
-const RAPIDS: (f64, f64) = (100.0, 0.5);
-
 /// Converts as the arguments say.
 pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
-    if !arguments
-        .input
-        .absolute()
-        .is_some_and(|path| path.is_file())
-    {
-        let message = "post convert runs the program twice, and needs it as a file";
-        return Err(Diagnostic::error("convert", message)
-            .help("give the path of a file, not standard input or a pipe")
-            .into());
-    }
     let from = NcControl::new(&arguments.first())?;
+    let (name, input) = nc_program::open(&arguments.input)?;
+    let run = || -> Result<_, Failure> { from.run(&name, nc_program::again(&name, &input)?) };
     let job = arguments.second();
     let asked = job::machine(&job, &[])?;
+    for machine in [&from.machine, &asked] {
+        if machine.turn != 0.0 {
+            let message = format!(
+                "on {} the part sits turned by {}° about its Z: the paths of the two programs have no frame in common",
+                machine.name,
+                number(machine.turn.to_degrees(), 3)
+            );
+            return Err(Diagnostic::error("convert", message)
+                .help("--from-set workpiece.turn=0 or --set workpiece.turn=0, and the part clamped along the machine's axes")
+                .into());
+        }
+    }
     let [tolerance, axis_tolerance] = [asked.accuracy.tolerance, asked.accuracy.axis_tolerance];
     let left = 1.0 - CHORDS;
     let more = [
@@ -178,13 +180,9 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
     let (program, cl_file) = files.split_at_mut(1);
     let program = &mut program[0];
 
-    let chords = Chords {
-        tip: tolerance * CHORDS,
-        axis: axis_tolerance * CHORDS,
-        rapid: (tolerance * RAPIDS.0).max(RAPIDS.1),
-    };
-    let (name, part) = arguments.names();
-    let mut course = DoneCourse::new(from.open(&arguments.input)?, chords);
+    let chords = Chords::within(tolerance * CHORDS, axis_tolerance * CHORDS);
+    let part = arguments.input.stem().unwrap_or_default();
+    let mut course = DoneCourse::new(run()?, chords);
     let (mut source, written) = ClSource::of_text(format!("{name} as CL file"), |copy| {
         nc_to_cl::write(
             &mut course,
@@ -228,15 +226,17 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
     let finer = Chords {
         tip: chords.tip * FINER,
         axis: chords.axis * FINER,
-        rapid: chords.rapid,
+        ..chords
     };
     let mut read = ClCourse::new(Settings::of(&machine, &name), source.open()?.bytes);
     let (facts, _) = CourseFacts::of(&mut read);
+    let again = ClCourse::new(Settings::of(&machine, &name), source.open()?.bytes);
+    let (cut_path, _) = CutPath::of(&mut { again }, machine.control_point.along);
     let against = Against {
-        course: DoneCourse::new(from.open(&arguments.input)?, finer),
+        course: DoneCourse::new(run()?, finer),
         name: name.clone(),
         tools: read.tools().to_vec(),
-        cut_path: None,
+        cut_path: Some(cut_path),
     };
     let reading = Reading {
         arguments: &job,
@@ -278,13 +278,6 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
 }
 
 impl ConvertArguments {
-    /// The program's file as messages name it, and the part as the CL file does.
-    fn names(&self) -> (String, String) {
-        let path = self.input.path();
-        let name = path.map_or_else(String::new, |path| path.display().to_string());
-        (name, self.input.stem().unwrap_or_default())
-    }
-
     /// How the first program is read.
     fn first(&self) -> ProgramArguments {
         ProgramArguments {

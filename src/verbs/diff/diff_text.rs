@@ -38,6 +38,7 @@ pub fn text(names: [&str; 2], machines: [&str; 2], rules: &Rules, found: &Differ
     if !found.operations.is_empty() {
         let head = [
             "operation",
+            "",
             "old lines",
             "new lines",
             "tip, mm",
@@ -45,12 +46,11 @@ pub fn text(names: [&str; 2], machines: [&str; 2], rules: &Rules, found: &Differ
             "feed, %",
             "old time",
             "new time",
-            "",
         ];
         let mut rows = vec![head.map(str::to_owned)];
         let all = found.operations.iter().enumerate();
         rows.extend(all.map(|(index, operation)| row(index, operation)));
-        text.push_str(&table(&rows, 3));
+        text.push_str(&table(&rows, 4));
     }
     for (index, operation) in found.operations.iter().enumerate() {
         if !operation.same {
@@ -106,6 +106,7 @@ fn row(index: usize, operation: &Operation) -> [String; 9] {
     };
     [
         title(index, operation),
+        result.to_owned(),
         lines(old),
         lines(new),
         value(operation.tip.value, 4),
@@ -113,7 +114,6 @@ fn row(index: usize, operation: &Operation) -> [String; 9] {
         value(100.0 * operation.feed.worst.value, 2),
         time(old),
         time(new),
-        result.to_owned(),
     ]
 }
 
@@ -191,6 +191,10 @@ fn details(text: &mut String, operation: &Operation, rules: &Rules) {
         };
         told("event", value);
     }
+    for [old, new] in operation.other_ways.iter().take(MOST_TOLD) {
+        told("other way", format!("{}; now {}", way(old), way(new)));
+    }
+    more(&mut told, "other way", operation.other_ways.len());
     for (what, stretches) in [
         ("left out", &operation.left_out),
         ("added", &operation.added),
@@ -198,13 +202,7 @@ fn details(text: &mut String, operation: &Operation, rules: &Rules) {
         for stretch in stretches.iter().take(MOST_TOLD) {
             told(what, way(stretch));
         }
-        if let Some(more) = stretches
-            .len()
-            .checked_sub(MOST_TOLD)
-            .filter(|more| *more > 0)
-        {
-            told(what, format!("and {more} further ways (--json has them)"));
-        }
+        more(&mut told, what, stretches.len());
     }
     if let [Some(old), Some(new)] = operation.sides {
         let later = new.seconds - old.seconds;
@@ -212,6 +210,14 @@ fn details(text: &mut String, operation: &Operation, rules: &Rules) {
             let word = if later > 0.0 { "longer" } else { "shorter" };
             told("time", format!("{} {word}", clock(libm::fabs(later))));
         }
+    }
+}
+
+/// How many were not told one by one.
+fn more(told: &mut impl FnMut(&str, String), what: &str, count: usize) {
+    if count > MOST_TOLD {
+        let count = count - MOST_TOLD;
+        told(what, format!("and {count} further ways (--json has them)"));
     }
 }
 

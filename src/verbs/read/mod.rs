@@ -4,13 +4,18 @@ mod motions_csv;
 mod read_text;
 mod survey;
 
+use std::fs::File;
+
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
+use post_readback::course::done::{Chords, DoneCourse};
+use post_readback::interpret::Interpreter;
 
 use crate::arguments::ProgramArguments;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg, Role};
-use crate::job::nc_program::NcControl;
+use crate::job::nc_program::{self, NcControl};
+use crate::job::nc_to_cl;
 use crate::terminal;
 use motions_csv::MotionsCsv;
 use survey::Survey;
@@ -28,6 +33,7 @@ const MOST_REFUSED: usize = 50;
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post read part.nc --machine ac-trunnion
+  post read part.nc --machine ac-trunnion --cl part.cls
   post read part.h --machine dmu50 --offsets control.toml --csv motions.csv
   post read part.ngc --machine xyzac-trt --dialect linuxcnc --tool-length 40 --csv - | head
 
@@ -60,7 +66,21 @@ pub struct ReadArguments {
     /// standard output, alone there.
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
     csv: Option<PathArg>,
+
+    /// Writes the path of the tool against the part as a CL file: points with the tool axis, feeds of the tip, tools,
+    /// speeds, curves, cycles and remarks. What the machine does for itself (ways in machine coordinates, the turn of
+    /// rotary axes on the way to an approach) is left out; `-` is standard output, alone there.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    cl: Option<PathArg>,
 }
+
+const CL: Role = Role {
+    what: "CL file",
+    remedy: "name another file with --cl",
+};
+
+/// Of the machine's tolerance so much is used by chords of curves that no record of a CL file has.
+const CHORDS: f64 = 0.1;
 
 const MOTIONS: Role = Role {
     what: "table of motions",
@@ -70,14 +90,14 @@ const MOTIONS: Role = Role {
 /// Does as the arguments say.
 pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
     let control = NcControl::new(&arguments.program)?;
-    let mut program = control.open(&arguments.input)?;
-    let targets: Vec<(Role, &PathArg)> = arguments
-        .csv
-        .iter()
-        .map(|target| (MOTIONS, target))
-        .collect();
+    let (name, input) = nc_program::open(&arguments.input)?;
+    let mut program = control.run(&name, nc_program::again(&name, &input)?)?;
+    let mut targets: Vec<(Role, &PathArg)> = Vec::new();
+    targets.extend(arguments.csv.iter().map(|target| (MOTIONS, target)));
+    targets.extend(arguments.cl.iter().map(|target| (CL, target)));
     let mut files = AtomicFile::create(&targets)?;
-    let mut csv = files
+    let (tables, cl_files) = files.split_at_mut(usize::from(arguments.csv.is_some()));
+    let mut csv = tables
         .first_mut()
         .map(|file| MotionsCsv::new(&control.machine, file));
     let mut survey = Survey::new(&control.machine);
@@ -110,6 +130,14 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
     if let Some(csv) = csv {
         csv.finish()?;
     }
+    if let (Some(file), true) = (cl_files.first_mut(), refused.is_empty()) {
+        let program = control.run(&name, nc_program::again(&name, &input)?)?;
+        write_cl(arguments, &control, program, file, &mut refused)?;
+    }
+    if !refused.is_empty() {
+        // A path with gaps is none.
+        files.truncate(usize::from(arguments.csv.is_some()));
+    }
     let taken = files.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(files)?;
     let report = program.report();
@@ -125,4 +153,25 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
     } else {
         Err(refused.into())
     }
+}
+
+/// Runs the program once more, and writes its path.
+fn write_cl(
+    arguments: &ReadArguments,
+    control: &NcControl,
+    program: Interpreter<File>,
+    file: &mut AtomicFile,
+    refused: &mut Vec<Diagnostic>,
+) -> Result<(), Failure> {
+    let accuracy = &control.machine.accuracy;
+    let [tip, axis] = [accuracy.tolerance, accuracy.axis_tolerance].map(|mm| mm * CHORDS);
+    let mut course = DoneCourse::new(program, Chords::within(tip, axis));
+    let part = arguments.input.stem().unwrap_or_default();
+    let length = arguments.program.tool_length;
+    let written = nc_to_cl::write(&mut course, &part, tip, length, &mut |text| {
+        file.write_bytes(text)
+    })?;
+    terminal::findings(&written.notes);
+    refused.extend(written.faults);
+    Ok(())
 }

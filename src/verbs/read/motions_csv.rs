@@ -1,4 +1,7 @@
 //! Motions as rows.
+//!
+//! Plain text and not Parquet: whatever reads tables reads CSV, and the crate that writes Parquet brings Arrow and some
+//! dozen crates of compression with it, for one output of one verb.
 
 use std::fmt::Write as _;
 

@@ -40,6 +40,8 @@ pub(crate) struct Expand {
     chord_tolerance: f64,
     /// Where the tool stands, mm, part frame; none if nobody knows.
     tip: Option<Vector3<f64>>,
+    /// The CL file says that it stands there (`FROM`), and no move has brought it there.
+    only_said: bool,
     /// For a tool with a leading edge.
     tangential: Option<Tangential>,
     /// Which curves may stay curves; none if none may.
@@ -57,6 +59,7 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
     let mut stage = Expand {
         chord_tolerance,
         tip: None,
+        only_said: false,
         tangential: None,
         keeps: None,
         cycles: Capabilities::NONE,
@@ -95,6 +98,7 @@ impl Expand {
             },
             chord_tolerance,
             tip: None,
+            only_said: false,
             // An edge turns with the path.
             keeps: tangential.is_none().then_some(keeps),
             tangential,
@@ -145,6 +149,7 @@ impl Expand {
     #[inline]
     fn go(&mut self, line: u64, motion: Motion, out: &mut Out<'_>, findings: &Findings) {
         self.tip = Some(motion.tip);
+        self.only_said = false;
         match &mut self.tangential {
             None => out.push_with(|| Flow::Point(Line { line, motion })),
             Some(tangential) => tangential.go(line, motion, out, findings),
@@ -154,8 +159,10 @@ impl Expand {
     fn command(&mut self, line: u64, command: Command, out: &mut Out<'_>, findings: &Findings) {
         if let Command::From { tip, .. } = command {
             self.tip = Some(tip);
+            self.only_said = true;
         } else if command.leaves() {
             self.tip = None;
+            self.only_said = false;
         }
         match &mut self.tangential {
             None => out.command(line, command),
@@ -168,7 +175,7 @@ impl Expand {
         let ArcStep { arc, end, .. } = step;
         // Behind a hole the tool stands above the point that the arc begins on.
         let start = arc.at(0.0);
-        if self.tip.is_some_and(|tip| (tip - start).norm() > APART) {
+        if self.only_said || self.tip.is_some_and(|tip| (tip - start).norm() > APART) {
             let to_start = Motion {
                 tip: start,
                 axis: step.start_axis,
@@ -260,6 +267,15 @@ impl Expand {
 
     fn spline(&mut self, line: u64, step: &SplineStep, out: &mut Out<'_>, findings: &Findings) {
         let SplineStep { spline, end } = step;
+        if self.only_said {
+            let tip = spline.start();
+            let to_start = Motion {
+                tip,
+                chord: 0.0,
+                ..*end
+            };
+            self.go(line, to_start, out, findings);
+        }
         let keeps = |count| {
             self.keeps
                 .as_ref()

@@ -99,6 +99,11 @@ impl Spline {
             })
     }
 
+    /// Where it begins.
+    pub fn start(&self) -> Vector3<f64> {
+        self.points.first().copied().unwrap_or_default()
+    }
+
     /// Where it ends.
     pub fn end(&self) -> Vector3<f64> {
         self.points.last().copied().unwrap_or_default()

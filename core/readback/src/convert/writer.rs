@@ -301,6 +301,11 @@ impl ClWriter {
             }
             place as u32 + 1
         });
+        if number == 0 {
+            let message = "tool 0 is no tool: what is cut behind it is cut with the one before";
+            self.notes.push(Diagnostic::warning("convert", message));
+            return;
+        }
         if self.last_tool.replace((number, tool)) == Some((number, tool)) {
             return;
         }

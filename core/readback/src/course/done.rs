@@ -40,6 +40,25 @@ pub struct Chords {
     pub axis: f64,
     /// Of the tip at rapid, mm.
     pub rapid: f64,
+    /// Of the tool axis at rapid, radians.
+    pub rapid_axis: f64,
+}
+
+/// Rapids may stray by so much more than cuts, but by half a millimetre, and their tool axis by 10°: they are off the part.
+const RAPIDS: f64 = 100.0;
+const RAPID: f64 = 0.5;
+const RAPID_AXIS: f64 = 10.0 / 180.0 * std::f64::consts::PI;
+
+impl Chords {
+    /// Cuts within `tip` mm and `axis` radians.
+    pub fn within(tip: f64, axis: f64) -> Self {
+        Self {
+            tip,
+            axis,
+            rapid: (tip * RAPIDS).max(RAPID),
+            rapid_axis: RAPID_AXIS,
+        }
+    }
 }
 
 /// Poses nearer than this are one: mm, and of unit vectors.
@@ -60,6 +79,8 @@ pub struct DoneCourse<P> {
     held: VecDeque<(Option<Arc<State>>, Item)>,
     /// What held during the item that was handed out last.
     state: Option<Arc<State>>,
+    /// What a cycle does at a point, up to its end.
+    hole: Option<Vec<(Option<Arc<State>>, Item)>>,
     /// What holds in the program.
     latest: Option<Arc<State>>,
     /// Where the tool stands.
@@ -79,6 +100,7 @@ impl<P: Program> DoneCourse<P> {
             waiting: VecDeque::new(),
             held: VecDeque::new(),
             state: None,
+            hole: None,
             latest: None,
             stands: None,
             astray: u32::MAX,
@@ -111,6 +133,32 @@ impl<P: Program> DoneCourse<P> {
     }
 
     fn hand_on(&mut self, item: Item) {
+        match (&mut self.hole, &item) {
+            (
+                Some(_),
+                Item::Told {
+                    told: Told::CycleEnd,
+                    ..
+                },
+            ) => {
+                let done = self.hole.take().unwrap_or_default();
+                let done = in_one_go(done);
+                self.waiting.append(&mut self.held);
+                self.waiting.extend(done);
+            }
+            (Some(hole), _) => {
+                hole.push((self.latest.clone(), item));
+                return;
+            }
+            (
+                None,
+                Item::Told {
+                    told: Told::Cycle(_),
+                    ..
+                },
+            ) => self.hole = Some(Vec::new()),
+            (None, _) => {}
+        }
         let leaves = match &item {
             Item::Told { told, .. } => leaves(told),
             Item::Away { .. } => true,
@@ -181,11 +229,17 @@ impl<P: Program> DoneCourse<P> {
 
     /// The pieces of a motion.
     fn pieces(&mut self, motion: &Motion, feed: Option<f64>) {
-        let chord = match motion.kind {
-            MotionKind::Rapid => self.chords.rapid,
-            MotionKind::Feed | MotionKind::Thread => self.chords.tip,
+        let Chords {
+            tip,
+            axis,
+            rapid,
+            rapid_axis,
+        } = self.chords;
+        let (chord, angle) = match motion.kind {
+            MotionKind::Rapid => (rapid, rapid_axis),
+            MotionKind::Feed | MotionKind::Thread => (tip, axis),
         };
-        let mut count = motion.pieces(chord, self.chords.axis);
+        let mut count = motion.pieces(chord, angle);
         // A spline stays one where the tool axis does.
         let along = match &motion.way {
             Way::Spline(_) if motion.turns() => {
@@ -250,6 +304,42 @@ fn arc(centre: nalgebra::Vector3<f64>, normal: nalgebra::Vector3<f64>, sweep: f6
     }
 }
 
+/// A hole without its pecks: the ways to where the feed begins, one down to the bottom, what is waited for there, and the
+/// ways out of it.
+fn in_one_go(done: Vec<(Option<Arc<State>>, Item)>) -> Vec<(Option<Arc<State>>, Item)> {
+    let piece = |item: &Item| match item {
+        Item::Piece(piece) => Some(piece.clone()),
+        _ => None,
+    };
+    let cuts = |(_, item): &(Option<Arc<State>>, Item)| {
+        piece(item).is_some_and(|piece| piece.kind != MotionKind::Rapid)
+    };
+    let Some(first) = done.iter().position(cuts) else {
+        return done;
+    };
+    let Some(begin) = piece(&done[first].1) else {
+        return done;
+    };
+    let height = |pose: &Pose| begin.from.axis.dot(&(pose.tip - begin.from.tip));
+    let (mut last, mut bottom) = (first, begin.to);
+    for (place, (_, item)) in done.iter().enumerate().skip(first) {
+        if let Some(piece) = piece(item)
+            && piece.kind != MotionKind::Rapid
+            && height(&piece.to) <= height(&bottom) + SAME
+        {
+            (last, bottom) = (place, piece.to);
+        }
+    }
+    let down = Piece {
+        to: bottom,
+        ..begin
+    };
+    let mut whole: Vec<_> = done[..first].to_vec();
+    whole.push((done[first].0.clone(), Item::Piece(down)));
+    whole.extend(done[last + 1..].iter().cloned());
+    whole
+}
+
 /// Bits of the linear axes that go elsewhere.
 fn moved(motion: &Motion) -> u32 {
     let differs = |place: &usize| motion.from.joints[*place] != motion.to.joints[*place];
@@ -282,6 +372,7 @@ impl<P: Program> Course for DoneCourse<P> {
             self.done = done;
             self.ended = !more?;
             if self.ended {
+                self.waiting.extend(self.hole.take().unwrap_or_default());
                 self.waiting.append(&mut self.held);
             }
         }

@@ -113,6 +113,3 @@ pub fn compare<P: Program, E>(
     let difference = walk::all(rules, pairs, old, new, listen);
     Ok((difference, unread))
 }
-
-#[cfg(test)]
-mod tests;

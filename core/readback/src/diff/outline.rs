@@ -81,6 +81,8 @@ pub(super) struct Outline {
     parts: Vec<Part>,
     /// Words that are not understood, by name.
     pub unknown: Vec<String>,
+    /// The length of a tool is compensated.
+    lengths: bool,
 }
 
 impl Outline {
@@ -150,6 +152,7 @@ impl Outline {
         }
         match done {
             Done::Motion(motion) => {
+                self.lengths |= motion.state.length != 0.0;
                 part.motions += 1;
                 if motion.kind != MotionKind::Rapid {
                     part.start.get_or_insert(motion.from.pose.tip);
@@ -206,6 +209,8 @@ pub(super) struct Pairs {
     pub by_name: bool,
     pub pairs: Vec<[Option<Part>; 2]>,
     pub unknown: [Vec<String>; 2],
+    /// Both compensate lengths.
+    pub lengths: bool,
 }
 
 /// Aligns the operations of two programs.
@@ -218,6 +223,7 @@ pub(super) fn align(old: Outline, new: Outline) -> Pairs {
     };
     Pairs {
         by_name,
+        lengths: old.lengths && new.lengths,
         pairs: paired(old.parts, new.parts),
         unknown: [old.unknown, new.unknown],
     }

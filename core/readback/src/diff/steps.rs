@@ -81,6 +81,8 @@ pub(super) struct Step {
     pub hole: bool,
     /// In positions of the machine.
     pub machine: bool,
+    /// It comes from somewhere that is left out: only where it ends counts.
+    pub arrives: bool,
     /// Way of the tip and, by an arm, of the tool axis, mm.
     pub length: f64,
 }
@@ -276,6 +278,7 @@ impl<P: Program> Steps<P> {
                     state: Arc::clone(&motion.state),
                     hole: motion.hole,
                     machine: motion.machine,
+                    arrives: false,
                     length,
                 })));
             }

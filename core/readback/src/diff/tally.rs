@@ -416,6 +416,14 @@ impl<'t> Tally<'t> {
         self.found.events = events(&old_events, &new_events, slack);
         let rules = self.rules;
         let found = &mut self.found;
+        // Where one path is a last digit longer than the other, what follows stands beside what was before.
+        found.states.retain(|state| match state.what {
+            "motion" => state.on_mm > 1.5 * rules.apart,
+            _ => state.on_mm > rules.tip,
+        });
+        if found.feed.worst.on_mm <= rules.tip {
+            found.feed = FeedWorst::default();
+        }
         let turned = found.rotary.iter();
         let turned = turned.map(|(_, worst)| worst.value).fold(0.0, f64::max);
         let [old, new] = found.sides.map(|side| side.map(|side| side.seconds));

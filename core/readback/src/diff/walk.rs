@@ -22,6 +22,9 @@ pub(super) fn all<P: Program>(
     mut new: Steps<P>,
     listen: &mut dyn FnMut(&Sample),
 ) -> Difference {
+    // Two controls retract and approach each in its own way, one with the length in force and one without.
+    let whole = rules.one_control;
+    let lengths = pairs.lengths;
     let mut difference = Difference::new(pairs.unknown);
     for (index, [one, other]) in pairs.pairs.into_iter().enumerate() {
         let mut tally = Tally::new(rules, index, [one.as_ref(), other.as_ref()], listen);
@@ -35,8 +38,8 @@ pub(super) fn all<P: Program>(
         let mut walk = Walk {
             rules,
             tally: &mut tally,
-            old: Path::new(&mut old, one.is_some(), rules.one_machine),
-            new: Path::new(&mut new, other.is_some(), rules.one_machine),
+            old: Path::new(&mut old, one.is_some(), whole, lengths),
+            new: Path::new(&mut new, other.is_some(), whole, lengths),
             rest: 0,
         };
         walk.through();
@@ -51,60 +54,63 @@ pub(super) fn all<P: Program>(
 struct Path<'a, P> {
     source: &'a mut Steps<P>,
     there: bool,
-    one_machine: bool,
+    /// All motions count.
+    whole: bool,
+    /// Both programs compensate lengths.
+    lengths: bool,
     /// Share of the first step that is behind.
     share: f64,
-    /// Positions of the machine were left out: how the tool comes to the next place is the machine's business.
+    /// Steps were left out: how the tool comes to the next place is the machine's business.
     jumped: bool,
     events: Vec<super::steps::Event>,
 }
 
 impl<'a, P: Program> Path<'a, P> {
-    fn new(source: &'a mut Steps<P>, there: bool, one_machine: bool) -> Self {
+    fn new(source: &'a mut Steps<P>, there: bool, whole: bool, lengths: bool) -> Self {
         Self {
             source,
             there,
-            one_machine,
+            whole,
+            lengths,
             share: 0.0,
             jumped: false,
             events: Vec::new(),
         }
     }
 
-    /// Steps that are ready, as many as asked for or all of the operation. Between two machines their own positions are
-    /// left out.
+    /// It says something of this control alone: a position of the machine, or of a tool whose length is not in force.
+    fn is_own(&self, step: &Step) -> bool {
+        let bare = self.lengths && step.state.length == 0.0;
+        step.machine || bare && step.kind == MotionKind::Rapid
+    }
+
+    /// Steps that are ready, as many as asked for or all of the operation. Between two controls what says something of one
+    /// of them alone is left out.
     fn fill(&mut self, count: usize) {
         if !self.there {
             return;
         }
-        loop {
+        if self.whole {
             self.source.fill(count);
-            if self.one_machine
-                || !self
-                    .source
-                    .steps
-                    .iter()
-                    .any(|step| step.machine || self.jumped)
-            {
-                return;
-            }
-            let steps = &mut self.source.steps;
+            return;
+        }
+        loop {
+            let known = self.source.steps.len();
+            self.source.fill(count.max(known + 1));
+            let fresh = self.source.steps.split_off(known);
             let mut jumped = self.jumped;
-            let kept: VecDeque<Step> = steps
-                .drain(..)
-                .filter_map(|mut step| {
-                    if step.machine {
-                        jumped = true;
-                        return None;
-                    }
-                    if std::mem::take(&mut jumped) {
-                        step.from = step.to;
-                        step.length = 0.0;
-                    }
-                    Some(step)
-                })
-                .collect();
-            *steps = kept;
+            for mut step in fresh {
+                if self.is_own(&step) {
+                    jumped = true;
+                    continue;
+                }
+                if std::mem::take(&mut jumped) {
+                    step.from = step.to;
+                    step.length = 0.0;
+                    step.arrives = true;
+                }
+                self.source.steps.push_back(step);
+            }
             self.jumped = jumped;
             if self.source.steps.len() >= count || self.source.ended {
                 return;
@@ -135,6 +141,13 @@ impl<'a, P: Program> Path<'a, P> {
         if share >= 1.0 {
             self.source.steps.pop_front();
             self.share = 0.0;
+        }
+    }
+
+    /// It has come where it arrives.
+    fn drop_arrival(&mut self) {
+        if self.front().is_some_and(|step| step.arrives) {
+            self.go(1.0);
         }
     }
 
@@ -177,9 +190,37 @@ impl<P: Program> Walk<'_, '_, '_, P> {
                 (false, false) => return,
                 (true, false) => self.alone(Of::Old, 1),
                 (false, true) => self.alone(Of::New, 1),
+                (true, true) if self.arrived() => {}
                 (true, true) => self.together(),
             }
         }
+    }
+
+    /// One of the controls comes to a place by a way of its own: so does the other, by whatever rapids. True if steps were
+    /// left behind by that.
+    fn arrived(&mut self) -> bool {
+        let arrives = |path: &Path<'_, P>| path.front().is_some_and(|step| step.arrives);
+        let (path, place) = match (arrives(&self.old), arrives(&self.new)) {
+            (true, false) => (&mut self.new, self.old.front()),
+            (false, true) => (&mut self.old, self.new.front()),
+            _ => return false,
+        };
+        let Some(place) = place.map(|step| step.to) else {
+            return false;
+        };
+        let Some(step) = path.front() else {
+            return false;
+        };
+        let there = step.to.distance(&place) <= self.rules.apart;
+        if step.kind != MotionKind::Rapid {
+            return false;
+        }
+        path.go(1.0);
+        if there {
+            self.old.drop_arrival();
+            self.new.drop_arrival();
+        }
+        true
     }
 
     /// Goes over steps of one path alone.

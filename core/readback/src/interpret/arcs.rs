@@ -92,7 +92,7 @@ impl Control {
             None if counted => words.take(b'P').map_or(0.0, |turns| turns - 1.0),
             None => 0.0,
         };
-        if turns < 0.0 || turns > MOST_TURNS || turns != libm::floor(turns) {
+        if !(0.0..=MOST_TURNS).contains(&turns) || turns != libm::floor(turns) {
             return Err(self.refuse("nc-arc", format!("{turns} is no number of full turns")));
         }
         Ok(turns)

@@ -217,7 +217,7 @@ impl Control {
                 } else {
                     0
                 };
-                return self.meant(code, meaning, &mut Gathered::default(), asked);
+                self.meant(code, meaning, &mut Gathered::default(), asked)
             }
             Sense::Refused => Err(self.refuse(
                 "nc-word",
@@ -374,6 +374,15 @@ impl Control {
                 ));
             }
         };
+        if kind == MotionKind::Feed
+            && self.modal.feed_mode == FeedMode::Inverse
+            && words.present & bit(b'F') == 0
+        {
+            return Err(self.refuse(
+                "nc-feed",
+                "under inverse time every block at feed says its F, and this one does not",
+            ));
+        }
         let mut target = self.target(words)?;
         if self.modal.vectors {
             self.vector_words(words, &mut target);

@@ -3,7 +3,7 @@
 use post_grammar::nc::{NcBlock, NcItem, NcValue, NcWord};
 
 use super::expression::whole;
-use super::flow::{Answer, fault};
+use super::flow::{Answer, elsewhere, fault};
 use super::variables::Variables;
 use crate::lexicon::Language;
 
@@ -28,8 +28,9 @@ pub(super) enum Pending {
 #[inline]
 pub(super) fn leads(block: &NcBlock, language: Language, variables: &Variables) -> bool {
     let letters = matches!(language, Language::Macro | Language::Rs274);
+    let names = language == Language::Names;
     block.items.iter().any(|item| match item {
-        NcItem::Word(word) => letters && code(word).is_some(),
+        NcItem::Word(word) => letters && code(word).is_some() || names && word.letter == b'L',
         NcItem::Flow(_) | NcItem::Assign { .. } => true,
         NcItem::Name(name) => name.starts_with("DEF "),
         NcItem::Named { name, .. } => variables.knows(name),
@@ -73,6 +74,17 @@ pub(super) fn take(
     language: Language,
     variables: &Variables,
 ) -> Answer<Option<Pending>> {
+    if language == Language::Names {
+        // `L100`: a subprogram, of which only the main program's file is at hand.
+        let mut items = block.items.iter();
+        let called = items.find_map(|item| match item {
+            NcItem::Word(word) if word.letter == b'L' => Some(&word.value),
+            _ => None,
+        });
+        if let Some(number) = called {
+            return Err(elsewhere(&format!("L{}", variables.worth(number)?)));
+        }
+    }
     if !matches!(language, Language::Macro | Language::Rs274) {
         return Ok(None);
     }

@@ -163,9 +163,10 @@ impl Control {
             return Ok(());
         }
         let place = self.offsets.work.iter().position(|work| work.name == name);
-        if place.is_none() && self.state.work_offset.is_some() {
+        if place.is_none() && self.state.work_offset.is_some() && !self.offsets_told {
+            self.offsets_told = true;
             let message = format!(
-                "the program uses several work offsets, and nothing is said of {name}: it is taken to be the machine file's mount, as all are"
+                "the program uses several work offsets, and nothing is said of {name}: those of which nothing is said are all taken to be where the machine file has the part"
             );
             self.note(
                 Diagnostic::warning("nc-work-offset", message)

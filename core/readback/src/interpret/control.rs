@@ -86,6 +86,7 @@ impl Control {
             modal: Modal::new(lexicon.language(), machine.control.units),
             frames: Frames::default(),
             work: None,
+            offsets_told: false,
             tools: super::tools::Tools::default(),
             variables: super::variables::Variables::new(lexicon.language()),
             cycles: super::cycles::Cycles::default(),
@@ -180,6 +181,13 @@ impl Control {
             let note = self.placed(note);
             self.report.notes.push(note);
         }
+    }
+
+    /// A block stands behind `/`.
+    #[cold]
+    pub fn say_skipped(&mut self) {
+        let message = "blocks behind / are run, as with the operator's switch off";
+        self.note(Diagnostic::warning("nc-skip", message));
     }
 
     /// A word that nobody knows and that moves nothing.

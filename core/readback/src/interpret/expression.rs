@@ -71,6 +71,8 @@ impl Variables {
     fn named_at(&self, variable: &NcExpression, depth: usize) -> Answer<String> {
         match variable {
             NcExpression::Variable(name) => Ok(canonical(name)),
+            // Of the control's own it does not matter which.
+            NcExpression::Indexed { name, .. } if name.starts_with('$') => Ok(name.clone()),
             NcExpression::Indexed { name, index } => {
                 let index = whole(self.number_at(index, depth + 1)?, "an index")?;
                 Ok(match name.as_str() {

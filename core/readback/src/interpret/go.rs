@@ -145,9 +145,9 @@ impl Control {
             pose: self.at.pose,
         };
         let tip = self.at.pose.tip;
-        for place in 0..self.machine.axes.len() {
+        for (place, joint) in joints.iter().enumerate() {
             if self.axes.rotary & (1 << place) != 0 {
-                self.at.joints[place] = joints[place];
+                self.at.joints[place] = *joint;
             }
         }
         self.place(tip, true)?;
@@ -195,7 +195,14 @@ impl Control {
             self.at.pose.tip
         };
         let turned = self.take_said(target);
-        self.place(tip, turned)
+        self.place(tip, turned)?;
+        if !self.state.tcp && !super::planes::upright(self) {
+            let message = "the tool does not stand upright on the tilted plane in force: where words of the plane lead then hangs on the control";
+            let finding = Diagnostic::error("nc-plane", message);
+            let help = "turn the axes to the plane first, by G53.1, TURN, or their words";
+            return Err(self.placed(finding.help(help)).boxed());
+        }
+        Ok(())
     }
 
     /// Takes the axes that `target` says; true where a rotary one is among them.
@@ -300,6 +307,9 @@ impl Control {
         let Some((_, joints)) = best else {
             return Err(cannot());
         };
+        if found.len() > 1 {
+            self.say_nearest();
+        }
         self.at.joints = joints;
         self.place(tip, true)?;
         if self.at.pose.axis.cross(&axis).norm() > 2.0 * AIMED || self.at.pose.axis.dot(&axis) < 0.0
@@ -310,6 +320,13 @@ impl Control {
             ));
         }
         Ok(())
+    }
+
+    /// A vector leaves the control the choice.
+    #[cold]
+    fn say_nearest(&mut self) {
+        let message = "where the axes can stand in several ways along a vector, the control is taken to choose the nearest";
+        self.note(Diagnostic::warning("nc-vector", message));
     }
 
     /// An arc of the program's coordinates as one of the part frame.

@@ -193,15 +193,14 @@ impl Control {
 
     /// Where an axis has its reference position: as `--offsets` says, else at machine coordinate 0.
     fn reference_position(&mut self, which: u8, place: usize) -> f64 {
-        let name = self.machine.axes[place].name.clone();
+        let name = &self.machine.axes[place].name;
         let mut list = self.offsets.references.iter();
-        let said = list.find(|reference| reference.which == which && reference.axis == name);
+        let said = list.find(|reference| reference.which == which && reference.axis == *name);
         if let Some(reference) = said {
             return reference.value - self.machine.axes[place].zero;
         }
-        let message = format!(
-            "the reference position {which} of {name} is not said, and is taken to be machine coordinate 0"
-        );
+        let message =
+            "reference positions of which nothing is said are taken to be machine coordinate 0";
         self.note(
             Diagnostic::warning("nc-reference", message).help(
                 "state it by --offsets, in a table [reference.1] (G28) or [reference.2] (G30)",

@@ -81,6 +81,9 @@ impl Control {
             | Meaning::CycleBore
             | Meaning::CycleBoreFine
             | Meaning::CycleBoreBack => asked.cycle = Some((code, meaning)),
+            // Bored in, and drawn out by hand.
+            Meaning::CycleOther if matches!(code, 870 | 880) => asked.cycle = Some((code, meaning)),
+            Meaning::CycleOther => return Err(self.not_followed(code)),
             Meaning::CycleOff => asked.cycle_off = true,
             Meaning::ReturnStart => self.modal.return_start = true,
             Meaning::ReturnClearance => self.modal.return_start = false,
@@ -128,9 +131,10 @@ impl Control {
             Meaning::Thread | Meaning::ThreadAndBack | Meaning::ThreadBack => {
                 asked.thread = Some((code, meaning));
             }
+            // What was called has led back before: here it ends the program.
+            Meaning::SubprogramEnd => asked.stop = Some(Meaning::End),
             Meaning::Subprogram
             | Meaning::LocalSubprogram
-            | Meaning::SubprogramEnd
             | Meaning::Macro
             | Meaning::MacroModal => {
                 return Err(self.refuse(
@@ -149,7 +153,6 @@ impl Control {
             | Meaning::LengthAdded
             | Meaning::LengthAlongTool
             | Meaning::OrientationAngles
-            | Meaning::CycleOther
             | Meaning::BuilderCoordinates
             | Meaning::ArcThrough
             | Meaning::ArcTangent

@@ -95,6 +95,9 @@ impl Runner {
     fn run(&mut self, block: &NcBlock) -> Result<(), Box<Diagnostic>> {
         self.control.line = block.line;
         self.control.number = block.number;
+        if block.skipped {
+            self.control.say_skipped();
+        }
         if self.conversational {
             conversational::run(&mut self.control, block, &mut self.words)
         } else {
@@ -159,8 +162,10 @@ impl<R: Read + Seek> Interpreter<R> {
             return Ok(false);
         }
         runner.control.report.blocks += 1;
+        // What is done goes straight behind what the caller's list holds.
+        std::mem::swap(done, &mut runner.control.done);
         let ran = runner.run(block);
-        done.append(&mut runner.control.done);
+        std::mem::swap(done, &mut runner.control.done);
         ran.map(|()| true)
     }
 

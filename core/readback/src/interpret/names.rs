@@ -9,7 +9,7 @@ use super::gathered::{Gathered, which};
 use super::state::Control;
 use super::{cycles, frames, planes};
 use crate::Told;
-use crate::lexicon::Sense;
+use crate::lexicon::{Language, Sense};
 
 /// Names whose value changes a motion, also from a block without axes on.
 const SHAPES: &[&str] = &[
@@ -182,6 +182,10 @@ impl Control {
         }
         match self.lexicon.name(name) {
             Sense::Means(meaning) => self.meant(0, meaning, words, asked),
+            // A name alone may be that of a subprogram.
+            Sense::Unknown if self.lexicon.language() == Language::Names => {
+                Err(self.placed(*super::flow::elsewhere(name)).boxed())
+            }
             Sense::Unknown if words.present & self.axes.mask == 0 => {
                 self.unknown(name);
                 Ok(())
@@ -243,6 +247,9 @@ impl Control {
                     | Meaning::CycleBoreBack),
                 ),
             ) => return cycles::call(self, name, meaning, arguments, modal),
+            (_, Sense::Means(meaning @ Meaning::CycleOther)) if cycles::known(name) => {
+                return cycles::call(self, name, meaning, arguments, modal);
+            }
             (_, Sense::Means(Meaning::Nothing)) => {}
             (_, Sense::Means(meaning)) => return self.meant(0, meaning, words, asked),
             _ => {

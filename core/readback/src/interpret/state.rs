@@ -39,6 +39,8 @@ pub(super) struct Control {
     pub frames: Frames,
     /// Number of the work offset in force, by place in `offsets.work`; none: the machine file's.
     pub work: Option<usize>,
+    /// That work offsets of which nothing is said are one was told.
+    pub offsets_told: bool,
     /// Tools and lengths.
     pub tools: Tools,
     /// Its variables.

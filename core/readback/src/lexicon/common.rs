@@ -181,6 +181,8 @@ const NAMES: Words = &[
     ("G601", M::Nothing),
     ("G602", M::Nothing),
     ("G603", M::Nothing),
+    ("G62", M::Nothing),
+    ("G621", M::Nothing),
     ("G64", M::Smoothing),
     ("G641", M::Smoothing),
     ("G642", M::Smoothing),

@@ -72,7 +72,7 @@ impl Offsets {
                 "radius" => offsets.radii = file.numbers(inside, "register"),
                 "tool" => offsets.tools = file.numbers(inside, "tool"),
                 other => {
-                    let meant = nearest(other, TABLES.into_iter());
+                    let meant = nearest(other, TABLES);
                     let help = match meant {
                         Some(meant) => format!("did you mean [{meant}]?"),
                         None => {

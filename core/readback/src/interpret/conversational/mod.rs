@@ -180,8 +180,6 @@ struct Functions {
     machine: bool,
     /// M99: the cycle at the end of the block.
     cycle: bool,
-    /// M89: from here on at each.
-    cycle_at_each: bool,
     /// M140.
     retract: bool,
     /// M129.
@@ -193,7 +191,7 @@ fn functions(control: &mut Control, words: &Gathered, asked: &mut Asked) -> Answ
     let mut functions = Functions::default();
     for &code in words.m.list() {
         match code {
-            89 => functions.cycle_at_each = true,
+            89 => control.cycles.at_each = true,
             91 => functions.machine = true,
             92 => {
                 return Err(control.refuse(
@@ -209,7 +207,11 @@ fn functions(control: &mut Control, words: &Gathered, asked: &mut Asked) -> Answ
                     format!("M{code} is not run: it changes where the machine goes"),
                 ));
             }
-            99 => functions.cycle = true,
+            // The last of those that M89 calls.
+            99 => {
+                control.cycles.at_each = false;
+                functions.cycle = true;
+            }
             126 => control.modal.shortest = Some(true),
             127 => control.modal.shortest = Some(false),
             128 => control.set_tcp(true, 0, false),
@@ -238,12 +240,7 @@ fn functions(control: &mut Control, words: &Gathered, asked: &mut Asked) -> Answ
 /// What a block does once it has moved.
 fn afterwards(control: &mut Control, functions: Functions, asked: &Asked) -> Answer<()> {
     if functions.cycle {
-        control.cycles.at_each = false;
         super::cycles::defined(control)?;
-    } else {
-        if functions.cycle_at_each {
-            control.cycles.at_each = true;
-        }
     }
     if functions.tcp_off || asked.tcp_off {
         control.set_tcp(false, 0, false);
@@ -285,6 +282,3 @@ fn modes(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer
     }
     Ok(kind)
 }
-
-#[cfg(test)]
-mod tests;

@@ -31,6 +31,8 @@ pub(crate) struct Hole {
     pub per_revolution: bool,
     /// Back to the clearance.
     pub out: Out,
+    /// Back to where the tool stands when it is done, not to the clearance alone.
+    pub out_all: bool,
     /// In steps.
     pub pecks: Option<Pecks>,
     /// Wait at the bottom.
@@ -167,8 +169,8 @@ impl Hole {
         match self.out {
             Out::Rapid if lifted => {}
             Out::Rapid => return Ok(self.ended(strokes)),
-            Out::Feed(feed) => strokes.push(Stroke::Feed(self.clearance, feed)),
-            Out::Thread(feed) => strokes.push(Stroke::Thread(self.clearance, feed)),
+            Out::Feed(feed) => strokes.push(Stroke::Feed(self.out_level(), feed)),
+            Out::Thread(feed) => strokes.push(Stroke::Thread(self.out_level(), feed)),
         }
         let mut strokes = self.ended(strokes);
         if lifted {
@@ -189,6 +191,14 @@ impl Hole {
             strokes.push(Stroke::Rapid(self.away));
         }
         strokes
+    }
+
+    fn out_level(&self) -> f64 {
+        if self.out_all {
+            self.away
+        } else {
+            self.clearance
+        }
     }
 
     fn depth(&self) -> f64 {

@@ -117,14 +117,20 @@ pub(super) fn hole(
     let hidden = words.present & bit(letter(axis));
     words.present &= !bit(letter(axis));
     let made = (0..count).try_for_each(|turn| {
-        let target = if turn == 0 || incremental {
+        let mut target = if turn == 0 || incremental {
             control.target(words)?
         } else {
             Target::default()
         };
         let hole = levels(control, &running)?;
-        if control.lexicon.language() == Language::Rs274 {
-            rise(control, axis, hole.clearance)?;
+        if control.lexicon.language() == Language::Rs274 && control.point()[axis] < hole.away {
+            // From under the level of return: straight up to R where the cycles began under it, else on the way to the
+            // hole.
+            if running.start < hole.clearance && control.point()[axis] < hole.clearance {
+                rise(control, axis, hole.clearance)?;
+            } else {
+                target.point[axis] = Some(hole.away);
+            }
         }
         if target.point[first].is_some() || target.point[second].is_some() || target.said != 0 {
             control.go(MotionKind::Rapid, &Path::Straight, &target)?;
@@ -135,12 +141,9 @@ pub(super) fn hole(
     made
 }
 
-/// LinuxCNC goes up to R before it goes to the place, where it stands below it.
+/// Straight up to a level.
 fn rise(control: &mut Control, axis: usize, level: f64) -> Result<(), Box<Diagnostic>> {
     let mut point: Vector3<f64> = control.point();
-    if point[axis] >= level {
-        return Ok(());
-    }
     point[axis] = level;
     control.straight(MotionKind::Rapid, point)
 }
@@ -163,7 +166,7 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
     let back = running.meaning == M::CycleBoreBack;
     if up != back {
         let message = format!(
-            "G{} goes from the level {} to {}: {}",
+            "G{} goes from the level {:.4} to {:.4}: {}",
             f64::from(running.code) / 10.0,
             running.clearance,
             running.bottom,
@@ -186,6 +189,8 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         away,
         feed,
         wait: Wait::seconds(running.dwell),
+        // LinuxCNC feeds all the way out, but for G85.
+        out_all: control.lexicon.language() == Language::Rs274 && running.code != 850,
         ..Hole::default()
     };
     let pecks = |out_after: u32| Pecks {
@@ -239,8 +244,12 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         },
         M::CycleBore => Hole {
             kind: CycleKind::Bore,
-            // G88: the operator draws it out.
-            stop: running.code == 880,
+            ..hole
+        },
+        // G88, and G87 of some: the operator draws it out.
+        M::CycleOther => Hole {
+            kind: CycleKind::Bore,
+            stop: true,
             ..hole
         },
         M::CycleBoreFine => Hole {

@@ -69,6 +69,11 @@ pub(super) fn end(control: &mut Control) {
     control.cycles.modal = None;
 }
 
+/// A cycle of this name is made here.
+pub(super) fn known(name: &str) -> bool {
+    siemens::known(name)
+}
+
 /// `CYCLE81(…)`: called where the tool stands, or in force behind each motion where `modal` (MCALL).
 pub(super) fn call(
     control: &mut Control,
@@ -89,7 +94,7 @@ pub(super) fn call(
             None => None,
         });
     }
-    if !siemens::known(name) {
+    if !known(name) {
         return Err(control.refuse(
             "nc-cycle",
             format!("{name} is no drilling cycle that is known here: what it moves is not known"),

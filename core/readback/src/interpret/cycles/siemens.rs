@@ -55,7 +55,7 @@ impl Arguments<'_> {
         let relative = relative.map(|way| reference - libm::fabs(way) * self.unit);
         match (absolute, relative) {
             (Some(level), Some(by)) if libm::fabs(level - by) > 1e-6 => Err(self.refuse(&format!(
-                "{what} is given twice, absolute {level} and from the reference plane {by}: which holds hangs on the software"
+                "{what} is given twice, absolute {level:.4} and from the reference plane {by:.4}: which holds hangs on the software"
             ))),
             (level, by) => Ok(by.or(level)),
         }
@@ -115,7 +115,7 @@ pub(crate) fn hole(
     };
     if (away - hole.clearance) * (bottom - hole.clearance) > 0.0 {
         return Err(arguments.refuse(&format!(
-            "the retraction plane {away} lies below the level {} where the feed begins",
+            "the retraction plane {away:.4} lies below the level {:.4} where the feed begins",
             hole.clearance
         )));
     }
@@ -206,7 +206,7 @@ fn deep(arguments: &Arguments<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> 
     };
     if !inside {
         return Err(arguments.refuse(&format!(
-            "the first depth is {first}: it does not lie between the reference plane {reference} and the bottom {}",
+            "the first depth is {first:.4}: it does not lie between the reference plane {reference:.4} and the bottom {:.4}",
             hole.bottom
         )));
     }

@@ -48,16 +48,13 @@ impl<C: Course> Verifier<'_, C> {
         if self.hole.is_some() {
             return self.hole_motion(motion, places);
         }
-        if self.pecks_again(motion, places) {
-            return;
-        }
         self.come_back_to_the_course(&places[0]);
         if self.apart {
             // Where a hole is due, a feed motion is its business unless the tool is elsewhere.
             if self.hole_is_due() && self.begins_hole(motion, places) {
                 return self.hole_motion(motion, places);
             }
-            if self.reaches_at_feed(motion, places) {
+            if self.pecks_again(motion, places) || self.reaches_at_feed(motion, places) {
                 return;
             }
             if !self.may_begin(&places[0])

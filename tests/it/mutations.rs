@@ -500,6 +500,9 @@ fn difference(job: &Job, one: &[Done], other: &[Done]) -> Difference {
         for motion in motions {
             if motion.kind != MotionKind::Rapid {
                 let way = length(&dense(&[motion], false));
+                if way == 0.0 {
+                    continue;
+                }
                 let sum = lengths.entry(state(motion)).or_default();
                 sum.0 += way;
                 sum.1 += motion.minutes;
@@ -642,7 +645,8 @@ fn what_differs_is_caught() {
     );
 }
 
-/// The study: `cargo test --test it mutations -- --ignored --nocapture`.
+/// The study: `cargo test --test it mutations -- --ignored --nocapture`; POST_MUTATIONS is how often each change is made to
+/// each program.
 #[test]
 #[ignore = "thousands of programs: minutes"]
 fn thousands_of_changes() {
@@ -659,7 +663,8 @@ fn thousands_of_changes() {
         "grbl",
     ];
     let jobs = jobs(&dialects, JOBS);
-    let tally = study(&jobs, 25, 1000);
+    let each = std::env::var("POST_MUTATIONS").map_or(25, |each| each.parse().unwrap());
+    let tally = study(&jobs, each, 1000);
     println!("{} programs\n{}", jobs.len(), table(&tally));
     for missed in &tally.missed {
         println!("missed: {missed}");

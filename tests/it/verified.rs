@@ -98,11 +98,11 @@ fn the_verb_tells_what_it_finds_and_where() {
     let found = verify(bad_name, &[&length[..], &["--summary", json]].concat());
     assert_eq!(found.code, 1);
     assert!(found.err.contains("error[deviation]"), "{}", found.err);
-    assert!(found.err.contains("bad.nc:18:1"), "{}", found.err);
+    assert!(found.err.contains("bad.nc:19:1"), "{}", found.err);
     assert!(found.err.contains("plate.ncl, line 20"), "{}", found.err);
     let summary: Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
     assert_eq!(summary["faults"][0]["code"], "deviation");
-    assert_eq!(summary["faults"][0]["nc_line"], 18);
+    assert_eq!(summary["faults"][0]["nc_line"], 19);
     // Within a wider tolerance it is good.
     let wide = verify(bad_name, &[&length[..], &["--tolerance", "0.2"]].concat());
     assert_eq!(wide.code, 0, "{}", wide.err);
@@ -183,7 +183,7 @@ fn what_is_split_is_verified_part_by_part() {
         "--tool-length",
         "80",
         "--split",
-        "tool",
+        "tools",
         "-o",
         program,
         PLATE,

@@ -25,6 +25,13 @@ pub(super) struct HoleRun {
     shift: Vector3<f64>,
 }
 
+/// A hole that was made, as long as nothing else is cut.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Made {
+    axis: Axis,
+    deepest: f64,
+}
+
 /// The axis of a hole, from the level where the feed begins.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
@@ -100,6 +107,7 @@ impl<C: Course> Verifier<'_, C> {
                 format!("a rapid goes {from:.3} mm below where the feed of a hole begins");
             self.fault("hole", message, Some(motion), Some(cl_line), Some(from));
         }
+        self.made = None;
         self.hole = Some(HoleRun {
             index,
             deepest: from.max(0.0),
@@ -224,11 +232,41 @@ impl<C: Course> Verifier<'_, C> {
         let above = run.at <= bound.point;
         // Out of it, or elsewhere.
         if above && (run.bottom || rapid && self.goes_elsewhere(&axis, places)) {
+            self.made = run.bottom.then_some(Made {
+                axis,
+                deepest: run.deepest,
+            });
             self.end_hole(motion, run, &element, axis.depth);
             if rapid {
                 self.pass(motion, places);
             }
         }
+    }
+
+    /// A further peck in the hole that was made last: one before may have come to the bottom within the tolerance. False
+    /// if the motion is none.
+    pub(super) fn pecks_again(&mut self, motion: &Motion, places: &[Place]) -> bool {
+        let Some(Made { axis, deepest }) = self.made else {
+            return false;
+        };
+        let bound = self.bound;
+        let most = match motion.kind {
+            MotionKind::Rapid => deepest,
+            _ => axis.depth,
+        };
+        let in_it = places.iter().all(|place| {
+            let (depth, off) = axis.split(place);
+            off.point <= bound.point && off.axis <= bound.axis && depth <= most + bound.point
+        });
+        // Out of it other points may be due.
+        let goes = axis.split(&places[places.len() - 1]).0 > bound.point;
+        if in_it && goes {
+            self.set_kind(match motion.kind {
+                MotionKind::Rapid => "rapid",
+                _ => "hole",
+            });
+        }
+        in_it && goes
     }
 
     fn goes_elsewhere(&self, axis: &Axis, places: &[Place]) -> bool {

@@ -33,7 +33,7 @@ use crate::course::Course;
 use crate::{Done, Motion, MotionKind, Told};
 use axes::Axes;
 pub use cut_path::CutPath;
-use hole::HoleRun;
+use hole::{HoleRun, Made};
 use place::{Apart, Bound, Place, Span};
 pub use report::{BlockReport, Fault, Verification, Worst};
 use sweep::Stray;
@@ -117,6 +117,7 @@ pub struct Verifier<'m, C> {
     apart: bool,
     stray: Option<Stray>,
     hole: Option<HoleRun>,
+    made: Option<Made>,
     /// Where the course cuts.
     cut_path: CutPath,
     /// The tool has come to a point of the course.
@@ -163,6 +164,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             apart: true,
             stray: None,
             hole: None,
+            made: None,
             cut_path: CutPath::new(along),
             placed: false,
             course_near: f64::INFINITY,

@@ -16,6 +16,9 @@ impl<C: Course> Verifier<'_, C> {
         if self.hole.is_some() {
             return self.hole_motion(motion, places);
         }
+        if self.pecks_again(motion, places) {
+            return;
+        }
         self.come_back_to_the_course(&places[0]);
         self.leave_cut();
         self.pass(motion, places);
@@ -273,6 +276,7 @@ impl<C: Course> Verifier<'_, C> {
         }
         self.next = None;
         self.apart = false;
+        self.made = None;
         self.course_near = f64::INFINITY;
         self.miss_events(motion);
     }

@@ -54,7 +54,7 @@ impl<C: Course> Verifier<'_, C> {
             if self.hole_is_due() && self.begins_hole(motion, places) {
                 return self.hole_motion(motion, places);
             }
-            if self.reaches_at_feed(motion, places) {
+            if self.pecks_again(motion, places) || self.reaches_at_feed(motion, places) {
                 return;
             }
             if !self.may_begin(&places[0])

@@ -129,7 +129,7 @@ impl Does {
             solver: Arc::new(machine.solver(0.0).unwrap()),
             length: 0.0,
             tool: None,
-            length_register: None,
+            length_register: Some(1),
             radius_register: None,
             compensation: 0,
             tcp: false,

@@ -292,7 +292,11 @@ impl Scratch {
             self.code.push(' ');
         }
         self.text.push_str(&line);
-        remarks::take_out(&line, syntax, &mut self.code, &mut block.remarks)
+        let taken = remarks::take_out(&line, syntax, &mut self.code, &mut block.remarks);
+        // Of a line with a fault the rest is not taken: both stay as long as each other.
+        let missing = self.text.len().saturating_sub(self.code.len());
+        self.code.extend(std::iter::repeat_n(' ', missing));
+        taken
     }
 
     /// Reads the block in hand by its grammar.

@@ -262,3 +262,11 @@ fn a_fault_leaves_the_reader_ready_for_the_next_block() {
     let lines: Vec<_> = faults.iter().map(|fault| fault.line).collect();
     assert_eq!(lines, [2, 4, 6, 7]);
 }
+
+#[test]
+fn a_fault_in_a_line_that_is_continued_is_that_blocks() {
+    let text = b"1 L X+1 ~\n~\x00\x80 ~\n Z+1\n4 L X+2\n";
+    let (blocks, faults) = read(text, &conversational());
+    let lines: Vec<_> = blocks.iter().map(|block| block.line).collect();
+    assert_eq!((lines, faults.len()), (vec![4], 1));
+}

@@ -101,7 +101,7 @@ impl Variables {
         let number = match expression {
             NcExpression::Number(number) => *number,
             NcExpression::Text(text) => return Ok(Value::Text(text.clone())),
-            NcExpression::Variable(name) if matches!(self.constant(name), Some(_)) => {
+            NcExpression::Variable(name) if self.constant(name).is_some() => {
                 self.constant(name).unwrap_or_default()
             }
             NcExpression::Variable(_) | NcExpression::Indexed { .. } => {

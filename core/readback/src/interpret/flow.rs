@@ -794,7 +794,7 @@ impl<R: Read + Seek> Flow<R> {
     }
 
     fn skip_loop(&mut self, name: Option<&str>, kind: Kind) -> Answer<()> {
-        let (opens, closes): (fn(&NcFlow) -> bool, fn(&NcFlow) -> bool) = match kind {
+        let (opens, closes): (Is, Is) = match kind {
             Kind::While => (
                 |flow| matches!(flow, NcFlow::While { .. }),
                 |flow| matches!(flow, NcFlow::EndWhile(_)),
@@ -867,6 +867,9 @@ impl<R: Read + Seek> Flow<R> {
 fn is_tape_end(block: &NcBlock) -> bool {
     matches!(block.items.as_slice(), [NcItem::Name(name)] if name == "%")
 }
+
+/// Whether a word of flow is one of those that are looked for.
+type Is = fn(&NcFlow) -> bool;
 
 /// Kinds of loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

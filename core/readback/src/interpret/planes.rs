@@ -43,7 +43,7 @@ pub(super) enum Turn {
     #[default]
     Stay,
     /// They turn alone.
-    Turn,
+    Alone,
     /// The linear axes keep the tip on its place.
     Move,
 }
@@ -112,7 +112,7 @@ pub(super) fn turn(
         Some(2.0) => Pick::Minus,
         _ => Pick::Any,
     };
-    turn_to(control, Turn::Turn, pick, MotionKind::Rapid).map(|_| ())
+    turn_to(control, Turn::Alone, pick, MotionKind::Rapid).map(|_| ())
 }
 
 /// It ends: `G69`, `G255`, `CYCLE800()`.
@@ -185,7 +185,7 @@ pub(super) fn turn_to(
     match how {
         _ if stands => {}
         Turn::Stay => {}
-        Turn::Turn => control.go_joints(kind, &to),
+        Turn::Alone => control.go_joints(kind, &to),
         Turn::Move => control.turn_about_tip(kind, &to)?,
     }
     Ok(to)
@@ -372,7 +372,7 @@ pub(super) fn call(
     lay(control, frame)?;
     if direction != 0.0 && mode != 192.0 {
         // The axis whose sign it speaks of is told in the control's record of the head.
-        turn_to(control, Turn::Turn, Pick::Any, MotionKind::Rapid)?;
+        turn_to(control, Turn::Alone, Pick::Any, MotionKind::Rapid)?;
     }
     Ok(())
 }

@@ -59,7 +59,7 @@ pub(super) fn plane(
     }
     planes::end(control)?;
     let how = match (said.has("TURN"), said.has("MOVE")) {
-        (true, _) => Turn::Turn,
+        (true, _) => Turn::Alone,
         (_, true) => Turn::Move,
         _ => Turn::Stay,
     };

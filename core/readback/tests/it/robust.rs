@@ -171,7 +171,7 @@ fn no_mutation_of_a_real_program_brings_the_interpreter_down() {
     };
     for (file, machine_name, dialect) in PROGRAMS {
         let program = fs::read(folder.join(file)).unwrap();
-        let machine = machine(machine_name, &[]);
+        let machine = machine(machine_name);
         let lexicon = lexicon(dialect);
         for round in 0..60 * u64::from(rounds()) {
             let mut random = seeded(round);

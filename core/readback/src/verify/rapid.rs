@@ -16,9 +16,6 @@ impl<C: Course> Verifier<'_, C> {
         if self.hole.is_some() {
             return self.hole_motion(motion, places);
         }
-        if self.pecks_again(motion, places) {
-            return;
-        }
         self.come_back_to_the_course(&places[0]);
         self.leave_cut();
         self.pass(motion, places);

@@ -54,15 +54,20 @@ impl<C: Course> Verifier<'_, C> {
             if self.hole_is_due() && self.begins_hole(motion, places) {
                 return self.hole_motion(motion, places);
             }
-            if self.pecks_again(motion, places) || self.reaches_at_feed(motion, places) {
+            if self.reaches_at_feed(motion, places) {
                 return;
             }
-            if !self.may_begin(&places[0])
-                && (draws_back(places, &self.bound)
+            // What is due goes first.
+            if !self.may_begin(&places[0]) {
+                if self.pecks_again(motion, places) {
+                    return;
+                }
+                if draws_back(places, &self.bound)
                     || self.comes_down(places)
-                    || turns(places, self.rapid_bound.point))
-            {
-                return self.set_kind("rapid");
+                    || turns(places, self.rapid_bound.point)
+                {
+                    return self.set_kind("rapid");
+                }
             }
             self.begin_cut(motion, &places[0]);
         }

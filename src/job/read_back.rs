@@ -81,11 +81,14 @@ fn registers(words: &[VocabularyWord]) -> Registers {
     if lengths_in_the_offset(words) {
         return Registers::None;
     }
-    let has = |letter: &str| {
+    let has = |letter: &str, meaning: Meaning| {
         let mut words = words.iter();
-        words.any(|word| word.meaning == Meaning::LengthRegister && word.word == letter)
+        words.any(|word| word.meaning == meaning && word.word == letter)
     };
-    match (has("H"), has("D")) {
+    match (
+        has("H", Meaning::LengthRegister),
+        has("D", Meaning::LengthOn),
+    ) {
         (true, _) => Registers::OfTool,
         (false, true) => Registers::Edges,
         (false, false) => Registers::None,

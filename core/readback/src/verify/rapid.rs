@@ -132,10 +132,7 @@ impl<C: Course> Verifier<'_, C> {
         let bound = self.rapid_bound;
         for ends in places.windows(2) {
             let mut least = 0.0;
-            loop {
-                let Some(element) = self.track.get(next) else {
-                    break;
-                };
+            while let Some(element) = self.track.get(next) {
                 match &element.what {
                     // Whether it was met is asked before the next cut.
                     What::Event(..) => {}

@@ -459,7 +459,9 @@ fn two_readings_of_every_file_agree() {
 /// Points that stand behind `GOTO` and `GOHOME` in a file, arcs, splines, and the least and largest coordinates of these points in mm:
 /// counted by a program apart from this project (thirty lines of Python that know `$`, `$$` and UNITS). Files that turn
 /// the part (`ROTABL`) have no extents here, for they are written in frames that turn.
-const FIGURES: [(&str, u64, u64, u64, Option<[f64; 6]>); 18] = [
+type Figures = (&'static str, u64, u64, u64, Option<[f64; 6]>);
+
+const FIGURES: [Figures; 18] = [
     ("camworks_neMoguta_UniSource.clt", 360, 72, 0, None),
     (
         "creo3x_MichaHofft_bohren_1.ncl",

@@ -217,7 +217,7 @@ fn words_of_a_plane_that_the_tool_does_not_stand_on_are_refused() {
     let half = 30.0_f64.to_radians();
     let tip = rows(&done).last().unwrap().tip;
     assert!(
-        (tip - Vector3::new(0.0, half.sin(), half.cos()) * 10.0).norm() < 1e-6,
+        (tip - Vector3::new(0.0, libm::sin(half), libm::cos(half)) * 10.0).norm() < 1e-6,
         "{tip:?}"
     );
 }
@@ -254,7 +254,7 @@ fn conversational_curves_are_as_long_as_they_are_on_paper() {
         (
             "CC X+0 Y+0\nCP IPA+720 IZ-4 DR+ F100",
             [10.0, 0.0, 1.0],
-            (40.0 * PI).hypot(4.0),
+            libm::hypot(40.0 * PI, 4.0),
         ),
         (
             "CC IX-10 IY+0\nLP PR+20 PA+90 F100",

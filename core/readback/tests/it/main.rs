@@ -1,4 +1,8 @@
 //! Tests of reading back on hand-made programs and courses.
+#![allow(
+    clippy::unwrap_used,
+    reason = "clippy lets test functions unwrap, but not the helpers beside them"
+)]
 
 mod course;
 mod interpret;

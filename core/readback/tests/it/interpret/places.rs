@@ -286,7 +286,7 @@ fn arcs_of_axis_positions_lie_as_the_axes_do_on_the_part() {
             let mut joints = motion.from.joints;
             // Of Z and X the turn is right-handed from Z to X.
             let sense = if plane.starts_with("G18") { -1.0 } else { 1.0 };
-            let (sine, cosine) = (sense * sweep * t).sin_cos();
+            let (sine, cosine) = libm::sincos(sense * sweep * t);
             joints[first] = centre[first] - 10.0 * cosine;
             joints[second] = centre[second] - 10.0 * sine;
             let (tip, _) = reference(&machine, 0.0).forward(&joints[..machine.axes.len()]);

@@ -1,0 +1,345 @@
+//! Loops and branches: what begins one, what ends it, and how one that does not hold is passed over.
+
+use std::io::{Read, Seek};
+
+use post_grammar::nc::{NcExpression, NcFlow, NcItem, NcMark};
+use post_machine::diagnostic::Diagnostic;
+
+use super::{Answer, Flow, Running, fault};
+use crate::interpret::expression::whole;
+use crate::interpret::variables::{Value, Variables};
+
+impl<R: Read + Seek> Flow<R> {
+    pub(super) fn looped(&mut self, flow: NcFlow, variables: &mut Variables) -> Answer<bool> {
+        let head = self.here;
+        match flow {
+            NcFlow::While { name, condition } => {
+                // The end of a `do`.
+                if let Some(body) = self.close_do(name.as_deref()) {
+                    if variables.holds(&condition)? {
+                        self.go_to(body)?;
+                    } else {
+                        self.running.pop();
+                    }
+                    return Ok(false);
+                }
+                self.forget(head);
+                if variables.holds(&condition)? {
+                    self.push(Running::While { name, head })?;
+                } else {
+                    self.skip_loop(name.as_deref(), Kind::While)?;
+                }
+            }
+            NcFlow::EndWhile(name) => {
+                let head = self.unwind(|running| match running {
+                    Running::While { name: own, head } if *own == name => Some(*head),
+                    _ => None,
+                });
+                let head = head.ok_or_else(|| fault("a loop ends here that has not begun"))?;
+                self.running.pop();
+                self.go_to(head)?;
+            }
+            NcFlow::For { variable, from, to } => {
+                self.forget(head);
+                let name = variables.named(&variable)?;
+                let (from, to) = (variables.number(&from)?, variables.number(&to)?);
+                variables.set(&name, Value::Number(from))?;
+                if from > to {
+                    self.skip_loop(None, Kind::For)?;
+                } else {
+                    let body = self.reader.mark();
+                    self.push(Running::For {
+                        head,
+                        body,
+                        variable: name,
+                        to,
+                    })?;
+                }
+            }
+            NcFlow::EndFor => {
+                let found = self.unwind(|running| match running {
+                    Running::For {
+                        body, variable, to, ..
+                    } => Some((*body, variable.clone(), *to)),
+                    _ => None,
+                });
+                let (body, name, to) =
+                    found.ok_or_else(|| fault("a loop ends here that has not begun"))?;
+                let next = variables.number(&NcExpression::Variable(name.clone()))? + 1.0;
+                if next > to {
+                    self.running.pop();
+                } else {
+                    variables.set(&name, Value::Number(next))?;
+                    self.go_to(body)?;
+                }
+            }
+            NcFlow::Loop => {
+                self.forget(head);
+                let body = self.reader.mark();
+                self.push(Running::Loop { head, body })?;
+            }
+            NcFlow::EndLoop => {
+                let body = self.unwind(|running| match running {
+                    Running::Loop { body, .. } => Some(*body),
+                    _ => None,
+                });
+                self.go_to(body.ok_or_else(|| fault("a loop ends here that has not begun"))?)?;
+            }
+            NcFlow::Do(name) => {
+                self.forget(head);
+                let body = self.reader.mark();
+                self.push(Running::Do { name, head, body })?;
+            }
+            NcFlow::Until(condition) => {
+                let body = self.close_do(None);
+                let body = body.ok_or_else(|| fault("a loop ends here that has not begun"))?;
+                if variables.holds(&condition)? {
+                    self.running.pop();
+                } else {
+                    self.go_to(body)?;
+                }
+            }
+            NcFlow::Repeat { name, times } => {
+                self.forget(head);
+                let left = whole(variables.number(&times)?, "a count of repeats")?;
+                if left > 0 {
+                    let body = self.reader.mark();
+                    self.push(Running::Times {
+                        name,
+                        head,
+                        body,
+                        left,
+                    })?;
+                } else {
+                    self.skip_loop(name.as_deref(), Kind::Times)?;
+                }
+            }
+            NcFlow::EndRepeat(name) => self.again(name.as_deref())?,
+            NcFlow::Break(name) => {
+                let kind = self.innermost(name.as_deref())?;
+                self.running.pop();
+                self.skip_loop(name.as_deref(), kind)?;
+            }
+            NcFlow::Continue(name) => match self.innermost(name.as_deref())? {
+                Kind::Times => self.again(name.as_deref())?,
+                Kind::While => {
+                    if let Some(Running::While { head, .. }) = self.running.pop() {
+                        self.go_to(head)?;
+                    }
+                }
+                _ => return Err(fault("`continue` of this loop is not run")),
+            },
+            _ => {}
+        }
+        Ok(false)
+    }
+
+    /// `o1 endrepeat`.
+    pub(super) fn again(&mut self, name: Option<&str>) -> Answer<()> {
+        let body = self.unwind(|running| match running {
+            Running::Times {
+                name: own, body, ..
+            } if own.as_deref() == name => Some(*body),
+            _ => None,
+        });
+        let body = body.ok_or_else(|| fault("a loop ends here that has not begun"))?;
+        if let Some(Running::Times { left, .. }) = self.running.last_mut() {
+            *left -= 1;
+            if *left > 0 {
+                return self.go_to(body);
+            }
+        }
+        self.running.pop();
+        Ok(())
+    }
+
+    /// The kind of the innermost loop of this name, which is innermost of all afterwards.
+    pub(super) fn innermost(&mut self, name: Option<&str>) -> Answer<Kind> {
+        let kind = self.unwind(|running| match running {
+            Running::While { name: own, .. } if own.as_deref() == name => Some(Kind::While),
+            Running::Do { name: own, .. } if own.as_deref() == name => Some(Kind::Do),
+            Running::Times { name: own, .. } if own.as_deref() == name => Some(Kind::Times),
+            Running::For { .. } if name.is_none() => Some(Kind::For),
+            Running::Loop { .. } if name.is_none() => Some(Kind::Loop),
+            _ => None,
+        });
+        kind.ok_or_else(|| fault("no such loop is running here"))
+    }
+
+    /// Drops what runs inside of the innermost one that `wanted` knows, up to the subprogram.
+    pub(super) fn unwind<T>(&mut self, wanted: impl Fn(&Running) -> Option<T>) -> Option<T> {
+        for place in (0..self.running.len()).rev() {
+            if matches!(self.running[place], Running::Call { .. }) {
+                return None;
+            }
+            if let Some(found) = wanted(&self.running[place]) {
+                self.running.truncate(place + 1);
+                return Some(found);
+            }
+        }
+        None
+    }
+
+    fn close_do(&mut self, name: Option<&str>) -> Option<NcMark> {
+        self.unwind(|running| match running {
+            Running::Do {
+                name: own, body, ..
+            } if own.as_deref() == name => Some(*body),
+            _ => None,
+        })
+    }
+
+    /// A loop that was left by a jump begins anew.
+    fn forget(&mut self, begins: NcMark) {
+        let known = self.unwind(|running| match running {
+            Running::While { head, .. }
+            | Running::For { head, .. }
+            | Running::Loop { head, .. }
+            | Running::Do { head, .. }
+            | Running::Times { head, .. }
+                if *head == begins =>
+            {
+                Some(())
+            }
+            _ => None,
+        });
+        if known.is_some() {
+            self.running.pop();
+        }
+    }
+
+    pub(super) fn push(&mut self, running: Running) -> Answer<()> {
+        if self.running.len() >= self.limits.depth {
+            return Err(Diagnostic::error(
+                "nc-limit",
+                format!(
+                    "subprograms and loops stand inside one another more than {} deep",
+                    self.limits.depth
+                ),
+            )
+            .boxed());
+        }
+        self.running.push(running);
+        Ok(())
+    }
+
+    /// A condition does not hold: on to what does, or behind the end.
+    pub(super) fn otherwise(&mut self, name: Option<&str>, variables: &Variables) -> Answer<()> {
+        loop {
+            let flow = self.skip(
+                name,
+                |flow| matches!(flow, NcFlow::If { .. }),
+                |flow| {
+                    matches!(
+                        flow,
+                        NcFlow::ElseIf { .. } | NcFlow::Else(_) | NcFlow::EndIf(_)
+                    )
+                },
+                |flow| matches!(flow, NcFlow::EndIf(_)),
+            )?;
+            match flow {
+                NcFlow::ElseIf { condition, .. } if !variables.holds(&condition)? => {}
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    fn skip_loop(&mut self, name: Option<&str>, kind: Kind) -> Answer<()> {
+        let (opens, closes): (Is, Is) = match kind {
+            Kind::While => (
+                |flow| matches!(flow, NcFlow::While { .. }),
+                |flow| matches!(flow, NcFlow::EndWhile(_)),
+            ),
+            Kind::For => (
+                |flow| matches!(flow, NcFlow::For { .. }),
+                |flow| matches!(flow, NcFlow::EndFor),
+            ),
+            Kind::Loop => (
+                |flow| matches!(flow, NcFlow::Loop),
+                |flow| matches!(flow, NcFlow::EndLoop),
+            ),
+            Kind::Do => (
+                |flow| matches!(flow, NcFlow::Do(_)),
+                |flow| matches!(flow, NcFlow::Until(_) | NcFlow::While { .. }),
+            ),
+            Kind::Times => (
+                |flow| matches!(flow, NcFlow::Repeat { .. }),
+                |flow| matches!(flow, NcFlow::EndRepeat(_)),
+            ),
+        };
+        self.skip(name, opens, closes, closes).map(|_| ())
+    }
+
+    /// Reads on, running nothing, up to the word that closes what begins here: the next of this name, or without names
+    /// the next that is not inside another that opens and ends on the way.
+    pub(super) fn skip(
+        &mut self,
+        name: Option<&str>,
+        opens: fn(&NcFlow) -> bool,
+        closes: fn(&NcFlow) -> bool,
+        ends: fn(&NcFlow) -> bool,
+    ) -> Answer<NcFlow> {
+        let mut block = std::mem::take(&mut self.passed);
+        let mut inside = 0_u32;
+        let found = loop {
+            match self.take(&mut block) {
+                Ok(true) => {}
+                Ok(false) => break None,
+                Err(fault) if fault.code == "nc-limit" => return Err(fault),
+                Err(_) => continue,
+            }
+            let mut here = None;
+            for item in &block.items {
+                let NcItem::Flow(flow) = item else {
+                    continue;
+                };
+                let named = name.is_some();
+                if named && closes(flow) && named_as(flow) == name {
+                    here = Some((**flow).clone());
+                } else if !named && opens(flow) {
+                    inside += 1;
+                } else if !named && inside == 0 && closes(flow) {
+                    here = Some((**flow).clone());
+                } else if !named && ends(flow) {
+                    inside = inside.saturating_sub(1);
+                }
+            }
+            if here.is_some() {
+                break here;
+            }
+        };
+        self.passed = block;
+        found.ok_or_else(|| fault("what begins here does not end in this file"))
+    }
+}
+
+/// Whether a word of flow is one of those that are looked for.
+type Is = fn(&NcFlow) -> bool;
+
+/// Kinds of loops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    While,
+    For,
+    Loop,
+    Do,
+    Times,
+}
+
+/// The name that ties the words of a loop or a branch together.
+fn named_as(flow: &NcFlow) -> Option<&str> {
+    match flow {
+        NcFlow::If { name, .. }
+        | NcFlow::ElseIf { name, .. }
+        | NcFlow::Else(name)
+        | NcFlow::EndIf(name)
+        | NcFlow::While { name, .. }
+        | NcFlow::EndWhile(name)
+        | NcFlow::Do(name)
+        | NcFlow::Repeat { name, .. }
+        | NcFlow::EndRepeat(name)
+        | NcFlow::SubEnd(name) => name.as_deref(),
+        NcFlow::SubBegin(name) => Some(name),
+        _ => None,
+    }
+}

@@ -22,8 +22,17 @@ pub struct Written {
     pub notes: Vec<Diagnostic>,
 }
 
+/// What a program does not say of its tools.
+#[derive(Clone, Copy, Debug)]
+pub struct Tools {
+    /// Length of those whose length the program does not compensate, mm.
+    pub length: Option<f64>,
+    /// Its control counts edges of a tool (D1), not registers: these are no registers of another control.
+    pub edges: bool,
+}
+
 /// Writes the path of a program as a CL file of the part `part` to `sink`. Chords of curves that no record has stay within
-/// `chord` mm; `length` is that of tools whose length the program does not compensate, mm.
+/// `chord` mm.
 ///
 /// # Errors
 /// The text cannot be written.
@@ -31,7 +40,7 @@ pub fn write<P: Program>(
     course: &mut DoneCourse<P>,
     part: &str,
     chord: f64,
-    length: Option<f64>,
+    tools: Tools,
     sink: &mut dyn FnMut(&[u8]) -> Result<(), FileFault>,
 ) -> Result<Written, FileFault> {
     let mut writer = ClWriter::new(chord);
@@ -47,8 +56,10 @@ pub fn write<P: Program>(
                     .map(|state| state.length)
                     .filter(|length| *length != 0.0);
                 let tool = Tool {
-                    register: state.and_then(|state| state.length_register),
-                    length: compensated.or(length),
+                    register: state
+                        .and_then(|state| state.length_register)
+                        .filter(|_| !tools.edges),
+                    length: compensated.or(tools.length),
                 };
                 writer.item(&item, tool, &mut text)
             }

@@ -280,6 +280,11 @@ pub fn hold<C: Course, R: Read + Seek>(
     progress.finish();
     let report = program.report();
     findings.extend(report.notes.iter().cloned());
+    for (word, count, line) in report.unknown.iter().take(MOST_UNREAD) {
+        let message = format!("{word} is not known and is taken to move nothing; {count} times");
+        let place = Place::new(name, *line, "", 0..0);
+        findings.push(Diagnostic::warning("nc-unknown", message).at(Some(place)));
+    }
     let blocks = report.blocks;
     drop(program);
     let found = verifier.finish(listen);

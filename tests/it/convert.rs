@@ -245,3 +245,26 @@ fn a_program_that_the_other_machine_cannot_make_is_not_written() {
     assert!(run.err.contains("G999"), "{}", run.err);
     assert!(!target.exists());
 }
+
+/// D1 of a control whose tools have edges is no register of another: each tool has its own H.
+#[test]
+fn an_edge_becomes_no_register() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/1000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/100\nGOTO/0,0,0\nGOTO/10,0,0\nRAPID\n\
+              GOTO/10,0,50\nLOADTL/2\nSPINDL/1000,CLW\nRAPID\nGOTO/20,0,50\nFEDRAT/100\nGOTO/20,0,0\nGOTO/30,0,0\nRAPID\n\
+              GOTO/30,0,50\nFINI\n";
+    fs::write(at("two.cls"), cl).unwrap();
+    let (cl, siemens, fanuc) = (at("two.cls"), at("two.mpf"), at("two.nc"));
+    let length = ["--tool-length", "80"];
+    let posted = ["-m", "ac-trunnion-840d", text(&cl), "-o", text(&siemens)];
+    done(&[&posted[..], &length].concat());
+    let from = ["--from", "ac-trunnion-840d", "--to", "ac-trunnion"];
+    let converted = ["convert", text(&siemens), "-o", text(&fanuc)];
+    done(&[&converted[..], &from, &length].concat());
+    let program = fs::read_to_string(&fanuc).unwrap();
+    assert!(
+        program.contains("H1") && program.contains("H2"),
+        "{program}"
+    );
+}

@@ -118,7 +118,7 @@ impl Lexicon {
     }
 
     /// D switches the length of the tool on, and D0 off.
-    pub(crate) fn tools_have_edges(&self) -> bool {
+    pub fn tools_have_edges(&self) -> bool {
         self.tools_have_edges
     }
 

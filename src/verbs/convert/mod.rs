@@ -20,9 +20,10 @@ use crate::arguments::{JobArguments, ProgramArguments};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg, Role};
 use crate::job::nc_program::{self, NcControl};
+use crate::job::nc_to_cl::{self, Tools};
 use crate::job::one_program::OneProgram;
 use crate::job::read_back::{self, Against, Held, Reading};
-use crate::job::{self, nc_to_cl, plugin_finder};
+use crate::job::{self, plugin_finder};
 use crate::terminal::{self, clock, number, table};
 
 /// Moves an NC program to another machine.
@@ -188,7 +189,10 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
             &mut course,
             &part,
             chords.tip,
-            arguments.tool_length,
+            Tools {
+                length: arguments.tool_length,
+                edges: from.lexicon.tools_have_edges(),
+            },
             &mut |text| {
                 copy(text)?;
                 match cl_file.first_mut() {

@@ -15,7 +15,7 @@ use crate::arguments::ProgramArguments;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg, Role};
 use crate::job::nc_program::{self, NcControl};
-use crate::job::nc_to_cl;
+use crate::job::nc_to_cl::{self, Tools};
 use crate::terminal;
 use motions_csv::MotionsCsv;
 use survey::Survey;
@@ -167,8 +167,11 @@ fn write_cl(
     let [tip, axis] = [accuracy.tolerance, accuracy.axis_tolerance].map(|mm| mm * CHORDS);
     let mut course = DoneCourse::new(program, Chords::within(tip, axis));
     let part = arguments.input.stem().unwrap_or_default();
-    let length = arguments.program.tool_length;
-    let written = nc_to_cl::write(&mut course, &part, tip, length, &mut |text| {
+    let tools = Tools {
+        length: arguments.program.tool_length,
+        edges: control.lexicon.tools_have_edges(),
+    };
+    let written = nc_to_cl::write(&mut course, &part, tip, tools, &mut |text| {
         file.write_bytes(text)
     })?;
     terminal::findings(&written.notes);

@@ -10,6 +10,7 @@ use clap::Args;
 use post_grammar::Units;
 use post_machine::description::{Setting, Tcp};
 use post_posting::program::{ToldSpindle, Unknown};
+use post_readback::interpret::Limits;
 
 use crate::files::PathArg;
 use flag_values::{
@@ -178,8 +179,8 @@ pub struct ProgramArguments {
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "Reading")]
     pub offsets: Option<PathArg>,
 
-    /// So many blocks are run, those of loops and subprograms each time; more are refused.
-    #[arg(long, value_name = "N", default_value_t = 100_000_000, value_parser = clap::value_parser!(u64).range(1..), help_heading = "Reading")]
+    /// So many blocks are run once more, by loops, jumps and subprograms; more are refused.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().blocks, value_parser = clap::value_parser!(u64).range(1..), help_heading = "Reading")]
     pub most_blocks: u64,
 
     /// Length of every tool that --offsets does not name, from the gauge point to the tip, mm, over what the machine file

@@ -87,7 +87,7 @@ pub struct ConvertArguments {
     #[arg(long, value_name = "NAME", help_heading = "First machine")]
     from_dialect: Option<String>,
 
-    /// So many blocks are run, those of loops and subprograms each time; more are refused.
+    /// So many blocks are run once more, by loops, jumps and subprograms; more are refused.
     #[arg(long, value_name = "N", default_value_t = Limits::default().blocks, value_parser = clap::value_parser!(u64).range(1..), help_heading = "First machine")]
     most_blocks: u64,
 

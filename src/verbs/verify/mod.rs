@@ -64,7 +64,7 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
     summary: Option<PathArg>,
 
-    /// Blocks that are run at most, those of loops and subprograms each time.
+    /// So many blocks are run once more, by loops, jumps and subprograms; more are refused.
     #[arg(long, value_name = "N", default_value_t = Limits::default().blocks)]
     most_blocks: u64,
 

@@ -270,6 +270,9 @@ impl Control {
             } else {
                 self.modal.unit
             };
+            if feed < 0.0 {
+                return Err(self.refuse("nc-feed", format!("F{feed} is no feed")));
+            }
             self.modal.feed = Some(feed * unit);
         }
         if words.present & (bit(b'S') | bit(b'T')) != 0 || asked.change || asked.spindle.is_some() {

@@ -22,6 +22,9 @@ use crate::lexicon::Language;
 
 pub(super) type Answer<T> = Result<T, Box<Diagnostic>>;
 
+/// So many lines that are looked through for a label take the time of a block that is run.
+const SEARCHED: u64 = 64;
+
 /// What is running.
 #[derive(Clone, Debug)]
 enum Running {
@@ -81,8 +84,10 @@ pub(super) struct Flow<R> {
     file: String,
     language: Language,
     limits: Limits,
-    /// Blocks read so far, lines looked through among them.
-    read: u64,
+    /// Blocks read again so far, lines looked through among them.
+    again: u64,
+    /// Line of the block that stands furthest down of those that were read.
+    furthest: u64,
     /// Too many were read, and that was said.
     over: bool,
     /// Where the block stands that was handed out last.
@@ -105,7 +110,8 @@ impl<R: Read + Seek> Flow<R> {
             file: file.to_owned(),
             language,
             limits,
-            read: 0,
+            again: 0,
+            furthest: 0,
             over: false,
             here,
             running: Vec::new(),
@@ -146,14 +152,19 @@ impl<R: Read + Seek> Flow<R> {
         }
     }
 
-    /// Reads a block and counts it.
+    /// Reads a block, and counts it if it was read before.
     #[inline]
     fn take(&mut self, block: &mut NcBlock) -> Answer<bool> {
-        self.read += 1;
-        if self.read > self.limits.blocks {
+        let read = self.reader.next_block(block);
+        // What is read for the first time comes to an end with the file.
+        if block.line > self.furthest {
+            self.furthest = block.line;
+        } else {
+            self.again += 1;
+        }
+        if self.again > self.limits.blocks {
             return self.too_many();
         }
-        let read = self.reader.next_block(block);
         read.map_err(|error| self.failed(error))
     }
 
@@ -166,7 +177,7 @@ impl<R: Read + Seek> Flow<R> {
         }
         let count = self.limits.blocks;
         let message = format!(
-            "{count} blocks were read, and the program has not come to its end: a loop may never end"
+            "{count} blocks were read once more, and the program has not come to its end: a loop may never end"
         );
         Err(Diagnostic::error("nc-limit", message)
             .help("a higher count is set by --most-blocks")
@@ -555,9 +566,8 @@ impl<R: Read + Seek> Flow<R> {
     fn find(&mut self, target: &NcTarget, direction: Direction) -> Answer<Option<NcMark>> {
         let before = self.reader.lines_searched();
         let found = self.reader.find(target, direction);
-        self.read = self
-            .read
-            .saturating_add(self.reader.lines_searched() - before);
+        let searched = self.reader.lines_searched() - before;
+        self.again = self.again.saturating_add(searched / SEARCHED);
         found.map_err(|error| self.failed(error))
     }
 }

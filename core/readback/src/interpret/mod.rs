@@ -53,7 +53,7 @@ use state::Control;
 /// How far a program may go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Blocks that are run in all, those of loops and subprograms each time.
+    /// Blocks that are run once more, by loops, jumps and subprograms.
     pub blocks: u64,
     /// Subprograms and loops inside one another.
     pub depth: usize,
@@ -62,7 +62,7 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Self {
-            blocks: 100_000_000,
+            blocks: 2_000_000,
             depth: 32,
         }
     }

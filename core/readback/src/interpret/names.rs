@@ -11,12 +11,6 @@ use super::{cycles, frames, planes};
 use crate::Told;
 use crate::lexicon::{Language, Sense};
 
-/// Names whose value changes a motion, also from a block without axes on.
-const SHAPES: &[&str] = &[
-    "LEAD", "TILT", "A2", "B2", "C2", "A4", "B4", "C4", "A5", "B5", "C5", "THETA", "AR", "RP",
-    "AP", "CHF", "CHR", "RND", "RNDM", "ANG",
-];
-
 /// Takes what `gather` left.
 pub(super) fn take(
     control: &mut Control,
@@ -109,13 +103,6 @@ impl Control {
                 let value = worth(self)?;
                 self.modal.named_register = Some(which(b'H', value, self)?);
             }
-            Sense::Unknown
-                if words.present & self.axes.mask == 0
-                    && words.named_axes == 0
-                    && !SHAPES.contains(&name) =>
-            {
-                self.unknown(name);
-            }
             _ => {
                 let message =
                     format!("{name}= is not run, and might change the motion of its block");
@@ -186,11 +173,12 @@ impl Control {
             Sense::Unknown if self.lexicon.language() == Language::Names => {
                 Err(self.placed(*super::flow::elsewhere(name)).boxed())
             }
-            Sense::Unknown if words.present & self.axes.mask == 0 => {
-                self.unknown(name);
-                Ok(())
+            Sense::Unknown => {
+                let message =
+                    format!("{name} is not known, and might lead elsewhere or change what moves");
+                Err(self.refuse("nc-word", message))
             }
-            Sense::Unknown | Sense::Refused => {
+            Sense::Refused => {
                 let message =
                     format!("{name} is not run, and might change the motion of its block");
                 Err(self.refuse("nc-word", message))

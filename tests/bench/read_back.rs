@@ -5,8 +5,9 @@
 //! reader alone, `motions` the reader and the interpreter to axis values, tip and tool axis. As commands: `read` (with its
 //! table of extents and times), `verify` against the CL file, and `diff` of the program with itself, which reads both
 //! twice. `rs274 -g` interprets the program and prints canonical functions, into nowhere; where it is not installed, that
-//! is said. Runs alternate, and medians are compared. The peak of the memory is that of the command on a tenth of the
-//! program, and on all of it.
+//! is said. Runs alternate, and medians are compared: of the time by the clock, and of the processor's time, which tells
+//! the same while the machine has other work. The peak of the memory is that of the command on a tenth of the program,
+//! and on all of it.
 
 #[path = "common/job.rs"]
 #[expect(dead_code, reason = "nothing is posted in this process")]
@@ -54,11 +55,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         fs::metadata(&whole.program)?.len() / 1_000_000
     ));
     let lexicon = Lexicon::new(&vocabulary()?);
-    let mut rows: Vec<(&str, Vec<Duration>)> = Vec::new();
+    let mut rows: Vec<(&str, Vec<Times>)> = Vec::new();
     let mut time = |name: &'static str, run: &mut dyn FnMut() -> Result<(), Box<dyn Error>>| {
-        let start = Instant::now();
+        let (start, busy) = (Instant::now(), processor());
         run()?;
-        let took = start.elapsed();
+        let took = Times {
+            clock: start.elapsed(),
+            processor: processor().saturating_sub(busy),
+        };
         match rows.iter_mut().find(|(known, _)| *known == name) {
             Some((_, times)) => times.push(took),
             None => rows.push((name, vec![took])),
@@ -76,21 +80,34 @@ fn main() -> Result<(), Box<dyn Error>> {
         time("post verify", &mut || whole.verify().map(drop))?;
         time("post diff", &mut || whole.diff().map(drop))?;
     }
-    let medians: Vec<(&str, f64)> = rows
-        .iter_mut()
-        .map(|(name, times)| (*name, median(times).as_secs_f64()))
+    let medians: Vec<(&str, [f64; 2])> = rows
+        .iter()
+        .map(|(name, times)| {
+            let clock = median(times.iter().map(|times| times.clock));
+            (
+                *name,
+                [clock, median(times.iter().map(|times| times.processor))],
+            )
+        })
         .collect();
     let floor = medians.iter().find(|(name, _)| *name == "rs274 -g");
-    say(&format!("\n{:<14} blocks/s  times rs274", ""));
+    say(&format!(
+        "\n{:<14} {:>9}  {:>11} {:>9}  {:>11}",
+        "", "by clock", "times rs274", "processor", "times rs274"
+    ));
+    say(&format!(
+        "{:<14} {:>9}  {:>11} {:>9}",
+        "", "blocks/s", "", "blocks/s"
+    ));
     for (name, seconds) in &medians {
-        let times = floor.map_or_else(
-            || "-".to_owned(),
-            |(_, floor)| format!("{:.1}", floor / seconds),
-        );
-        say(&format!(
-            "{name:<14} {:>8.0}  {times:>11}",
-            written as f64 / seconds
-        ));
+        let columns = [0, 1].map(|column| {
+            let times = floor.map_or_else(
+                || "-".to_owned(),
+                |(_, floor)| format!("{:.1}", floor[column] / seconds[column]),
+            );
+            format!("{:>9.0}  {times:>11}", written as f64 / seconds[column])
+        });
+        say(&format!("{name:<14} {}", columns.join(" ")));
     }
     match floor {
         Some(_) => say(&format!(
@@ -273,7 +290,30 @@ fn say(line: &str) {
     let _ = writeln!(std::io::stdout(), "{line}");
 }
 
-fn median(times: &mut [Duration]) -> Duration {
+/// What a run took.
+struct Times {
+    /// By the clock.
+    clock: Duration,
+    /// Of the processor, in this process and in those that it waited for.
+    processor: Duration,
+}
+
+/// Time of the processor that this process and those that it waited for have taken, where the system tells it.
+fn processor() -> Duration {
+    // Fields 14 to 17 of proc(5), in hundredths of a second; the name in field 2 may hold blanks.
+    let text = fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields = text
+        .rsplit(')')
+        .next()
+        .unwrap_or_default()
+        .split_whitespace();
+    let ticks: u64 = fields.skip(11).take(4).flat_map(str::parse::<u64>).sum();
+    Duration::from_millis(10 * ticks)
+}
+
+/// Seconds.
+fn median(times: impl Iterator<Item = Duration>) -> f64 {
+    let mut times: Vec<Duration> = times.collect();
     times.sort();
-    times[times.len() / 2]
+    times[times.len() / 2].as_secs_f64()
 }

@@ -138,6 +138,28 @@ impl<R: Read + Seek> Lines<R> {
         &self.pending()[..line.end]
     }
 
+    /// Reads on if no whole line is pending; false if one is, if it is too long, or if nothing more comes.
+    pub(super) fn read_on(&mut self) -> io::Result<bool> {
+        let pending = self.pending();
+        if self.ended || pending.len() > LONGEST || memchr2(b'\n', b'\r', pending).is_some() {
+            return Ok(false);
+        }
+        self.fill()?;
+        Ok(true)
+    }
+
+    /// The text of the line of this number, which is that at `mark` or one behind it, if the buffer still holds it.
+    pub(super) fn kept(&self, mark: NcMark, line: u64) -> Option<&[u8]> {
+        let at = usize::try_from(mark.offset.checked_sub(self.base)?).ok()?;
+        let mut rest = self.buffer[..self.end].get(at..)?;
+        let text = |rest: &[u8]| memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
+        for _ in 0..line.checked_sub(mark.line)? {
+            let end = text(rest);
+            rest = rest.get(end + line_end(&rest[end..], true)?..)?;
+        }
+        Some(&rest[..text(rest)])
+    }
+
     /// Goes behind a line.
     pub(super) fn consume(&mut self, line: &Physical) -> io::Result<()> {
         if line.overlong {

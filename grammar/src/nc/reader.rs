@@ -82,6 +82,12 @@ impl<R: Read + Seek> NcReader<R> {
         self.lines.mark()
     }
 
+    /// The text of the line of this number, which is that at `mark` or one behind it: for messages about a block that was
+    /// just read. None if it is no longer at hand.
+    pub fn text(&self, mark: NcMark, line: u64) -> Option<Cow<'_, str>> {
+        self.lines.kept(mark, line).map(decode)
+    }
+
     /// Goes on with the block at `mark`.
     ///
     /// # Errors
@@ -102,7 +108,13 @@ impl<R: Read + Seek> NcReader<R> {
             self.open()?;
         }
         block.line = self.lines.line();
-        if let Some(length) = self.plain(block) {
+        let mut plain = self.plain(block);
+        // The line may go on behind what was read of the file.
+        if plain.is_none() && self.lines.read_on()? {
+            block.clear();
+            plain = self.plain(block);
+        }
+        if let Some(length) = plain {
             self.lines.pass(length);
             self.began = true;
             self.behind_percent = false;

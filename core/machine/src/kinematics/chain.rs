@@ -205,9 +205,25 @@ impl Chain {
         turns
     }
 
+    /// Evaluates sines and cosines anew where the place of a rotary joint is a bit of `of`.
+    #[inline]
+    pub fn turn_anew(&self, joints: &Joints, of: u32, turns: &mut Turns) {
+        for (index, joint) in self.joints().iter().enumerate() {
+            if joint.rotary && of & (1 << index) != 0 {
+                (turns.sines[index], turns.cosines[index]) = libm::sincos(joints[index]);
+            }
+        }
+    }
+
+    /// [`Chain::forward`] where the sines and cosines of the joints are known.
+    #[inline]
+    pub fn pose(&self, joints: &Joints, turns: &Turns) -> Pose {
+        self.reach(joints, turns, |_, _, _, _| {})
+    }
+
     /// Where the tool stands, seen from the part.
     pub fn forward(&self, joints: &Joints) -> Pose {
-        self.reach(joints, &self.turns(joints), |_, _, _, _| {})
+        self.pose(joints, &self.turns(joints))
     }
 
     /// The way of the tip while a linear joint goes one mm, the others as in `joints`: mm, part frame.

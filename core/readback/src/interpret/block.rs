@@ -387,7 +387,8 @@ impl Control {
                 "under inverse time every block at feed says its F, and this one does not",
             ));
         }
-        let mut target = self.target(words)?;
+        let mut target = Target::default();
+        self.put_target(words, &mut target)?;
         if self.modal.vectors {
             self.vector_words(words, &mut target);
         }
@@ -446,12 +447,20 @@ impl Control {
     }
 
     /// The target that the words of axes say, in the coordinates that are in force.
-    #[inline]
     pub(super) fn target(&mut self, words: &mut Gathered) -> Result<Target, Box<Diagnostic>> {
-        let mut target = Target {
-            vector: words.vector,
-            ..Target::default()
-        };
+        let mut target = Target::default();
+        self.put_target(words, &mut target)?;
+        Ok(target)
+    }
+
+    /// Puts what the words of axes say into `target`, which is empty: it is large, and not handed about.
+    #[inline]
+    fn put_target(
+        &mut self,
+        words: &mut Gathered,
+        target: &mut Target,
+    ) -> Result<(), Box<Diagnostic>> {
+        target.vector = words.vector;
         let mut left = words.present & self.axes.mask;
         words.used |= left;
         let incremental = if self.modal.incremental {
@@ -505,7 +514,7 @@ impl Control {
                 target.say(place, words.named_values[place]);
             }
         }
-        Ok(target)
+        Ok(())
     }
 }
 

@@ -7,14 +7,14 @@ use post_machine::axis_words::unit_length;
 use post_machine::description::{Machine, OutputUnits};
 use post_machine::diagnostic::{Diagnostic, Place};
 use post_machine::kinematics::chain::turn;
-use post_machine::kinematics::{Joints, MAX_AXES, Trace};
+use post_machine::kinematics::{Joints, MAX_AXES, Turns};
 use post_machine::tilted_plane::TiltedPlane;
 
 use super::ReadReport;
 use super::frame::{Frame, Frames};
 use super::state::{ArcPlane, Axes, Control, FeedMode, Head, Modal, MotionMode, Orientation};
 use crate::lexicon::{Language, Lexicon};
-use crate::{Coolants, Done, Offsets, Spindle, State, Told};
+use crate::{Coolants, Done, Offsets, Spindle, Stance, State, Told};
 
 /// So many lengths are kept ready.
 const SOLVERS: usize = 64;
@@ -107,7 +107,8 @@ impl Control {
                 smoothing: None,
             },
             shared: None,
-            at: Trace::default(),
+            at: Stance::default(),
+            turns: Turns::default(),
             ended: false,
             in_machine: false,
             hole: false,
@@ -271,9 +272,11 @@ impl Control {
     /// The machine stands at `joints`, nothing moves.
     pub fn stand(&mut self, joints: &Joints) {
         let chain = self.state.solver.chain();
-        self.at.joints = *joints;
-        self.at.turns = chain.turns(joints);
-        chain.trace(&mut self.at);
+        self.turns = chain.turns(joints);
+        self.at = Stance {
+            joints: *joints,
+            pose: chain.pose(joints, &self.turns),
+        };
     }
 
     /// Where the axes stand that the words count from: the tip of the compensated tool on the part origin, rotary axes

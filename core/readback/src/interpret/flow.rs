@@ -12,7 +12,7 @@ use post_grammar::ReadError;
 use post_grammar::nc::{
     Direction, NcBlock, NcExpression, NcFlow, NcItem, NcMark, NcReader, NcTarget,
 };
-use post_machine::diagnostic::{Diagnostic, unreadable};
+use post_machine::diagnostic::{Diagnostic, Place, unreadable};
 
 use super::calls::{self, Pending};
 use super::expression::whole;
@@ -124,6 +124,19 @@ impl<R: Read + Seek> Flow<R> {
     /// Where the blocks come from.
     pub fn reader(&self) -> &NcReader<R> {
         &self.reader
+    }
+
+    /// Shows the text of the line that a finding about the block in hand speaks of.
+    #[cold]
+    pub fn show(&self, mut finding: Box<Diagnostic>) -> Box<Diagnostic> {
+        if let Some(place) = &mut finding.place
+            && place.text.is_empty()
+            && let Some(text) = self.reader.text(self.here, place.line)
+        {
+            let from = text.len() - text.trim_start().len();
+            *place = Place::new(&self.file, place.line, &text, from..text.trim_end().len());
+        }
+        finding
     }
 
     /// The next block that is run, without what leads elsewhere; false at the end.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::{Joints, MAX_AXES, Pose, Trace};
+use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 
 use super::state::{Axes, Control, Orientation};
 use crate::{Done, Motion, MotionKind, Stance, Way};
@@ -38,6 +38,7 @@ impl Target {
     }
 
     /// Says the value of an axis.
+    #[inline]
     pub fn say(&mut self, place: usize, value: f64) {
         self.joints[place] = value;
         self.said |= 1 << place;
@@ -92,10 +93,7 @@ impl Control {
         path: &Path,
         target: &Target,
     ) -> Result<(), Box<Diagnostic>> {
-        let from = Stance {
-            joints: self.at.joints,
-            pose: self.at.pose,
-        };
+        let from = self.at;
         let tips = self.tip_words();
         if let Some(vector) = target.vector {
             self.aim(target, vector)?;
@@ -126,10 +124,7 @@ impl Control {
 
     /// Brings the axes to `joints` (mm and radians from the drawing's zeros), all linearly: the turn to a tilted plane.
     pub fn go_joints(&mut self, kind: MotionKind, joints: &Joints) {
-        let from = Stance {
-            joints: self.at.joints,
-            pose: self.at.pose,
-        };
+        let from = self.at;
         self.stand(joints);
         self.moved(kind, Way::Axes, from);
     }
@@ -140,17 +135,14 @@ impl Control {
         kind: MotionKind,
         joints: &Joints,
     ) -> Result<(), Box<Diagnostic>> {
-        let from = Stance {
-            joints: self.at.joints,
-            pose: self.at.pose,
-        };
+        let from = self.at;
         let tip = self.at.pose.tip;
         for (place, joint) in joints.iter().enumerate() {
             if self.axes.rotary & (1 << place) != 0 {
                 self.at.joints[place] = *joint;
             }
         }
-        self.place(tip, true)?;
+        self.place(tip, self.axes.rotary)?;
         self.moved(kind, Way::Tip, from);
         Ok(())
     }
@@ -205,43 +197,41 @@ impl Control {
         Ok(())
     }
 
-    /// Takes the axes that `target` says; true where a rotary one is among them.
+    /// Takes the axes that `target` says; the places of the rotary ones among them, as bits.
     #[inline]
-    fn take_said(&mut self, target: &Target) -> bool {
+    fn take_said(&mut self, target: &Target) -> u32 {
         let mut said = target.said;
         while said != 0 {
             let place = said.trailing_zeros() as usize % MAX_AXES;
             self.at.joints[place] = target.joints[place];
             said &= said - 1;
         }
-        target.said & self.axes.rotary != 0
+        target.said & self.axes.rotary
     }
 
-    /// Where the tool is with the joints as they are.
+    /// Where the tool is with the joints as they are; those at the bits of `turned` have turned.
     #[inline]
-    fn follow(&mut self, turned: bool) {
+    fn follow(&mut self, turned: u32) {
+        let Stance { joints, pose } = &mut self.at;
         let chain = self.state.solver.chain();
-        if turned {
-            self.at.turns = chain.turns(&self.at.joints);
-        }
-        chain.trace(&mut self.at);
+        chain.turn_anew(joints, turned, &mut self.turns);
+        *pose = chain.pose(joints, &self.turns);
     }
 
-    /// Brings the tip onto `tip` (mm, part frame) with the rotary axes where they are.
+    /// Brings the tip onto `tip` (mm, part frame) with the rotary axes where they are; those at the bits of `turned` have
+    /// turned.
     #[inline]
-    fn place(&mut self, tip: Vector3<f64>, turned: bool) -> Result<(), Box<Diagnostic>> {
+    fn place(&mut self, tip: Vector3<f64>, turned: u32) -> Result<(), Box<Diagnostic>> {
         let solver = &self.state.solver;
-        let Trace { joints, turns, .. } = &mut self.at;
-        if turned {
-            *turns = solver.chain().turns(joints);
-        }
+        let (joints, turns) = (&mut self.at.joints, &mut self.turns);
+        solver.chain().turn_anew(joints, turned, turns);
         if solver.place(tip, joints, turns).is_err() {
             return Err(self.refuse(
                 "nc-reach",
                 "the linear axes cannot bring the tip there with the rotary axes so",
             ));
         }
-        solver.chain().trace(&mut self.at);
+        self.at.pose = solver.chain().pose(joints, turns);
         if (self.at.pose.tip - tip).norm() > REACHED {
             return Err(self.refuse(
                 "nc-reach",
@@ -311,7 +301,7 @@ impl Control {
             self.say_nearest();
         }
         self.at.joints = joints;
-        self.place(tip, true)?;
+        self.place(tip, self.axes.rotary)?;
         if self.at.pose.axis.cross(&axis).norm() > 2.0 * AIMED || self.at.pose.axis.dot(&axis) < 0.0
         {
             return Err(self.refuse(
@@ -401,11 +391,7 @@ impl Control {
         if from.joints == self.at.joints && !arc {
             return;
         }
-        let to = Stance {
-            joints: self.at.joints,
-            pose: self.at.pose,
-        };
-        let (feed, minutes) = self.timed(kind, &way, &from, &to);
+        let (feed, minutes) = self.timed(kind, &way, &from, &self.at);
         let state = self.hand_on_state();
         self.done.push(Done::Motion(Motion {
             line: self.line,
@@ -413,7 +399,7 @@ impl Control {
             kind,
             way,
             from,
-            to,
+            to: self.at,
             feed,
             minutes,
             hole: self.hole,
@@ -455,6 +441,10 @@ fn told_over(point: Vector3<f64>, said: &[Option<f64>; 3]) -> Vector3<f64> {
 /// The place of `value` on the circle that is the shorter way from `last`, radians; half a turn goes up.
 pub(super) fn shorter(value: f64, last: f64) -> f64 {
     let way = value - last;
+    if libm::fabs(way) < 3.0 {
+        // As below with no turn; of a zero it takes the sign.
+        return value + 0.0;
+    }
     let turns = libm::ceil(way / TAU - 0.5 - 1e-12);
     value - turns * TAU
 }

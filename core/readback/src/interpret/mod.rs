@@ -158,7 +158,7 @@ impl<R: Read + Seek> Interpreter<R> {
         let more = flow.next(&mut runner.control.variables, block);
         runner.control.report.header = flow.reader().header_lines();
         runner.control.line = block.line;
-        if !more.map_err(|finding| runner.control.placed(*finding).boxed())? {
+        if !more.map_err(|finding| flow.show(runner.control.placed(*finding).boxed()))? {
             return Ok(false);
         }
         runner.control.report.blocks += 1;
@@ -166,7 +166,7 @@ impl<R: Read + Seek> Interpreter<R> {
         std::mem::swap(done, &mut runner.control.done);
         let ran = runner.run(block);
         std::mem::swap(done, &mut runner.control.done);
-        ran.map(|()| true)
+        ran.map(|()| true).map_err(|finding| flow.show(finding))
     }
 
     /// What was found so far.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
-use post_machine::kinematics::{Joints, Solver, Trace};
+use post_machine::kinematics::{Joints, Solver, Turns};
 
 use super::ReadReport;
 use super::cycles::Cycles;
@@ -12,7 +12,7 @@ use super::frame::{Frame, Frames};
 use super::tools::Tools;
 use super::variables::Variables;
 use crate::lexicon::Lexicon;
-use crate::{Done, Offsets, State};
+use crate::{Done, Offsets, Stance, State};
 
 /// A control at work: all that holds from block to block.
 ///
@@ -53,8 +53,10 @@ pub(super) struct Control {
     pub state: State,
     /// `state` as it was handed on last; none if it has changed since.
     pub(super) shared: Option<Arc<State>>,
-    /// Where the machine stands: joints, their sines and cosines, and the pose.
-    pub at: Trace,
+    /// Where the machine stands.
+    pub at: Stance,
+    /// Sines and cosines of its joints.
+    pub turns: Turns,
     /// The program has come to its end.
     pub ended: bool,
     /// The motion is asked for in positions of the machine.

@@ -227,7 +227,7 @@ pub(super) fn retract(control: &mut Control, kind: MotionKind, said: &Said<'_>) 
     let axis = control.at.pose.axis;
     let tip = control.at.pose.tip + axis * way;
     let mut joints = control.at.joints;
-    let turns = control.at.turns;
+    let turns = control.turns;
     if control
         .state
         .solver
@@ -248,7 +248,7 @@ pub(super) fn retract(control: &mut Control, kind: MotionKind, said: &Said<'_>) 
 /// How far the tool can be drawn back along its axis before a linear axis comes to its end, mm.
 fn farthest(control: &Control) -> Answer<f64> {
     let solver = &control.state.solver;
-    let turns = control.at.turns;
+    let turns = control.turns;
     let (mut here, mut there) = (control.at.joints, control.at.joints);
     let tip = control.at.pose.tip;
     let placed = solver.place(tip, &mut here, &turns).is_ok()

@@ -115,9 +115,9 @@ const REFUSED: &[(&str, &str, &str)] = &[
 /// GRBL has no G41.
 const COMPENSATION: &str = "no words for cutter radius compensation";
 
-/// What reading back finds in files of CAM systems, by its code and a part of its message: none else may be found.
+/// What reading back finds in files of CAM systems, by its code and a part of one message: of no other code may be found.
 const FOUND: &[(&str, &str, &str)] = &[
-    // It works from below, and comes there straight from Z9000: through the part, were the part where the path is.
+    // They work from below, and come there straight from Z9000, and back: through what they cut.
     ("nx_HumMan_ust_a.cls", "rapid", "of what is cut, from 9520"),
     ("nx_HumMan_ust_a2.cls", "rapid", "of what is cut, from 9518"),
 ];
@@ -127,8 +127,8 @@ fn found_what_is_known(file: &str, run: &Run) -> bool {
     let known = FOUND.iter().find(|(name, ..)| *name == file);
     known.is_some_and(|(_, code, part)| {
         let errors = run.err.matches("error[").count();
-        let code = format!("error[{code}]");
-        run.code == 1 && errors == 1 && run.err.contains(&code) && run.err.contains(part)
+        let of_code = run.err.matches(&format!("error[{code}]")).count();
+        run.code == 1 && errors == of_code && run.err.contains(part)
     })
 }
 

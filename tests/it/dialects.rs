@@ -1,5 +1,5 @@
 //! Every dialect that is built in: its programs under review, linked in and from its library, and on the files of CAM
-//! systems.
+//! systems. Each program is read back and held against its CL file in the run that makes it.
 //!
 //! A snapshot has the program, or what the dialect refuses. After a change read each new one against the facts of its
 //! control.
@@ -84,7 +84,7 @@ fn the_programs_are_those_that_were_read() {
     settings.bind(|| {
         for dialect in dialects() {
             for (job, machine, file, with) in JOBS {
-                let with = [LENGTH, with].concat();
+                let with = [LENGTH, with, &["--verify"]].concat();
                 let linked = post(&dialect, machine, &sample(file), &with);
                 let from = ["--plugins", libraries().to_str().unwrap()];
                 let opened = post(
@@ -115,8 +115,25 @@ const REFUSED: &[(&str, &str, &str)] = &[
 /// GRBL has no G41.
 const COMPENSATION: &str = "no words for cutter radius compensation";
 
+/// What reading back finds in files of CAM systems, by its code and a part of one message: of no other code may be found.
+const FOUND: &[(&str, &str, &str)] = &[
+    // They work from below, and come there straight from Z9000, and back: through what they cut.
+    ("nx_HumMan_ust_a.cls", "rapid", "of what is cut, from 9520"),
+    ("nx_HumMan_ust_a2.cls", "rapid", "of what is cut, from 9518"),
+];
+
+/// The run found what is known of the file, and nothing else.
+fn found_what_is_known(file: &str, run: &Run) -> bool {
+    let known = FOUND.iter().find(|(name, ..)| *name == file);
+    known.is_some_and(|(_, code, part)| {
+        let errors = run.err.matches("error[").count();
+        let of_code = run.err.matches(&format!("error[{code}]")).count();
+        run.code == 1 && errors == of_code && run.err.contains(part)
+    })
+}
+
 #[test]
-fn every_file_is_posted_in_every_dialect() {
+fn every_file_is_posted_in_every_dialect_and_does_what_it_asks_for() {
     let Some(data) = shared("data/cl") else {
         return;
     };
@@ -124,7 +141,7 @@ fn every_file_is_posted_in_every_dialect() {
     for dialect in dialects() {
         let mut posted = 0;
         for (file, machine, with) in real_files::posted::one_each() {
-            let mut all = vec!["--spindle", "6000"];
+            let mut all = vec!["--verify", "--spindle", "6000"];
             if !with.contains("--tool-length") {
                 all.extend(["--tool-length", "0"]);
             }
@@ -135,6 +152,7 @@ fn every_file_is_posted_in_every_dialect() {
                 .find(|(name, of, _)| *name == dialect && *of == file);
             match (done.code, refused) {
                 (0, None) => posted += 1,
+                (1, None) if found_what_is_known(file, &done) => posted += 1,
                 (1, Some((.., why))) if done.err.contains(why) => {}
                 _ => failed.push(format!("{file} in {dialect}:\n{}", done.err)),
             }

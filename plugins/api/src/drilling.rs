@@ -24,6 +24,25 @@ pub struct Drilling {
 }
 
 impl Drilling {
+    /// The same hole as controls take it whose cycles need a depth below the surface, and its point raised by so much.
+    ///
+    /// A CL file may have the bottom at the point itself or above it: such a hole is counted from where its feed begins.
+    pub fn below_its_point(self) -> (Self, f64) {
+        if self.depth > 0.0 {
+            return (self, 0.0);
+        }
+        let raised = self.clearance;
+        let depth = self.depth + raised;
+        let counted = Drilling {
+            depth,
+            clearance: 0.0,
+            retract: self.retract - raised,
+            step: if self.step > 0.0 { self.step } else { depth },
+            ..self
+        };
+        (counted, raised)
+    }
+
     /// None of another event.
     pub fn of(event: &Event<'_>) -> Option<Self> {
         match *event {

@@ -49,9 +49,12 @@ impl Cycles {
         top: f64,
         rpm: Option<f64>,
     ) -> Result<String, String> {
+        // Of the depth 0 the control would leave the hole out, and of one above the surface cut upwards.
+        let (drilling, raised) = drilling.below_its_point();
+        let top = top + raised;
         let Drilling {
             dwell, clearance, ..
-        } = *drilling;
+        } = drilling;
         let down = || drilling.feed_per_minute(rpm).ok_or(NO_SPEED);
         let cycle = drilling.cycle;
         let depth = if matches!(cycle, Cycle::Tap | Cycle::TapLeft) {

@@ -41,9 +41,12 @@ impl Cycles {
         top: f64,
         spindle: Option<Turning>,
     ) -> Result<String, String> {
+        // Which way is down is told by the depth against the surface.
+        let (drilling, raised) = drilling.below_its_point();
+        let top = top + raised;
         let Drilling {
             cycle, feed, dwell, ..
-        } = *drilling;
+        } = drilling;
         let planes = [
             // Never below where the feed begins.
             top + drilling.retract.max(drilling.clearance),

@@ -17,8 +17,12 @@ const SHARE: f64 = 0.01;
 /// Angles of one solution, radians: beside a pole they are known no better.
 const SAME: f64 = 1e-4;
 
-/// Places of a curve at which its axis values are looked at.
-const LOOKS: u32 = 16;
+/// Places of a curve at which its axis values are looked at, of an arc for each turn: between three of them an axis goes on
+/// a parabola, up to 4e-6 of the radius.
+const LOOKS: u32 = 64;
+
+/// At so many places of a curve its axis values are looked at, at most.
+const MOST_LOOKS: u32 = 4096;
 
 /// A fault: its code, what it is, and by how much a limit is passed.
 pub(super) type AxisFault = (&'static str, String, f64);
@@ -57,13 +61,23 @@ impl Axes {
                 }
             }
             Way::Arc { .. } | Way::Spline(_) => {
-                for look in 1..LOOKS {
-                    if let Some(joints) = joints_at(motion, f64::from(look) / f64::from(LOOKS)) {
-                        for joint in 0..machine.axes.len() {
-                            least[joint] = least[joint].min(joints[joint]);
-                            most[joint] = most[joint].max(joints[joint]);
-                        }
+                let looks = looks(motion);
+                let mut last = [motion.from.joints; 2];
+                for look in 1..=looks {
+                    let joints = match look == looks {
+                        true => motion.to.joints,
+                        false => match joints_at(motion, f64::from(look) / f64::from(looks)) {
+                            Some(joints) => joints,
+                            None => break,
+                        },
+                    };
+                    for joint in 0..machine.axes.len() {
+                        let three = [last[0][joint], last[1][joint], joints[joint]];
+                        let turn = if look > 1 { vertex(three) } else { three[2] };
+                        least[joint] = least[joint].min(joints[joint]).min(turn);
+                        most[joint] = most[joint].max(joints[joint]).max(turn);
                     }
+                    last = [last[1], joints];
                 }
             }
         }
@@ -123,23 +137,45 @@ impl Axes {
             take(slides.minutes, slides.slowest);
         }
         if curved {
+            let looks = looks(motion);
             let mut last = motion.from.joints;
-            for look in 1..=LOOKS {
-                let joints = match look {
-                    LOOKS => motion.to.joints,
-                    _ => match joints_at(motion, f64::from(look) / f64::from(LOOKS)) {
+            for look in 1..=looks {
+                let joints = match look == looks {
+                    true => motion.to.joints,
+                    false => match joints_at(motion, f64::from(look) / f64::from(looks)) {
                         Some(joints) => joints,
                         None => break,
                     },
                 };
                 for joint in 0..machine.axes.len() {
-                    let way = libm::fabs(joints[joint] - last[joint]) * f64::from(LOOKS);
+                    let way = libm::fabs(joints[joint] - last[joint]) * f64::from(looks);
                     take(way * self.slowness[joint], joint);
                 }
                 last = joints;
             }
         }
         slowest
+    }
+}
+
+/// At how many places a curve is looked at.
+fn looks(motion: &Motion) -> u32 {
+    let turns = match motion.way {
+        Way::Arc { sweep, .. } => libm::fabs(sweep) / TAU,
+        _ => 1.0,
+    };
+    // Of a short arc a parabola needs three places.
+    let looks = libm::ceil(turns * f64::from(LOOKS)) as u32;
+    looks.clamp(4, MOST_LOOKS)
+}
+
+/// Where the parabola through three values at the same distances has its vertex, if that lies between them; else the last.
+fn vertex([a, b, c]: [f64; 3]) -> f64 {
+    let bend = a - 2.0 * b + c;
+    let slope = 0.5 * (c - a);
+    match libm::fabs(slope) < libm::fabs(bend) {
+        true => b - slope * slope / (2.0 * bend),
+        false => c,
     }
 }
 

@@ -107,6 +107,7 @@ impl<C: Course> Verifier<'_, C> {
                 format!("a rapid goes {from:.3} mm below where the feed of a hole begins");
             self.fault("hole", message, Some(motion), Some(cl_line), Some(from));
         }
+        self.compare_cycle(motion, index);
         self.made = None;
         self.hole = Some(HoleRun {
             index,
@@ -117,6 +118,31 @@ impl<C: Course> Verifier<'_, C> {
             shift,
         });
         true
+    }
+
+    /// A thread is no hole that is drilled, and back in the other sense; what else tells kinds of holes apart is seen by how
+    /// the tool moves.
+    fn compare_cycle(&mut self, motion: &Motion, index: usize) {
+        use CycleKind::{BoreBack, Tap, TapLeft};
+        let (Some(done), true) = (self.cycle, motion.hole) else {
+            return;
+        };
+        let Some(element) = self.track.get(index) else {
+            return;
+        };
+        let What::Hole(hole) = &element.what else {
+            return;
+        };
+        let class = |kind: CycleKind| match kind {
+            Tap | TapLeft | BoreBack => Some(kind),
+            _ => None,
+        };
+        if class(done) != class(hole.kind) {
+            let (line, asked) = (element.line, hole.kind);
+            let message =
+                format!("a hole of the kind {done:?}, and the CL file asks for the kind {asked:?}");
+            self.fault("hole", message, Some(motion), Some(line), None);
+        }
     }
 
     /// A motion while a hole is made.
@@ -269,6 +295,18 @@ impl<C: Course> Verifier<'_, C> {
         in_it && goes
     }
 
+    /// The next hole that is due has another axis than the one that was made last: the course itself goes straight there, and
+    /// what it passes is not kept.
+    pub(super) fn turns_between_holes(&mut self) -> bool {
+        let (Some(made), Some(index)) = (self.made, self.next) else {
+            return false;
+        };
+        let due = self.track.get(index);
+        due.is_some_and(|element| {
+            matches!(element.what, What::Hole(_)) && element.from.axis != made.axis.top.axis
+        })
+    }
+
     fn goes_elsewhere(&self, axis: &Axis, places: &[Place]) -> bool {
         let (_, off) = axis.split(&places[places.len() - 1]);
         off.point > self.rapid_bound.point
@@ -328,8 +366,14 @@ impl<C: Course> Verifier<'_, C> {
         let same = hole
             .dwell
             .as_ref()
-            .is_some_and(|asked| state::same_event(asked, told));
+            .is_some_and(|asked| state::same_event(asked, told, element.asked.spindle));
         let wrong = match &hole.dwell {
+            None if run.bottom && !matches!(told, Told::Dwell { time, .. } if *time <= 0.0) => {
+                Some(format!(
+                    "{} at the bottom of a hole that the CL file does not ask for",
+                    state::event_name(told)
+                ))
+            }
             Some(asked) if run.bottom && !same => Some(format!(
                 "{} at the bottom of a hole in place of {}",
                 state::event_name(told),

@@ -30,7 +30,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::course::Course;
-use crate::{Done, Motion, MotionKind, Told};
+use crate::{CycleKind, Done, Motion, MotionKind, Told};
 use axes::Axes;
 pub use cut_path::CutPath;
 use hole::{HoleRun, Made};
@@ -118,11 +118,13 @@ pub struct Verifier<'m, C> {
     stray: Option<Stray>,
     hole: Option<HoleRun>,
     made: Option<Made>,
+    /// The cycle of the program that is on.
+    cycle: Option<CycleKind>,
     /// Where the course cuts.
     cut_path: CutPath,
     /// The tool has come to a point of the course.
     placed: bool,
-    /// How near the course's own rapids come to its cuts since the last one, mm.
+    /// How near the course's own rapids come to its cuts where the motion at hand has passed them, mm.
     course_near: f64,
     /// Ends of the pieces of the motion at hand, its beginning first.
     places: Vec<Place>,
@@ -165,6 +167,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             stray: None,
             hole: None,
             made: None,
+            cycle: None,
             cut_path: CutPath::new(along),
             placed: false,
             course_near: f64::INFINITY,
@@ -198,6 +201,8 @@ impl<'m, C: Course> Verifier<'m, C> {
             }
             Done::Told { line, told } => match told {
                 Told::Dwell { .. } | Told::Stop | Told::OptionalStop => self.event(*line, told),
+                Told::Cycle(call) => self.cycle = Some(call.kind),
+                Told::CycleEnd => self.cycle = None,
                 _ => {}
             },
             Done::State(_) => {}

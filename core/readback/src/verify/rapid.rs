@@ -1,6 +1,8 @@
 //! Between the cuts: rapids past the points of the course, and where the next cut begins.
 
-use super::place::{Place, Span, free, nearest};
+use nalgebra::Vector3;
+
+use super::place::{Apart, Place, Span, free, nearest};
 use super::sweep::Stray;
 use super::track::{MOST, What};
 use super::{Verifier, state};
@@ -18,9 +20,18 @@ impl<C: Course> Verifier<'_, C> {
         }
         self.come_back_to_the_course(&places[0]);
         self.leave_cut();
+        self.course_near = f64::INFINITY;
+        let end = &places[places.len() - 1];
+        // Before it passes them: points of the course where it ends.
+        let asked = self.ends_on_the_course(end);
         self.pass(motion, places);
         self.apart = true;
-        self.look_how_near(motion, places);
+        if self.placed && !self.pecks_again(motion, places) {
+            self.look_how_near(motion, places);
+            if !asked && !self.may_begin(end) {
+                self.look_where_it_ends(motion, end);
+            }
+        }
     }
 
     /// A rapid must not come nearer to the cuts than its ends, unless the course's own does.
@@ -28,9 +39,6 @@ impl<C: Course> Verifier<'_, C> {
     /// Where the tool stands before it comes to its first point is not known, and how machines turn off the part is often
     /// their own: what comes near is told, and what touches is a fault.
     fn look_how_near(&mut self, motion: &Motion, places: &[Place]) {
-        if !self.placed {
-            return;
-        }
         let ends = [&places[0], &places[places.len() - 1]];
         let ends = ends.map(|end| self.cut_path.distance(end.point));
         let slack = self.rapid_bound.point + self.cut_path.blur();
@@ -45,14 +53,14 @@ impl<C: Course> Verifier<'_, C> {
         if near >= least {
             return;
         }
-        if near >= self.course_is_near(near - slack) - slack {
+        if near >= self.course_is_near() - slack {
             return;
         }
         let message = format!(
             "a rapid comes to {near:.1} mm of what is cut, from {:.1} mm to {:.1} mm at its ends",
             ends[0], ends[1]
         );
-        if near <= slack {
+        if near <= slack && !self.turns_between_holes() {
             let by = least + slack - near;
             self.fault("rapid", message, Some(motion), None, Some(by));
         } else {
@@ -63,23 +71,61 @@ impl<C: Course> Verifier<'_, C> {
         }
     }
 
-    /// How near the rapids of the course come to its cuts between the last cut and the next, mm; exact where it is more than
-    /// `least`.
-    fn course_is_near(&mut self, least: f64) -> f64 {
-        let mut near = self.course_near;
+    /// A rapid must not end where something is cut, unless the course does.
+    fn look_where_it_ends(&mut self, motion: &Motion, end: &Place) {
+        let near = self.cut_path.distance(end.point);
+        let slack = self.rapid_bound.point + self.cut_path.blur();
+        let from = Place::new(&motion.from.pose, self.along);
+        // Along what is cut it may leave it.
+        if near <= slack && self.cut_path.distance(from.point) > slack {
+            let message =
+                "a rapid ends where something is cut, and no rapid of the CL file does".to_owned();
+            self.fault("rapid", message, Some(motion), None, None);
+        }
+    }
+
+    /// A rapid of the course leads past this place, before its next cut.
+    fn ends_on_the_course(&mut self, end: &Place) -> bool {
+        let bound = self.rapid_bound;
         let mut index = self.next.unwrap_or(0);
         while let Some(element) = self.track.get(index) {
             match element.what {
-                What::Way => {
-                    let (from, to) = (element.from.point, element.to.point);
-                    near = near.min(self.cut_path.least_on(from, to, least));
+                What::Way | What::Reach => {
+                    if !free(end, &element.from, &element.to, &bound).is_empty() {
+                        return true;
+                    }
                 }
-                What::Cut | What::Thread | What::Hole(_) => break,
-                _ => {}
+                What::Event(..) => {}
+                _ => return false,
             }
             index += 1;
         }
-        near
+        false
+    }
+
+    /// How near the rapids of the course that a motion has passed and the one that it is on come to its cuts between their
+    /// ends, and at points of the course in the midst of the motion, mm.
+    fn course_is_near(&mut self) -> f64 {
+        let mut under_way = None;
+        if let Some(index) = self.next.and_then(|next| self.behind_events(next))
+            && let Some(element) = self.track.get(index)
+            && matches!(element.what, What::Way)
+        {
+            under_way = Some((element.from.point, element.to.point));
+        }
+        let under_way = under_way.map_or(f64::INFINITY, |(from, to)| self.dips(from, to));
+        self.course_near.min(under_way)
+    }
+
+    /// How near a rapid of the course comes to the cuts, if between its ends it is nearer than at both, mm.
+    fn dips(&self, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
+        let ends = [from, to].map(|end| self.cut_path.distance(end));
+        let least = ends[0].min(ends[1]);
+        let near = self.cut_path.least_on(from, to, 0.0);
+        match near < least - self.cut_path.blur() {
+            true => near,
+            false => f64::INFINITY,
+        }
     }
 
     /// Where a cut of the course may have ended, what comes behind it may be passed.
@@ -150,8 +196,8 @@ impl<C: Course> Verifier<'_, C> {
                         let line = element.line;
                         if matches!(element.what, What::Way) {
                             let (from, to) = (element.from.point, element.to.point);
-                            let way = self.cut_path.least_on(from, to, 0.0);
-                            self.course_near = self.course_near.min(way);
+                            let point = self.cut_path.distance(to);
+                            self.course_near = self.course_near.min(self.dips(from, to)).min(point);
                         }
                         self.placed = true;
                         self.found.rapid.take(near.point, motion.line, line);
@@ -271,7 +317,6 @@ impl<C: Course> Verifier<'_, C> {
         self.next = None;
         self.apart = false;
         self.made = None;
-        self.course_near = f64::INFINITY;
         self.miss_events(motion);
     }
 
@@ -385,6 +430,7 @@ impl<C: Course> Verifier<'_, C> {
         self.reach.resize(index + 1, Span::EMPTY);
         self.reach[index] = span;
         self.stray = Some(Stray {
+            worst: Apart::default(),
             factor: (factor * 1.001).max(1.0),
             line: motion.line,
             number: motion.number,
@@ -411,7 +457,7 @@ impl<C: Course> Verifier<'_, C> {
             if let What::Event(asked, met @ false) = &mut element.what {
                 let cl_line = element.line;
                 *met = true;
-                let same = state::same_event(asked, told);
+                let same = state::same_event(asked, told, element.asked.spindle);
                 let name = state::event_name(told);
                 let asked = state::event_name(asked);
                 if !same {

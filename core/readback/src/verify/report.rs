@@ -26,9 +26,9 @@ pub struct Verification {
     pub limited: u64,
     /// Cuts that are slower than the course asks, and no axis explains it.
     pub slower: u64,
-    /// Largest deviation of the guided point from the course in a cut, mm, where the program is within the tolerance.
+    /// Largest deviation of the guided point from the course in a cut, mm.
     pub tip: Worst,
-    /// Largest deviation of the tool axis in a cut, degrees, likewise.
+    /// Largest deviation of the tool axis in a cut, degrees.
     pub axis: Worst,
     /// Largest distance at which a rapid passes a point of the course, mm.
     pub rapid: Worst,

@@ -8,7 +8,7 @@ use super::place::{Place, free};
 use super::track::Element;
 use super::{Registers, Verifier};
 use crate::course::Course;
-use crate::{Coolants, Motion, MotionKind, Spindle, Told, Way};
+use crate::{Coolants, Motion, Spindle, Told, Way};
 
 /// Speeds and feeds are rounded as they are printed: so much of them, and so much besides.
 const SHARE: f64 = 0.005;
@@ -168,7 +168,7 @@ impl<C: Course> Verifier<'_, C> {
         let Some(asked) = element.feed else {
             return;
         };
-        if motion.kind == MotionKind::Thread || motion.minutes <= 0.0 {
+        if motion.minutes <= 0.0 {
             return;
         }
         let way: f64 = places
@@ -249,8 +249,8 @@ pub(super) fn event_name(told: &Told) -> String {
     }
 }
 
-/// The program does what is asked.
-pub(super) fn same_event(asked: &Told, done: &Told) -> bool {
+/// The program does what is asked, while the spindle turns as the course has it: turns of a dwell take their time.
+pub(super) fn same_event(asked: &Told, done: &Told, spindle: Spindle) -> bool {
     match (asked, done) {
         (
             Told::Dwell {
@@ -258,7 +258,25 @@ pub(super) fn same_event(asked: &Told, done: &Told) -> bool {
                 revolutions: turns,
             },
             Told::Dwell { time, revolutions },
-        ) => turns != revolutions || libm::fabs(asked - time) <= DWELL + SHARE * asked,
+        ) => {
+            let rpm = match spindle {
+                Spindle::Clockwise(rpm) | Spindle::CounterClockwise(rpm) => rpm,
+                _ => 0.0,
+            };
+            let [asked, time] = match turns == revolutions {
+                true => [*asked, *time],
+                false if rpm > 0.0 => {
+                    let seconds = |time: f64, turns: bool| match turns {
+                        true => time * 60.0 / rpm,
+                        false => time,
+                    };
+                    [seconds(*asked, *turns), seconds(*time, *revolutions)]
+                }
+                // How long turns take is not known.
+                false => return false,
+            };
+            libm::fabs(asked - time) <= DWELL + SHARE * asked
+        }
         (Told::Stop, Told::Stop) | (Told::OptionalStop, Told::OptionalStop) => true,
         _ => false,
     }

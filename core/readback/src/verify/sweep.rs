@@ -23,6 +23,8 @@ pub(super) struct Stray {
     pub last: u64,
     /// Lines of the course, from and to.
     pub asked: [u64; 2],
+    /// How far its ends are off at least.
+    pub worst: Apart,
 }
 
 /// A bound so wide that nothing is told apart by it.
@@ -145,17 +147,31 @@ impl<C: Course> Verifier<'_, C> {
         let Some(stray) = self.stray.take() else {
             return;
         };
-        let point = self.rules.tolerance * stray.factor;
+        // That wide it was found to be near enough; which of the two asked for it the ends of its motions say.
+        let bound = self.bound.times(stray.factor);
+        let (point, angle) = (bound.point, bound.axis.min(2.0));
+        let angle = (2.0 * libm::asin(0.5 * angle)).to_degrees();
+        let [tip_off, axis_off] = [
+            stray.worst.point > self.bound.point,
+            Bound::new(1.0, stray.worst.axis).axis > self.bound.axis,
+        ];
+        let off = match (tip_off, axis_off) {
+            (true, false) => format!("{point:.3} mm"),
+            (false, true) => format!("{angle:.3}°"),
+            _ => format!("{point:.3} mm or {angle:.3}°"),
+        };
+        if tip_off || !axis_off {
+            self.found.tip.take(point, stray.line, stray.asked[0]);
+        }
+        if axis_off || !tip_off {
+            self.found.axis.take(angle, stray.line, stray.asked[0]);
+        }
         let lines = |from: u64, to: u64| match from == to {
             true => format!("line {from}"),
             false => format!("lines {from} to {to}"),
         };
         let message = format!(
-            "off the CL path by {:.3} mm or {:.3}° in {} of the program, {} of the CL file; allowed are {} mm and {:.3}°",
-            point,
-            (self.rules.axis_tolerance * stray.factor)
-                .to_degrees()
-                .min(180.0),
+            "off the CL path by {off} in {} of the program, {} of the CL file; allowed are {} mm and {:.3}°",
             lines(stray.line, stray.last),
             lines(stray.asked[0], stray.asked[1]),
             self.rules.tolerance,
@@ -194,6 +210,7 @@ impl<C: Course> Verifier<'_, C> {
             match &mut self.stray {
                 None => self.note_deviation(worst, motion.line, asked),
                 Some(stray) => {
+                    stray.worst = stray.worst.larger(&worst);
                     stray.last = motion.line;
                     stray.asked[1] = stray.asked[1].max(asked);
                     let angle = worst.axis.to_degrees();
@@ -328,6 +345,7 @@ impl<C: Course> Verifier<'_, C> {
             number: motion.number,
             last: motion.line,
             asked: [asked, asked],
+            worst: Apart::default(),
         });
         stray.factor = high;
         self.sweep(motion, places, high, true);

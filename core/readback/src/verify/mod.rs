@@ -30,7 +30,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::course::Course;
-use crate::{CycleKind, Done, Motion, MotionKind, Told};
+use crate::{CycleKind, Done, Motion, MotionKind, Offsets, Told};
 use axes::Axes;
 pub use cut_path::CutPath;
 use hole::{HoleRun, Made};
@@ -52,6 +52,8 @@ pub struct Rules {
     pub registers: Registers,
     /// Length register that belongs to a tool where it is not the tool's number.
     pub tool_registers: Vec<(u32, u32)>,
+    /// How long the tools are; none where lengths lie in the work offset.
+    pub lengths: Option<Offsets>,
     /// A feed by time cannot be so large that a block takes less than this, minutes.
     pub least_minutes: f64,
     /// Each line of the program is told with the solution that it ends in.
@@ -81,6 +83,7 @@ impl Rules {
             rapid_tolerance: machine.accuracy.rapid_tolerance,
             registers: Registers::None,
             tool_registers: Vec::new(),
+            lengths: None,
             least_minutes: 0.0,
             solutions: false,
             most_faults: 50,

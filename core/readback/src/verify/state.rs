@@ -8,7 +8,7 @@ use super::place::{Place, free};
 use super::track::Element;
 use super::{Registers, Verifier};
 use crate::course::Course;
-use crate::{Coolants, Motion, Spindle, Told, Way};
+use crate::{Coolants, Motion, MotionKind, Spindle, Told, Way};
 
 /// Speeds and feeds are rounded as they are printed: so much of them, and so much besides.
 const SHARE: f64 = 0.005;
@@ -83,6 +83,12 @@ impl<C: Course> Verifier<'_, C> {
         {
             let message = format!("cuts with tool {has}, and the CL file asks for tool {wants}");
             self.fault("tool", message, Some(motion), cl_line, None);
+        } else if state.tool.is_none()
+            && let Some(wants) = asked.tool
+            && self.rules.registers != Registers::None
+        {
+            let message = format!("cuts with no tool changed in, and the CL file asks for {wants}");
+            self.fault("tool", message, Some(motion), cl_line, None);
         }
         if !same_spindle(state.spindle, asked.spindle) {
             let message = format!(
@@ -116,6 +122,39 @@ impl<C: Course> Verifier<'_, C> {
             self.fault("register", message, Some(motion), cl_line, None);
         }
         self.compare_register(motion, element);
+        self.compare_length(motion, element);
+    }
+
+    /// What is compensated is the length that the tool has, as far as that is known.
+    fn compare_length(&mut self, motion: &Motion, element: &Element) {
+        let Some(tool) = element.asked.tool.or(motion.state.tool) else {
+            return;
+        };
+        let of = |known: &[(u32, f64)], wanted: u32| {
+            let mut known = known.iter();
+            known
+                .find(|(number, _)| *number == wanted)
+                .map(|(_, length)| *length)
+        };
+        let mut registers = self.rules.tool_registers.iter();
+        let register = registers
+            .find(|(number, _)| *number == tool)
+            .map_or(tool, |(_, register)| *register);
+        let Some(offsets) = &self.rules.lengths else {
+            return;
+        };
+        let length = of(&offsets.tools, tool)
+            .or_else(|| of(&offsets.lengths, register))
+            .or(offsets.length);
+        let has = motion.state.length;
+        if let Some(length) = length
+            && libm::fabs(has - length) > SHORT
+        {
+            let message = format!(
+                "cuts with a length of {has} mm compensated, and tool {tool} is {length} mm long"
+            );
+            self.fault("length", message, Some(motion), Some(element.line), None);
+        }
     }
 
     fn compare_register(&mut self, motion: &Motion, element: &Element) {
@@ -168,14 +207,18 @@ impl<C: Course> Verifier<'_, C> {
         let Some(asked) = element.feed else {
             return;
         };
-        if motion.minutes <= 0.0 {
-            return;
-        }
         let way: f64 = places
             .windows(2)
             .map(|ends| (ends[1].point - ends[0].point).norm())
             .sum();
         if way < SHORT {
+            return;
+        }
+        if motion.minutes <= 0.0 {
+            if motion.kind == MotionKind::Feed {
+                let message = "cuts without a feed".to_owned();
+                self.fault("feed", message, Some(motion), Some(element.line), None);
+            }
             return;
         }
         let feed = way / motion.minutes;

@@ -173,8 +173,8 @@ pub struct ProgramArguments {
     pub machine: String,
 
     /// Lengths of tools, work offsets and reference positions as the control's tables have them, a TOML file:
-    /// [work.G54] with X, Y, Z (mm from where `mount` of the machine file has the part) and what rotary axes show there
-    /// (degrees); [length] and [radius] by register, [tool] by tool number (mm); [reference.1] for G28, [reference.2]
+    /// `[work.G54]` with X, Y, Z (mm from where `mount` of the machine file has the part) and what rotary axes show there
+    /// (degrees); `[length]` and `[radius]` by register, `[tool]` by tool number (mm); `[reference.1]` for G28, `[reference.2]`
     /// for G30 (machine coordinates).
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "Reading")]
     pub offsets: Option<PathArg>,

@@ -157,7 +157,7 @@ impl Motion {
     /// straight line, the tool axis alone counts.
     ///
     /// What strays is zero at both ends of a piece. Between two places where it was looked at it is larger than there by no
-    /// more than an eighth of its second derivative over the square of their distance, and that is [bounded](Bend).
+    /// more than an eighth of its second derivative over the square of their distance, and that is bounded.
     pub fn pieces(&self, chord: f64, angle: f64) -> u64 {
         if self.way == Way::TipAndAxis || !self.turns() {
             return 1;

@@ -28,7 +28,7 @@ const MOST_REFUSED: usize = 50;
 /// The words of the control come from its dialect, the axes from the machine file. A block that is not understood is
 /// refused by its line, never guessed; words that move nothing and that are not known are listed by name. What stands
 /// in the control and not in the program (work offsets, tool lengths, reference positions) is taken from --offsets, from
-/// --tool-length and [tools] of the machine file, and from where `mount` has the part: the work offsets are those with
+/// --tool-length and `[tools]` of the machine file, and from where `mount` has the part: the work offsets are those with
 /// which the tip of the tool stands on the part origin.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:

@@ -1,14 +1,14 @@
 //! A program held against a course: does the machine do what was asked?
 //!
-//! Both are chains of short straight pieces ([`chop`]) in the space of tip and tool axis. A program keeps to a course if
+//! Both are chains of short straight pieces (`chop`) in the space of tip and tool axis. A program keeps to a course if
 //! one can go along both, never back, and never be farther apart than the tolerance: their Fréchet distance. That is
-//! decided block by block ([`sweep`]): what is kept is where on the course one can stand now. It empties at the first
+//! decided block by block (`sweep`): what is kept is where on the course one can stand now. It empties at the first
 //! block that strays, that has no place on the course, or that comes out of turn. This proves more than a comparison of
 //! end points or of nearest distances: neither sees that a path is cut twice, backwards, or not at all.
 //!
-//! Rapids are free but for what matters of them ([`rapid`]): they lead from where a cut ends to where the next begins,
+//! Rapids are free but for what matters of them (`rapid`): they lead from where a cut ends to where the next begins,
 //! past the points that the course asks for, in their order. A cut may be left for a while, if it goes on where it was
-//! left. In a hole the control pecks as it likes ([`hole`]): the bottom is reached at feed, and no rapid goes where
+//! left. In a hole the control pecks as it likes (`hole`): the bottom is reached at feed, and no rapid goes where
 //! nothing was cut.
 //!
 //! Memory does not grow with the program: of the course only what the program may stand at is kept.

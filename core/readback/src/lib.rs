@@ -24,8 +24,9 @@ mod offsets;
 mod told;
 pub mod verify;
 
-pub use motion::{Motion, MotionKind, SplineWay, Stance, Way};
+pub use motion::{Motion, MotionKind};
 pub use offsets::{Offsets, Reference, WorkOffset};
+pub use post_motion::path::{SplineWay, Stance, Way};
 pub use told::{Coolants, CycleCall, CycleKind, Spindle, Told};
 
 use std::sync::Arc;

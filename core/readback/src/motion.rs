@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_machine::kinematics::{Joints, Pose, Trace};
+use post_machine::kinematics::{Pose, Trace};
+use post_motion::path::{Stance, Way, between, turns};
 
 use crate::State;
-use crate::course::{between, on_arc};
 
 /// Bounds on second derivatives along a motion, by its parameter.
 struct Bend {
@@ -63,93 +63,17 @@ pub enum MotionKind {
     Thread,
 }
 
-/// Where the machine stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Stance {
-    /// Axis values, mm and radians, counted from the drawing's zero, in chain order.
-    pub joints: Joints,
-    /// Tip and tool axis, part frame, of the tool whose length is compensated.
-    pub pose: Pose,
-}
-
-/// How the control goes from one end to the other.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Way {
-    /// All axes linearly in the same parameter.
-    Axes,
-    /// The tip straight, the rotary axes linearly.
-    Tip,
-    /// The tip straight, the tool axis on the great circle (vectors: G43.5, ORIVECT, LN).
-    TipAndAxis,
-    /// The tip on an arc or helix of the part frame, rotary axes linearly if they turn at all.
-    Arc {
-        /// A point of its axis, mm.
-        centre: Vector3<f64>,
-        /// Its axis, unit vector.
-        normal: Vector3<f64>,
-        /// Turn about it, right-handed, radians; more than a turn where the program says so.
-        sweep: f64,
-    },
-    /// The tip on a spline of the part frame: poles and knots, as the program states them.
-    Spline(Arc<SplineWay>),
-}
-
-/// A rational B-spline.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SplineWay {
-    /// Degree.
-    pub degree: usize,
-    /// Knots, as many as poles + degree + 1.
-    pub knots: Vec<f64>,
-    /// Poles, mm, part frame, and their weights.
-    pub poles: Vec<(Vector3<f64>, f64)>,
-}
-
 impl Motion {
     /// Tip and tool axis at `t` from 0 to 1 of the motion's own parameter (time, at constant feed), as the control and the
     /// chain make them.
     pub fn at(&self, t: f64) -> Pose {
-        let (from, to) = (&self.from, &self.to);
-        let straight = || from.pose.tip + (to.pose.tip - from.pose.tip) * t;
-        let tip = match &self.way {
-            Way::Axes => return self.state.solver.chain().forward(&self.joints(t)),
-            Way::Tip => straight(),
-            Way::TipAndAxis => {
-                let axis = between(from.pose.axis, to.pose.axis, t);
-                let edge = match from.pose.edge == Vector3::zeros() {
-                    true => from.pose.edge,
-                    false => between(from.pose.edge, to.pose.edge, t),
-                };
-                let tip = straight();
-                return Pose { tip, axis, edge };
-            }
-            Way::Arc {
-                centre,
-                normal,
-                sweep,
-            } => on_arc([from.pose.tip, to.pose.tip], *centre, *normal, *sweep, t),
-            Way::Spline(way) => way.at(t),
-        };
-        if !self.turns() {
-            return Pose { tip, ..to.pose };
-        }
-        // Rotary axes alone say where the tool points.
-        let pose = self.state.solver.chain().forward(&self.joints(t));
-        Pose { tip, ..pose }
+        self.way
+            .at(self.state.solver.chain(), [&self.from, &self.to], t)
     }
 
     /// Some rotary axis turns on the way.
     pub fn turns(&self) -> bool {
-        let axes = self.state.solver.chain().joints().iter().enumerate();
-        axes.filter(|(_, axis)| axis.rotary)
-            .any(|(place, _)| self.from.joints[place] != self.to.joints[place])
-    }
-
-    /// Axis values at `t`, all linearly: where the control keeps the tip ([`Way::Tip`] and below), those of the rotary axes
-    /// alone hold.
-    fn joints(&self, t: f64) -> Joints {
-        let (from, to) = (&self.from.joints, &self.to.joints);
-        std::array::from_fn(|place| from[place] + (to[place] - from[place]) * t)
+        turns(self.state.solver.chain(), [&self.from, &self.to])
     }
 
     /// Pieces that the motion is cut into, evenly in `t`, so that straight lines of the tip and great circles of the tool

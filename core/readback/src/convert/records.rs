@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::number::{self, LENGTH};
-use crate::motion::SplineWay;
+use crate::SplineWay;
 use crate::{CycleCall, CycleKind, Spindle};
 
 /// The record of a cycle.

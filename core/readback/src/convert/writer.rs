@@ -9,8 +9,8 @@ use post_machine::kinematics::Pose;
 use super::number::{self, DIRECTION, LENGTH};
 use super::records::{definition, is_nurbs, offset_number, spindle_record};
 use super::text;
+use crate::SplineWay;
 use crate::course::{Curve, Item, Piece, Reach};
-use crate::motion::SplineWay;
 use crate::{Coolants, CycleCall, MotionKind, Told};
 
 /// Unit vectors nearer than this are one.

@@ -14,7 +14,6 @@ pub mod cl;
 pub mod done;
 mod facts;
 mod piece;
-mod spline;
 mod window;
 
 use std::sync::Arc;
@@ -23,11 +22,10 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 
-use crate::motion::SplineWay;
+use crate::SplineWay;
 use crate::{MotionKind, Told};
 
 pub use facts::{CourseFacts, Operation};
-pub(crate) use piece::{between, on_arc};
 pub use window::Window;
 
 /// A path that is handed out in order.

@@ -2,10 +2,10 @@
 
 use nalgebra::{Vector3, Vector4};
 
-use crate::motion::SplineWay;
+use super::SplineWay;
 
 /// The highest degree that is evaluated.
-pub(crate) const MOST_DEGREE: usize = 9;
+const MOST_DEGREE: usize = 9;
 
 impl SplineWay {
     /// It can be evaluated: the degree is from 1 to 9, the knots never fall and are as many as poles + degree + 1, and

@@ -1,0 +1,101 @@
+//! How a control goes from one stance of the machine to another.
+
+mod round;
+mod spline;
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use post_machine::kinematics::{Chain, Joints, Pose};
+
+pub use round::{arm_and_height, between, on_arc};
+
+/// Where the machine stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stance {
+    /// Axis values, mm and radians, counted from the drawing's zero, in chain order.
+    pub joints: Joints,
+    /// Tip and tool axis, part frame, of the tool whose length is compensated.
+    pub pose: Pose,
+}
+
+/// How the control goes from one end to the other.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Way {
+    /// All axes linearly in the same parameter.
+    Axes,
+    /// The tip straight, the rotary axes linearly.
+    Tip,
+    /// The tip straight, the tool axis on the great circle (vectors: G43.5, ORIVECT, LN).
+    TipAndAxis,
+    /// The tip on an arc or helix of the part frame, rotary axes linearly if they turn at all.
+    Arc {
+        /// A point of its axis, mm.
+        centre: Vector3<f64>,
+        /// Its axis, unit vector.
+        normal: Vector3<f64>,
+        /// Turn about it, right-handed, radians; more than a turn where the program says so.
+        sweep: f64,
+    },
+    /// The tip on a spline of the part frame: poles and knots, as the program states them.
+    Spline(Arc<SplineWay>),
+}
+
+/// A rational B-spline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SplineWay {
+    /// Degree.
+    pub degree: usize,
+    /// Knots, as many as poles + degree + 1.
+    pub knots: Vec<f64>,
+    /// Poles, mm, part frame, and their weights.
+    pub poles: Vec<(Vector3<f64>, f64)>,
+}
+
+impl Way {
+    /// Tip and tool axis between `ends` at `t` from 0 to 1 of the way's own parameter (time, at constant feed), as the
+    /// control and the chain make them.
+    pub fn at(&self, chain: &Chain, ends: [&Stance; 2], t: f64) -> Pose {
+        let [from, to] = ends;
+        let straight = || from.pose.tip + (to.pose.tip - from.pose.tip) * t;
+        let tip = match self {
+            Self::Axes => return chain.forward(&joints_between(ends, t)),
+            Self::Tip => straight(),
+            Self::TipAndAxis => {
+                let axis = between(from.pose.axis, to.pose.axis, t);
+                let edge = match from.pose.edge == Vector3::zeros() {
+                    true => from.pose.edge,
+                    false => between(from.pose.edge, to.pose.edge, t),
+                };
+                let tip = straight();
+                return Pose { tip, axis, edge };
+            }
+            Self::Arc {
+                centre,
+                normal,
+                sweep,
+            } => on_arc([from.pose.tip, to.pose.tip], *centre, *normal, *sweep, t),
+            Self::Spline(way) => way.at(t),
+        };
+        if !turns(chain, ends) {
+            return Pose { tip, ..to.pose };
+        }
+        // Rotary axes alone say where the tool points.
+        let pose = chain.forward(&joints_between(ends, t));
+        Pose { tip, ..pose }
+    }
+}
+
+/// Some rotary axis turns on the way.
+pub fn turns(chain: &Chain, ends: [&Stance; 2]) -> bool {
+    let axes = chain.joints().iter().enumerate();
+    axes.filter(|(_, axis)| axis.rotary)
+        .any(|(place, _)| ends[0].joints[place] != ends[1].joints[place])
+}
+
+/// Axis values at `t`, all linearly: where the control keeps the tip ([`Way::Tip`] and below), those of the rotary axes
+/// alone hold.
+pub fn joints_between(ends: [&Stance; 2], t: f64) -> Joints {
+    let [from, to] = ends.map(|stance| &stance.joints);
+    std::array::from_fn(|place| from[place] + (to[place] - from[place]) * t)
+}

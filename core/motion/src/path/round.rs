@@ -1,0 +1,71 @@
+//! Points and directions between two others, on straight lines' next of kin: arcs and great circles.
+
+use nalgebra::Vector3;
+
+/// Directions nearer than this are one: the sine of their angle.
+const SAME: f64 = 1e-12;
+
+/// The arm of a point from an axis, and its height along it.
+pub fn arm_and_height(
+    tip: Vector3<f64>,
+    centre: Vector3<f64>,
+    normal: Vector3<f64>,
+) -> (Vector3<f64>, f64) {
+    let offset = tip - centre;
+    let height = normal.dot(&offset);
+    (offset - normal * height, height)
+}
+
+/// The point at `t` on the way round an axis from one point to another.
+pub fn on_arc(
+    ends: [Vector3<f64>; 2],
+    centre: Vector3<f64>,
+    normal: Vector3<f64>,
+    sweep: f64,
+    t: f64,
+) -> Vector3<f64> {
+    let [(arm, low), (last, high)] = ends.map(|tip| arm_and_height(tip, centre, normal));
+    let first = arm.norm();
+    let radius = first + (last.norm() - first) * t;
+    let (sine, cosine) = libm::sincos(sweep * t);
+    let out = match first > 0.0 {
+        true => arm / first,
+        false => Vector3::zeros(),
+    };
+    let turned = out * cosine + normal.cross(&out) * sine;
+    let error = ends[1] - (centre + turned_about(out, normal, sweep) * last.norm() + normal * high);
+    // Ends of a program are rounded: the way ends where it says, the difference spread over it.
+    centre + turned * radius + normal * (low + (high - low) * t) + error * t
+}
+
+/// The unit vector at `t` on the great circle from one to the other; of opposite ones about any direction across.
+pub fn between(from: Vector3<f64>, to: Vector3<f64>, t: f64) -> Vector3<f64> {
+    if from == to {
+        return from;
+    }
+    let across = from.cross(&to);
+    let sine = across.norm();
+    let angle = libm::atan2(sine, from.dot(&to));
+    if sine < SAME {
+        let straight = from + (to - from) * t;
+        return match angle < 1.0 {
+            true => straight.normalize(),
+            false => turned_about(from, any_across(from), angle * t),
+        };
+    }
+    turned_about(from, across / sine, angle * t)
+}
+
+/// A vector turned about the unit vector `k`, right-handed, radians.
+fn turned_about(vector: Vector3<f64>, k: Vector3<f64>, angle: f64) -> Vector3<f64> {
+    let (sine, cosine) = libm::sincos(angle);
+    vector * cosine + k.cross(&vector) * sine
+}
+
+/// A unit vector across another.
+fn any_across(vector: Vector3<f64>) -> Vector3<f64> {
+    let least = vector.iamin();
+    let mut other = Vector3::zeros();
+    other[least] = 1.0;
+    vector.cross(&other).normalize()
+}

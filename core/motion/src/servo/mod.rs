@@ -1,0 +1,1 @@
+//! Servos: where the axes are while they follow their set-points.

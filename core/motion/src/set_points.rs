@@ -1,0 +1,70 @@
+//! Set-points: where a control commands the axes, period by period.
+
+use std::sync::Arc;
+
+use post_machine::kinematics::{Joints, Pose, Solver};
+
+/// A batch of set-points, one a period, of one chain.
+#[derive(Clone, Debug)]
+pub struct SetPoints {
+    /// The chain, with the tool in use.
+    pub solver: Arc<Solver>,
+    /// Time from one to the next, s.
+    pub period: f64,
+    /// How many stand before the first of these: it is commanded at `first * period` from the beginning, s.
+    pub first: u64,
+    /// Axis values, mm and radians, counted from the drawing's zero, in chain order.
+    pub joints: Vec<Joints>,
+    /// Tip and tool axis that they make, part frame.
+    pub poses: Vec<Pose>,
+    /// What is being carried out.
+    pub at: Vec<At>,
+}
+
+/// Where a set-point stands in the program.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct At {
+    /// Number of the task, from 0; while two overlap, the one that is left.
+    pub task: u64,
+    /// Line of the program.
+    pub line: u64,
+    /// At feed: the tool cuts.
+    pub cuts: bool,
+}
+
+impl SetPoints {
+    /// None yet.
+    pub fn new(solver: Arc<Solver>, period: f64) -> Self {
+        Self {
+            solver,
+            period,
+            first: 0,
+            joints: Vec::new(),
+            poses: Vec::new(),
+            at: Vec::new(),
+        }
+    }
+
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// There is none.
+    pub fn is_empty(&self) -> bool {
+        self.joints.is_empty()
+    }
+
+    /// Forgets all; `first` goes on behind them.
+    pub fn clear(&mut self) {
+        self.first += self.len() as u64;
+        self.joints.clear();
+        self.poses.clear();
+        self.at.clear();
+    }
+
+    /// Time of the set-point at `place` of this batch, s.
+    pub fn time(&self, place: usize) -> f64 {
+        (self.first + place as u64) as f64 * self.period
+    }
+}

@@ -1,0 +1,80 @@
+//! What a control carries out, in order.
+
+use std::sync::Arc;
+
+use post_machine::kinematics::Solver;
+
+use crate::path::{Stance, Way};
+
+/// One thing after the other.
+#[derive(Clone, Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "most are moves, and they lie in a queue that is filled again and again"
+)]
+pub enum Task {
+    /// The machine moves.
+    Move(Move),
+    /// It waits where it stands.
+    Wait {
+        /// Line of the program.
+        line: u64,
+        /// How long, s.
+        seconds: f64,
+        /// What for.
+        why: Waiting,
+    },
+}
+
+/// What the machine waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Waiting {
+    /// A dwell of the program.
+    Dwell,
+    /// A tool change.
+    ToolChange,
+    /// The spindle.
+    Spindle,
+}
+
+/// A way from one stance to another.
+#[derive(Clone, Debug)]
+pub struct Move {
+    /// Line of the program.
+    pub line: u64,
+    /// How the control goes.
+    pub way: Way,
+    /// Where it begins: where the last one has ended.
+    pub from: Stance,
+    /// Where it ends.
+    pub to: Stance,
+    /// The chain that it is meant for, with the tool in use.
+    pub solver: Arc<Solver>,
+    /// How fast it is asked for.
+    pub pace: Pace,
+    /// How the control passes from it into the next one.
+    pub corner: Corner,
+}
+
+/// How fast a move is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pace {
+    /// As fast as the axes go.
+    Rapid,
+    /// It takes so long at the feed that the program states, no limit of the machine regarded, minutes.
+    Minutes(f64),
+}
+
+/// How a control passes from one move into the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Corner {
+    /// It stands still at the end (G9, G61.1 of LinuxCNC, G60).
+    Stop,
+    /// It keeps the path, and stands still where the direction changes (G61).
+    Path,
+    /// It may leave the path (G64, CYCLE832, CYCL DEF 32).
+    Blend {
+        /// By no more than this, mm; none: as far as its own rule leads.
+        tolerance: Option<f64>,
+    },
+}

@@ -227,6 +227,10 @@ pub fn hold<C: Course, R: Read + Seek>(
         tolerance: tolerance.unwrap_or(standard.tolerance),
         axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
         registers: registers(&words),
+        work_offsets: reading
+            .offsets
+            .as_ref()
+            .is_some_and(|offsets| !offsets.work.is_empty()),
         lengths: (!lengths_in_the_offset(&words)).then(|| offsets.clone()),
         solutions: reading.solutions,
         least_minutes: most_by_time.map_or(0.0, |most| 1.0 / most),

@@ -1,9 +1,10 @@
 //! What is modal, what is refused, what is only counted, and how long it takes.
 
 use post_machine::description::Machine;
-use post_readback::{MotionKind, Offsets, Spindle, Told};
+use post_motion::Corner;
+use post_readback::{Corners, MotionKind, Offsets, Spindle, Told};
 
-use super::{LETTERS, NAMES, letters, machine, ran};
+use super::{LETTERS, NAMES, Ran, letters, machine, ran};
 
 #[test]
 fn units_and_ways_are_modal() {
@@ -224,6 +225,54 @@ fn words_beside_a_code_say_what_it_does() {
         .collect();
     assert_eq!(smoothing, [None, Some(0.02), None]);
     assert!(done.report.unknown.is_empty(), "{:?}", done.report.unknown);
+}
+
+/// What holds at the end of each motion, and whether the motion says so itself.
+fn corners(done: &Ran) -> Vec<(Corners, bool)> {
+    let motions = done.motions.iter();
+    motions
+        .map(|motion| (motion.state.corners, motion.stops))
+        .collect()
+}
+
+#[test]
+fn words_say_how_corners_are_passed() {
+    let said = |corner: Corner| (Corners::Said(corner), false);
+    let blend = |tolerance: Option<f64>| said(Corner::Blend { tolerance });
+    let unsaid = (Corners::Unsaid, false);
+    let machine = machine("vmc");
+    // Fanuc's G61 is an exact stop, and G9 one for its block.
+    let program = "G1 F500. X1.\nG61 X2.\nG64 X3.\nG9 X4.\nX5.\nG187 P3 E0.02\nX6.\nG187\nX7.\n";
+    let once = (blend(None).0, true);
+    assert_eq!(
+        corners(&letters(&machine, program).whole()),
+        [
+            unsaid,
+            said(Corner::Stop),
+            blend(None),
+            once,
+            blend(None),
+            blend(Some(0.02)),
+            unsaid
+        ]
+    );
+    // An inch program states its tolerance in inches.
+    let inch = letters(&machine, "G20 G1 F50. X1.\nG187 P3 E0.001\nX2.\n").whole();
+    assert_eq!(corners(&inch)[1], blend(Some(0.0254)));
+    // Siemens: G60, G64, and the compressor with and without its tolerance.
+    let program = "G1 F500 X1\nG60 X2\nG64 X3\nG642 X4\nCTOL=0.03\nX5\nG64 X6\nG9 X7\n";
+    assert_eq!(
+        corners(&ran(&machine, NAMES, &Offsets::default(), program).whole()),
+        [
+            unsaid,
+            said(Corner::Stop),
+            blend(None),
+            (Corners::Own, false),
+            blend(Some(0.03)),
+            blend(None),
+            once
+        ]
+    );
 }
 
 #[test]

@@ -10,7 +10,8 @@ use post_machine::kinematics::Pose;
 use post_readback::course::{Course, Curve, Item, Piece, Reach};
 use post_readback::verify::{BlockReport, CutPath, Registers, Rules, Verification, Verifier};
 use post_readback::{
-    Coolants, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State, Told, Way,
+    Coolants, Corners, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State,
+    Told, Way,
 };
 use post_testkit::frechet::frechet;
 use post_testkit::seeded;
@@ -139,6 +140,7 @@ impl Does {
             coolants: Coolants::default(),
             operation: None,
             smoothing: None,
+            corners: Corners::Unsaid,
         };
         Self {
             done: Vec::new(),
@@ -173,6 +175,7 @@ impl Does {
             to: stance(to),
             feed: 500.0,
             minutes,
+            stops: false,
             hole: false,
             machine: false,
             state: Arc::clone(&self.state),

@@ -1,0 +1,3 @@
+//! How a machine moves along a path.
+
+mod trajectory;

@@ -117,11 +117,44 @@ fn a_tangent_is_passed_at_full_speed_and_a_corner_is_not() {
         let (program, _) = square(&machine, turn, Corner::Path, 6000.0);
         let run = run(&machine, &program.tasks, &program.solver, 1000);
         let seconds: f64 = run.times.iter().map(|time| time.seconds).sum();
-        for time in &run.times {
-            println!("{time:?}");
-        }
-        // 100 mm/s, 2000 mm/s²: 0.05 s for a standstill.
-        let due = 0.7 + if fast { 0.05 } else { 0.1 };
-        assert!(libm::fabs(seconds - due) < 0.002, "{turn}: {seconds} s");
+        // A ramp between 0 and 100 mm/s costs 100 / 2a; the second way lies askew to the axes.
+        let [first, second]: [f64; 2] = [
+            2000.0,
+            2000.0 / libm::fmax(libm::cos(turn), libm::sin(turn)),
+        ];
+        let [first, second] = [first, second].map(|acceleration| 50.0 / acceleration);
+        let due = 0.7 + first + second + if fast { 0.0 } else { first + second };
+        assert!(
+            libm::fabs(seconds - due) < 0.003,
+            "{turn}: {seconds} s, not {due} s"
+        );
     }
+}
+
+#[test]
+fn a_corner_is_slowed_down_for_until_no_axis_jumps_by_more_than_a_period_makes() {
+    let machine = trunnion(
+        "max_feed = 30000, max_accel = 2000",
+        "max_feed = 7200, max_accel = 600",
+        "period = 0.001",
+    );
+    let (program, [_, corner, _]) = square(&machine, 1.2, Corner::Path, 6000.0);
+    let run = run(&machine, &program.tasks, &program.solver, 1000);
+    let tips: Vec<_> = run.points.poses.iter().map(|pose| pose.tip).collect();
+    let speeds = tips.windows(2).map(|pair| {
+        (
+            (pair[1] - pair[0]).norm() / 0.001,
+            (pair[0] - corner).norm(),
+        )
+    });
+    let slowest = speeds
+        .filter(|(_, off)| *off < 1.0)
+        .map(|(speed, _)| speed)
+        .fold(f64::INFINITY, f64::min);
+    // Y jumps by v·sin 1.2 in all, by 2000 mm/s² · 1 ms at most.
+    let due = 2.0 / libm::sin(1.2);
+    assert!(
+        slowest >= due * 0.999 && slowest < due + 2.1,
+        "{slowest} mm/s, not {due}"
+    );
 }

@@ -122,3 +122,85 @@ fn looking_further_ahead_is_never_slower_and_not_at_all_stands_still() {
         }
     }
 }
+
+#[test]
+fn no_jerk_limit_is_passed_however_many_blocks_a_ramp_spans() {
+    let (rounds, mut rng) = randomised(40u16, 13);
+    for round in rounds {
+        let [a, j] = [rng.order(2.0, 3.7), rng.order(3.7, 5.5)];
+        let depth = [3, 20, 100, 1000][rng.pick(4)];
+        let machine = trunnion(
+            &format!("max_feed = 12000, max_accel = {a:?}, max_jerk = {j:?}"),
+            ROTARY,
+            &format!("period = 0.001\nlook_ahead = {depth}"),
+        );
+        let scatter = rng.range(0.0, 0.8);
+        let blocks: Vec<[f64; 2]> = (0..300)
+            .map(|_| {
+                [
+                    rng.order(-2.0, 0.0),
+                    rng.order(3.5 - scatter, 3.5 + scatter),
+                ]
+            })
+            .collect();
+        let program = straight(&machine, &blocks);
+        let run = run(&machine, &program.tasks, &program.solver, 1000);
+        let x = machine
+            .axes
+            .iter()
+            .position(|axis| axis.name == "X")
+            .expect("X");
+        let values: Vec<f64> = run.points.joints.iter().map(|joints| joints[x]).collect();
+        let h = run.points.period;
+        for four in values.windows(4) {
+            let [p0, p1, p2, p3] = [four[0], four[1], four[2], four[3]];
+            let acceleration = (p3 - 2.0 * p2 + p1) / (h * h);
+            let jerk = (p3 - 3.0 * p2 + 3.0 * p1 - p0) / (h * h * h);
+            assert!(p3 >= p2 - 1e-12);
+            assert!(
+                libm::fabs(acceleration) < a * 1.0001,
+                "{round}: {acceleration}, limit {a}"
+            );
+            assert!(
+                libm::fabs(jerk) < j * 1.0001 + 0.1,
+                "{round}: {jerk}, limit {j}"
+            );
+        }
+        for (time, [length, feed]) in run.times.iter().zip(&blocks) {
+            assert!(time.seconds >= 60.0 * length / feed * (1.0 - 1e-9));
+        }
+    }
+}
+
+#[test]
+fn a_curve_of_many_blocks_is_gone_round_at_its_feed() {
+    let machine = trunnion(
+        "max_feed = 12000, max_accel = 2000, max_jerk = 50000",
+        "max_feed = 7200, max_accel = 600, max_jerk = 20000",
+        "",
+    );
+    let mut program = Program::new(&machine, [50.0, 0.0, 0.0]);
+    let (count, feed) = (3000, 3000.0);
+    for place in 1..=count {
+        let angle = 2.0 * std::f64::consts::PI * f64::from(place) / f64::from(count);
+        let (sine, cosine) = libm::sincos(angle);
+        let mut joints = program.here.joints;
+        joints[0] = 0.3 * sine;
+        joints[1] = 0.2 * cosine - 0.2;
+        let to = program.stance([50.0 * cosine, 50.0 * sine, 5.0 * sine * sine], &joints);
+        let length = (to.pose.tip - program.here.pose.tip).norm();
+        program.go(Way::Tip, to, Pace::Minutes(length / feed), Corner::Path);
+    }
+    let begun = std::time::Instant::now();
+    let run = run(&machine, &program.tasks, &program.solver, 1000);
+    let cost = begun.elapsed().as_secs_f64() / run.points.len() as f64;
+    let [asked, taken]: [f64; 2] = [
+        run.times.iter().map(|time| time.asked).sum(),
+        run.times.iter().map(|time| time.seconds).sum(),
+    ];
+    println!(
+        "{taken} s, {asked} s asked, {:.0} ns a set-point",
+        cost * 1e9
+    );
+    assert!(taken < asked * 1.05, "{taken} s, {asked} s asked");
+}

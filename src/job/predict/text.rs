@@ -29,11 +29,11 @@ fn head(text: &mut String, found: &Prediction) {
     let mut row = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<16} {value}");
     };
-    row("program", format!("{}, {} blocks", found.program, found.blocks));
     row(
-        "machine",
-        format!("{} ({})", found.machine, found.dialect),
+        "program",
+        format!("{}, {} blocks", found.program, found.blocks),
     );
+    row("machine", format!("{} ({})", found.machine, found.dialect));
     row(
         "set-points",
         format!(
@@ -80,10 +80,7 @@ fn head(text: &mut String, found: &Prediction) {
         format!("{}{against}", spread(&found.contour.tip_mm, "mm", 4)),
     );
     for part in &found.contour.parts {
-        row(
-            &format!("  {}", part.part),
-            spread(&part.tip_mm, "mm", 4),
-        );
+        row(&format!("  {}", part.part), spread(&part.tip_mm, "mm", 4));
     }
     row("tool axis", spread(&found.contour.axis_deg, "°", 5));
 }

@@ -185,7 +185,11 @@ impl Rooms {
         let mut panels = vec![panel(
             "tip, µm",
             vec![
-                bands("from least to largest", self.contour.runs(0, MICRO), "#8c8c8c"),
+                bands(
+                    "from least to largest",
+                    self.contour.runs(0, MICRO),
+                    "#8c8c8c",
+                ),
                 Series::line("not passed by 95 %", most(tip.p95), DASHED),
                 Series::line("root of the mean square", most(tip.rms), LOOKS[2]),
             ],

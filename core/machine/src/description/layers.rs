@@ -221,6 +221,7 @@ const TOP: &[&str] = &[
     "accuracy",
     "solution",
     "rewind",
+    "motion",
     "head",
 ];
 

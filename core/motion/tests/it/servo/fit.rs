@@ -97,7 +97,7 @@ fn the_true_numbers_come_back() {
         (&direct, &[("load", 2.0), ("velocity_time", 0.7)]),
         (&rubbing, &[("coulomb", 0.4), ("kv", 1.1)]),
         (
-            &feedrate_paper_servo(),
+            &feedrate_paper(),
             &[("kp", 1.2), ("ki", 0.5), ("damping", 2.0)],
         ),
     ];
@@ -120,10 +120,6 @@ fn the_true_numbers_come_back() {
             );
         }
     }
-}
-
-fn feedrate_paper_servo() -> Servo {
-    feedrate_paper()
 }
 
 /// With noise the numbers are off by as much as is said: of 40 logs with 3 numbers each, the errors over the deviations that

@@ -2,6 +2,7 @@
 
 use post_machine::description::{Machine, Source, load};
 use post_machine::kinematics::Joints;
+use post_motion::servo::fit::named;
 use post_motion::servo::{Follower, Servos};
 
 fn machine() -> Machine {
@@ -90,4 +91,18 @@ fn what_is_no_number_does_not_end_the_run() {
     servos.settle(&[1.0; 8]);
     servos.follow(&[[1.0; 8]], &mut actual);
     assert!((actual[0][0] - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn numbers_are_named_by_axis_and_key() {
+    let machine = machine();
+    assert_eq!(named(&machine, "Y.kv").unwrap(), (2, "kv"));
+    for (name, said) in [
+        ("kv", "such as X.kv"),
+        ("X.kv", "servos are known of C, Y"),
+        ("W.kv", "servos are known of C, Y"),
+    ] {
+        let fault = named(&machine, name).unwrap_err();
+        assert!(fault.help.as_ref().unwrap().contains(said), "{fault:?}");
+    }
 }

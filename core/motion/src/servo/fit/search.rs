@@ -1,137 +1,50 @@
-//! Numbers of a servo from a measured log: least squares, and how well each is determined.
-//!
-//! The servo is run over the commanded positions of the log, and its numbers are changed until the sum of the squares of its
-//! distances from the measured ones is least (Levenberg 1944, Marquardt 1963). Numbers that are above zero are changed by
-//! factors: their logarithms are what is searched for. The derivatives are differences of runs. All runs go through the log
-//! side by side and their differences are gathered block by block into a triangle (QR), so that memory does not grow with
-//! the log and small singular values are not lost, as they are in the normal equations.
-//!
-//! What a log does not determine stays close to where it was, and is said: each number has a standard deviation from the
-//! covariance `σ²·(JᵀJ)⁻¹`, and combinations that could be anything are listed. That takes the errors of the log for
-//! independent from one sample to the next. Those of real logs are not (what the model does not know comes back in
-//! every move), so that the true deviations are larger, rarely by more than a few times.
+//! The search for the numbers that fit best.
 
 use nalgebra::{DMatrix, DVector};
 use post_machine::diagnostic::{Diagnostic, meant};
 use post_machine::servo::{Servo, StateSpace, stable};
 
-use super::{Follower, Output};
-
-/// What a control has recorded of one axis.
-#[derive(Clone, Copy, Debug)]
-pub struct Log<'a> {
-    /// Time from one sample to the next, s.
-    pub period: f64,
-    /// Commanded positions, mm or radians. The axis is taken to stand still at the first of them before the log begins.
-    pub commanded: &'a [f64],
-    /// Measured ones at the same times, as many.
-    pub measured: &'a [f64],
-    /// So many at the beginning are run through, but not compared: what the axis did before the log has died away by then.
-    pub lead: usize,
-}
-
-/// A servo that has been adjusted to a log.
-#[derive(Clone, Debug)]
-pub struct Fit {
-    /// With its new numbers.
-    pub servo: Servo,
-    /// The numbers that were adjusted, as they were named.
-    pub fitted: Vec<Fitted>,
-    /// Combinations of them that the log does not determine.
-    pub undetermined: Vec<Direction>,
-    /// Root of the mean square of measured minus predicted, with the numbers as they were, mm or radians.
-    pub before: f64,
-    /// The same with the new ones.
-    pub after: f64,
-    /// The search came to an end; else it was given up, and the numbers are the best that were met.
-    pub converged: bool,
-}
-
-/// A number that was adjusted, in the unit of the machine file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fitted {
-    /// Its key in the machine file.
-    pub name: &'static str,
-    /// As it was.
-    pub before: f64,
-    /// As it is now.
-    pub value: f64,
-    /// Its standard deviation, in the same unit; infinite if the log says nothing of it.
-    pub deviation: f64,
-    /// The log determines it: the deviation is less than [`LARGEST_DEVIATION`] of it (of 1 for the shares of feed-forward).
-    pub determined: bool,
-    /// The other number that it can be exchanged for most easily, and the correlation of their errors, -1 to 1; none if
-    /// there is no other.
-    pub correlated: Option<(&'static str, f64)>,
-}
-
-/// A combination of numbers that could be larger or smaller without the log saying so.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Direction {
-    /// The numbers, and how each changes: by the factor `e^share` (feed-forward: by `share`), the largest share being 1.
-    pub shares: Vec<(&'static str, f64)>,
-    /// Standard deviation along it, in the same measure; infinite if the log says nothing of it.
-    pub deviation: f64,
-}
-
-/// A number whose standard deviation is larger, as a share of itself, is not determined.
-pub const LARGEST_DEVIATION: f64 = 0.5;
+use super::Log;
+use crate::servo::{Follower, Output};
 
 /// Fewer samples than this a number say nothing.
 const LEAST_SAMPLES: usize = 4;
 /// No log is finer, mm or radians: errors are not taken for smaller, so that a log without noise does not seem to determine
 /// what only rounding does.
 const FINEST: f64 = 1e-7;
-/// A singular value that is smaller than this share of the largest is the error of the differences.
-const SMALLEST: f64 = 1e-9;
 /// Half of the difference by which derivatives are taken, as a share.
 const STEP: f64 = 1e-4;
 /// Longest change of a number in one step of the search: a factor of e.
 const LONGEST: f64 = 1.0;
 /// Steps of the search.
 const MOST_STEPS: usize = 100;
-/// A number is known beforehand to within a factor of e to this, so that what the log says nothing of does not wander.
-const KNOWN: f64 = 5.0;
 /// Samples of a block.
 const BLOCK: usize = 256;
-/// A share in a combination that is not told.
-const SMALL_SHARE: f64 = 0.1;
-
-/// Adjusts the numbers of `servo` that are called `names` (keys of the machine file, `kv`) to `log`.
-///
-/// # Errors
-/// A name that the servo does not have, a number that is zero and so has no factor, a log that is too short, or whose two
-/// courses are not of one length.
-pub fn fit(servo: &Servo, names: &[&str], log: Log<'_>) -> Result<Fit, Box<Diagnostic>> {
-    let search = Search::new(servo, names, log)?;
-    let start = search.start.clone();
-    let free = search.run(&start, 0.0)?;
-    let spread = search.spread(&free.triangle);
-    // Once more, with what was known before: directions that the noise alone has led along go back.
-    let found = search.run(&start, spread / KNOWN)?;
-    Ok(search.told(&found, search.spread(&found.triangle)))
-}
 
 /// What is searched for, and in what.
-struct Search<'a> {
+pub(super) struct Search<'a> {
     servo: &'a Servo,
-    log: Log<'a>,
-    names: Vec<&'static str>,
+    pub(super) log: Log<'a>,
+    pub(super) names: Vec<&'static str>,
     /// Searched for by its logarithm.
-    by_factor: Vec<bool>,
-    start: DVector<f64>,
+    pub(super) by_factor: Vec<bool>,
+    pub(super) start: DVector<f64>,
 }
 
 /// Where the search stands.
-struct Found {
-    place: DVector<f64>,
+pub(super) struct Found {
+    pub(super) place: DVector<f64>,
     /// Triangle of the derivatives, and of the errors behind them.
-    triangle: DMatrix<f64>,
-    converged: bool,
+    pub(super) triangle: DMatrix<f64>,
+    pub(super) converged: bool,
 }
 
 impl<'a> Search<'a> {
-    fn new(servo: &'a Servo, names: &[&str], log: Log<'a>) -> Result<Self, Box<Diagnostic>> {
+    pub(super) fn new(
+        servo: &'a Servo,
+        names: &[&str],
+        log: Log<'a>,
+    ) -> Result<Self, Box<Diagnostic>> {
         let fault = |message: String, help: String| {
             Err(Diagnostic::error("fit", message)
                 .at(servo.place.clone())
@@ -190,7 +103,7 @@ impl<'a> Search<'a> {
     }
 
     /// The servo with the numbers of `place`.
-    fn servo_at(&self, place: &DVector<f64>) -> Servo {
+    pub(super) fn servo_at(&self, place: &DVector<f64>) -> Servo {
         let mut servo = self.servo.clone();
         for (index, name) in self.names.iter().enumerate() {
             if let Some(number) = servo.parameter(name) {
@@ -200,7 +113,7 @@ impl<'a> Search<'a> {
         servo
     }
 
-    fn value(&self, place: &DVector<f64>, index: usize) -> f64 {
+    pub(super) fn value(&self, place: &DVector<f64>, index: usize) -> f64 {
         if self.by_factor[index] {
             libm::exp(place[index])
         } else {
@@ -222,7 +135,7 @@ impl<'a> Search<'a> {
     }
 
     /// Sum of the squares of measured minus predicted.
-    fn squares(&self, place: &DVector<f64>) -> Result<f64, Box<Diagnostic>> {
+    pub(super) fn squares(&self, place: &DVector<f64>) -> Result<f64, Box<Diagnostic>> {
         let mut follower = self.follower(place)?;
         let mut sum = 0.0;
         let Log {
@@ -296,7 +209,7 @@ impl<'a> Search<'a> {
     }
 
     /// Standard deviation of the log's errors, mm or radians.
-    fn spread(&self, triangle: &DMatrix<f64>) -> f64 {
+    pub(super) fn spread(&self, triangle: &DMatrix<f64>) -> f64 {
         let count = self.names.len();
         let samples = self.log.commanded.len() - self.log.lead;
         let left = triangle.column(count).norm();
@@ -304,7 +217,7 @@ impl<'a> Search<'a> {
     }
 
     /// Searches from `start`. Each number is drawn back there with the strength `draw`.
-    fn run(&self, start: &DVector<f64>, draw: f64) -> Result<Found, Box<Diagnostic>> {
+    pub(super) fn run(&self, start: &DVector<f64>, draw: f64) -> Result<Found, Box<Diagnostic>> {
         let count = self.names.len();
         let cost = |place: &DVector<f64>, squares: f64| {
             squares + draw * draw * (place - start).norm_squared()
@@ -362,99 +275,6 @@ impl<'a> Search<'a> {
                 place[index].clamp(0.0, 2.0)
             }
         })
-    }
-
-    fn told(&self, found: &Found, spread: f64) -> Fit {
-        let count = self.names.len();
-        let samples = (self.log.commanded.len() - self.log.lead) as f64;
-        let derivatives = found.triangle.view((0, 0), (count, count)).into_owned();
-        let decomposed = derivatives.svd(false, true);
-        let largest = decomposed.singular_values.amax();
-        let along: Vec<f64> = decomposed
-            .singular_values
-            .iter()
-            .map(|value| {
-                if *value > SMALLEST * largest {
-                    spread / value
-                } else {
-                    f64::INFINITY
-                }
-            })
-            .collect();
-        let directions: Vec<DVector<f64>> = decomposed
-            .v_t
-            .iter()
-            .flat_map(|rows| rows.row_iter().map(|row| row.transpose()))
-            .collect();
-        // Of an endless direction nothing is known but who is in it: its numbers are not known either.
-        let covariance = |one: usize, other: usize| -> f64 {
-            let parts = directions.iter().zip(&along);
-            parts
-                .filter(|(direction, _)| libm::fabs(direction[one] * direction[other]) > SMALLEST)
-                .map(|(direction, along)| direction[one] * direction[other] * along * along)
-                .sum()
-        };
-        let fitted = (0..count)
-            .map(|index| {
-                let deviation = libm::sqrt(covariance(index, index));
-                let correlation = |other: usize| {
-                    let both = covariance(index, index) * covariance(other, other);
-                    let value = covariance(index, other) / libm::sqrt(both);
-                    if value.is_finite() { value } else { 0.0 }
-                };
-                let others = (0..count).filter(|other| *other != index);
-                let correlated = others
-                    .map(|other| (self.names[other], correlation(other)))
-                    .max_by(|one, other| libm::fabs(one.1).total_cmp(&libm::fabs(other.1)));
-                let value = self.value(&found.place, index);
-                Fitted {
-                    name: self.names[index],
-                    before: self.value(&self.start, index),
-                    value,
-                    deviation: if self.by_factor[index] {
-                        deviation * value
-                    } else {
-                        deviation
-                    },
-                    determined: deviation <= LARGEST_DEVIATION,
-                    correlated,
-                }
-            })
-            .collect();
-        let undetermined = directions
-            .iter()
-            .zip(&along)
-            .filter(|(_, along)| **along > LARGEST_DEVIATION)
-            .map(|(direction, along)| self.direction(direction, *along))
-            .collect();
-        let squares = self.squares(&self.start).unwrap_or(f64::NAN);
-        Fit {
-            servo: self.servo_at(&found.place),
-            fitted,
-            undetermined,
-            before: libm::sqrt(squares / samples),
-            after: found.triangle.column(count).norm() / libm::sqrt(samples),
-            converged: found.converged,
-        }
-    }
-
-    fn direction(&self, direction: &DVector<f64>, along: f64) -> Direction {
-        // The largest share is 1.
-        let largest = direction.iter().copied().fold(0.0, |largest: f64, share| {
-            if libm::fabs(share) > libm::fabs(largest) {
-                share
-            } else {
-                largest
-            }
-        });
-        let shares = self.names.iter().zip(direction.iter());
-        let shares = shares.map(|(name, share)| (*name, share / largest));
-        Direction {
-            shares: shares
-                .filter(|(_, share)| libm::fabs(*share) > SMALL_SHARE)
-                .collect(),
-            deviation: along * libm::fabs(largest),
-        }
     }
 }
 

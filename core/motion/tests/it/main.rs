@@ -4,3 +4,4 @@
 mod contour;
 //! How a machine moves along a path.
 mod trajectory;
+mod servo;

@@ -71,7 +71,8 @@ impl<'a> OwnFolder<'a> {
     }
 
     fn path(&self, name: &str) -> PathArg {
-        self.folder.map(|folder: &Path| -> PathBuf { folder.join(name) })
+        self.folder
+            .map(|folder: &Path| -> PathBuf { folder.join(name) })
     }
 
     /// Puts files to `texts`, which take their names together; the folder is made if it is not there.

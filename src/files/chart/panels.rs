@@ -2,8 +2,8 @@
 
 use super::super::scale::Scale;
 use super::super::svg::{self, label, upright};
-use super::plot::{Area, LEFT, ROW, TOP, WIDTH, columns_of, legend, titles, width};
 use super::Series;
+use super::plot::{Area, LEFT, ROW, TOP, WIDTH, columns_of, legend, titles, width};
 
 /// From one plot to the one below, px.
 const GAP: f64 = 16.0;

@@ -72,7 +72,11 @@ pub fn assumed(machine: &Machine) -> Vec<String> {
 /// What the machine file leaves out that makes the time of a program too short.
 pub fn warn(machine: &Machine, findings: &mut Vec<Diagnostic>) {
     let keys: [(&str, fn(&Axis) -> f64, &str); 2] = [
-        ("max_feed", |axis| axis.max_feed, "its velocity is not limited"),
+        (
+            "max_feed",
+            |axis| axis.max_feed,
+            "its velocity is not limited",
+        ),
         (
             "max_accel",
             |axis| axis.max_accel,
@@ -87,7 +91,10 @@ pub fn warn(machine: &Machine, findings: &mut Vec<Diagnostic>) {
         let names = without.join(", ");
         let message = match without.len() {
             1 => format!("axis {names} has no {key}: {so}"),
-            _ => format!("axes {names} have no {key}: {}", so.replace("its", "their").replace("it is", "they are")),
+            _ => format!(
+                "axes {names} have no {key}: {}",
+                so.replace("its", "their").replace("it is", "they are")
+            ),
         };
         let help = format!("{key} of [axis.{}] in the machine file", without[0]);
         findings.push(Diagnostic::warning("motion-limits", message).help(help));

@@ -29,11 +29,11 @@ fn head(text: &mut String, found: &Prediction) {
     let mut row = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<16} {value}");
     };
-    row("program", format!("{}, {} blocks", found.program, found.blocks));
     row(
-        "machine",
-        format!("{} ({})", found.machine, found.dialect),
+        "program",
+        format!("{}, {} blocks", found.program, found.blocks),
     );
+    row("machine", format!("{} ({})", found.machine, found.dialect));
     row(
         "set-points",
         format!(
@@ -86,10 +86,7 @@ fn head(text: &mut String, found: &Prediction) {
     row("contour error", format!("{tip}{against}"));
     spread(&mut row, &contour.tip_mm, 4);
     for part in &contour.parts {
-        row(
-            &format!("  {}", part.part),
-            largest(&part.tip_mm, "mm", 4),
-        );
+        row(&format!("  {}", part.part), largest(&part.tip_mm, "mm", 4));
     }
     row("tool axis", largest(&contour.axis_deg, "°", 5));
     spread(&mut row, &contour.axis_deg, 5);
@@ -110,8 +107,8 @@ fn largest(spread: &Spread, unit: &str, decimals: u8) -> String {
 /// `RMS 0.0031; half within 0.0010, 95 % within 0.0030, 99 % within 0.0040`.
 fn spread(row: &mut impl FnMut(&str, String), spread: &Spread, decimals: u8) {
     if spread.largest > 0.0 {
-        let [rms, p50, p95, p99] = [spread.rms, spread.p50, spread.p95, spread.p99]
-            .map(|value| number(value, decimals));
+        let [rms, p50, p95, p99] =
+            [spread.rms, spread.p50, spread.p95, spread.p99].map(|value| number(value, decimals));
         let text = format!("RMS {rms}; half within {p50}, 95 % within {p95}, 99 % within {p99}");
         row("", text);
     }

@@ -108,9 +108,7 @@ impl TimeTally {
         for row in &mut times.limits {
             row.share = if all > 0.0 { row.seconds / all } else { 0.0 };
         }
-        times
-            .limits
-            .sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
+        times.limits.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
         times.operations.retain(|row| row.seconds > 0.0);
         times
     }

@@ -48,7 +48,10 @@ impl Envelope {
         let pairs = self.ranges.chunks(2 * channels);
         let merged = pairs.flat_map(|pair| {
             (0..channels).map(|channel| {
-                let [a, b] = [pair[channel], *pair.get(channels + channel).unwrap_or(&NONE)];
+                let [a, b] = [
+                    pair[channel],
+                    *pair.get(channels + channel).unwrap_or(&NONE),
+                ];
                 [a[0].min(b[0]), a[1].max(b[1])]
             })
         });
@@ -103,7 +106,9 @@ mod tests {
         assert!(envelope.ranges.len() <= 2 * MOST_BINS);
         let drawn = envelope.runs(0, 1.0);
         assert_eq!(drawn.len(), 1);
-        let high = drawn[0].iter().fold(f64::NEG_INFINITY, |most, bin| most.max(bin[2]));
+        let high = drawn[0]
+            .iter()
+            .fold(f64::NEG_INFINITY, |most, bin| most.max(bin[2]));
         assert_eq!(high, most);
         let half = envelope.runs(1, 3.0);
         let last = half[0].last().unwrap();

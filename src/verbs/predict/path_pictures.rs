@@ -60,9 +60,15 @@ pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
         "<path d=\"{whiskers}\" stroke=\"#b8b8b8\" stroke-width=\"0.6\"/>"
     );
     for cut in cuts {
-        let path: Vec<[f64; 2]> = cut.iter().map(|spot| picture.view.place(&spot.tip)).collect();
+        let path: Vec<[f64; 2]> = cut
+            .iter()
+            .map(|spot| picture.view.place(&spot.tip))
+            .collect();
         picture.line(&path, "#777777", 1.0);
-        let path: Vec<[f64; 2]> = cut.iter().map(|spot| picture.view.place(&far(spot))).collect();
+        let path: Vec<[f64; 2]> = cut
+            .iter()
+            .map(|spot| picture.view.place(&far(spot)))
+            .collect();
         picture.line(&path, "#000000", 1.3);
     }
     picture.close_clip();
@@ -72,7 +78,11 @@ pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
     let foot = TOP + SIZE[1] + 28.0;
     picture.line(&[[LEFT, foot], [LEFT + 38.0, foot]], "#777777", 1.0);
     picture.text([LEFT + 46.0, foot + 4.5], "commanded path");
-    picture.line(&[[LEFT + 190.0, foot], [LEFT + 228.0, foot]], "#000000", 1.3);
+    picture.line(
+        &[[LEFT + 190.0, foot], [LEFT + 228.0, foot]],
+        "#000000",
+        1.3,
+    );
     let text = format!("error × {}, as it is seen in this plane", number(times, 0));
     picture.text([LEFT + 236.0, foot + 4.5], &text);
     let below = foot + 26.0;

@@ -144,9 +144,12 @@ impl Rooms {
         let panels = self.axes.iter().enumerate().map(|(channel, axis)| {
             let cuts = self.lags.runs(channel, axis.unit());
             let mut rapids = self.lags.runs(self.axes.len() + channel, axis.unit());
-            let largest = cuts.iter().flatten().fold(0.0, |largest: f64, [_, low, high]| {
-                largest.max(-low).max(*high)
-            });
+            let largest = cuts
+                .iter()
+                .flatten()
+                .fold(0.0, |largest: f64, [_, low, high]| {
+                    largest.max(-low).max(*high)
+                });
             if largest > 0.0 {
                 // What the axis lags behind at rapid would leave no room for what counts.
                 for [_, low, high] in rapids.iter_mut().flatten() {
@@ -158,7 +161,11 @@ impl Rooms {
                 logarithmic: false,
                 height: 120.0,
                 series: vec![
-                    bands("at rapid, cut off where it is larger than in cuts", rapids, "#b0b0b0"),
+                    bands(
+                        "at rapid, cut off where it is larger than in cuts",
+                        rapids,
+                        "#b0b0b0",
+                    ),
                     bands("in cuts", cuts, "#000000"),
                 ],
             }
@@ -212,7 +219,11 @@ impl Rooms {
         let mut panels = vec![panel(
             "tip, µm",
             vec![
-                bands("from least to largest", self.contour.runs(0, MICRO), "#6b6b6b"),
+                bands(
+                    "from least to largest",
+                    self.contour.runs(0, MICRO),
+                    "#6b6b6b",
+                ),
                 Series::line("not passed by 95 %", most(tip.p95), DASHED),
                 Series::line("root of the mean square", most(tip.rms), DOTTED),
             ],

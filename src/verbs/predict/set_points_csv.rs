@@ -46,14 +46,11 @@ impl<'a, 'f> SetPointsCsv<'a, 'f> {
     pub fn take(&mut self, sample: &Sample) -> Result<(), FileFault> {
         let text = &mut self.text;
         fixed(text, sample.time, 6);
-        let cl_line = sample.cl_line.map_or_else(String::new, |line| line.to_string());
+        let cl_line = sample
+            .cl_line
+            .map_or_else(String::new, |line| line.to_string());
         // Writing to a String cannot fail.
-        let _ = write!(
-            text,
-            ",{},{cl_line},{}",
-            sample.line,
-            u8::from(sample.cuts)
-        );
+        let _ = write!(text, ",{},{cl_line},{}", sample.line, u8::from(sample.cuts));
         let mut column = |value: f64, decimals: u8| {
             text.push(',');
             fixed(text, value, decimals);

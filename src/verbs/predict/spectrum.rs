@@ -133,7 +133,12 @@ mod tests {
             .map(|place| [libm::cos(angle(place)), -libm::sin(angle(place))])
             .collect();
         let signal: Vec<[f64; 2]> = (0..count)
-            .map(|place| [libm::sin(0.7 * place as f64 * place as f64), 0.1 * place as f64])
+            .map(|place| {
+                [
+                    libm::sin(0.7 * place as f64 * place as f64),
+                    0.1 * place as f64,
+                ]
+            })
             .collect();
         let mut fast = signal.clone();
         transform(&mut fast, &turns);
@@ -159,7 +164,10 @@ mod tests {
             spectrum.take(0.5 + 0.003 * libm::sin(TAU * frequency * time + 0.4));
         }
         let amplitudes = spectrum.amplitudes(period, 1e3);
-        let peak = amplitudes.iter().max_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
+        let peak = amplitudes
+            .iter()
+            .max_by(|a, b| a[1].total_cmp(&b[1]))
+            .unwrap();
         assert!((peak[0] - frequency).abs() < 1e-9, "{peak:?}");
         assert!((peak[1] - 3.0).abs() < 1e-6, "{peak:?}");
     }

@@ -65,7 +65,7 @@ fn raise(peak: &mut Peak, value: f64, (time, at): (f64, &At)) {
             value,
             time,
             line: at.line,
-            cl_line: None,
+            ..Peak::default()
         };
     }
 }

@@ -89,7 +89,6 @@ pub struct ContourReport {
 struct Pending {
     number: u64,
     time: f64,
-    at: At,
     joints: [Joints; 2],
     commanded: Pose,
     actual: Pose,
@@ -149,7 +148,6 @@ impl Contour {
             self.pending.push_back(Pending {
                 number,
                 time,
-                at,
                 joints: [*joints, *actual],
                 commanded,
                 actual: chain.forward(actual),
@@ -253,6 +251,7 @@ impl ContourReport {
             time: point.time,
             line: point.at.line,
             cl_line: None,
+            tip: point.nearest.tip,
         };
         if !point.at.cuts {
             self.rapids.take(peak(point.distance));

@@ -26,10 +26,13 @@ const BEHIND: usize = 2048;
 const MOST: usize = 1 << 18;
 
 /// Newton steps in a piece; they are bisections where Newton leaves its bracket.
-const STEPS: usize = 40;
+const STEPS: usize = 60;
 
-/// A share of a piece that is no way: its square is lost in the distance.
-const SMALL: f64 = 1e-8;
+/// After a Newton step of this share of a piece the next one would be no way: its length falls with the square.
+const SMALL: f64 = 1e-7;
+
+/// A share of a piece that is none.
+const NONE: f64 = 1e-13;
 
 /// Places whose distances differ by less, mm, are equally near: the one with the nearer tool axis counts. Where the tool
 /// turns about its tip, this alone tells them apart.
@@ -118,29 +121,29 @@ impl Path {
         let start = self.further(self.foot);
         let first = (self.point(start) - actual.tip).norm();
         let found = self.descend(&actual.tip, start);
-        let mut foot = self.others(&actual.tip, found, REACH * first);
+        let mut foot = self.least(&actual.tip, found, REACH * first);
         let missed = self.missed(&actual.tip, found, foot);
         let following = (commanded.1 - actual.tip).norm();
-        if foot.distance > following + TIE * TIE {
+        if foot.distance > following {
             // No contour error is larger than the following error.
             let here = self.place_of(commanded.0);
             let other = self.descend(&actual.tip, here);
             if other.distance < foot.distance {
-                foot = other;
+                foot = self.least(&actual.tip, other, REACH * following);
             }
         }
-        let foot = self.tied(actual, foot);
-        self.foot = foot;
-        if foot.knot > 2 * BEHIND {
+        let tip = self.point(foot);
+        let (tied, axis) = self.tied(actual, foot);
+        let at = self.knots[self.rounded(tied)].at;
+        self.foot = tied;
+        if tied.knot > 2 * BEHIND {
             self.drop_first(BEHIND);
         }
-        let foot = self.foot;
-        let cubic = self.cubic(foot.knot);
         Nearest {
-            tip: cubic.map_or(self.knots[foot.knot].tip, |cubic| cubic.at(foot.share)),
-            axis: self.axis(foot),
+            tip,
+            axis,
             distance: foot.distance,
-            at: self.knots[self.rounded(foot)].at,
+            at,
             missed,
         }
     }
@@ -230,6 +233,17 @@ impl Path {
         foot
     }
 
+    /// The nearest place within `reach` along the path of where it is itself.
+    fn least(&self, from: &Vector3<f64>, mut found: Foot, reach: f64) -> Foot {
+        loop {
+            let other = self.others(from, found, reach);
+            if other.distance >= found.distance {
+                return found;
+            }
+            found = other;
+        }
+    }
+
     /// A place that is nearer than the one found, within `reach` of it along the path both ways.
     fn others(&self, from: &Vector3<f64>, found: Foot, reach: f64) -> Foot {
         let share = self
@@ -247,6 +261,9 @@ impl Path {
         };
         let last = self.knots.len() - 1;
         let mut nearest = found.distance;
+        if self.bends(found) {
+            nearest = look(found.knot);
+        }
         let mut knot = (found.knot + 1).min(last);
         while knot < last && self.knots[knot].length - length < reach {
             let free = (self.knots[knot].tip - from).norm() - nearest;
@@ -272,6 +289,18 @@ impl Path {
             }
         }
         best
+    }
+
+    /// The piece of a place bends so much that it may come nearer once more.
+    fn bends(&self, found: Foot) -> bool {
+        self.cubic(found.knot).is_some_and(|cubic| {
+            let bend = cubic
+                .bend(0.0)
+                .norm_squared()
+                .max(cubic.bend(1.0).norm_squared());
+            let slope = cubic.slope(found.share).norm_squared();
+            4.0 * bend * found.distance * found.distance > slope * slope
+        })
     }
 
     /// The place in a piece that is nearer than `distance`, or beyond it downhill from there.
@@ -302,19 +331,20 @@ impl Path {
                 share,
                 distance: (cubic.at(share) - from).norm(),
             };
-            if foot.distance < best.map_or(distance * (1.0 - SMALL), |best| best.distance) {
+            if foot.distance < best.map_or(distance, |best| best.distance) {
                 best = Some(foot);
             }
         }
         best.map(|best| self.descend(from, best))
     }
 
-    /// Of places that are equally near, the one whose tool axis is nearest, downhill.
-    fn tied(&self, actual: &Pose, foot: Foot) -> Foot {
-        let apart = |knot: &Knot| (knot.axis - actual.axis).norm_squared();
+    /// Of places that are equally near, the one whose tool axis is nearest, downhill; and that axis.
+    fn tied(&self, actual: &Pose, foot: Foot) -> (Foot, Vector3<f64>) {
         let bound = (foot.distance + TIE) * (foot.distance + TIE);
-        let equal = |knot: &Knot| (knot.tip - actual.tip).norm_squared() <= bound;
-        let mut best = (foot, (self.axis(foot) - actual.axis).norm_squared());
+        let equal = |tip: &Vector3<f64>| (tip - actual.tip).norm_squared() <= bound;
+        let axis = self.axis(foot);
+        let mut best = (foot, axis);
+        let mut least = (axis - actual.axis).norm_squared();
         let back = match foot.share > 0.0 {
             true => Some(foot.knot),
             false => foot.knot.checked_sub(1),
@@ -322,11 +352,11 @@ impl Path {
         for (way, end) in [(-1, back), (1, Some(foot.knot + 1))] {
             let mut knot = end;
             while let Some(place) = knot {
-                let Some(here) = self.knots.get(place).filter(|here| equal(here)) else {
+                let Some(here) = self.knots.get(place).filter(|here| equal(&here.tip)) else {
                     break;
                 };
-                let off = apart(here);
-                if off >= best.1 {
+                let off = (here.axis - actual.axis).norm_squared();
+                if off >= least {
                     break;
                 }
                 let tied = Foot {
@@ -334,26 +364,21 @@ impl Path {
                     share: 0.0,
                     distance: foot.distance,
                 };
-                best = (tied, off);
+                (best, least) = ((tied, here.axis), off);
                 knot = place.checked_add_signed(way);
             }
         }
-        self.between(actual, best.0, foot)
-    }
-
-    /// Where beside a knot that is tied the tool axis is nearest: on the chord of its axes.
-    fn between(&self, actual: &Pose, tied: Foot, foot: Foot) -> Foot {
-        if (tied.knot, tied.share) == (foot.knot, foot.share) {
-            return foot;
+        if (best.0.knot, best.0.share) == (foot.knot, foot.share) {
+            return best;
         }
-        let mut best = tied;
-        let mut least = (self.knots[tied.knot].axis - actual.axis).norm_squared();
-        for piece in [tied.knot.checked_sub(1), Some(tied.knot)] {
-            let Some(piece) = piece.filter(|piece| piece + 1 < self.knots.len()) else {
+        // Beside the knot, on the chord of its axes.
+        let knot = best.0.knot;
+        for piece in [knot.checked_sub(1), Some(knot)].into_iter().flatten() {
+            let Some(next) = self.knots.get(piece + 1) else {
                 continue;
             };
-            let (last, next) = (&self.knots[piece].axis, &self.knots[piece + 1].axis);
-            let chord = next - last;
+            let last = self.knots[piece].axis;
+            let chord = next.axis - last;
             let share = (actual.axis - last).dot(&chord) / chord.norm_squared();
             if !(share > 0.0 && share < 1.0) {
                 continue;
@@ -363,10 +388,10 @@ impl Path {
                 share,
                 distance: foot.distance,
             };
-            let off = (self.axis(place) - actual.axis).norm_squared();
-            let near = (self.point(place) - actual.tip).norm() <= foot.distance + TIE;
-            if off < least && near {
-                (best, least) = (place, off);
+            let axis = self.axis(place);
+            let off = (axis - actual.axis).norm_squared();
+            if off < least && equal(&self.point(place)) {
+                (best, least) = ((place, axis), off);
             }
         }
         best
@@ -405,25 +430,30 @@ fn lowest(cubic: &Cubic, from: &Vector3<f64>, start: f64) -> f64 {
             return share;
         }
         let curve = slope.norm_squared() + offset.dot(&bend);
-        let step = rise / curve;
-        let mut next = share - step;
-        if !(curve > 0.0 && next > low && next < high) {
-            // Downhill as far as the bracket goes: an end of the piece, if none was passed before.
-            next = match rise > 0.0 {
-                true if low == 0.0 && next <= 0.0 && curve > 0.0 => 0.0,
-                false if high == 1.0 && next >= 1.0 && curve > 0.0 => 1.0,
-                _ => 0.5 * (low + high),
-            };
-        }
-        let done = (next - share).abs() < SMALL;
+        let next = share - rise / curve;
+        // Newton; or downhill as far as the bracket goes, which is an end of the piece if none was passed before.
+        let newton = curve > 0.0 && next > low && next < high;
+        let next = match newton {
+            true => next,
+            false if curve > 0.0 && rise > 0.0 && low == 0.0 => 0.0,
+            false if curve > 0.0 && rise <= 0.0 && high == 1.0 => 1.0,
+            false => 0.5 * (low + high),
+        };
+        let done = match newton {
+            true => (next - share).abs() < SMALL,
+            false => high - low < NONE,
+        };
         share = next;
         if done {
             break;
         }
     }
     match share {
-        share if share < SMALL => 0.0,
-        share if share > 1.0 - SMALL => 1.0,
+        share if share < NONE => 0.0,
+        share if share > 1.0 - NONE => 1.0,
         share => share,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,8 @@
 //! How large a deviation is over a program: the largest with its place, the root mean square, percentiles; memory does
 //! not grow with what is counted.
 
+use nalgebra::Vector3;
+
 /// Parts of an octave: a percentile is no more than a sixteenth above the truth.
 const PARTS: usize = 16;
 
@@ -21,6 +23,8 @@ pub struct Peak {
     pub line: u64,
     /// Line of the CL file, where the program is held against one.
     pub cl_line: Option<u64>,
+    /// Where the tip is meant to be then, mm, part frame.
+    pub tip: Vector3<f64>,
 }
 
 impl Peak {

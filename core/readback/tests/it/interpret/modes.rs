@@ -1,6 +1,6 @@
 //! What is modal, what is refused, what is only counted, and how long it takes.
 
-use post_machine::description::Machine;
+use post_machine::description::{Machine, TcpFeedLength};
 use post_motion::Corner;
 use post_readback::{Corners, MotionKind, Offsets, Spindle, Told};
 
@@ -306,4 +306,32 @@ fn the_axes_of_other_machines_are_not_passed_over() {
     let done = letters(&machine, "G0 X0 A5.\n");
     assert_eq!(done.refused.len(), 1);
     assert!(done.refused[0].message.contains("A is no axis"));
+}
+
+/// Where the control keeps the tip F counts its way; turns beside it where the machine file says so, in radians by a circle
+/// of 2 mm (eqs. 4 and 5 of the prediction paper, Zhang, Chen 2025), and alone, in degrees, where the tip stands.
+#[test]
+fn the_length_that_a_control_counts_while_it_keeps_the_tip() {
+    let mut machine = machine("ac-trunnion");
+    let start = "G43.4 H1\nG1 X0 Y0 Z50. A-10. C0 F1000.\n";
+    let close = |machine: &Machine, text: &str, wanted: f64| {
+        let table = Offsets {
+            lengths: vec![(1, 100.0)],
+            ..Offsets::default()
+        };
+        let done = ran(machine, LETTERS, &table, &format!("{start}{text}")).whole();
+        let minutes = done.last().minutes;
+        assert!((minutes - wanted).abs() < 1e-9, "{text} {minutes} {wanted}");
+    };
+    close(&machine, "X30. Y40. A-20. C30. F100.\n", 0.5);
+    // As LinuxCNC has it, by its own recording.
+    close(&machine, "A-13. C4. F100.\n", 0.05);
+    machine.control.tcp_feed_length = TcpFeedLength::Combined;
+    for axis in &mut machine.axes {
+        axis.feed_diameter = axis.joint.rotary.then_some(2.0);
+    }
+    let [a, c] = [10f64, 30.0].map(f64::to_radians);
+    let counted = (0.3f64 * 0.3 + 0.4 * 0.4 + a * a + c * c).sqrt();
+    close(&machine, "X.3 Y.4 A-20. C30. F100.\n", counted / 100.0);
+    close(&machine, "C30. F100.\n", c / 100.0);
 }

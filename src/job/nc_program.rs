@@ -6,7 +6,7 @@ use std::io::{self, Read as _, Seek, SeekFrom};
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::VocabularyWord;
+use post_plugin::{DialectSession as _, VocabularyWord};
 use post_readback::Offsets;
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
@@ -71,13 +71,21 @@ impl NcControl {
     }
 }
 
-/// The words of a machine's control, ready to be looked up.
-pub fn lexicon(finder: &Finder, machine: &Machine) -> Result<Lexicon, Failure> {
-    Ok(Lexicon::new(&vocabulary(finder, machine)?))
+/// What a dialect tells of the programs that its control reads.
+pub struct Spoken {
+    /// The words.
+    pub words: Vec<VocabularyWord>,
+    /// Largest F by time, 1/min.
+    pub most_inverse_time: Option<f64>,
 }
 
-/// The words of a machine's control, as its dialect tells them.
-pub fn vocabulary(finder: &Finder, machine: &Machine) -> Result<Vec<VocabularyWord>, Failure> {
+/// The words of a machine's control, ready to be looked up.
+pub fn lexicon(finder: &Finder, machine: &Machine) -> Result<Lexicon, Failure> {
+    Ok(Lexicon::new(&spoken(finder, machine)?.words))
+}
+
+/// What the dialect of a machine tells.
+pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
     let (mut dialect, _) = plugin_finder::dialect(finder, machine, "READ", None)?;
     let words = dialect
         .vocabulary()
@@ -90,7 +98,10 @@ pub fn vocabulary(finder: &Finder, machine: &Machine) -> Result<Vec<VocabularyWo
         let help = "a dialect of your own tells it by `vocabulary` (plugins/README.md)";
         return Err(Diagnostic::error("vocabulary", message).help(help).into());
     }
-    Ok(words)
+    Ok(Spoken {
+        words,
+        most_inverse_time: dialect.format().most_inverse_time,
+    })
 }
 
 /// The file of offsets.

@@ -6,7 +6,7 @@ use std::ops::Range;
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
-use post_plugin::{DialectSession as _, Meaning, VocabularyWord};
+use post_plugin::{Meaning, VocabularyWord};
 use post_posting::program::ToldSpindle;
 use post_readback::Offsets;
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
@@ -17,7 +17,7 @@ use post_readback::verify::{
     BlockReport, CutPath, Fault, Registers, Rules, Verification, Verifier,
 };
 
-use super::{nc_program, plugin_finder};
+use super::nc_program;
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
@@ -78,9 +78,6 @@ fn lengths_in_the_offset(words: &[VocabularyWord]) -> bool {
 
 /// Which register a length is compensated by.
 fn registers(words: &[VocabularyWord]) -> Registers {
-    if lengths_in_the_offset(words) {
-        return Registers::None;
-    }
     let has = |letter: &str, meaning: Meaning| {
         let mut words = words.iter();
         words.any(|word| word.meaning == meaning && word.word == letter)
@@ -203,17 +200,16 @@ pub fn hold<C: Course, R: Read + Seek>(
         tools,
         cut_path,
     } = against;
-    let words = nc_program::vocabulary(reading.finder, machine)?;
-    let (dialect, _) = plugin_finder::dialect(reading.finder, machine, name, None)?;
-    let most_by_time = dialect.format().most_inverse_time;
-    let lexicon = Lexicon::new(&words);
+    let spoken = nc_program::spoken(reading.finder, machine)?;
+    let in_the_offset = lengths_in_the_offset(&spoken.words);
+    let lexicon = Lexicon::new(&spoken.words);
     let mut findings = Vec::new();
     let offsets = match &reading.offsets {
         Some(offsets) => offsets.clone(),
-        None => offsets_of(reading, &tools),
+        None => offsets(reading.arguments, machine, &tools),
     };
     let mut machine = machine.clone();
-    if lengths_in_the_offset(&words)
+    if in_the_offset
         && let Some(length) = offsets
             .length
             .or(offsets.tools.first().map(|(_, length)| *length))
@@ -226,10 +222,17 @@ pub fn hold<C: Course, R: Read + Seek>(
     let rules = Rules {
         tolerance: tolerance.unwrap_or(standard.tolerance),
         axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
-        registers: registers(&words),
-        lengths: (!lengths_in_the_offset(&words)).then(|| offsets.clone()),
+        registers: match in_the_offset {
+            true => Registers::None,
+            false => registers(&spoken.words),
+        },
+        work_offsets: reading
+            .offsets
+            .as_ref()
+            .is_some_and(|offsets| !offsets.work.is_empty()),
+        lengths: (!in_the_offset).then(|| offsets.clone()),
         solutions: reading.solutions,
-        least_minutes: most_by_time.map_or(0.0, |most| 1.0 / most),
+        least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
         tool_registers: tools
             .iter()
             .map(|tool| (tool.number, tool.register))
@@ -314,10 +317,6 @@ pub fn hold<C: Course, R: Read + Seek>(
 
 /// So many blocks that cannot be read are told.
 const MOST_UNREAD: usize = 50;
-
-fn offsets_of(reading: &Reading<'_>, tools: &[ClTool]) -> Offsets {
-    offsets(reading.arguments, reading.machine, tools)
-}
 
 /// The texts of the lines that faults name.
 fn lines_of(

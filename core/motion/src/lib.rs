@@ -4,6 +4,7 @@
 //! | part | takes | hands on |
 //! |---|---|---|
 //! | [`path`] | two stances of the machine | where the tool is between them, as the control leads it |
+//! | [`limits`] | a move, and the limits of the machine | how the axes and the tip go along it: bounds, and both ends |
 //! | [`task`] | what a program asks for | [`Task`]: moves with their pace and corners, waits |
 //! | [`trajectory`] | tasks, and the limits of the machine | [`SetPoints`]: where the axes are commanded, at any period |
 //! | [`servo`] | set-points | where the axes really are |
@@ -14,6 +15,7 @@
 //! no unsafe code and no dialect's name, and memory does not grow with the program.
 
 pub mod contour;
+pub mod limits;
 pub mod measured;
 pub mod path;
 pub mod servo;

@@ -280,6 +280,7 @@ impl Builder<'_> {
             .unwrap_or_default();
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
+        let motion = self.motion(&file.motion);
         let mut machine = Machine {
             clamps,
             indexes,
@@ -321,6 +322,7 @@ impl Builder<'_> {
             accuracy,
             solution,
             rewind,
+            motion,
             frame: Frame::default(),
             heads: Vec::new(),
             unused_options,

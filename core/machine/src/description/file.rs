@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::motion_file::MotionFile;
 use super::program_file::ProgramFile;
 use super::quantity::{Number, Quantity};
 
@@ -62,6 +63,9 @@ pub(crate) struct MachineFile {
     /// How the tool leaves the part when a cut cannot go on; without it such a cut is refused.
     #[schemars(with = "Option<RewindFile>")]
     pub rewind: Option<Spanned<RewindFile>>,
+    /// How the control makes motion of a program; for what is predicted, not for what is posted.
+    #[serde(default)]
+    pub motion: MotionFile,
 }
 
 /// Where the part sits.

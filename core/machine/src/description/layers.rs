@@ -220,6 +220,7 @@ const TOP: &[&str] = &[
     "accuracy",
     "solution",
     "rewind",
+    "motion",
     "head",
 ];
 

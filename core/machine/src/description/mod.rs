@@ -11,6 +11,8 @@ mod frame;
 mod keys;
 mod layers;
 mod limits;
+mod motion;
+mod motion_file;
 mod numbers;
 mod options;
 mod program;
@@ -37,6 +39,8 @@ pub use file::{
 pub use frame::Frame;
 pub use layers::Source;
 pub use limits::MOST_BYTES;
+pub use motion::MotionRules;
+pub use motion_file::{BlendRule, CornerRule, LimitsActOn};
 pub use program::{ProgramRules, ProgramText, TextPlace};
 pub use schema::schema;
 pub use setting::Setting;
@@ -86,6 +90,8 @@ pub struct Machine {
     pub solution: Solution,
     /// How the tool leaves the part when a cut cannot go on; none if it must not.
     pub rewind: Option<Rewind>,
+    /// How its control makes motion of a program.
+    pub motion: MotionRules,
     /// Where the axes go between the passes.
     pub frame: Frame,
     /// Some axis is clamped and let go by words.

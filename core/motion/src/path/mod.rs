@@ -2,6 +2,7 @@
 
 mod round;
 mod spline;
+mod stance;
 
 use std::sync::Arc;
 
@@ -56,33 +57,49 @@ impl Way {
     /// Tip and tool axis between `ends` at `t` from 0 to 1 of the way's own parameter (time, at constant feed), as the
     /// control and the chain make them.
     pub fn at(&self, chain: &Chain, ends: [&Stance; 2], t: f64) -> Pose {
-        let [from, to] = ends;
-        let straight = || from.pose.tip + (to.pose.tip - from.pose.tip) * t;
-        let tip = match self {
-            Self::Axes => return chain.forward(&joints_between(ends, t)),
-            Self::Tip => straight(),
-            Self::TipAndAxis => {
-                let axis = between(from.pose.axis, to.pose.axis, t);
-                let edge = match from.pose.edge == Vector3::zeros() {
-                    true => from.pose.edge,
-                    false => between(from.pose.edge, to.pose.edge, t),
-                };
-                let tip = straight();
-                return Pose { tip, axis, edge };
-            }
-            Self::Arc {
-                centre,
-                normal,
-                sweep,
-            } => on_arc([from.pose.tip, to.pose.tip], *centre, *normal, *sweep, t),
-            Self::Spline(way) => way.at(t),
+        let Some(tip) = self.tip(ends, t) else {
+            return chain.forward(&joints_between(ends, t));
         };
+        if *self == Self::TipAndAxis {
+            return on_great_circle(ends, tip, t);
+        }
         if !turns(chain, ends) {
-            return Pose { tip, ..to.pose };
+            return Pose {
+                tip,
+                ..ends[1].pose
+            };
         }
         // Rotary axes alone say where the tool points.
         let pose = chain.forward(&joints_between(ends, t));
         Pose { tip, ..pose }
+    }
+
+    /// The tip at `t`, mm, part frame, where the control leads the tip; none where it leads the axes.
+    fn tip(&self, ends: [&Stance; 2], t: f64) -> Option<Vector3<f64>> {
+        let [from, to] = ends.map(|stance| stance.pose.tip);
+        Some(match self {
+            Self::Axes => return None,
+            Self::Tip | Self::TipAndAxis => from + (to - from) * t,
+            Self::Arc {
+                centre,
+                normal,
+                sweep,
+            } => on_arc([from, to], *centre, *normal, *sweep, t),
+            Self::Spline(way) => way.at(t),
+        })
+    }
+}
+
+/// The pose with its tip on `tip` whose directions are `t` of the way along the great circles between those of the ends.
+fn on_great_circle(ends: [&Stance; 2], tip: Vector3<f64>, t: f64) -> Pose {
+    let [from, to] = ends.map(|stance| stance.pose);
+    Pose {
+        tip,
+        axis: between(from.axis, to.axis, t),
+        edge: match from.edge == Vector3::zeros() {
+            true => from.edge,
+            false => between(from.edge, to.edge, t),
+        },
     }
 }
 

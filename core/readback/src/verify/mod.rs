@@ -52,6 +52,8 @@ pub struct Rules {
     pub registers: Registers,
     /// Length register that belongs to a tool where it is not the tool's number.
     pub tool_registers: Vec<(u32, u32)>,
+    /// Where each work offset lies is stated: motions tell whether the right one is in force.
+    pub work_offsets: bool,
     /// How long the tools are; none where lengths lie in the work offset.
     pub lengths: Option<Offsets>,
     /// A feed by time cannot be so large that a block takes less than this, minutes.
@@ -83,6 +85,7 @@ impl Rules {
             rapid_tolerance: machine.accuracy.rapid_tolerance,
             registers: Registers::None,
             tool_registers: Vec::new(),
+            work_offsets: false,
             lengths: None,
             least_minutes: 0.0,
             solutions: false,
@@ -132,6 +135,8 @@ pub struct Verifier<'m, C> {
     /// Ends of the pieces of the motion at hand, its beginning first.
     places: Vec<Place>,
     spare: Vec<Span>,
+    /// The work offsets that were cut in, each by the number that the course asks for.
+    worked: Vec<(Option<u32>, String)>,
     axes: Axes,
     block: BlockReport,
     found: Verification,
@@ -176,6 +181,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             course_near: f64::INFINITY,
             places: Vec::new(),
             spare: Vec::new(),
+            worked: Vec::new(),
             axes: Axes::new(machine),
             block: BlockReport::default(),
             found: Verification::default(),

@@ -123,6 +123,54 @@ impl<C: Course> Verifier<'_, C> {
         }
         self.compare_register(motion, element);
         self.compare_length(motion, element);
+        self.compare_work_offset(motion, element);
+    }
+
+    /// Where nothing is said of where work offsets lie, each that the course asks for is one of the program's, always
+    /// the same and no other's.
+    fn compare_work_offset(&mut self, motion: &Motion, element: &Element) {
+        let asked = element.asked.work_offset;
+        let Some(name) = &motion.state.work_offset else {
+            return;
+        };
+        if self.rules.work_offsets {
+            return;
+        }
+        let known = |of: Option<u32>| {
+            let mut worked = self.worked.iter();
+            worked.find(|(other, _)| *other == of).map(|(_, name)| name)
+        };
+        let message = match (known(asked), asked, number_of(name)) {
+            (Some(known), _, _) if known != name => {
+                format!(
+                    "cuts in {name}, and in {known} before: the CL file asks for no other work offset"
+                )
+            }
+            (_, Some(asked), Some(number)) if asked != number => {
+                format!("cuts in {name}, and the CL file asks for work offset {asked}")
+            }
+            (Some(_), _, _) => return,
+            (None, _, _) => {
+                let taken = self
+                    .worked
+                    .iter()
+                    .any(|(other, used)| used == name && other.is_some() && asked.is_some());
+                self.worked.push((asked, name.clone()));
+                match taken {
+                    true => format!(
+                        "cuts in {name} once more, and the CL file asks for another work offset"
+                    ),
+                    false => return,
+                }
+            }
+        };
+        self.fault(
+            "work-offset",
+            message,
+            Some(motion),
+            Some(element.line),
+            None,
+        );
     }
 
     /// What is compensated is the length that the tool has, as far as that is known.
@@ -323,6 +371,12 @@ pub(super) fn same_event(asked: &Told, done: &Told, spindle: Spindle) -> bool {
         (Told::Stop, Told::Stop) | (Told::OptionalStop, Told::OptionalStop) => true,
         _ => false,
     }
+}
+
+/// The number of a work offset whose name has one: G54 is the first of six, `G54.1 P3` and the like say theirs beyond.
+fn number_of(name: &str) -> Option<u32> {
+    let code: u32 = name.strip_prefix('G')?.parse().ok()?;
+    (54..=59).contains(&code).then(|| code - 53)
 }
 
 fn same_spindle(has: Spindle, wants: Spindle) -> bool {

@@ -319,24 +319,24 @@ impl<C: Course> Verifier<'_, C> {
     fn widen(&mut self, motion: &Motion, places: &[Place], begun: &[Span]) -> bool {
         let mut low = self.factor();
         let mut high = low;
+        let mut thin = Vec::new();
         loop {
             (low, high) = (high, high * 2.0);
             if high > WIDEST {
                 return false;
             }
-            self.begin_from(begun, &places[0], high);
-            if self.sweep(motion, places, high, false) == Swept::Through {
+            if self.has_place(motion, places, begun, high, &mut thin) {
                 break;
             }
         }
         for _ in 0..STEPS {
             let middle = 0.5 * (low + high);
-            self.begin_from(begun, &places[0], middle);
-            match self.sweep(motion, places, middle, false) {
-                Swept::Through => high = middle,
-                _ => low = middle,
+            match self.has_place(motion, places, begun, middle, &mut thin) {
+                true => high = middle,
+                false => low = middle,
             }
         }
+        thinned(places, high, &mut thin);
         self.begin_from(begun, &places[0], high);
         let asked = self.stands_at();
         let stray = self.stray.get_or_insert(Stray {
@@ -348,8 +348,22 @@ impl<C: Course> Verifier<'_, C> {
             worst: Apart::default(),
         });
         stray.factor = high;
-        self.sweep(motion, places, high, true);
+        self.sweep(motion, &thin, high, true);
         true
+    }
+
+    /// The motion has a place on the course within so many times the bound.
+    fn has_place(
+        &mut self,
+        motion: &Motion,
+        places: &[Place],
+        begun: &[Span],
+        factor: f64,
+        thin: &mut Vec<Place>,
+    ) -> bool {
+        thinned(places, factor, thin);
+        self.begin_from(begun, &places[0], factor);
+        self.sweep(motion, thin, factor, false) == Swept::Through
     }
 
     /// What can be reached with a wider bound where less could be with the narrower one: all around it that is free.
@@ -446,6 +460,15 @@ fn turns(places: &[Place], most: f64) -> bool {
     let from = &places[0];
     let stays = |to: &Place| (to.point - from.point).norm() <= most;
     places[places.len() - 1].axis != from.axis && places.iter().all(stays)
+}
+
+/// Places of a motion as close as a bound widened by `factor` asks for: chords over k pieces stray k² times as far.
+fn thinned(places: &[Place], factor: f64, thin: &mut Vec<Place>) {
+    let stride = (0.5 * libm::sqrt(factor)).max(1.0) as usize;
+    let last = places.len() - 1;
+    thin.clear();
+    thin.extend(places[..last].iter().step_by(stride));
+    thin.push(places[last]);
 }
 
 /// What became of a piece.

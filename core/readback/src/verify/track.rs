@@ -22,6 +22,8 @@ pub(super) struct Asked {
     pub side: i8,
     /// Its register.
     pub register: Option<u32>,
+    /// Number of the work offset, from 1; none: the file names none.
+    pub work_offset: Option<u32>,
 }
 
 /// One thing that a course asks for.
@@ -284,6 +286,9 @@ impl<C: Course> Track<C> {
             Told::Compensation { side, register } => {
                 let asked = Arc::make_mut(&mut self.asked);
                 (asked.side, asked.register) = (side, register);
+            }
+            Told::WorkOffset(name) => {
+                Arc::make_mut(&mut self.asked).work_offset = name.parse().ok();
             }
             Told::Cycle(call) => {
                 self.end_hole();

@@ -670,3 +670,36 @@ fn a_rapid_that_comes_near_what_is_cut_is_told() {
     let found = codes(&does(true), asks());
     assert!(found.contains(&("rapid", 5, 0)), "{found:?}");
 }
+
+#[test]
+fn work_offsets_are_those_that_are_asked_for() {
+    let none = |_: &mut State| {};
+    let of = |name: &'static str| move |state: &mut State| state.work_offset = Some(name.into());
+    let program = |first: &'static str, second: &'static str| {
+        begin()
+            .with(of(first))
+            .cut(20.0, 0.0, -2.0)
+            .cut(20.0, 20.0, -2.0)
+            .with(of(second))
+            .cut(0.0, 20.0, -2.0)
+            .with(none)
+            .cut(0.0, 0.0, -2.0)
+            .rapid(0.0, 0.0, 10.0)
+    };
+    let asked = |number: u32| {
+        let mut asks = square();
+        let told = Told::WorkOffset(number.to_string());
+        asks.items.insert(0, Item::Told { line: 0, told });
+        asks
+    };
+    let faults = |does: Does, asks: Asks| codes(&does, asks).len();
+    assert_eq!(faults(program("G54", "G54"), square()), 0);
+    // Which one a job hangs on that names none nobody knows; but one it is.
+    assert_eq!(faults(program("G55", "G55"), square()), 0);
+    let changed = codes(&program("G54", "G55"), square());
+    assert_eq!(changed.len(), 1);
+    assert_eq!(changed[0].0, "work-offset");
+    assert_eq!(faults(program("G55", "G55"), asked(2)), 0);
+    assert_eq!(faults(program("G54", "G54"), asked(2)), 1);
+    assert_eq!(faults(program("G15 H2", "G15 H2"), asked(2)), 0);
+}

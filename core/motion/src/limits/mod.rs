@@ -1,0 +1,179 @@
+//! What the machine allows on a move: how far the axes and the tip go, bend and jerk along it, and how fast that may be
+//! run through.
+//!
+//! A move is run through by some law `t(τ)` of time, `t` its own parameter from 0 to 1. With `q` an axis value over `t`,
+//! its velocity is `q'·ṫ`, its acceleration `q'·ẗ + q''·ṫ²` and its jerk `q'·t⃛ + 3·q''·ṫ·ẗ + q'''·ṫ³`: bounds of `q'`, `q''`
+//! and `q'''` over the move, once, are all that a planner needs of chain and path.
+
+mod fit;
+
+use nalgebra::Vector3;
+use post_machine::description::{LimitsActOn, Machine};
+use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
+
+use crate::Move;
+use crate::path::Way;
+use crate::trajectory::TimeLimit;
+
+/// How fast, and how suddenly, axes and tip may move: of a machine, once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisLimits {
+    /// Largest velocities by place in the chain, mm/s or rad/s; infinite where the machine file names none.
+    pub velocity: Joints,
+    /// Largest accelerations, mm/s² or rad/s²; infinite where the machine file names none.
+    pub acceleration: Joints,
+    /// Largest jerks, mm/s³ or rad/s³; infinite where the machine file names none.
+    pub jerk: Joints,
+    /// Largest acceleration of the tip, mm/s²; infinite if none is named.
+    pub tip_acceleration: f64,
+    /// Largest jerk of the tip, mm/s³; infinite if none is named.
+    pub tip_jerk: f64,
+    /// Where the control keeps the tip they hold for the programmed coordinates: the coordinate of the tip, X, Y or Z,
+    /// that stands for each place; none for an axis that is programmed itself.
+    pub programmed: Option<[Option<usize>; MAX_AXES]>,
+}
+
+impl AxisLimits {
+    /// Those of a machine.
+    pub fn new(machine: &Machine) -> Self {
+        let mut limits = Self {
+            velocity: [f64::INFINITY; MAX_AXES],
+            acceleration: [f64::INFINITY; MAX_AXES],
+            jerk: [f64::INFINITY; MAX_AXES],
+            tip_acceleration: machine.motion.tip_accel,
+            tip_jerk: machine.motion.tip_jerk,
+            programmed: None,
+        };
+        let mut coordinates = [None; MAX_AXES];
+        for (place, axis) in machine.axes.iter().enumerate() {
+            limits.velocity[place] = axis.max_feed / 60.0;
+            limits.acceleration[place] = axis.max_accel;
+            limits.jerk[place] = axis.max_jerk;
+            if !axis.joint.rotary {
+                coordinates[place] = ["X", "Y", "Z"].iter().position(|name| *name == axis.name);
+            }
+        }
+        if machine.motion.limits == LimitsActOn::Programmed {
+            limits.programmed = Some(coordinates);
+        }
+        limits
+    }
+}
+
+/// How axes and tip go along a move, over its own parameter from 0 to 1. What `AxisLimits` hold for stands in the
+/// places: the axes, or the programmed coordinates instead of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MoveLimits {
+    /// The whole move at a constant rate takes no less, s: by the velocities, and by the accelerations and jerks that
+    /// its curves ask for even then.
+    pub least_seconds: f64,
+    /// What asks for that.
+    pub by: TimeLimit,
+    /// Bounds of the magnitude of the first derivatives by place in the chain, mm or radians.
+    pub first: Joints,
+    /// Bounds of the second ones.
+    pub second: Joints,
+    /// Bounds of the third ones.
+    pub third: Joints,
+    /// First derivatives where it begins and ends.
+    pub ends: [Joints; 2],
+    /// Bounds of the length of the first, second and third derivative of the tip, mm, part frame.
+    pub tip: [f64; 3],
+    /// First derivative of the tip where it begins and ends, mm, part frame.
+    pub tip_ends: [Vector3<f64>; 2],
+}
+
+/// What the limits ask for on a move.
+///
+/// Where axes and tip go straight in the parameter, it is exact. Elsewhere it is summed from the Chebyshev series of what
+/// they do over pieces of at most half a radian of turn: never less than what the series does anywhere, and what the
+/// series leaves out is below a thousandth of that.
+///
+/// # Errors
+/// The axes cannot follow the way: see [`Way::stance_at`].
+pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
+    let mut found = MoveLimits::default();
+    let turns = crate::path::turns(task.solver.chain(), [&task.from, &task.to]);
+    let straight_tip = match task.way {
+        Way::Axes => !turns,
+        Way::Tip | Way::TipAndAxis => true,
+        Way::Arc { .. } | Way::Spline(_) => false,
+    };
+    let straight_axes = match task.way {
+        Way::Axes => true,
+        Way::Tip | Way::TipAndAxis => !turns || limits.programmed.is_some() && task.way == Way::Tip,
+        Way::Arc { .. } | Way::Spline(_) => false,
+    };
+    if straight_axes {
+        found.straight(task, coordinates(task, limits));
+    }
+    if straight_tip {
+        let way = task.to.pose.tip - task.from.pose.tip;
+        found.tip = [way.norm(), 0.0, 0.0];
+        found.tip_ends = [way; 2];
+    }
+    if !straight_axes || !straight_tip {
+        fit::over(
+            task,
+            coordinates(task, limits),
+            [!straight_axes, !straight_tip],
+            &mut found,
+        )?;
+    }
+    found.time(limits);
+    Ok(found)
+}
+
+/// The coordinates of the tip that stand for axes on this move; none on one whose axes are led by themselves.
+fn coordinates<'l>(task: &Move, limits: &'l AxisLimits) -> Option<&'l [Option<usize>; MAX_AXES]> {
+    limits.programmed.as_ref().filter(|_| task.way != Way::Axes)
+}
+
+impl MoveLimits {
+    /// All that is limited goes linearly.
+    fn straight(&mut self, task: &Move, coordinates: Option<&[Option<usize>; MAX_AXES]>) {
+        let tip = task.to.pose.tip - task.from.pose.tip;
+        for place in 0..task.solver.chain().joints().len() {
+            let way = match coordinates.and_then(|coordinates| coordinates[place]) {
+                Some(coordinate) => tip[coordinate],
+                None => task.to.joints[place] - task.from.joints[place],
+            };
+            self.first[place] = libm::fabs(way);
+            self.ends[0][place] = way;
+            self.ends[1][place] = way;
+        }
+    }
+
+    /// Sets the time that it takes at least.
+    fn time(&mut self, limits: &AxisLimits) {
+        let mut ask = |seconds: f64, by: TimeLimit| {
+            if seconds > self.least_seconds {
+                self.least_seconds = seconds;
+                self.by = by;
+            }
+        };
+        for place in 0..self.first.len() {
+            let axis = place as u8;
+            let [first, second, third] =
+                [self.first, self.second, self.third].map(|all| all[place]);
+            ask(
+                first / limits.velocity[place],
+                TimeLimit::AxisVelocity(axis),
+            );
+            ask(
+                (second / limits.acceleration[place]).sqrt(),
+                TimeLimit::AxisAcceleration(axis),
+            );
+            ask(
+                libm::cbrt(third / limits.jerk[place]),
+                TimeLimit::AxisJerk(axis),
+            );
+        }
+        let [_, second, third] = self.tip;
+        ask(
+            (second / limits.tip_acceleration).sqrt(),
+            TimeLimit::TipAcceleration,
+        );
+        ask(libm::cbrt(third / limits.tip_jerk), TimeLimit::TipJerk);
+    }
+}

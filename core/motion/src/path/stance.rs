@@ -1,0 +1,89 @@
+//! Where the axes stand on the way, as well as the tool.
+
+use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
+
+use super::{Stance, Way, joints_between, on_great_circle};
+
+/// How far the tool axis may miss where the control leads it by vectors, radians: the axes of the ends reach theirs, so
+/// that more than rounding means that the great circle between them leaves what the axes can reach.
+const MISS: f64 = 1e-7;
+
+impl Way {
+    /// Axis values at `t` from 0 to 1 of the way's own parameter, mm and radians: [`Way::stance_at`] without its pose.
+    ///
+    /// # Errors
+    /// As [`Way::stance_at`].
+    pub fn joints_at(
+        &self,
+        solver: &Solver,
+        ends: [&Stance; 2],
+        t: f64,
+        near: &Joints,
+    ) -> Result<Joints, Unreachable> {
+        self.stance_at(solver, ends, t, near)
+            .map(|stance| stance.joints)
+    }
+
+    /// Axis values, tip and tool axis at `t` from 0 to 1 of the way's own parameter.
+    ///
+    /// Where the control leads the axes all go linearly. Where it leads the tip, the rotary axes go linearly and the
+    /// linear ones follow from the tip; where it leads the tool axis too, the rotary axes are the solution nearest to
+    /// `near`, the axis values a little before, which nothing else asks for.
+    ///
+    /// # Errors
+    /// The axes cannot follow: a great circle leads out of what they reach, or they span no volume there.
+    pub fn stance_at(
+        &self,
+        solver: &Solver,
+        ends: [&Stance; 2],
+        t: f64,
+        near: &Joints,
+    ) -> Result<Stance, Unreachable> {
+        let chain = solver.chain();
+        let Some(tip) = self.tip(ends, t) else {
+            let joints = joints_between(ends, t);
+            let pose = chain.forward(&joints);
+            return Ok(Stance { joints, pose });
+        };
+        if *self == Self::TipAndAxis {
+            let pose = on_great_circle(ends, tip, t);
+            let joints = nearest(solver, &pose, near)?;
+            return Ok(Stance { joints, pose });
+        }
+        let mut joints = joints_between(ends, t);
+        let turns = chain.turns(&joints);
+        solver.place(tip, &mut joints, &turns)?;
+        let pose = chain.pose(&joints, &turns);
+        Ok(Stance { joints, pose })
+    }
+}
+
+/// The solution nearest to `near`, travel not regarded: that of the ends was found good.
+fn nearest(solver: &Solver, pose: &Pose, near: &Joints) -> Result<Joints, Unreachable> {
+    if !solver.closed_form() {
+        return solver.search(pose, near, MISS);
+    }
+    let branches = solver.orient(pose, MISS)?;
+    let mut best: Option<(f64, Joints)> = None;
+    for index in 0..branches.count() {
+        let mut set = solver.angles(&branches, index);
+        set.keep(near);
+        let mut way = 0.0;
+        for (place, joint) in solver.chain().joints().iter().enumerate() {
+            if joint.rotary {
+                let off = libm::remainder(set.joints[place] - near[place], std::f64::consts::TAU);
+                set.joints[place] = near[place] + off;
+                way += libm::fabs(off);
+            }
+        }
+        if best.is_none_or(|(least, _)| way < least) {
+            best = Some((way, set.joints));
+        }
+    }
+    let Some((_, mut joints)) = best else {
+        return Ok(*near);
+    };
+    let turns = solver.chain().turns(&joints);
+    solver.place(pose.tip, &mut joints, &turns)?;
+    Ok(joints)
+}

@@ -209,6 +209,7 @@ impl Builder<'_> {
         }
         let mut axes = self.axes(file)?;
         self.seconds(file, &mut axes);
+        self.servos(file, &mut axes);
         let mount = match &file.workpiece.mount {
             Some(mount) => self.vector(mount),
             None => Vector3::zeros(),
@@ -305,6 +306,7 @@ impl Builder<'_> {
                 units: control.units,
                 feed: control.feed,
                 feed_length: control.feed_length,
+                tcp_feed_length: control.tcp_feed_length,
                 inverse_time: control.inverse_time,
                 rapid: control.rapid,
                 tool_length: control.tool_length,

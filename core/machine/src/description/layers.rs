@@ -213,6 +213,7 @@ const TOP: &[&str] = &[
     "tool",
     "tools",
     "axis",
+    "servo",
     "control",
     "spindle",
     "cl",
@@ -275,6 +276,11 @@ const INSTEAD: &[(&str, &str)] = &[
     ("positions", "step"),
     ("share", "reserve"),
     ("linear", "rotary"),
+    ("loops", "transfer"),
+    ("loops", "pid"),
+    ("transfer", "pid"),
+    ("screw", "direct"),
+    ("gear", "direct"),
 ];
 
 /// Lays a table over another, key by key.

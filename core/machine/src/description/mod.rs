@@ -19,6 +19,8 @@ mod program;
 mod program_file;
 mod quantity;
 mod schema;
+mod servo;
+mod servo_file;
 mod setting;
 mod smoothing;
 mod spindle;
@@ -34,7 +36,8 @@ pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
     ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
-    InverseTime, Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, ToolLength,
+    InverseTime, Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, TcpFeedLength,
+    ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
@@ -49,6 +52,7 @@ pub use spindle::SpindleSpeeds;
 
 use crate::diagnostic::{Diagnostic, Place};
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
+use crate::servo::Servo;
 
 /// A machine.
 #[derive(Clone, Debug)]
@@ -158,6 +162,8 @@ pub struct Axis {
     pub max_accel: f64,
     /// Largest jerk, mm/s³ or rad/s³; infinite if the file does not say.
     pub max_jerk: f64,
+    /// How far it is from its set-points; none: it follows them exactly.
+    pub servo: Option<Box<Servo>>,
 }
 
 /// An axis that moves off the part alone.
@@ -258,6 +264,8 @@ pub struct Control {
     pub feed: FeedMode,
     /// What a feed a minute is meant along.
     pub feed_length: FeedLength,
+    /// What a feed a minute is meant along where the control keeps the tip.
+    pub tcp_feed_length: TcpFeedLength,
     /// What F means under inverse time.
     pub inverse_time: InverseTime,
     /// How a rapid is written in which a rotary axis turns, or an axis would pass its largest feed.

@@ -1,0 +1,1 @@
+//! Numbers of servos from a measured log.

@@ -1,0 +1,4 @@
+//! How machines move, held against closed forms and brute force.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod contour;

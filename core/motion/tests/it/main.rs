@@ -2,6 +2,5 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod contour;
-//! How a machine moves along a path.
-mod trajectory;
 mod servo;
+mod trajectory;

@@ -95,7 +95,7 @@ impl Scale {
 }
 
 /// The smallest of 1, 2 and 5 times a power of ten that is not below `least`.
-fn step(least: f64) -> f64 {
+pub fn step(least: f64) -> f64 {
     let power = libm::pow(10.0, libm::floor(libm::log10(least)));
     let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * power);
     steps

@@ -9,6 +9,7 @@ pub mod one_program;
 pub mod other_dialect;
 pub mod plugin_finder;
 mod plugin_folders;
+pub mod predict;
 pub mod read_back;
 pub mod unused_options;
 

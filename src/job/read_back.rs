@@ -76,6 +76,18 @@ fn lengths_in_the_offset(words: &[VocabularyWord]) -> bool {
     changes.any(|change| means(change, Meaning::Stop))
 }
 
+/// The machine as programs of its control count: where lengths are in the work offset, from the tip of the tool.
+pub fn as_counted(machine: &Machine, words: &[VocabularyWord], offsets: &Offsets) -> Machine {
+    let mut machine = machine.clone();
+    let first = offsets.tools.first().map(|(_, length)| *length);
+    if lengths_in_the_offset(words)
+        && let Some(length) = offsets.length.or(first)
+    {
+        machine.gauge -= machine.tool_axis * length;
+    }
+    machine
+}
+
 /// Which register a length is compensated by.
 fn registers(words: &[VocabularyWord]) -> Registers {
     let has = |letter: &str, meaning: Meaning| {
@@ -208,15 +220,7 @@ pub fn hold<C: Course, R: Read + Seek>(
         Some(offsets) => offsets.clone(),
         None => offsets(reading.arguments, machine, &tools),
     };
-    let mut machine = machine.clone();
-    if in_the_offset
-        && let Some(length) = offsets
-            .length
-            .or(offsets.tools.first().map(|(_, length)| *length))
-    {
-        machine.gauge -= machine.tool_axis * length;
-    }
-    let machine = &machine;
+    let machine = &as_counted(machine, &spoken.words, &offsets);
     let [tolerance, axis_tolerance] = reading.tolerances;
     let standard = Rules::of(machine);
     let rules = Rules {

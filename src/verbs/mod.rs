@@ -10,6 +10,7 @@ mod new;
 mod place;
 mod plugin;
 mod post;
+mod predict;
 mod print_schema;
 mod read;
 mod study;
@@ -31,6 +32,7 @@ use new::NewArguments;
 use place::PlaceArguments;
 use plugin::PluginArguments;
 use post::PostArguments;
+use predict::PredictArguments;
 use print_schema::SchemaArguments;
 use read::ReadArguments;
 use study::StudyArguments;
@@ -60,6 +62,7 @@ use verify::VerifyArguments;
   post read part.nc --machine ac-trunnion --csv motions.csv
   post verify part.nc --machine dmu50 --against part.cls --map map.json
   post diff old.nc new.nc --machine ac-trunnion
+  post predict part.nc --machine ac-trunnion --pictures prediction
   post plugin show fanuc
   post plugin new mine --iso
   post plugin test target/release/libpost_mine.so
@@ -87,6 +90,7 @@ enum Verb {
     New(NewArguments),
     Study(Box<StudyArguments>),
     Place(Box<PlaceArguments>),
+    Predict(Box<PredictArguments>),
     Verify(Box<VerifyArguments>),
     Plugin(PluginArguments),
     Read(Box<ReadArguments>),
@@ -106,6 +110,7 @@ impl CommandLine {
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),
             Some(Verb::Place(arguments)) => place::run(&arguments),
+            Some(Verb::Predict(arguments)) => predict::run(&arguments),
             Some(Verb::Verify(arguments)) => verify::run(&arguments),
             Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
             Some(Verb::Read(arguments)) => read::run(&arguments),

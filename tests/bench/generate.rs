@@ -3,8 +3,16 @@
 //!
 //! And a blade for a disc cutter, so many rows of it:
 //! `cargo run --example generate -- blade 4 > tests/samples/disc-blade.cls`
+//!
+//! And the flanks of an S-shaped test piece, in so many cuts each:
+//! `cargo run --example generate -- s-piece 240 > tests/samples/s-piece.cls`
+
+#[path = "common/s_piece.rs"]
+mod s_piece;
 
 use std::io::{self, BufWriter, Write};
+
+pub use s_piece::write_s_piece;
 
 /// Points of one row; the next row lies beside it and goes back.
 const ROW: u64 = 2000;
@@ -26,10 +34,10 @@ fn main() -> io::Result<()> {
     let first = words.next();
     let number = |word: Option<String>| word.and_then(|word| word.parse().ok());
     let mut out = BufWriter::new(io::stdout().lock());
-    if first.as_deref() == Some("blade") {
-        write_blade(&mut out, number(words.next()).unwrap_or(4))?;
-    } else {
-        write_file(&mut out, number(first).unwrap_or(1000))?;
+    match first.as_deref() {
+        Some("blade") => write_blade(&mut out, number(words.next()).unwrap_or(4))?,
+        Some("s-piece") => write_s_piece(&mut out, number(words.next()).unwrap_or(240))?,
+        _ => write_file(&mut out, number(first).unwrap_or(1000))?,
     }
     out.flush()
 }

@@ -27,12 +27,14 @@ const fn case(machine: &'static str, sample: &'static str, with: &'static [&'sta
 const LENGTH: &[&str] = &["--tool-length", "120"];
 
 /// The first machines, each with every sample that it can make, and both ways of keeping the tip for every
-/// dialect. `tests/it/library.rs` has a program for every machine.
+/// dialect; `disc-blade.cls` and `s-piece.cls` each on the machine that it is made for. `tests/it/library.rs` has a
+/// program for every machine.
 pub const CASES: &[Case] = &[
     case("ac-trunnion", "blade.cls", &[]),
     case("ac-trunnion", "blade.cls", &["--tcp", "control"]),
     case("ac-trunnion", "facets.apt", &[]),
     case("ac-trunnion", "plate.ncl", &[]),
+    case("ac-trunnion", "s-piece.cls", &["--tcp", "control"]),
     case("disc-cutter", "blade.cls", LENGTH),
     case("disc-cutter", "disc-blade.cls", &[]),
     case("disc-cutter", "facets.apt", LENGTH),

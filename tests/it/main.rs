@@ -31,6 +31,7 @@ mod new;
 mod order;
 mod place;
 mod plugins;
+mod predict;
 mod program_text;
 mod readiness;
 mod real_files;

@@ -9,12 +9,14 @@
 //! | [`trajectory`] | tasks, and the limits of the machine | [`SetPoints`]: where the axes are commanded, at any period |
 //! | [`servo`] | set-points | where the axes really are |
 //! | [`contour`] | both | how far the tip is off the commanded path, and off the CL path |
+//! | [`measured`] | a recorded log, and a prediction | how they lie over one another, and what is left |
 //!
 //! This crate stands on `post-machine` alone; `post-readback` stands on its [`path`]. There is no input or output here,
 //! no unsafe code and no dialect's name, and memory does not grow with the program.
 
 pub mod contour;
 pub mod limits;
+pub mod measured;
 pub mod path;
 pub mod servo;
 mod set_points;

@@ -69,6 +69,8 @@ pub struct Lexicon {
     tools_have_edges: bool,
     /// A word changes the tool; else T does.
     changes_by_word: bool,
+    /// The dialect itself knows G64, so that G61 is one of several modes.
+    path_modes: bool,
 }
 
 impl Lexicon {
@@ -95,6 +97,7 @@ impl Lexicon {
             m: vec![0; CODES / 10],
             senses: vec![Sense::Unknown],
             syntax: syntax(words, language),
+            path_modes: words.iter().any(|word| word.word == "G64"),
             changes_by_word: words.iter().any(|word| word.meaning == Meaning::ToolChange),
             ..Self::default()
         };
@@ -125,6 +128,11 @@ impl Lexicon {
     /// A word changes the tool, M6 or another; else T does.
     pub(crate) fn changes_by_word(&self) -> bool {
         self.changes_by_word
+    }
+
+    /// G61 is one of several modes, and not just the name of the only one.
+    pub(crate) fn has_path_modes(&self) -> bool {
+        self.path_modes
     }
 
     /// The sense of G and ten times a number; words beside it may change it: [`Lexicon::g_beside`].

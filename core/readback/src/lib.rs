@@ -7,6 +7,7 @@
 //! | [`course`] | a CL file, or what a program did | [`course::Item`]: the path of the tool against the part, piece by piece |
 //! | [`verify`] | a program and a course | deviations, block by block |
 //! | [`diff`] | two programs | what they do differently |
+//! | [`tasks`] | what a program did | what its control carries out, for `post_motion` |
 //! | [`convert`] | what a program did | the CL file that asks for it |
 //!
 //! This crate never stands on `post-posting`, and shares no code with the emitters: a check must not share the mistake
@@ -15,15 +16,18 @@
 //! with the program.
 
 pub mod convert;
+mod corners;
 pub mod course;
 pub mod diff;
 pub mod interpret;
 pub mod lexicon;
 mod motion;
 mod offsets;
+pub mod tasks;
 mod told;
 pub mod verify;
 
+pub use corners::Corners;
 pub use motion::{Motion, MotionKind};
 pub use offsets::{Offsets, Reference, WorkOffset};
 pub use post_motion::path::{SplineWay, Stance, Way};
@@ -84,4 +88,6 @@ pub struct State {
     pub operation: Option<String>,
     /// The control may leave the path by this much, mm; none: it keeps it, or nothing is said.
     pub smoothing: Option<f64>,
+    /// How the control passes from one motion to the next.
+    pub corners: Corners,
 }

@@ -43,6 +43,8 @@ pub struct Motion {
     /// How long it takes at the feed that the program states, minutes, no limit of any axis regarded; of a rapid at the
     /// axes' largest feeds, zero where the machine file names none.
     pub minutes: f64,
+    /// The axes stand still at its end, whatever else holds: G9.
+    pub stops: bool,
     /// It is part of a cycle's hole.
     pub hole: bool,
     /// It is asked for in positions of the machine, not of the part (G53, G28, G30, M91, SUPA): where it leads says

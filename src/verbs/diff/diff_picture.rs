@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use post_readback::diff::{Difference, Operation};
 
 use super::along::{Along, Bin};
+use crate::files::PlanView;
 use crate::files::chart::{Chart, DASHED, GREY, LOOKS, Series};
 use crate::files::svg::{self, label};
 
@@ -51,41 +52,12 @@ pub fn draw(names: [&str; 2], found: &Difference, along: &Along) -> String {
 
 /// Both paths in the plane of two axes in which they are largest.
 fn paths(picture: &mut String, found: &Difference, along: &Along) {
-    let points = || {
-        let pieces = along.paths.iter().flat_map(|path| &path.pieces);
-        pieces
-            .filter(|(cut, _)| *cut)
-            .flat_map(|(_, points)| points)
-    };
-    let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-    for point in points() {
-        for (end, value) in ends.iter_mut().zip(point) {
-            *end = [end[0].min(*value), end[1].max(*value)];
-        }
-    }
-    if ends[0][0] > ends[0][1] {
-        ends = [[0.0, 1.0]; 3];
-    }
-    let size = |axis: usize| (ends[axis][1] - ends[axis][0]).max(1e-3);
-    // X to the right and Y up, unless the part is flat there.
-    let planes = [[0, 1], [0, 2], [1, 2]];
-    let area = |[across, up]: [usize; 2]| size(across) * size(up);
-    let plane = planes.into_iter().fold([0, 1], |best, plane| {
-        if area(plane) > 1.5 * area(best) {
-            plane
-        } else {
-            best
-        }
-    });
-    let [across, up] = plane;
-    let scale = 0.94 * (SIZE[0] / size(across)).min(SIZE[1] / size(up));
-    let middle = plane.map(|axis| 0.5 * (ends[axis][0] + ends[axis][1]));
-    let place = |point: &[f64; 3]| {
-        [
-            LEFT + SIZE[0] / 2.0 + scale * (point[across] - middle[0]),
-            TOP + SIZE[1] / 2.0 - scale * (point[up] - middle[1]),
-        ]
-    };
+    let pieces = along.paths.iter().flat_map(|path| &path.pieces);
+    let points = pieces
+        .filter(|(cut, _)| *cut)
+        .flat_map(|(_, points)| points);
+    let view = PlanView::of(points, [LEFT, TOP], SIZE);
+    let place = |point: &[f64; 3]| view.place(point);
     let _ = writeln!(
         picture,
         "<clipPath id=\"paths\"><rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\"/></clipPath>\n<g clip-path=\"url(#paths)\" fill=\"none\">",
@@ -125,12 +97,7 @@ fn paths(picture: &mut String, found: &Difference, along: &Along) {
         "<rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1\"/>",
         SIZE[0], SIZE[1]
     );
-    let names = ["X", "Y", "Z"];
-    let text = format!(
-        "{} to the right from {:.1} to {:.1} mm, {} up from {:.1} to {:.1} mm",
-        names[across], ends[across][0], ends[across][1], names[up], ends[up][0], ends[up][1]
-    );
-    label(picture, [WIDTH / 2.0, TOP - 10.0], "middle", &text);
+    view.title(picture, [WIDTH / 2.0, TOP - 10.0]);
 }
 
 /// Where an operation differs most, and in what.

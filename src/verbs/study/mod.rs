@@ -8,8 +8,6 @@ mod study_csv;
 mod study_text;
 mod sweep;
 
-use std::fs;
-use std::io::Read as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +21,7 @@ use post_study::{Distribution, Keeper, Kept, Row, Survey};
 
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
-use crate::files::{self, FileFault, PathArg, Role};
+use crate::files::{AtomicFile, OwnFolder, PathArg, Role};
 use crate::job::{self, DryRun, plugin_finder};
 use crate::terminal;
 use sweep::{Sweep, Swept};
@@ -131,7 +129,9 @@ pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
     let machine = self::machine(&dry_run, &[])?;
     job::say_what_is_left(&arguments.job, &machine, &dry_run.finder);
     let folder = folder(arguments);
-    refuse_strangers(&folder)?;
+    let names = [&study_csv::NAMES[..], &pictures::NAMES[..]].concat();
+    let mark = ("moves.csv", study_csv::BEGIN);
+    let own = OwnFolder::open(&folder, STUDY, mark, &names).map_err(|fault| *fault)?;
     let (names, mut models) = models(&dry_run, &machine)?;
     let (surveyed, findings) = survey(&dry_run, &machine, &names, &mut models)?;
     let Surveyed {
@@ -160,7 +160,10 @@ pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
     terminal::findings(&findings);
     let mut files = study_csv::files(&study);
     files.extend(pictures::files(&study, &mut models));
-    write(&folder, &files)?;
+    let mut texts = Vec::new();
+    own.add(&files, &mut texts)?;
+    AtomicFile::finish(texts)?;
+    own.tidy(&files)?;
     let shown = folder.path().unwrap_or(Path::new("."));
     terminal::print(&study_text::text(&study, shown, &files));
     Ok(())
@@ -351,57 +354,3 @@ fn programs(dry_run: &DryRun<'_>, models: &[String]) -> Result<Vec<Program>, Fai
 
 /// A file of the study: its name and its text.
 pub type File = (&'static str, String);
-
-/// Writes all files, or none.
-fn write(folder: &PathArg, files: &[File]) -> Result<(), Failure> {
-    let place = folder.absolute().unwrap_or(Path::new("."));
-    let texts: Vec<(PathArg, &str)> = files
-        .iter()
-        .map(|(name, text)| (folder.map(|folder| folder.join(name)), text.as_str()))
-        .collect();
-    let texts: Vec<(Role, &PathArg, &str)> = texts
-        .iter()
-        .map(|(target, text)| (STUDY, target, *text))
-        .collect();
-    fs::create_dir_all(place).map_err(|error| FileFault::write(folder, error))?;
-    files::write(&texts)?;
-    // What an earlier study left here, and this one does not write, would be taken for its result.
-    let names = study_csv::NAMES.iter().chain(&pictures::NAMES);
-    for name in names.filter(|name| files.iter().all(|(written, _)| written != *name)) {
-        let path = folder.map(|folder| folder.join(name));
-        files::remove(STUDY, &path)?;
-    }
-    Ok(())
-}
-
-/// A file is no place for a study, nor is a folder in which files have the names of a study's without being of one.
-fn refuse_strangers(folder: &PathArg) -> Result<(), Failure> {
-    let (Some(place), Some(named)) = (folder.absolute(), folder.path()) else {
-        return Ok(());
-    };
-    if place.exists() && !place.is_dir() {
-        let message = format!("{} is no folder", named.display());
-        let finding = Diagnostic::error("output", message);
-        return Err(finding.help(STUDY.remedy).into());
-    }
-    let begins = |name: &str, with: &str| {
-        let mut begin = Vec::new();
-        let file = fs::File::open(place.join(name));
-        let read = file.and_then(|file| file.take(with.len() as u64).read_to_end(&mut begin));
-        read.is_ok() && begin == with.as_bytes()
-    };
-    if begins("moves.csv", study_csv::BEGIN) {
-        return Ok(());
-    }
-    let mut names = study_csv::NAMES.iter().chain(&pictures::NAMES);
-    let Some(name) = names.find(|name| place.join(name).exists()) else {
-        return Ok(());
-    };
-    let path = named.join(name);
-    let message = format!(
-        "the study would overwrite {}, which is of no study",
-        path.display()
-    );
-    let finding = Diagnostic::error("output", message);
-    Err(finding.help(STUDY.remedy).into())
-}

@@ -306,6 +306,7 @@ impl Builder<'_> {
                 units: control.units,
                 feed: control.feed,
                 feed_length: control.feed_length,
+                tcp_feed_length: control.tcp_feed_length,
                 inverse_time: control.inverse_time,
                 rapid: control.rapid,
                 tool_length: control.tool_length,

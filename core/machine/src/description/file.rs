@@ -208,7 +208,8 @@ pub(crate) struct AxisFile {
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_feed: Option<Quantity>,
     /// A feed a minute counts the way of this rotary axis along a circle of this diameter, mm, where the control does not
-    /// keep the tip; in degrees if not said.
+    /// keep the tip or counts turns all the same (tcp_feed_length = "combined"); in degrees if not said. 2 mm counts
+    /// radians.
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub feed_diameter: Option<Quantity>,
     /// Largest acceleration, mm/s² or degrees/s².
@@ -373,6 +374,19 @@ pub enum FeedLength {
     Longest,
 }
 
+/// The length that a control's feed a minute is meant along where it keeps the tip.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum TcpFeedLength {
+    /// The way of the tip; the rotary axes, in degrees, where the tip stands.
+    #[default]
+    Tip,
+    /// Root of the sum of squares of the way of the tip and those of the rotary axes, each along the circle of its
+    /// `feed_diameter` or in degrees: with a diameter of 2 mm in radians (eqs. 4 and 5 of the prediction paper, Zhang,
+    /// Chen 2025).
+    Combined,
+}
+
 /// How a rapid is written.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
@@ -473,6 +487,9 @@ pub(crate) struct ControlFile {
     /// The length that the control divides by F when it does not keep the tip; linear if not said.
     #[serde(default)]
     pub feed_length: FeedLength,
+    /// The length that the control divides by F when it keeps the tip; tip if not said.
+    #[serde(default)]
+    pub tcp_feed_length: TcpFeedLength,
     /// How a rapid is written in which a rotary axis turns, or an axis would pass its max_feed; rapid if not said.
     #[serde(default)]
     pub rapid: Rapid,

@@ -37,7 +37,8 @@ pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
     ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
-    InverseTime, Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, ToolLength,
+    InverseTime, Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, TcpFeedLength,
+    ToolLength,
 };
 pub use frame::Frame;
 pub use layers::Source;
@@ -264,6 +265,8 @@ pub struct Control {
     pub feed: FeedMode,
     /// What a feed a minute is meant along.
     pub feed_length: FeedLength,
+    /// What a feed a minute is meant along where the control keeps the tip.
+    pub tcp_feed_length: TcpFeedLength,
     /// What F means under inverse time.
     pub inverse_time: InverseTime,
     /// How a rapid is written in which a rotary axis turns, or an axis would pass its largest feed.

@@ -177,3 +177,6 @@ impl MoveLimits {
         ask(libm::cbrt(third / limits.tip_jerk), TimeLimit::TipJerk);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,9 +1,16 @@
 //! Servos: where the axes are while they follow their set-points.
 //!
-//! [`Servos`] does it for a machine, [`Follower`] for one axis. The equations are those of [`post_machine::servo`]; they are
-//! solved exactly from set-point to set-point by the matrix exponential, with the commanded position linear between
-//! set-points, so that the answer is that of the differential equations whatever the period ([`discrete`]). Dry friction
-//! and play inside the loops are not linear: with them a period is gone through in smaller steps ([`stepped`]).
+//! [`Servos`] does it for a machine, [`Follower`] for one axis. The equations are those of [`post_machine::servo`]. They are
+//! solved exactly from set-point to set-point, by the matrix exponential, with the commanded position linear between
+//! set-points (a first-order hold): the answer is that of the differential equations, whatever the period. The velocity of
+//! the command jumps at a set-point, and with the acceleration fed forward the current (or the speed, where the torque
+//! follows its command at once) jumps with it; that is what the equations say of such a command.
+//!
+//! Dry friction, and play inside the loops, are not linear. With them a period is gone through in equal steps of at most
+//! 0.1 ms, and of at most 0.2 radians of the swing of the table on its transmission; within a step the equations are solved
+//! exactly, with the friction's force constant (that of the velocity at the step's end, or what stops the table there) and
+//! the flanks touching or not as at its beginning. Errors are in proportion to the step.
+//!
 //! [`Response`] answers in the frequency domain, [`fit`] adjusts numbers of a servo to a measured log.
 
 mod discrete;

@@ -1,4 +1,5 @@
 //! How machines move, held against closed forms and brute force.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod contour;
 mod servo;

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 use post_machine::axis_words::unit_length;
-use post_machine::description::{FeedLength, FeedMode, InverseTime, Machine, Tcp};
+use post_machine::description::{FeedLength, FeedMode, InverseTime, Machine, Tcp, TcpFeedLength};
 use post_machine::kinematics::Joints;
 use post_plugin::{Feed, Format};
 
@@ -22,6 +22,7 @@ pub(super) struct FeedWriter {
     tcp: Tcp,
     inverse_time: bool,
     length: FeedLength,
+    tcp_length: TcpFeedLength,
     /// Where nothing turns, the control's length is the way of the tip.
     square: bool,
     /// No linear axis passes its largest feed if the tool goes no faster, mm/min.
@@ -64,6 +65,7 @@ impl FeedWriter {
             tcp,
             inverse_time: wanted,
             length,
+            tcp_length: machine.control.tcp_feed_length,
             square: length != FeedLength::Longest && square(machine),
             most: most(machine),
             unit: unit_length(machine.control.units),
@@ -106,7 +108,7 @@ impl FeedWriter {
         }
         // No detour over the axes where their ways make no difference. Along a curve the tool goes its own way.
         let plain = match self.tcp {
-            Tcp::Control => tip > SAME,
+            Tcp::Control => tip > SAME && (self.tcp_length == TcpFeedLength::Tip || !turning),
             Tcp::Post => !turning && self.square,
         } || matches!(block.kind, MotionKind::Arc | MotionKind::Spline);
         let length = if plain {
@@ -169,12 +171,15 @@ impl FeedWriter {
     }
 
     /// The length that the control will divide by F, in the units of the program or degrees. A control that keeps the
-    /// tip counts turns in degrees.
+    /// tip counts turns in degrees, where it counts them at all.
     fn measured(&self, from: &Joints, to: &Joints, tip: f64) -> f64 {
         let travels = self.kinds.travels(from, to);
         let tip = tip / self.unit;
         let linear = travels.linear / self.unit;
         match (self.tcp, self.length) {
+            (Tcp::Control, _) if self.tcp_length == TcpFeedLength::Combined => {
+                libm::sqrt(tip * tip + travels.rotary * travels.rotary)
+            }
             (Tcp::Control, _) if tip > SAME => tip,
             (Tcp::Control, _) => self.degrees.travels(from, to).rotary_longest,
             (Tcp::Post, FeedLength::Linear) if linear > SAME => linear,

@@ -40,7 +40,9 @@ fn length(bench: &Bench, kind: &str, from: &Joints, to: &Joints, tip: f64) -> f6
             let diameter = bench.machine.axes[place].feed_diameter;
             let turn = match (diameter, bench.machine.control.tcp) {
                 // Along its circle.
-                (Some(diameter), Tcp::Post) => way * diameter / 2.0,
+                (Some(diameter), tcp) if tcp == Tcp::Post || kind == "combined" => {
+                    way * diameter / 2.0
+                }
                 _ => way.to_degrees(),
             };
             (rotary, if rotary { turn } else { way })
@@ -52,6 +54,9 @@ fn length(bench: &Bench, kind: &str, from: &Joints, to: &Joints, tip: f64) -> f6
             .map(|way| way.1)
     };
     let root = |ways: &mut dyn Iterator<Item = f64>| ways.map(|way| way * way).sum::<f64>().sqrt();
+    if bench.machine.control.tcp == Tcp::Control && kind == "combined" {
+        return root(&mut of(true).chain([tip]));
+    }
     if bench.machine.control.tcp == Tcp::Control {
         return if tip > 1e-9 {
             tip
@@ -158,11 +163,15 @@ fn made(rng: &mut Rng) -> Made {
     };
     let (tcp, kind) = [
         ("control", "linear"),
-        ("control", "linear"),
+        ("control", "combined"),
         ("post", "linear"),
         ("post", "combined"),
         ("post", "longest"),
     ][rng.pick(5)];
+    let counts = match (tcp, kind) {
+        ("control", "combined") => "tcp_feed_length",
+        _ => "feed_length",
+    };
     let feed = ["auto", "per-minute", "inverse-time"][rng.pick(3)];
     let rapid = ["rapid", "linear"][rng.pick(2)];
     let time = ["minutes", "minutes", "seconds"][rng.pick(3)];
@@ -194,7 +203,7 @@ fn made(rng: &mut Rng) -> Made {
     }
     writeln!(
         text,
-        "[control]\ndialect = \"recorder\"\ntcp = \"{tcp}\"\nfeed = \"{feed}\"\nfeed_length = \"{kind}\"\ninverse_time = \"{time}\"\nrapid = \"{rapid}\"\n\
+        "[control]\ndialect = \"recorder\"\ntcp = \"{tcp}\"\nfeed = \"{feed}\"\n{counts} = \"{kind}\"\ninverse_time = \"{time}\"\nrapid = \"{rapid}\"\n\
          [accuracy]\ntolerance = 0.02\naxis_tolerance = 2.0\nrapid_tolerance = 1000\nreduce = {reduce}"
     )
     .unwrap();

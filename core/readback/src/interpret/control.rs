@@ -14,7 +14,7 @@ use super::ReadReport;
 use super::frame::{Frame, Frames};
 use super::state::{ArcPlane, Axes, Control, FeedMode, Head, Modal, MotionMode, Orientation};
 use crate::lexicon::{Language, Lexicon};
-use crate::{Coolants, Done, Offsets, Spindle, Stance, State, Told};
+use crate::{Coolants, Corners, Done, Offsets, Spindle, Stance, State, Told};
 
 /// So many lengths are kept ready.
 const SOLVERS: usize = 64;
@@ -105,12 +105,14 @@ impl Control {
                 coolants: Coolants::default(),
                 operation: None,
                 smoothing: None,
+                corners: Corners::Unsaid,
             },
             shared: None,
             at: Stance::default(),
             turns: Turns::default(),
             ended: false,
             in_machine: false,
+            exact_stop: false,
             hole: false,
             zero: Joints::default(),
             to_part: Frame::default(),
@@ -356,6 +358,7 @@ impl Modal {
             surface_speed: false,
             most_speed: None,
             return_start: true,
+            contour_tolerance: None,
             shortest: None,
             orientation: Orientation::Usual,
             vectors: false,

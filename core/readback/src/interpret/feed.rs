@@ -1,10 +1,13 @@
 //! How long a motion takes at the feed that the program states.
 
 use nalgebra::Vector3;
-use post_machine::description::{FeedLength, InverseTime};
+use post_machine::description::{FeedLength, InverseTime, TcpFeedLength};
 
 use super::state::{Control, FeedMode};
 use crate::{MotionKind, Stance, Way};
+
+/// A tip that goes less far than this stands, mm: turned about itself it comes back to its last digits.
+const STANDS: f64 = 1e-9;
 
 impl Control {
     /// Feed of the tip against the part, mm/min, and minutes of a motion; zero where the program states none.
@@ -49,8 +52,8 @@ impl Control {
     /// The length that F a minute counts along, mm, or degrees where rotary axes alone turn.
     #[inline]
     fn feed_length(&self, way: &Way, tip: f64, from: &Stance, to: &Stance) -> f64 {
-        // A control that keeps the tip counts its way; so do all where only linear axes go straight.
-        if self.state.tcp && tip > 0.0 {
+        let counted = self.machine.control.tcp_feed_length;
+        if self.state.tcp && tip > STANDS && counted == TcpFeedLength::Tip {
             return tip;
         }
         let mut squares = 0.0;
@@ -63,7 +66,8 @@ impl Control {
             }
             if axis.joint.rotary {
                 // mm along the circle that the control counts, or degrees (in an inch program each is 25.4 of F's mm).
-                let way = match axis.feed_diameter {
+                let along_circle = !self.state.tcp || counted == TcpFeedLength::Combined;
+                let way = match axis.feed_diameter.filter(|_| along_circle) {
                     Some(diameter) => way * 0.5 * diameter,
                     None => way.to_degrees() * self.modal.unit,
                 };
@@ -71,12 +75,16 @@ impl Control {
                 if libm::fabs(way) > longest {
                     longest = libm::fabs(way);
                 }
-            } else {
+            } else if !self.state.tcp {
+                // Where the control keeps the tip they only follow.
                 squares += way * way;
                 if libm::fabs(way) > longest {
                     longest = libm::fabs(way);
                 }
             }
+        }
+        if self.state.tcp && counted == TcpFeedLength::Combined {
+            return (tip * tip + turned).sqrt();
         }
         if let Way::Arc { .. } | Way::Spline(_) = way {
             return tip;

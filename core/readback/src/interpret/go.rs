@@ -402,6 +402,7 @@ impl Control {
             to: self.at,
             feed,
             minutes,
+            stops: self.exact_stop,
             hole: self.hole,
             machine: self.in_machine,
             state,

@@ -53,12 +53,16 @@ impl Control {
                 let letter = self.lexicon.tolerance_letter(code);
                 let tolerance = letter.and_then(|letter| words.take(letter));
                 words.used |= bit(b'P') | bit(b'Q') | bit(b'R');
-                self.smooth(tolerance.map(|tolerance| tolerance * self.modal.unit));
+                let tolerance = tolerance.map(|tolerance| tolerance * self.modal.unit);
+                self.smooth(tolerance);
+                self.leaves_corners(code, tolerance);
             }
             Meaning::SmoothingOff => {
                 words.used |= bit(b'Q') | bit(b'P');
                 self.smooth(None);
+                self.keeps_corners(code);
             }
+            Meaning::ExactStop => self.exact_stop = true,
             Meaning::ToolChange => asked.change = true,
             Meaning::SpindleClockwise => asked.spindle = Some(Turning::Clockwise),
             Meaning::SpindleCounterClockwise => asked.spindle = Some(Turning::CounterClockwise),

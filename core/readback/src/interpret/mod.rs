@@ -7,6 +7,7 @@
 //! | `gathered` | the words of a block, by letter |
 //! | `block`, `meanings` | a block of words: modes first, then what moves |
 //! | `compensation`, `spindle` | lengths, radii, work offsets; tools, spindle, coolant, waits |
+//! | `corners` | how the control passes from one motion to the next |
 //! | `names` | names, calls and texts among the words |
 //! | `go`, `arcs`, `machine_moves` | from words to axis values, tip and tool axis |
 //! | `feed`, `tools` | time, tool lengths |
@@ -21,6 +22,7 @@ mod calls;
 mod compensation;
 mod control;
 mod conversational;
+mod corners;
 mod cycles;
 mod expression;
 mod feed;
@@ -95,6 +97,7 @@ impl Runner {
     fn run(&mut self, block: &NcBlock) -> Result<(), Box<Diagnostic>> {
         self.control.line = block.line;
         self.control.number = block.number;
+        self.control.exact_stop = false;
         if block.skipped {
             self.control.say_skipped();
         }

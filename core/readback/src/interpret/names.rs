@@ -90,8 +90,15 @@ impl Control {
                 self.modal.named_register = Some(which(b'H', value, self)?);
             }
             Sense::Means(Meaning::SpeedLimit) => self.modal.most_speed = Some(worth(self)?),
+            Sense::Means(Meaning::Nothing) if name == "CTOL" => {
+                let tolerance = worth(self)?;
+                self.contour_tolerance(tolerance);
+            }
             Sense::Means(Meaning::Nothing | Meaning::Smoothing) => {}
-            Sense::Means(Meaning::SmoothingOff) => self.smooth(None),
+            Sense::Means(Meaning::SmoothingOff) => {
+                self.smooth(None);
+                self.keeps_corners(0);
+            }
             Sense::Means(Meaning::SpindleOrient) => asked.spindle = Some(Turning::Oriented),
             Sense::Means(Meaning::Probe) => {
                 return Err(self.refuse(
@@ -219,7 +226,9 @@ impl Control {
                     ),
                     _ => None,
                 };
-                self.smooth(tolerance.map(|tolerance| tolerance * self.modal.unit));
+                let tolerance = tolerance.map(|tolerance| tolerance * self.modal.unit);
+                self.smooth(tolerance);
+                self.leaves_corners(0, tolerance);
             }
             (
                 _,

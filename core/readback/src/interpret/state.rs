@@ -61,6 +61,8 @@ pub(super) struct Control {
     pub ended: bool,
     /// The motion is asked for in positions of the machine.
     pub in_machine: bool,
+    /// The motions of this block end with the axes at rest: G9.
+    pub exact_stop: bool,
     /// Motions are part of a cycle's hole.
     pub hole: bool,
     /// Axis values that the words of the axes count from: mm and radians, by place in the chain.
@@ -125,6 +127,8 @@ pub(super) struct Modal {
     pub centres_absolute: bool,
     /// mm in one unit of a word.
     pub unit: f64,
+    /// By how much smoothing may leave the contour, mm: CTOL of Siemens.
+    pub contour_tolerance: Option<f64>,
     /// How F counts.
     pub feed_mode: FeedMode,
     /// F: mm/min, 1/min (or 1/s as the machine file has it) or mm a revolution; of rotary axes alone deg/min or a

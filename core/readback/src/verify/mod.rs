@@ -16,6 +16,7 @@
 mod axes;
 mod chop;
 mod cut_path;
+mod detour;
 mod hole;
 mod place;
 mod rapid;
@@ -33,6 +34,7 @@ use crate::course::Course;
 use crate::{CycleKind, Done, Motion, MotionKind, Offsets, Told};
 use axes::Axes;
 pub use cut_path::CutPath;
+use detour::Detour;
 use hole::{HoleRun, Made};
 use place::{Apart, Bound, Place, Span};
 pub use report::{BlockReport, Fault, Verification, Worst};
@@ -137,6 +139,7 @@ pub struct Verifier<'m, C> {
     spare: Vec<Span>,
     /// The work offsets that were cut in, each by the number that the course asks for.
     worked: Vec<(Option<u32>, String)>,
+    detour: Detour,
     axes: Axes,
     block: BlockReport,
     found: Verification,
@@ -182,6 +185,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             places: Vec::new(),
             spare: Vec::new(),
             worked: Vec::new(),
+            detour: Detour::default(),
             axes: Axes::new(machine),
             block: BlockReport::default(),
             found: Verification::default(),

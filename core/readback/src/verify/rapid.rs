@@ -2,10 +2,11 @@
 
 use nalgebra::Vector3;
 
+use super::detour::Detour;
 use super::place::{Apart, Place, Span, free, nearest};
 use super::sweep::Stray;
 use super::track::{MOST, What};
-use super::{Verifier, state};
+use super::{RAPID_TURN, Verifier, state};
 use crate::course::Course;
 use crate::{Motion, Told};
 
@@ -28,9 +29,11 @@ impl<C: Course> Verifier<'_, C> {
         self.apart = true;
         if self.placed && !self.pecks_again(motion, places) {
             self.look_how_near(motion, places);
-            if !asked && !self.may_begin(end) {
+            let asked = asked || self.may_begin(end);
+            if !asked {
                 self.look_where_it_ends(motion, end);
             }
+            self.detour.take(motion, asked);
         }
     }
 
@@ -273,6 +276,30 @@ impl<C: Course> Verifier<'_, C> {
             })
     }
 
+    /// Rapids between the cuts must not swing out of where the course leads.
+    fn look_for_detours(&mut self, motion: &Motion) {
+        let slack = [self.rapid_bound.point, RAPID_TURN];
+        let Some(astray) = self.detour.cut(self.machine, motion, slack) else {
+            return;
+        };
+        let axis = &self.machine.axes[astray.axis];
+        let unit = match axis.joint.rotary {
+            true => "°",
+            false => " mm",
+        };
+        let message = format!(
+            "a rapid takes {} {:.3}{unit} beyond all that the CL file asks for between two cuts",
+            axis.name, astray.by
+        );
+        self.fault_at(
+            "rapid",
+            message,
+            Some((astray.line, astray.number)),
+            None,
+            Some(astray.by),
+        );
+    }
+
     /// A cut begins: where on the course may that be?
     pub(super) fn begin_cut(&mut self, motion: &Motion, place: &Place) {
         let (bound, rapid) = (self.bound, self.rapid_bound);
@@ -309,7 +336,11 @@ impl<C: Course> Verifier<'_, C> {
         }
         self.reach = reach;
         if goes_on {
+            // A cut that is left and gone on with: what was done in between is the program's own business.
             self.found.excursions += 1;
+            self.detour = Detour::default();
+        } else {
+            self.look_for_detours(motion);
         }
         if self.reach.iter().all(Span::is_empty) {
             self.find_cut(motion, place, self.next.unwrap_or(stood));

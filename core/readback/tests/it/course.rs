@@ -9,7 +9,7 @@ use post_machine::kinematics::{Chain, Freedom, Joint, Joints, Pose, Solver};
 use post_readback::course::done::{Chords, DoneCourse, Program};
 use post_readback::course::{Course, Curve, Item, Piece};
 use post_readback::{
-    Coolants, Done, Motion, MotionKind, Spindle, SplineWay, Stance, State, Told, Way,
+    Coolants, Corners, Done, Motion, MotionKind, Spindle, SplineWay, Stance, State, Told, Way,
 };
 use post_testkit::{Random, randomised, seeded};
 
@@ -44,6 +44,7 @@ fn state(solver: &Arc<Solver>) -> Arc<State> {
         coolants: Coolants::default(),
         operation: None,
         smoothing: None,
+        corners: Corners::Unsaid,
     })
 }
 
@@ -61,6 +62,7 @@ fn motion(state: &Arc<State>, way: Way, from: Joints, to: Joints) -> Motion {
         to: stance(to),
         feed: 1000.0,
         minutes: 0.1,
+        stops: false,
         hole: false,
         machine: false,
         state: Arc::clone(state),

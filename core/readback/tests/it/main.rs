@@ -7,4 +7,5 @@
 mod course;
 mod interpret;
 mod robust;
+mod tasks;
 mod verify;

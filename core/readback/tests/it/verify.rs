@@ -10,7 +10,8 @@ use post_machine::kinematics::Pose;
 use post_readback::course::{Course, Curve, Item, Piece, Reach};
 use post_readback::verify::{BlockReport, CutPath, Registers, Rules, Verification, Verifier};
 use post_readback::{
-    Coolants, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State, Told, Way,
+    Coolants, Corners, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State,
+    Told, Way,
 };
 use post_testkit::frechet::frechet;
 use post_testkit::seeded;
@@ -139,6 +140,7 @@ impl Does {
             coolants: Coolants::default(),
             operation: None,
             smoothing: None,
+            corners: Corners::Unsaid,
         };
         Self {
             done: Vec::new(),
@@ -173,6 +175,7 @@ impl Does {
             to: stance(to),
             feed: 500.0,
             minutes,
+            stops: false,
             hole: false,
             machine: false,
             state: Arc::clone(&self.state),
@@ -702,4 +705,38 @@ fn work_offsets_are_those_that_are_asked_for() {
     assert_eq!(faults(program("G55", "G55"), asked(2)), 0);
     assert_eq!(faults(program("G54", "G54"), asked(2)), 1);
     assert_eq!(faults(program("G15 H2", "G15 H2"), asked(2)), 0);
+}
+
+#[test]
+fn rapids_that_swing_out_of_where_they_are_asked_for_are_found() {
+    let asks = || {
+        Asks::default()
+            .rapid(0.0, 0.0, 10.0)
+            .rapid(0.0, 0.0, 1.0)
+            .cut(0.0, 0.0, -2.0)
+            .cut(20.0, 0.0, -2.0)
+            .rapid(20.0, 0.0, 10.0)
+            .rapid(40.0, 10.0, 10.0)
+            .cut(40.0, 10.0, -2.0)
+            .cut(60.0, 10.0, -2.0)
+    };
+    let program = |swing: [f64; 3]| {
+        begin()
+            .cut(20.0, 0.0, -2.0)
+            .rapid(20.0, 0.0, 10.0)
+            .rapid(20.0, 0.0, 90.0)
+            .rapid(swing[0], swing[1], swing[2])
+            .rapid(40.0, 10.0, 90.0)
+            .rapid(40.0, 10.0, 10.0)
+            .cut(40.0, 10.0, -2.0)
+            .cut(60.0, 10.0, -2.0)
+    };
+    let found = |swing: [f64; 3]| codes(&program(swing), asks());
+    assert_eq!(found([30.0, 5.0, 90.0]), []);
+    assert_eq!(found([20.0, 10.0, 300.0]), []);
+    let out = found([20.0, 40.0, 90.0]);
+    assert_eq!(out.len(), 1, "{out:?}");
+    assert_eq!(out[0].0, "rapid");
+    let below = found([70.0, 5.0, 90.0]);
+    assert_eq!(below.len(), 1, "{below:?}");
 }

@@ -123,6 +123,21 @@ fn the_feed_is_the_tips_whatever_is_guided() {
     assert!((1795.0..=1800.0).contains(&tip), "{tip}");
 }
 
+/// Eqs. 4 and 5 of the prediction paper (Zhang, Chen 2025): the control divides the root of the squares of the tip's way
+/// and of the turns in radians by F. B turns by 20° while the tip goes 0.5 mm: F is by `hypot(0.5, 0.349…)/0.5` above the
+/// feed of the tip.
+#[test]
+fn a_control_may_count_turns_along_with_the_tip() {
+    let text = fork("control", "tcp_feed_length = \"combined\"")
+        .replace("max_feed = 3600", "max_feed = 3600\nfeed_diameter = 2")
+        .replace("max_feed = 2000", "max_feed = 30000");
+    let run = Bench::new(&text, 4, 0.0).run(&swing(0.5, -10.0, "FEDRAT/50,MMPM"));
+    let wanted = 50.0 * libm::hypot(0.5, 20f64.to_radians()) / 0.5;
+    assert!((feed_of(&run) - (wanted * 10.0).floor() / 10.0).abs() < 1e-9);
+    let time = run.report.unwrap().cutting_time_s;
+    assert!((time - 0.6).abs() < 0.6 * 0.1 / wanted, "{time}");
+}
+
 /// Three axes and no turn: 30 mm along X and 40 along Y are 50 for the tip, 50 as a root of squares, and 40 for a
 /// control that looks at the longest way.
 #[test]

@@ -70,7 +70,9 @@ pub(super) fn define(control: &mut Control, said: &Said<'_>, words: &mut Gathere
             let tolerance = words
                 .take(b'T')
                 .map(|tolerance| tolerance * control.modal.unit);
-            control.smooth(tolerance.filter(|tolerance| *tolerance > 0.0));
+            let tolerance = tolerance.filter(|tolerance| *tolerance > 0.0);
+            control.smooth(tolerance);
+            control.leaves_corners(0, tolerance);
             Ok(())
         }
         (32, _) => {

@@ -14,7 +14,7 @@ use post_readback::{Done, Motion, Offsets, Told};
 use post_testkit::repository;
 
 /// A control of letters that keeps the tip with G43.4 and with M428.
-const LETTERS: &[(&str, M)] = &[
+pub const LETTERS: &[(&str, M)] = &[
     ("(", M::RemarkOpen),
     (")", M::RemarkClose),
     ("%", M::Nothing),

@@ -1,9 +1,10 @@
 //! What is modal, what is refused, what is only counted, and how long it takes.
 
-use post_machine::description::Machine;
-use post_readback::{MotionKind, Offsets, Spindle, Told};
+use post_machine::description::{Machine, TcpFeedLength};
+use post_motion::Corner;
+use post_readback::{Corners, MotionKind, Offsets, Spindle, Told};
 
-use super::{LETTERS, NAMES, letters, machine, ran};
+use super::{LETTERS, NAMES, Ran, letters, machine, ran};
 
 #[test]
 fn units_and_ways_are_modal() {
@@ -226,6 +227,54 @@ fn words_beside_a_code_say_what_it_does() {
     assert!(done.report.unknown.is_empty(), "{:?}", done.report.unknown);
 }
 
+/// What holds at the end of each motion, and whether the motion says so itself.
+fn corners(done: &Ran) -> Vec<(Corners, bool)> {
+    let motions = done.motions.iter();
+    motions
+        .map(|motion| (motion.state.corners, motion.stops))
+        .collect()
+}
+
+#[test]
+fn words_say_how_corners_are_passed() {
+    let said = |corner: Corner| (Corners::Said(corner), false);
+    let blend = |tolerance: Option<f64>| said(Corner::Blend { tolerance });
+    let unsaid = (Corners::Unsaid, false);
+    let machine = machine("vmc");
+    // Fanuc's G61 is an exact stop, and G9 one for its block.
+    let program = "G1 F500. X1.\nG61 X2.\nG64 X3.\nG9 X4.\nX5.\nG187 P3 E0.02\nX6.\nG187\nX7.\n";
+    let once = (blend(None).0, true);
+    assert_eq!(
+        corners(&letters(&machine, program).whole()),
+        [
+            unsaid,
+            said(Corner::Stop),
+            blend(None),
+            once,
+            blend(None),
+            blend(Some(0.02)),
+            unsaid
+        ]
+    );
+    // An inch program states its tolerance in inches.
+    let inch = letters(&machine, "G20 G1 F50. X1.\nG187 P3 E0.001\nX2.\n").whole();
+    assert_eq!(corners(&inch)[1], blend(Some(0.0254)));
+    // Siemens: G60, G64, and the compressor with and without its tolerance.
+    let program = "G1 F500 X1\nG60 X2\nG64 X3\nG642 X4\nCTOL=0.03\nX5\nG64 X6\nG9 X7\n";
+    assert_eq!(
+        corners(&ran(&machine, NAMES, &Offsets::default(), program).whole()),
+        [
+            unsaid,
+            said(Corner::Stop),
+            blend(None),
+            (Corners::Own, false),
+            blend(Some(0.03)),
+            blend(None),
+            once
+        ]
+    );
+}
+
 #[test]
 fn reference_positions_are_approached_by_way_of_the_point() {
     let machine = machine("ac-trunnion");
@@ -257,4 +306,32 @@ fn the_axes_of_other_machines_are_not_passed_over() {
     let done = letters(&machine, "G0 X0 A5.\n");
     assert_eq!(done.refused.len(), 1);
     assert!(done.refused[0].message.contains("A is no axis"));
+}
+
+/// Where the control keeps the tip F counts its way; turns beside it where the machine file says so, in radians by a circle
+/// of 2 mm (eqs. 4 and 5 of the prediction paper, Zhang, Chen 2025), and alone, in degrees, where the tip stands.
+#[test]
+fn the_length_that_a_control_counts_while_it_keeps_the_tip() {
+    let mut machine = machine("ac-trunnion");
+    let start = "G43.4 H1\nG1 X0 Y0 Z50. A-10. C0 F1000.\n";
+    let close = |machine: &Machine, text: &str, wanted: f64| {
+        let table = Offsets {
+            lengths: vec![(1, 100.0)],
+            ..Offsets::default()
+        };
+        let done = ran(machine, LETTERS, &table, &format!("{start}{text}")).whole();
+        let minutes = done.last().minutes;
+        assert!((minutes - wanted).abs() < 1e-9, "{text} {minutes} {wanted}");
+    };
+    close(&machine, "X30. Y40. A-20. C30. F100.\n", 0.5);
+    // As LinuxCNC has it, by its own recording.
+    close(&machine, "A-13. C4. F100.\n", 0.05);
+    machine.control.tcp_feed_length = TcpFeedLength::Combined;
+    for axis in &mut machine.axes {
+        axis.feed_diameter = axis.joint.rotary.then_some(2.0);
+    }
+    let [a, c] = [10f64, 30.0].map(f64::to_radians);
+    let counted = (0.3f64 * 0.3 + 0.4 * 0.4 + a * a + c * c).sqrt();
+    close(&machine, "X.3 Y.4 A-20. C30. F100.\n", counted / 100.0);
+    close(&machine, "C30. F100.\n", c / 100.0);
 }

@@ -1,0 +1,71 @@
+//! The largest values of each axis.
+
+use post_machine::kinematics::{Joints, MAX_AXES};
+
+use super::spread::Peak;
+use crate::At;
+
+/// The largest values of one axis; mm, s, radians.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AxisPeaks {
+    /// Commanded minus actual position at one time.
+    pub following: Peak,
+    /// Velocity that is commanded: differences of set-points, as are the two below.
+    pub velocity: Peak,
+    /// Acceleration that is commanded.
+    pub acceleration: Peak,
+    /// Jerk that is commanded.
+    pub jerk: Peak,
+}
+
+/// Gathers them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct AxesPeaks {
+    pub peaks: [AxisPeaks; MAX_AXES],
+    last: Joints,
+    velocity: Joints,
+    acceleration: Joints,
+    /// Set-points so far; no difference is taken of what was not there.
+    count: u32,
+}
+
+impl AxesPeaks {
+    /// Takes the next set-point of `axes` axes and where they are.
+    pub fn take(&mut self, axes: usize, at: (f64, &At), period: f64, joints: [&Joints; 2]) {
+        let rate = 1.0 / period;
+        let [commanded, actual] = joints;
+        for axis in 0..axes.min(MAX_AXES) {
+            let velocity = (commanded[axis] - self.last[axis]) * rate;
+            let acceleration = (velocity - self.velocity[axis]) * rate;
+            let jerk = (acceleration - self.acceleration[axis]) * rate;
+            let peaks = &mut self.peaks[axis];
+            raise(&mut peaks.following, commanded[axis] - actual[axis], at);
+            if self.count > 0 {
+                raise(&mut peaks.velocity, velocity, at);
+            }
+            if self.count > 1 {
+                raise(&mut peaks.acceleration, acceleration, at);
+            }
+            if self.count > 2 {
+                raise(&mut peaks.jerk, jerk, at);
+            }
+            self.velocity[axis] = velocity;
+            self.acceleration[axis] = acceleration;
+        }
+        self.last = *commanded;
+        self.count = (self.count + 1).min(3);
+    }
+}
+
+#[inline]
+fn raise(peak: &mut Peak, value: f64, (time, at): (f64, &At)) {
+    let value = value.abs();
+    if value > peak.value {
+        *peak = Peak {
+            value,
+            time,
+            line: at.line,
+            ..Peak::default()
+        };
+    }
+}

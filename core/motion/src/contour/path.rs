@@ -1,0 +1,459 @@
+//! The commanded path as a spline, as far as it is needed, and the nearest point on it.
+//!
+//! **Which point is the nearest.** The one before, a period further, is where the search begins; from there it goes
+//! downhill until the distance rises both ways, however far that is: no window bounds it. A path comes close to itself,
+//! and at a corner the tool passes from one leg to the other without standing on the corner: so other places are looked
+//! at as far as [`REACH`] times that first distance along the path, and the nearest of them is taken. The distance at the
+//! beginning is about the contour error itself, not the following error, so that a crossing is no corner: the way round a
+//! loop is far longer. Points of the path that cannot be nearer are passed over by its length: a point `l` further along
+//! it is no more than `l` nearer.
+
+use std::collections::VecDeque;
+
+use nalgebra::Vector3;
+use post_machine::kinematics::Pose;
+
+use super::spline::{Cubic, Tangents};
+use crate::At;
+
+/// Other places are looked for so many times the first distance along the path.
+const REACH: f64 = 16.0;
+
+/// Knots behind the nearest point that are kept.
+const BEHIND: usize = 2048;
+
+/// Knots that are kept in all: a tool that is further behind is taken to have come so far.
+const MOST: usize = 1 << 18;
+
+/// Newton steps in a piece; they are bisections where Newton leaves its bracket.
+const STEPS: usize = 60;
+
+/// After a Newton step of this share of a piece the next one would be no way: its length falls with the square.
+const SMALL: f64 = 1e-7;
+
+/// A share of a piece that is none.
+const NONE: f64 = 1e-13;
+
+/// Places whose distances differ by less, mm, are equally near: the one with the nearer tool axis counts. Where the tool
+/// turns about its tip, this alone tells them apart.
+const TIE: f64 = 1e-4;
+
+/// A set-point that the spline passes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Knot {
+    /// Number of the set-point.
+    pub number: u64,
+    pub at: At,
+    pub tip: Vector3<f64>,
+    pub axis: Vector3<f64>,
+    /// How the tip reaches and leaves it, and the tool axis.
+    pub tip_ways: Tangents,
+    pub axis_ways: Tangents,
+    /// No less than the way of the tip to it, mm.
+    pub length: f64,
+}
+
+/// A place on the path: behind which knot, and what share of the piece that begins there.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Foot {
+    pub knot: usize,
+    pub share: f64,
+    /// Distance of the tip, mm.
+    pub distance: f64,
+}
+
+/// What was found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest {
+    pub tip: Vector3<f64>,
+    pub axis: Vector3<f64>,
+    pub distance: f64,
+    /// The knot that is nearer in time.
+    pub at: At,
+    /// The farthest point of what is passed over at a corner, mm.
+    pub missed: f64,
+}
+
+/// The path.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Path {
+    knots: VecDeque<Knot>,
+    foot: Foot,
+}
+
+impl Path {
+    pub fn clear(&mut self) {
+        self.knots.clear();
+        self.foot = Foot::default();
+    }
+
+    /// Takes the next knot; one on which the machine stands as on the one before is the same.
+    pub fn push(&mut self, mut knot: Knot) {
+        if let Some(last) = self.knots.back_mut() {
+            if last.tip == knot.tip && last.axis == knot.axis {
+                last.tip_ways[1] = knot.tip_ways[1];
+                last.axis_ways[1] = knot.axis_ways[1];
+                return;
+            }
+            let legs = [last.tip_ways[1] / 3.0, knot.tip_ways[0] / 3.0];
+            let middle = knot.tip - last.tip - legs[0] - legs[1];
+            knot.length = last.length + legs[0].norm() + middle.norm() + legs[1].norm();
+        }
+        self.knots.push_back(knot);
+        if self.knots.len() > MOST {
+            self.drop_first(1);
+        }
+    }
+
+    fn drop_first(&mut self, count: usize) {
+        self.knots.drain(..count);
+        self.foot.knot = match self.foot.knot.checked_sub(count) {
+            Some(knot) => knot,
+            None => {
+                self.foot.share = 0.0;
+                0
+            }
+        };
+    }
+
+    /// The point nearest to where the tool is, while `commanded` is the number of the set-point of the same time.
+    pub fn nearest(&mut self, actual: &Pose, commanded: (u64, &Vector3<f64>)) -> Nearest {
+        let start = self.further(self.foot);
+        let first = (self.point(start) - actual.tip).norm();
+        let found = self.descend(&actual.tip, start);
+        let mut foot = self.least(&actual.tip, found, REACH * first);
+        let missed = self.missed(&actual.tip, found, foot);
+        let following = (commanded.1 - actual.tip).norm();
+        if foot.distance > following {
+            // No contour error is larger than the following error.
+            let here = self.place_of(commanded.0);
+            let other = self.descend(&actual.tip, here);
+            if other.distance < foot.distance {
+                foot = self.least(&actual.tip, other, REACH * following);
+            }
+        }
+        let tip = self.point(foot);
+        let (tied, axis) = self.tied(actual, foot);
+        let at = self.knots[self.rounded(tied)].at;
+        self.foot = tied;
+        if tied.knot > 2 * BEHIND {
+            self.drop_first(BEHIND);
+        }
+        Nearest {
+            tip,
+            axis,
+            distance: foot.distance,
+            at,
+            missed,
+        }
+    }
+
+    fn rounded(&self, foot: Foot) -> usize {
+        let knot = foot.knot + usize::from(foot.share > 0.5);
+        knot.min(self.knots.len() - 1)
+    }
+
+    /// The place where a set-point stands.
+    fn place_of(&self, number: u64) -> Foot {
+        let knot = self.knots.partition_point(|knot| knot.number <= number);
+        Foot {
+            knot: knot.saturating_sub(1),
+            ..Foot::default()
+        }
+    }
+
+    /// A place a period later.
+    fn further(&self, foot: Foot) -> Foot {
+        match foot.knot + 1 < self.knots.len() {
+            true => Foot {
+                knot: foot.knot + 1,
+                ..foot
+            },
+            false => foot,
+        }
+    }
+
+    /// The piece behind a knot; none behind the last.
+    #[inline]
+    fn cubic(&self, knot: usize) -> Option<Cubic> {
+        let next = self.knots.get(knot + 1)?;
+        let last = &self.knots[knot];
+        let ends = [&last.tip, &next.tip];
+        Some(Cubic::new(ends, &last.tip_ways[1], &next.tip_ways[0]))
+    }
+
+    fn point(&self, foot: Foot) -> Vector3<f64> {
+        self.cubic(foot.knot)
+            .map_or(self.knots[foot.knot].tip, |cubic| cubic.at(foot.share))
+    }
+
+    /// The tool axis at a place, unit vector.
+    fn axis(&self, foot: Foot) -> Vector3<f64> {
+        let last = &self.knots[foot.knot];
+        let Some(next) = self.knots.get(foot.knot + 1).filter(|_| foot.share > 0.0) else {
+            return last.axis;
+        };
+        let ends = [&last.axis, &next.axis];
+        let cubic = Cubic::new(ends, &last.axis_ways[1], &next.axis_ways[0]);
+        let axis = cubic.at(foot.share);
+        axis.try_normalize(0.1).unwrap_or(last.axis)
+    }
+
+    /// Downhill from a place, to where the distance rises both ways.
+    fn descend(&self, from: &Vector3<f64>, start: Foot) -> Foot {
+        let mut foot = start;
+        // The way that was gone last across a knot: going back over it means that the knot is the place.
+        let mut went = 0;
+        for _ in 0..2 * self.knots.len() + 4 {
+            let Some(cubic) = self.cubic(foot.knot) else {
+                // At the end of the path: inside it, or there.
+                foot.share = 0.0;
+                if went > 0 || foot.knot == 0 {
+                    break;
+                }
+                (foot.knot, foot.share, went) = (foot.knot - 1, 1.0, -1);
+                continue;
+            };
+            let share = lowest(&cubic, from, foot.share);
+            if share >= 1.0 && went >= 0 {
+                (foot.knot, foot.share, went) = (foot.knot + 1, 0.0, 1);
+                continue;
+            }
+            if share <= 0.0 && went <= 0 && foot.knot > 0 {
+                (foot.knot, foot.share, went) = (foot.knot - 1, 1.0, -1);
+                continue;
+            }
+            foot.share = share;
+            break;
+        }
+        if foot.share >= 1.0 {
+            (foot.knot, foot.share) = (foot.knot + 1, 0.0);
+        }
+        foot.distance = (self.point(foot) - from).norm();
+        foot
+    }
+
+    /// The nearest place within `reach` along the path of where it is itself.
+    fn least(&self, from: &Vector3<f64>, mut found: Foot, reach: f64) -> Foot {
+        loop {
+            let other = self.others(from, found, reach);
+            if other.distance >= found.distance {
+                return found;
+            }
+            found = other;
+        }
+    }
+
+    /// A place that is nearer than the one found, within `reach` of it along the path both ways.
+    fn others(&self, from: &Vector3<f64>, found: Foot, reach: f64) -> Foot {
+        let share = self
+            .knots
+            .get(found.knot + 1)
+            .map_or(0.0, |next| next.length - self.knots[found.knot].length)
+            * found.share;
+        let length = self.knots[found.knot].length + share;
+        let mut best = found;
+        let mut look = |piece: usize| {
+            if let Some(other) = self.nearer(from, piece, best.distance) {
+                best = other;
+            }
+            best.distance
+        };
+        let last = self.knots.len() - 1;
+        let mut nearest = found.distance;
+        if self.bends(found) {
+            nearest = look(found.knot);
+        }
+        let mut knot = (found.knot + 1).min(last);
+        while knot < last && self.knots[knot].length - length < reach {
+            let free = (self.knots[knot].tip - from).norm() - nearest;
+            let passed = self.knots[knot].length + free;
+            if self.knots[knot + 1].length > passed {
+                nearest = look(knot);
+            }
+            knot += 1;
+            while knot < last && self.knots[knot + 1].length <= passed {
+                knot += 1;
+            }
+        }
+        let mut knot = found.knot;
+        while knot > 0 && length - self.knots[knot].length < reach {
+            let free = (self.knots[knot].tip - from).norm() - nearest;
+            let passed = self.knots[knot].length - free;
+            if self.knots[knot - 1].length < passed {
+                nearest = look(knot - 1);
+            }
+            knot -= 1;
+            while knot > 0 && self.knots[knot - 1].length >= passed {
+                knot -= 1;
+            }
+        }
+        best
+    }
+
+    /// The piece of a place bends so much that it may come nearer once more.
+    fn bends(&self, found: Foot) -> bool {
+        self.cubic(found.knot).is_some_and(|cubic| {
+            let bend = cubic
+                .bend(0.0)
+                .norm_squared()
+                .max(cubic.bend(1.0).norm_squared());
+            let slope = cubic.slope(found.share).norm_squared();
+            4.0 * bend * found.distance * found.distance > slope * slope
+        })
+    }
+
+    /// The place in a piece that is nearer than `distance`, or beyond it downhill from there.
+    fn nearer(&self, from: &Vector3<f64>, piece: usize, distance: f64) -> Option<Foot> {
+        let (last, next) = (&self.knots[piece], &self.knots[piece + 1]);
+        let chord = next.tip - last.tip;
+        let square = chord.norm_squared();
+        let offset = from - last.tip;
+        let along = match square > 0.0 {
+            true => (offset.dot(&chord) / square).clamp(0.0, 1.0),
+            false => 0.0,
+        };
+        // The spline goes no further along the chord than its ends, and so far off it.
+        let off = |way: &Vector3<f64>| match square > 0.0 {
+            true => (way - chord * (way.dot(&chord) / square)).norm(),
+            false => way.norm(),
+        };
+        let bow = 0.25 * off(&last.tip_ways[1]).max(off(&next.tip_ways[0]));
+        if (offset - chord * along).norm() - bow >= distance {
+            return None;
+        }
+        let cubic = self.cubic(piece)?;
+        let mut best: Option<Foot> = None;
+        for start in [along, 0.5 * along, 0.5 + 0.5 * along] {
+            let share = lowest(&cubic, from, start);
+            let foot = Foot {
+                knot: piece,
+                share,
+                distance: (cubic.at(share) - from).norm(),
+            };
+            if foot.distance < best.map_or(distance, |best| best.distance) {
+                best = Some(foot);
+            }
+        }
+        best.map(|best| self.descend(from, best))
+    }
+
+    /// Of places that are equally near, the one whose tool axis is nearest, downhill; and that axis.
+    fn tied(&self, actual: &Pose, foot: Foot) -> (Foot, Vector3<f64>) {
+        let bound = (foot.distance + TIE) * (foot.distance + TIE);
+        let equal = |tip: &Vector3<f64>| (tip - actual.tip).norm_squared() <= bound;
+        let axis = self.axis(foot);
+        let mut best = (foot, axis);
+        let mut least = (axis - actual.axis).norm_squared();
+        let back = match foot.share > 0.0 {
+            true => Some(foot.knot),
+            false => foot.knot.checked_sub(1),
+        };
+        for (way, end) in [(-1, back), (1, Some(foot.knot + 1))] {
+            let mut knot = end;
+            while let Some(place) = knot {
+                let Some(here) = self.knots.get(place).filter(|here| equal(&here.tip)) else {
+                    break;
+                };
+                let off = (here.axis - actual.axis).norm_squared();
+                if off >= least {
+                    break;
+                }
+                let tied = Foot {
+                    knot: place,
+                    share: 0.0,
+                    distance: foot.distance,
+                };
+                (best, least) = ((tied, here.axis), off);
+                knot = place.checked_add_signed(way);
+            }
+        }
+        if (best.0.knot, best.0.share) == (foot.knot, foot.share) {
+            return best;
+        }
+        // Beside the knot, on the chord of its axes.
+        let knot = best.0.knot;
+        for piece in [knot.checked_sub(1), Some(knot)].into_iter().flatten() {
+            let Some(next) = self.knots.get(piece + 1) else {
+                continue;
+            };
+            let last = self.knots[piece].axis;
+            let chord = next.axis - last;
+            let share = (actual.axis - last).dot(&chord) / chord.norm_squared();
+            if !(share > 0.0 && share < 1.0) {
+                continue;
+            }
+            let place = Foot {
+                knot: piece,
+                share,
+                distance: foot.distance,
+            };
+            let axis = self.axis(place);
+            let off = (axis - actual.axis).norm_squared();
+            if off < least && equal(&self.point(place)) {
+                (best, least) = ((place, axis), off);
+            }
+        }
+        best
+    }
+
+    /// The farthest knot of those that are passed over on the way from one place to another.
+    fn missed(&self, from: &Vector3<f64>, last: Foot, next: Foot) -> f64 {
+        let mut farthest: f64 = 0.0;
+        for knot in last.knot + 1..next.knot {
+            let off = (self.knots[knot].tip - from).norm_squared();
+            farthest = farthest.max(off);
+        }
+        farthest.sqrt()
+    }
+}
+
+/// The share of a piece at which the distance is least, downhill from `start`; 0 or 1 where it falls beyond the ends.
+#[inline]
+fn lowest(cubic: &Cubic, from: &Vector3<f64>, start: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut share = start.clamp(0.0, 1.0);
+    for _ in 0..STEPS {
+        let offset = cubic.at(share) - from;
+        let slope = cubic.slope(share);
+        let bend = cubic.bend(share);
+        let rise = match slope == Vector3::zeros() {
+            // Where the machine stands: as just inside the piece.
+            true => offset.dot(&bend) * if share < 0.5 { 1.0 } else { -1.0 },
+            false => offset.dot(&slope),
+        };
+        match rise > 0.0 {
+            true => high = share,
+            false => low = share,
+        }
+        if low >= high {
+            return share;
+        }
+        let curve = slope.norm_squared() + offset.dot(&bend);
+        let next = share - rise / curve;
+        // Newton; or downhill as far as the bracket goes, which is an end of the piece if none was passed before.
+        let newton = curve > 0.0 && next > low && next < high;
+        let next = match newton {
+            true => next,
+            false if curve > 0.0 && rise > 0.0 && low == 0.0 => 0.0,
+            false if curve > 0.0 && rise <= 0.0 && high == 1.0 => 1.0,
+            false => 0.5 * (low + high),
+        };
+        let done = match newton {
+            true => (next - share).abs() < SMALL,
+            false => high - low < NONE,
+        };
+        share = next;
+        if done {
+            break;
+        }
+    }
+    match share {
+        share if share < NONE => 0.0,
+        share if share > 1.0 - NONE => 1.0,
+        share => share,
+    }
+}
+
+#[cfg(test)]
+mod tests;

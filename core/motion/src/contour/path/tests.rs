@@ -1,0 +1,140 @@
+use post_testkit::{Rng, randomised};
+
+use super::*;
+use crate::contour::spline::tangents;
+
+/// A path that wanders: it turns gently and at once, slows down, stands, goes back the way it came, and crosses itself.
+fn wandering(rng: &mut Rng, count: usize) -> Vec<Vector3<f64>> {
+    let mut tip = rng.point(1.0);
+    let mut way = rng.direction() * 0.05;
+    let mut turn = Vector3::zeros();
+    let mut points = Vec::new();
+    while points.len() < count {
+        match rng.pick(40) {
+            0 => way = rng.direction() * rng.range(0.001, 0.1),
+            1 => way = -way,
+            2 => {
+                for _ in 0..rng.pick(12) {
+                    points.push(tip);
+                }
+            }
+            3 => turn = rng.direction() * rng.range(0.0, 0.4),
+            4 => turn = Vector3::zeros(),
+            _ => {}
+        }
+        way += turn.cross(&way);
+        way *= rng.range(0.97, 1.03);
+        way *= (0.1 / way.norm()).min(1.0);
+        tip += way;
+        points.push(tip);
+    }
+    points.truncate(count);
+    points
+}
+
+fn path(points: &[Vector3<f64>]) -> Path {
+    let last = points.len() - 1;
+    let mut path = Path::default();
+    for (number, tip) in points.iter().enumerate() {
+        let near = |step: isize| {
+            let place = number.checked_add_signed(step).unwrap_or(0);
+            &points[place.min(last)]
+        };
+        path.push(Knot {
+            number: number as u64,
+            at: At::default(),
+            tip: *tip,
+            axis: Vector3::z(),
+            tip_ways: tangents([-2, -1, 0, 1, 2].map(near)),
+            axis_ways: [Vector3::zeros(); 2],
+            length: 0.0,
+        });
+    }
+    path
+}
+
+/// The places of a path, finely: length along it and point.
+fn fine(path: &Path, parts: usize) -> Vec<(f64, Vector3<f64>)> {
+    let mut places: Vec<(f64, Vector3<f64>)> = Vec::new();
+    for knot in 0..path.knots.len() - 1 {
+        let cubic = path.cubic(knot).unwrap();
+        for part in 0..parts {
+            let point = cubic.at(part as f64 / parts as f64);
+            let length = places
+                .last()
+                .map_or(0.0, |(length, last)| length + (point - last).norm());
+            places.push((length, point));
+        }
+    }
+    places
+}
+
+/// Brute force: no place is nearer within eight times the distance along the path, and none at all than where the tool is
+/// commanded.
+#[test]
+fn nothing_is_nearer_close_by() {
+    let (turns, mut rng) = randomised(30u64, 5);
+    let (mut asked, mut moved) = (0, 0);
+    for _ in turns {
+        let points = wandering(&mut rng, 400);
+        let mut path = path(&points);
+        let places = fine(&path, 60);
+        let lag = rng.range(0.0, 12.0);
+        let size = rng.order(-3.0, -0.8);
+        let mut off = rng.point(size);
+        for number in 20..points.len() {
+            off += rng.point(size * 0.2);
+            off *= (size / off.norm()).min(1.0);
+            let late = (number as f64 - lag).max(0.0) as usize;
+            let actual = Pose {
+                tip: points[late] + off,
+                axis: Vector3::z(),
+                ..Pose::default()
+            };
+            let found = path.nearest(&actual, (number as u64, &points[number]));
+            asked += 1;
+            assert!((path.point(path.foot) - actual.tip).norm() <= found.distance + TIE);
+            // Where it stands along the path: the finest place next to it.
+            let before: usize = path.foot.knot * 60 + (path.foot.share * 60.0) as usize;
+            let here = places[before.min(places.len() - 1)].0;
+            let reach = 8.0 * found.distance;
+            let nearest = places
+                .iter()
+                .filter(|(length, _)| (length - here).abs() < reach)
+                .map(|(_, point)| (point - actual.tip).norm())
+                .fold(f64::INFINITY, f64::min);
+            moved += u32::from(found.missed > 0.0);
+            assert!(
+                found.distance <= nearest + 1e-9,
+                "set-point {number}: {} found, {nearest} is there",
+                found.distance
+            );
+            assert!(found.distance <= (points[number] - actual.tip).norm() + 1e-12);
+        }
+    }
+    assert!(
+        asked > 10_000 && moved > 20,
+        "{asked} asked, {moved} corners"
+    );
+}
+
+/// A spline goes no further along a chord than its ends, and no further off than a path of such bends does.
+#[test]
+fn the_spline_overshoots_nothing() {
+    let (turns, mut rng) = randomised(60u64, 6);
+    for _ in turns {
+        let points = wandering(&mut rng, 200);
+        let path = path(&points);
+        for knot in 0..path.knots.len() - 1 {
+            let chord = path.knots[knot + 1].tip - path.knots[knot].tip;
+            let cubic = path.cubic(knot).unwrap();
+            let mut last = 0.0;
+            for part in 0..=50 {
+                let offset = cubic.at(f64::from(part) / 50.0) - path.knots[knot].tip;
+                let along = offset.dot(&chord) / chord.norm_squared();
+                assert!(along > last - 1e-9 && along < 1.0 + 1e-9, "{along}");
+                last = along;
+            }
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! Bounds against what dense samples of the way do, on machines of the library.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use post_machine::description::{LimitsActOn, Machine, Source, load};
+use post_machine::kinematics::{Joints, MAX_AXES};
+use post_testkit::repository;
+
+use super::{AxisLimits, MoveLimits, of};
+use crate::path::{SplineWay, Stance, Way};
+use crate::trajectory::TimeLimit;
+use crate::{Corner, Move, Pace};
+
+/// Values of the dense samples: axes, then the tip.
+const VALUES: usize = MAX_AXES + 3;
+
+/// A bound may lie so far above what a way does anywhere: the series' terms are summed whatever their signs.
+const LOOSE: [f64; 3] = [1.35, 1.8, 2.6];
+
+fn machine(name: &str) -> Machine {
+    let source = |name: &str| Source {
+        name: format!("{name}.toml"),
+        text: std::fs::read_to_string(repository().join(format!("machines/{name}.toml"))).unwrap(),
+    };
+    load(source(name), &[], &mut |parent| Ok(source(parent))).unwrap()
+}
+
+/// A move between the tips, the rotary axes from and to the angles (degrees, in the order of the chain).
+fn task(machine: &Machine, way: Way, tips: [[f64; 3]; 2], angles: [[f64; 2]; 2]) -> Move {
+    let solver = Arc::new(machine.solver(80.0).unwrap());
+    let stances = [0, 1].map(|end| {
+        let mut joints = Joints::default();
+        let rotary = (0..machine.axes.len()).filter(|place| machine.axes[*place].joint.rotary);
+        for (place, angle) in rotary.zip(angles[end]) {
+            joints[place] = angle.to_radians();
+        }
+        let turns = solver.chain().turns(&joints);
+        solver
+            .place(Vector3::from(tips[end]), &mut joints, &turns)
+            .unwrap();
+        Stance {
+            joints,
+            pose: solver.chain().forward(&joints),
+        }
+    });
+    let [from, to] = stances;
+    Move {
+        line: 1,
+        way,
+        from,
+        to,
+        solver,
+        pace: Pace::Rapid,
+        corner: Corner::Stop,
+    }
+}
+
+/// What is limited at `t`, and the tip.
+fn at(task: &Move, limits: &AxisLimits, t: f64, near: &Joints) -> [f64; VALUES] {
+    let stance = task
+        .way
+        .stance_at(&task.solver, [&task.from, &task.to], t, near)
+        .unwrap();
+    let mut values = [0.0; VALUES];
+    values[..MAX_AXES].copy_from_slice(&stance.joints);
+    values[MAX_AXES..].copy_from_slice(stance.pose.tip.as_slice());
+    if task.way != Way::Axes
+        && let Some(programmed) = &limits.programmed
+    {
+        for (place, coordinate) in programmed.iter().enumerate() {
+            if let Some(coordinate) = coordinate {
+                values[place] = values[MAX_AXES + coordinate];
+            }
+        }
+    }
+    values
+}
+
+/// The largest magnitudes of the first three derivatives of each value by central differences, and the first at the ends.
+fn dense(task: &Move, limits: &AxisLimits) -> ([[f64; VALUES]; 3], [[f64; VALUES]; 2]) {
+    const COUNT: usize = 480;
+    let step = 1.0 / COUNT as f64;
+    let mut rows = Vec::new();
+    let mut near = task.from.joints;
+    for place in 0..=COUNT {
+        let row = at(task, limits, place as f64 * step, &near);
+        if limits.programmed.is_none() || task.way == Way::Axes {
+            near.copy_from_slice(&row[..MAX_AXES]);
+        } else {
+            let ends = [&task.from, &task.to];
+            near = task
+                .way
+                .joints_at(&task.solver, ends, place as f64 * step, &near)
+                .unwrap();
+        }
+        rows.push(row);
+    }
+    let mut most = [[0.0; VALUES]; 3];
+    for window in rows.windows(5) {
+        for value in 0..VALUES {
+            let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|row: usize| window[row][value]);
+            let found = [
+                (8.0 * (d - b) - (e - a)) / (12.0 * step),
+                (b - 2.0 * c + d) / (step * step),
+                (e - 2.0 * d + 2.0 * b - a) / (2.0 * step * step * step),
+            ];
+            for (most, found) in most.iter_mut().zip(found) {
+                most[value] = f64::max(most[value], found.abs());
+            }
+        }
+    }
+    // Of fourth order, one-sided.
+    let slope = |rows: [&[f64; VALUES]; 5]| {
+        std::array::from_fn(|value| {
+            let [a, b, c, d, e] = rows.map(|row| row[value]);
+            (-25.0 * a + 48.0 * b - 36.0 * c + 16.0 * d - 3.0 * e) / (12.0 * step)
+        })
+    };
+    let first = slope([0, 1, 2, 3, 4].map(|row| &rows[row]));
+    let last: [f64; VALUES] = slope([0, 1, 2, 3, 4].map(|row| &rows[COUNT - row]));
+    (most, [first, last.map(|value| -value)])
+}
+
+/// Every bound holds and none is much too large; the ends are exact.
+fn check(what: &str, machine: &Machine, task: &Move) {
+    for limits in [
+        AxisLimits::new(machine),
+        AxisLimits {
+            programmed: {
+                let mut machine = machine.clone();
+                machine.motion.limits = LimitsActOn::Programmed;
+                AxisLimits::new(&machine).programmed
+            },
+            ..AxisLimits::new(machine)
+        },
+    ] {
+        let found = of(task, &limits).unwrap();
+        let (most, ends) = dense(task, &limits);
+        let bounds = [found.first, found.second, found.third];
+        for order in 0..3 {
+            // What differences of so close samples cannot tell from zero.
+            let noise = [1e-7, 1e-5, 2e-2][order];
+            for place in 0..machine.axes.len() {
+                let (bound, most) = (bounds[order][place], most[order][place]);
+                let name = format!(
+                    "{what}, {}, derivative {}: {bound} {most}",
+                    machine.axes[place].name,
+                    order + 1
+                );
+                assert!(most <= bound * 1.001 + noise, "{name}");
+                assert!(bound <= most * LOOSE[order] + noise, "{name}: too large");
+            }
+            let tip = (0..3)
+                .map(|row| most[order][MAX_AXES + row])
+                .fold(0.0, f64::max);
+            assert!(
+                tip <= found.tip[order] * 1.001 + noise,
+                "{what}: tip {} {tip}",
+                found.tip[order]
+            );
+            // The coordinates need not be largest in one place.
+            let within = LOOSE[order] * 3f64.sqrt();
+            assert!(found.tip[order] <= tip * within + noise, "{what}: tip");
+        }
+        for end in 0..2 {
+            for place in 0..machine.axes.len() {
+                let off = (found.ends[end][place] - ends[end][place]).abs();
+                assert!(off < 1e-4 * (1.0 + ends[end][place].abs()), "{what}: {off}");
+            }
+            for row in 0..3 {
+                let wanted = ends[end][MAX_AXES + row];
+                let off = (found.tip_ends[end][row] - wanted).abs();
+                assert!(off < 1e-4 * (1.0 + wanted.abs()), "{what}: {off}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bounds_hold_along_every_way() {
+    let tips = [[10.0, 20.0, 30.0], [40.0, -10.0, 55.0]];
+    for name in [
+        "ac-trunnion",
+        "head-head",
+        "nutating-table",
+        "head-table-bc",
+    ] {
+        let machine = machine(name);
+        for angles in [
+            [[5.0, -10.0], [5.0, -10.0]],
+            [[5.0, -10.0], [9.0, -14.0]],
+            [[5.0, -10.0], [75.0, 25.0]],
+            [[-170.0, 20.0], [200.0, -25.0]],
+        ] {
+            let straight = |way| task(&machine, way, tips, angles);
+            check(&format!("{name} axes"), &machine, &straight(Way::Axes));
+            check(&format!("{name} tip"), &machine, &straight(Way::Tip));
+            let circle = Way::Arc {
+                centre: Vector3::new(25.0, 5.0, 0.0),
+                normal: Vector3::z(),
+                sweep: 1.25 * std::f64::consts::PI,
+            };
+            let helix = task(
+                &machine,
+                circle,
+                [
+                    [45.0, 5.0, 30.0],
+                    [10.857_864_376_269_05, -9.142_135_623_730_95, 40.0],
+                ],
+                angles,
+            );
+            check(&format!("{name} arc"), &machine, &helix);
+        }
+        let spline = Way::Spline(Arc::new(SplineWay {
+            degree: 3,
+            knots: vec![0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0, 2.0],
+            poles: [
+                [10.0, 20.0, 30.0],
+                [15.0, 30.0, 35.0],
+                [25.0, 30.0, 35.0],
+                [35.0, 5.0, 50.0],
+                [40.0, -10.0, 55.0],
+            ]
+            .map(|pole| (Vector3::from(pole), 1.0))
+            .to_vec(),
+        }));
+        let spline = task(&machine, spline, tips, [[5.0, -10.0]; 2]);
+        check(&format!("{name} spline"), &machine, &spline);
+    }
+    // On a great circle away from the pole, by the nearest solution.
+    let machine = machine("ac-trunnion");
+    let vectors = task(
+        &machine,
+        Way::TipAndAxis,
+        tips,
+        [[20.0, -30.0], [60.0, -40.0]],
+    );
+    check("vectors", &machine, &vectors);
+}
+
+#[test]
+fn the_least_time_is_that_of_the_slowest() {
+    let machine = machine("ac-trunnion");
+    let limits = AxisLimits::new(&machine);
+    let place = |name: &str| {
+        machine
+            .axes
+            .iter()
+            .position(|axis| axis.name == name)
+            .unwrap()
+    };
+    // 60 mm of X at 30 m/min, and 90° of A at 5400°/min.
+    let by = |found: MoveLimits| (found.least_seconds, found.by);
+    let tips = [[0.0; 3], [60.0, 0.0, 0.0]];
+    let along = task(&machine, Way::Tip, tips, [[0.0; 2]; 2]);
+    let (seconds, limit) = by(of(&along, &limits).unwrap());
+    assert!((seconds - 0.12).abs() < 1e-12, "{seconds}");
+    assert_eq!(limit, TimeLimit::AxisVelocity(place("X") as u8));
+    let turned = task(
+        &machine,
+        Way::Axes,
+        [[0.0; 3]; 2],
+        [[0.0, 0.0], [0.0, -90.0]],
+    );
+    let found = of(
+        &turned,
+        &AxisLimits {
+            tip_acceleration: 1e4,
+            ..limits.clone()
+        },
+    )
+    .unwrap();
+    assert!(found.least_seconds >= 1.0 - 1e-12);
+    // A circle of 20 mm in the plane of X and Y, at 4000 mm/s² at most, and without jerk limits: ω² = a/r.
+    let circle = Way::Arc {
+        centre: Vector3::new(20.0, 0.0, 0.0),
+        normal: Vector3::z(),
+        sweep: std::f64::consts::TAU,
+    };
+    let circle = task(&machine, circle, [[0.0; 3]; 2], [[0.0; 2]; 2]);
+    let soft = AxisLimits {
+        velocity: [f64::INFINITY; MAX_AXES],
+        jerk: [f64::INFINITY; MAX_AXES],
+        ..limits
+    };
+    let (seconds, limit) = by(of(&circle, &soft).unwrap());
+    let wanted = std::f64::consts::TAU * (20.0f64 / 4000.0).sqrt();
+    assert!(
+        (seconds / wanted - 1.0).abs() < 0.1 && seconds >= wanted,
+        "{seconds} {wanted}"
+    );
+    assert!(matches!(limit, TimeLimit::AxisAcceleration(_)));
+}

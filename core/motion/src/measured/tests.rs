@@ -1,0 +1,222 @@
+use std::f64::consts::TAU;
+
+use post_machine::kinematics::Joints;
+
+use super::{Alignment, Difference, Track, Unaligned, align};
+
+/// A path that goes to and fro in X, steps on in Y, turns C now and then, and stands still for a while; s, mm, radians.
+fn path(time: f64) -> Joints {
+    let time = time.clamp(0.0, 20.0);
+    // It stands from 9 to 11.
+    let time = if time < 9.0 {
+        time
+    } else {
+        f64::max(time - 2.0, 9.0)
+    };
+    let mut joints = Joints::default();
+    joints[0] = 40.0 * libm::sin(TAU * time / 2.5);
+    joints[1] = 3.0 * time + libm::sin(TAU * time / 1.25);
+    joints[4] = 0.4 * libm::sin(TAU * time / 7.0) * libm::sin(TAU * time / 2.5);
+    joints
+}
+
+/// Even noise between -1 and 1: Steele and Vigna's SplitMix64.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (z ^ (z >> 31)) as f64 / u64::MAX as f64 * 2.0 - 1.0
+    }
+}
+
+fn track(begins: f64, period: f64, seconds: f64, of: impl FnMut(f64) -> Joints) -> Track {
+    let count = (seconds / period).round() as usize + 1;
+    let times = (0..count).map(|place| begins + place as f64 * period);
+    Track {
+        begins,
+        period,
+        joints: times.map(of).collect(),
+    }
+}
+
+const AXES: [usize; 5] = [0, 1, 2, 3, 4];
+
+/// A log of `path` whose clock is `shift` ahead, from `from` of the path on.
+fn log(shift: f64, from: f64, period: f64, seconds: f64, noise: f64) -> Track {
+    let mut even = Noise(7);
+    track(from + shift, period, seconds, |time| {
+        let mut joints = path(time - shift);
+        joints[0] += 250.0 + noise * even.next();
+        joints[1] += -3.5 + noise * even.next();
+        joints[4] += 1.25 * TAU;
+        joints
+    })
+}
+
+fn check(found: &Alignment, shift: f64, within: f64, zeros_within: f64) {
+    assert!(
+        (found.shift - shift).abs() < within,
+        "{} is not {shift}: {found:?}",
+        found.shift
+    );
+    let zeros = [(0, 250.0), (1, -3.5), (4, 1.25 * TAU)];
+    for (axis, zero) in zeros {
+        assert!(
+            (found.zeros[axis] - zero).abs() < zeros_within,
+            "axis {axis}: {found:?}"
+        );
+    }
+    assert_eq!(found.zeros[2], 0.0);
+}
+
+#[test]
+fn a_shift_is_found_between_the_samples() {
+    let predicted = track(0.0, 0.001, 20.0, path);
+    for (shift, period) in [
+        (0.0, 0.001),
+        (12.345_678, 0.001),
+        (-3.210_04, 0.004),
+        (1_000.007_3, 0.015),
+    ] {
+        let log = log(shift, 0.0, period, 20.0, 0.0);
+        let found = align(&predicted, &log, &AXES).unwrap();
+        check(&found, shift, 1e-7, 1e-6);
+        assert!(
+            found.correlation > 0.999_999 && found.rival.is_none(),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
+fn noise_moves_it_as_far_as_is_told() {
+    let predicted = track(0.0, 0.001, 20.0, path);
+    let log = log(5.004_3, 0.0, 0.015, 20.0, 0.05);
+    let found = align(&predicted, &log, &AXES).unwrap();
+    check(&found, 5.004_3, 4.0 * found.shift_deviation, 0.005);
+    // Even noise of ±0.05 has a deviation of 0.05 / √3.
+    assert!(
+        (found.left[0] - 0.05 / 3.0_f64.sqrt()).abs() < 1e-3,
+        "{found:?}"
+    );
+    // X swings at 100 mm/s, so a sample says when it is to 0.3 ms, and 1300 of them to 10 µs.
+    assert!(
+        found.shift_deviation > 1e-6 && found.shift_deviation < 2e-5,
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_coarse_prediction_and_a_fine_log() {
+    let predicted = track(0.0, 0.015, 20.0, path);
+    let log = log(0.4567, 0.0, 0.001, 20.0, 0.0);
+    let found = align(&predicted, &log, &AXES).unwrap();
+    check(&found, 0.4567, 1e-5, 1e-3);
+}
+
+#[test]
+fn a_log_that_waits_before_and_behind() {
+    let predicted = track(0.0, 0.002, 20.0, path);
+    let log = log(30.001, -30.0, 0.002, 100.0, 0.001);
+    let found = align(&predicted, &log, &AXES).unwrap();
+    check(&found, 30.001, 1e-5, 1e-4);
+    let [from, to] = found.overlap;
+    assert!(
+        (from - 30.001).abs() < 0.003 && (to - 50.001).abs() < 0.003,
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_log_of_a_part_of_the_program() {
+    let predicted = track(0.0, 0.002, 20.0, path);
+    let log = log(-7.0, 4.0, 0.002, 6.0, 0.001);
+    let found = align(&predicted, &log, &AXES).unwrap();
+    check(&found, -7.0, 1e-4, 1e-2);
+}
+
+#[test]
+fn what_swings_alone_has_rivals() {
+    let swing = |time: f64| {
+        let mut joints = Joints::default();
+        joints[0] = 40.0 * libm::sin(TAU * time);
+        joints
+    };
+    let predicted = track(0.0, 0.001, 30.0, swing);
+    let log = track(0.25, 0.001, 30.0, |time| swing(time - 0.25));
+    let found = align(&predicted, &log, &AXES).unwrap();
+    assert!(found.rival.is_some(), "{found:?}");
+}
+
+#[test]
+fn what_cannot_be_laid_over_is_refused() {
+    let predicted = track(0.0, 0.001, 20.0, path);
+    let still = track(0.0, 0.001, 20.0, |_| Joints::default());
+    assert_eq!(align(&predicted, &still, &AXES), Err(Unaligned::Still));
+    let short = track(0.0, 0.001, 0.003, path);
+    assert_eq!(align(&predicted, &short, &AXES), Err(Unaligned::Short(8)));
+    let other = track(0.0, 0.001, 20.0, |time| {
+        let mut joints = Joints::default();
+        joints[0] = libm::sin(97.0 * time * time);
+        joints
+    });
+    let found = align(&predicted, &other, &AXES);
+    assert!(
+        matches!(found, Err(Unaligned::Unlike(alike)) if alike < 0.5),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn samples_that_come_late_are_put_on_a_grid() {
+    let mut even = Noise(3);
+    let times: Vec<f64> = (0..1000)
+        .map(|place| 0.015 * f64::from(place) + 0.004 * even.next())
+        .collect();
+    let joints: Vec<Joints> = times.iter().map(|time| path(*time)).collect();
+    let track = Track::of_samples(&times, &joints, 0.015);
+    for (place, joints) in track.joints.iter().enumerate().take(590) {
+        let wanted = path(track.time(place));
+        // The fourth derivative of X is 40 (2π/2.5)⁴ mm/s⁴; over steps of 23 ms a cubic is off by some µm at most.
+        assert!((joints[0] - wanted[0]).abs() < 0.02, "{place}");
+    }
+    let exact: Vec<f64> = (0..1000).map(|place| 0.015 * f64::from(place)).collect();
+    assert_eq!(
+        Track::of_samples(&exact, &joints, 0.015).joints[..],
+        joints[..]
+    );
+}
+
+#[test]
+fn a_track_is_a_cubic_between_its_samples() {
+    let cubic = |time: f64| {
+        let mut joints = Joints::default();
+        joints[0] = 2.0 - time + 3.0 * time * time;
+        joints
+    };
+    let track = track(-1.0, 0.25, 3.0, cubic);
+    for step in 0..100 {
+        let time = -0.75 + 0.025 * f64::from(step);
+        let (values, rates) = track.at_with_rate(time).unwrap();
+        assert!((values[0] - cubic(time)[0]).abs() < 1e-12, "{time}");
+        assert!((rates[0] - (6.0 * time - 1.0)).abs() < 1e-12, "{time}");
+    }
+    assert!(track.at(-1.001).is_none() && track.at(2.001).is_none());
+    assert!(track.at(2.0).is_some());
+}
+
+#[test]
+fn differences_are_summed_up() {
+    let mut difference = Difference::default();
+    assert_eq!((difference.mean(), difference.rms()), (0.0, 0.0));
+    for (time, value) in [(1.0, 1.0), (2.0, -7.0), (3.0, 3.0)] {
+        difference.take(time, value);
+    }
+    assert_eq!((difference.most, difference.most_at), (-7.0, 2.0));
+    assert_eq!(difference.mean(), -1.0);
+    assert!((difference.rms() - (59.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+}

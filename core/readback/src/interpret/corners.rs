@@ -1,0 +1,75 @@
+//! How the control passes from one motion to the next, as far as the rule of a word is documented.
+//!
+//! | word | controls | rule |
+//! |---|---|---|
+//! | G61 | LinuxCNC | the path is kept, and the axes stand still where its direction changes |
+//! | G61 | GRBL | said to be an exact path, carried out as the control is set ($11) |
+//! | G61 | Fanuc and its kin | the axes stand still at the end of every block |
+//! | G61.1 | LinuxCNC | the same |
+//! | G60 | Siemens | the same |
+//! | G9 | Fanuc, Siemens | the same, for its block |
+//! | G64 P | LinuxCNC | the path is left by no more than P |
+//! | G64 | all | the path is left, by as much as follows from the control's accelerations |
+//! | G641 to G645, compressors | Siemens | the path is left by no more than CTOL, where that is said |
+//! | CYCLE832 | Siemens | the path is left by no more than its first argument |
+//! | CYCL DEF 32 T | Heidenhain | the path is left by no more than T |
+//! | G187 E | Haas | the path is left by no more than E |
+//!
+//! Of what else smooths (G5.1 Q1, G8 P1, G5 P10000, G187 P, compressors without CTOL) the rule lies in parameters of the
+//! control: [`Corners::Own`].
+
+use post_motion::Corner;
+
+use super::state::Control;
+use crate::Corners;
+use crate::lexicon::Language;
+
+impl Control {
+    /// A word that ends smoothing or asks for the exact path; `code` is ten times the number behind G, 0 of other words.
+    pub(super) fn keeps_corners(&mut self, code: u16) {
+        let keeps_path = self.lexicon.has_path_modes();
+        self.corners(match (self.lexicon.language(), code) {
+            (Language::Rs274, 610) if keeps_path => Corners::Said(Corner::Path),
+            (Language::Rs274, 611) | (Language::Macro, 610) | (Language::Names, 600) => {
+                Corners::Said(Corner::Stop)
+            }
+            // The end of what was switched on.
+            _ => Corners::Unsaid,
+        });
+    }
+
+    /// A word that lets the control leave the path by `tolerance` mm, if it says how much; `code` as above.
+    pub(super) fn leaves_corners(&mut self, code: u16, tolerance: Option<f64>) {
+        let names = self.lexicon.language() == Language::Names;
+        let tolerance = match tolerance {
+            None if names && code != 640 => self.modal.contour_tolerance,
+            said => said,
+        };
+        self.corners(match (tolerance, code) {
+            (Some(0.0), _) => Corners::Unsaid,
+            (Some(_), _) | (None, 640) => Corners::Said(Corner::Blend { tolerance }),
+            (None, _) => Corners::Own,
+        });
+    }
+
+    /// Siemens' CTOL: mm; below zero it gives back what the machine's data say.
+    pub(super) fn contour_tolerance(&mut self, tolerance: f64) {
+        let said = (tolerance > 0.0).then_some(tolerance * self.modal.unit);
+        self.modal.contour_tolerance = said;
+        let smooths = match self.state.corners {
+            Corners::Own => true,
+            Corners::Said(Corner::Blend { tolerance }) => tolerance.is_some(),
+            _ => false,
+        };
+        if smooths {
+            self.leaves_corners(0, None);
+        }
+    }
+
+    fn corners(&mut self, corners: Corners) {
+        if self.state.corners != corners {
+            self.state.corners = corners;
+            self.state_changed();
+        }
+    }
+}

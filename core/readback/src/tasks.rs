@@ -1,0 +1,237 @@
+//! What a program did becomes what its control carries out: moves with their pace and corners, and waits.
+//!
+//! Where the control stands still is settled here, as far as it does not follow from the path: at waits, tool changes and
+//! words for the spindle and the coolant, where kinematics or the length in force change, at the ends of rapids where the
+//! machine file says so, at G9, and at the turning points of a cycle's hole.
+
+use std::sync::Arc;
+
+use post_machine::description::{CornerRule, Machine};
+use post_machine::diagnostic::Diagnostic;
+use post_motion::{Corner, Move, Pace, Task, Waiting};
+
+use crate::{Corners, Done, Motion, MotionKind, Spindle, State, Told};
+
+/// A task, and what the program says of it.
+#[derive(Clone, Debug)]
+pub struct Planned {
+    /// The task.
+    pub task: Task,
+    /// Feed of the tip against the part, mm/min, as the program states it; zero for rapids and waits, and where it states
+    /// none.
+    pub feed: f64,
+    /// It is a rapid.
+    pub rapid: bool,
+    /// What holds meanwhile; none before the program says anything.
+    pub state: Option<Arc<State>>,
+}
+
+/// Turns what a program did into tasks, one motion behind.
+#[derive(Clone, Debug)]
+pub struct Tasks {
+    /// Where the program says nothing of it.
+    usual: Corner,
+    /// By how much a corner may be left where the program names no tolerance, mm.
+    tolerance: Option<f64>,
+    rapid_stops: bool,
+    tool_change: f64,
+    spindle_seconds: f64,
+    /// The motion that waits for the one behind it.
+    pending: Option<Planned>,
+    state: Option<Arc<State>>,
+    /// Lines of the first that is taken for granted, by its kind.
+    own_corners: Option<u64>,
+    no_feed: Option<u64>,
+    stop: Option<u64>,
+    no_speed: Option<u64>,
+    subprogram: Option<u64>,
+}
+
+impl Tasks {
+    /// For the control of a machine.
+    pub fn new(machine: &Machine) -> Self {
+        let rules = &machine.motion;
+        Self {
+            usual: match rules.corner {
+                CornerRule::Stop => Corner::Stop,
+                CornerRule::Path => Corner::Path,
+                CornerRule::Blend => Corner::Blend { tolerance: None },
+            },
+            tolerance: rules.corner_tolerance,
+            rapid_stops: rules.rapid_stops,
+            tool_change: rules.tool_change,
+            spindle_seconds: rules.spindle,
+            pending: None,
+            state: None,
+            own_corners: None,
+            no_feed: None,
+            stop: None,
+            no_speed: None,
+            subprogram: None,
+        }
+    }
+
+    /// Takes what a block did, which it draws out of `done`; tasks that are settled by it go behind what `out` holds.
+    pub fn take(&mut self, done: &mut Vec<Done>, out: &mut Vec<Planned>) {
+        for done in done.drain(..) {
+            match done {
+                Done::Motion(motion) => self.motion(motion, out),
+                Done::Told { line, told } => self.told(line, &told, out),
+                Done::State(state) => self.state = Some(state),
+            }
+        }
+    }
+
+    /// The program has ended: the last motion is settled.
+    pub fn end(&mut self, out: &mut Vec<Planned>) {
+        self.stand(out);
+    }
+
+    /// What was taken for granted so far.
+    pub fn notes(&self) -> Vec<Diagnostic> {
+        let told = [
+            (
+                self.own_corners,
+                "what the control does at corners from here on lies in its parameters: [motion] corner of the machine file holds",
+            ),
+            (
+                self.no_feed,
+                "a motion at feed has no feed: it is taken to go as fast as the axes do",
+            ),
+            (self.stop, "the program stops: this is counted as no time"),
+            (
+                self.no_speed,
+                "turns of a spindle that stands are waited for: this is counted as no time",
+            ),
+            (
+                self.subprogram,
+                "a subprogram of the control runs: its time is not known and not counted",
+            ),
+        ];
+        let told = told.into_iter().filter_map(|(line, says)| {
+            let message = format!("line {}: {says}", line?);
+            Some(Diagnostic::warning("motion-assumed", message))
+        });
+        told.collect()
+    }
+
+    fn motion(&mut self, motion: Motion, out: &mut Vec<Planned>) {
+        let rapid = motion.kind == MotionKind::Rapid;
+        if let Some(pending) = &mut self.pending
+            && let Task::Move(last) = &mut pending.task
+        {
+            let halts = self.rapid_stops && pending.rapid != rapid;
+            if halts || !Arc::ptr_eq(&last.solver, &motion.state.solver) {
+                last.corner = Corner::Stop;
+            }
+        }
+        let corner = self.corner(&motion);
+        let pace = match motion.kind {
+            MotionKind::Rapid => Pace::Rapid,
+            _ if motion.minutes > 0.0 => Pace::Minutes(motion.minutes),
+            _ => {
+                self.no_feed.get_or_insert(motion.line);
+                Pace::Rapid
+            }
+        };
+        let next = Planned {
+            task: Task::Move(Move {
+                line: motion.line,
+                way: motion.way,
+                from: motion.from,
+                to: motion.to,
+                solver: Arc::clone(&motion.state.solver),
+                pace,
+                corner,
+            }),
+            feed: motion.feed,
+            rapid,
+            state: Some(motion.state),
+        };
+        out.extend(self.pending.replace(next));
+    }
+
+    /// How the control passes into whatever comes behind a motion.
+    fn corner(&mut self, motion: &Motion) -> Corner {
+        let rapid = motion.kind == MotionKind::Rapid;
+        if motion.stops || rapid && self.rapid_stops {
+            return Corner::Stop;
+        }
+        let said = match motion.state.corners {
+            Corners::Said(corner) => corner,
+            Corners::Unsaid => self.usual,
+            Corners::Own => {
+                self.own_corners.get_or_insert(motion.line);
+                self.usual
+            }
+        };
+        match said {
+            // A hole has its depth, and a thread turns back at its end.
+            Corner::Blend { .. } if motion.hole || motion.kind == MotionKind::Thread => {
+                Corner::Path
+            }
+            Corner::Blend { tolerance } => Corner::Blend {
+                tolerance: tolerance.or(self.tolerance),
+            },
+            corner => corner,
+        }
+    }
+
+    fn told(&mut self, line: u64, told: &Told, out: &mut Vec<Planned>) {
+        let (seconds, why) = match told {
+            Told::Dwell { time, revolutions } => {
+                let seconds = match revolutions {
+                    true => self.turns(line, *time),
+                    false => *time,
+                };
+                (seconds, Waiting::Dwell)
+            }
+            Told::ToolChange { .. } => (self.tool_change, Waiting::ToolChange),
+            Told::Spindle(_) => (self.spindle_seconds, Waiting::Spindle),
+            Told::Stop | Told::OptionalStop => {
+                self.stop.get_or_insert(line);
+                return self.stand(out);
+            }
+            Told::Subprogram(_) => {
+                self.subprogram.get_or_insert(line);
+                return self.stand(out);
+            }
+            Told::Coolant(_) | Told::Head(_) | Told::End => return self.stand(out),
+            _ => return,
+        };
+        self.stand(out);
+        if seconds > 0.0 {
+            out.push(Planned {
+                task: Task::Wait { line, seconds, why },
+                feed: 0.0,
+                rapid: false,
+                state: self.state.clone(),
+            });
+        }
+    }
+
+    /// The machine stands still here.
+    fn stand(&mut self, out: &mut Vec<Planned>) {
+        let Some(mut last) = self.pending.take() else {
+            return;
+        };
+        if let Task::Move(last) = &mut last.task {
+            last.corner = Corner::Stop;
+        }
+        out.push(last);
+    }
+
+    /// Seconds of so many turns of the spindle.
+    fn turns(&mut self, line: u64, turns: f64) -> f64 {
+        let spindle = self.state.as_ref().map(|state| state.spindle);
+        match spindle {
+            Some(Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed)) if speed > 0.0 => {
+                60.0 * turns / speed
+            }
+            _ => {
+                self.no_speed.get_or_insert(line);
+                0.0
+            }
+        }
+    }
+}

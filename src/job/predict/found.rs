@@ -1,0 +1,106 @@
+//! What the stages have found, in the units of the control, and what was taken for granted.
+
+use post_machine::description::{Axis, Machine};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::MAX_AXES;
+use post_motion::contour::{self, ContourReport, Peak};
+
+use super::prediction::{AxisFound, ContourFound, Extreme, Spread};
+
+/// Of each axis the largest values.
+pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
+    let axes = machine.axes.iter().zip(&report.axes);
+    let axes = axes.map(|(axis, peaks)| {
+        let extreme = |peak: &Peak, scale: f64, limit: f64| Extreme {
+            value: peak.value * scale / axis.unit(),
+            limit: Some(limit / axis.unit()).filter(|limit| limit.is_finite()),
+            nc_line: peak.line,
+            time_s: peak.time,
+        };
+        AxisFound {
+            name: axis.name.clone(),
+            unit: if axis.joint.rotary { "deg" } else { "mm" },
+            servo: axis.servo.is_some(),
+            following: extreme(&peaks.following, 1.0, f64::INFINITY),
+            velocity: extreme(&peaks.velocity, 60.0, axis.max_feed),
+            acceleration: extreme(&peaks.acceleration, 1.0, axis.max_accel),
+            jerk: extreme(&peaks.jerk, 1.0, axis.max_jerk),
+        }
+    });
+    axes.take(MAX_AXES).collect()
+}
+
+/// How far the tool is off its path.
+pub fn contour(report: &ContourReport) -> ContourFound {
+    ContourFound {
+        tip_mm: spread(&report.cuts, 1.0),
+        axis_deg: spread(&report.axis, 1f64.to_degrees()),
+        parts: Vec::new(),
+    }
+}
+
+fn spread(found: &contour::Spread, unit: f64) -> Spread {
+    Spread {
+        largest: found.peak.value * unit,
+        rms: found.rms() * unit,
+        p50: found.percentile(0.5) * unit,
+        p95: found.percentile(0.95) * unit,
+        p99: found.percentile(0.99) * unit,
+        nc_line: found.peak.line,
+        cl_line: found.peak.cl_line,
+        time_s: found.peak.time,
+    }
+}
+
+/// What is taken for granted because the machine file does not say otherwise.
+pub fn assumed(machine: &Machine) -> Vec<String> {
+    let mut assumed = Vec::new();
+    let without = named(machine, |axis| axis.servo.is_none());
+    if without.len() == machine.axes.len() {
+        assumed.push("no axis has a [servo]: all are where they are commanded".to_owned());
+    } else if !without.is_empty() {
+        let names = without.join(", ");
+        assumed.push(format!(
+            "without a [servo] {names} stand{} where they are commanded",
+            if without.len() == 1 { "s" } else { "" }
+        ));
+    }
+    assumed
+}
+
+/// What the machine file leaves out that makes the time of a program too short.
+pub fn warn(machine: &Machine, findings: &mut Vec<Diagnostic>) {
+    let keys: [(&str, fn(&Axis) -> f64, &str); 2] = [
+        (
+            "max_feed",
+            |axis| axis.max_feed,
+            "its velocity is not limited",
+        ),
+        (
+            "max_accel",
+            |axis| axis.max_accel,
+            "it is at its velocity at once",
+        ),
+    ];
+    for (key, value, so) in keys {
+        let without = named(machine, |axis| value(axis).is_infinite());
+        if without.is_empty() {
+            continue;
+        }
+        let names = without.join(", ");
+        let message = match without.len() {
+            1 => format!("axis {names} has no {key}: {so}"),
+            _ => format!(
+                "axes {names} have no {key}: {}",
+                so.replace("its", "their").replace("it is", "they are")
+            ),
+        };
+        let help = format!("{key} of [axis.{}] in the machine file", without[0]);
+        findings.push(Diagnostic::warning("motion-limits", message).help(help));
+    }
+}
+
+fn named(machine: &Machine, which: impl Fn(&Axis) -> bool) -> Vec<String> {
+    let axes = machine.axes.iter().filter(|axis| which(axis));
+    axes.map(|axis| axis.name.clone()).collect()
+}

@@ -1,0 +1,15 @@
+//! What a program does on the machine before it is run there: set-points, servos, contour error.
+
+mod feeds;
+mod found;
+mod prediction;
+mod run;
+mod sample;
+mod stages;
+mod text;
+mod times;
+
+pub use prediction::Prediction;
+pub use run::{Asked, Predicted, predict};
+pub use sample::Sample;
+pub use text::text;

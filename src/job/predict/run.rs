@@ -1,0 +1,190 @@
+//! The stages of a prediction, one behind the other, in batches: a program becomes tasks, tasks become set-points, servos
+//! follow them, and the tool is held against its path. Memory does not grow with the program.
+
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::sync::Arc;
+
+use post_host::Finder;
+use post_machine::description::Machine;
+use post_machine::diagnostic::{Diagnostic, Place};
+use post_motion::trajectory::{Filled, Planner};
+use post_motion::{SetPoints, Task};
+use post_readback::interpret::{Interpreter, Limits, ReadReport};
+use post_readback::lexicon::Lexicon;
+use post_readback::tasks::{Planned, Tasks};
+use post_readback::{Done, Offsets};
+
+use super::found;
+use super::prediction::Prediction;
+use super::sample::Sample;
+use super::stages::Stages;
+use crate::arguments::JobArguments;
+use crate::failure::Failure;
+use crate::files::{ClSource, FileFault};
+use crate::job::{nc_program, read_back};
+
+/// Set-points of a batch.
+const BATCH: usize = 256;
+
+/// So many blocks that cannot be read are told.
+const MOST_UNREAD: usize = 50;
+
+/// What a program is predicted with.
+pub struct Asked<'a> {
+    /// The command line of the job.
+    pub arguments: &'a JobArguments,
+    /// The machine with its settings.
+    pub machine: &'a Machine,
+    /// Its plugins.
+    pub finder: &'a Finder,
+    /// What stands in the control's tables; none: as the machine file, the command line and the CL file say.
+    pub offsets: Option<Offsets>,
+    /// How far a program may go.
+    pub limits: Limits,
+    /// Time between set-points, s, over the machine file's.
+    pub period: Option<f64>,
+    /// Lines of the CL file that the program is made of; none: all.
+    pub lines: Option<Range<u64>>,
+}
+
+impl Asked<'_> {
+    /// Time between set-points, s.
+    pub fn period(&self) -> f64 {
+        self.period.unwrap_or(self.machine.motion.period)
+    }
+}
+
+/// What came of it.
+pub struct Predicted {
+    /// What was found.
+    pub found: Prediction,
+    /// What was taken for granted: warnings.
+    pub findings: Vec<Diagnostic>,
+}
+
+/// Predicts the program `name` from `input`, if a CL file is given against its path; every set-point is told in order.
+///
+/// # Errors
+/// The machine cannot be used, a block of the program or the CL file cannot be read, or whoever listens fails.
+pub fn predict<R: Read + Seek>(
+    asked: &Asked<'_>,
+    source: Option<&mut ClSource>,
+    name: &str,
+    mut input: R,
+    listen: &mut dyn FnMut(&Sample) -> Result<(), Failure>,
+) -> Result<Predicted, Failure> {
+    let period = asked.period();
+    let words = nc_program::spoken(asked.finder, asked.machine)?.words;
+    let lexicon = Lexicon::new(&words);
+    let tools = Vec::new();
+    let offsets = match &asked.offsets {
+        Some(offsets) => offsets.clone(),
+        None => read_back::offsets(asked.arguments, asked.machine, &tools),
+    };
+    let machine = &read_back::as_counted(asked.machine, &words, &offsets);
+    let unreadable = |error| FileFault::Read {
+        name: name.to_owned(),
+        error,
+    };
+    let length = input.seek(SeekFrom::End(0)).map_err(unreadable)?;
+    input.seek(SeekFrom::Start(0)).map_err(unreadable)?;
+    let input = BufReader::new(&mut input);
+    let mut program = Interpreter::new(machine, &lexicon, &offsets, asked.limits, name, input)
+        .map_err(|fault| *fault)?;
+    let mut reading = Reading {
+        tasks: Tasks::new(machine),
+        done: Vec::new(),
+        planned: Vec::new(),
+        unread: Vec::new(),
+        ended: false,
+    };
+    let mut stages = Stages::new(machine, period)?;
+    let mut planner = Planner::new(machine, period).map_err(|fault| *fault)?;
+    let mut points: Option<SetPoints> = None;
+    let mut times = Vec::new();
+    loop {
+        let filled = match &mut points {
+            None => Filled::Wants,
+            Some(points) => planner.fill(points, BATCH, &mut times),
+        };
+        stages.done(machine, &mut times);
+        if let Some(points) = &mut points
+            && filled != Filled::Wants
+        {
+            stages.batch(points, listen)?;
+            points.clear();
+        }
+        match filled {
+            Filled::Full => {}
+            Filled::Ended => break,
+            Filled::Wants => {
+                reading.more(&mut program);
+                if reading.unread.len() >= MOST_UNREAD {
+                    break;
+                }
+                for planned in reading.planned.drain(..) {
+                    if let (None, Task::Move(first)) = (&points, &planned.task) {
+                        points = Some(SetPoints::new(Arc::clone(&first.solver), period));
+                        stages.servos.settle(&first.from.joints);
+                    }
+                    stages.ahead(&planned);
+                    planner
+                        .push(planned.task)
+                        .map_err(|fault| placed(*fault, name))?;
+                }
+                if reading.ended {
+                    if points.is_none() {
+                        break;
+                    }
+                    planner.end();
+                }
+            }
+        }
+    }
+    if !reading.unread.is_empty() {
+        // What stands behind a block that is not run counts from elsewhere.
+        return Err(reading.unread.into());
+    }
+    let mut findings = reading.tasks.notes();
+    told(name, program.report(), &mut findings);
+    found::warn(machine, &mut findings);
+    let found = stages.finish(machine, name, program.report().blocks, listen)?;
+    Ok(Predicted { found, findings })
+}
+
+/// A program on the way to tasks.
+struct Reading {
+    tasks: Tasks,
+    done: Vec<Done>,
+    planned: Vec<Planned>,
+    /// Blocks that cannot be read.
+    unread: Vec<Diagnostic>,
+    ended: bool,
+}
+
+impl Reading {
+    /// Runs blocks until there is a task, or the program ends.
+    fn more<R: Read + Seek>(&mut self, program: &mut Interpreter<R>) {
+        while self.planned.is_empty() && !self.ended && self.unread.len() < MOST_UNREAD {
+            match program.next(&mut self.done) {
+                Ok(true) => self.tasks.take(&mut self.done, &mut self.planned),
+                Ok(false) => {
+                    self.tasks.end(&mut self.planned);
+                    self.ended = true;
+                }
+                Err(fault) => self.unread.push(*fault),
+            }
+        }
+    }
+}
+
+/// What the reading of the program has to say.
+fn told(name: &str, report: &ReadReport, findings: &mut Vec<Diagnostic>) {
+    findings.extend(report.notes.iter().cloned());
+    for (word, count, line) in report.unknown.iter().take(MOST_UNREAD) {
+        let message = format!("{word} is not known and is taken to move nothing; {count} times");
+        let place = Place::new(name, *line, "", 0..0);
+        findings.push(Diagnostic::warning("nc-unknown", message).at(Some(place)));
+    }
+}

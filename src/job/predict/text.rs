@@ -1,0 +1,242 @@
+//! What a prediction has found, for people.
+
+use std::fmt::Write as _;
+
+use super::prediction::{AxisFound, Extreme, LimitTime, Prediction, Spread};
+use crate::terminal::{clock, number, table};
+
+/// So many limits and operations are listed; the JSON has all of them.
+const MOST_ROWS: usize = 12;
+
+/// The tables of a prediction.
+pub fn text(found: &Prediction) -> String {
+    let mut text = String::new();
+    head(&mut text, found);
+    axes(&mut text, &found.axes);
+    limits(&mut text, found);
+    operations(&mut text, found);
+    if !found.assumed.is_empty() {
+        text.push_str("\nassumed\n");
+        for assumed in &found.assumed {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "  {assumed}");
+        }
+    }
+    text
+}
+
+fn head(text: &mut String, found: &Prediction) {
+    let mut row = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<16} {value}");
+    };
+    row(
+        "program",
+        format!("{}, {} blocks", found.program, found.blocks),
+    );
+    row("machine", format!("{} ({})", found.machine, found.dialect));
+    row(
+        "set-points",
+        format!(
+            "{}, one every {} ms",
+            found.set_points,
+            short(1e3 * found.period_s)
+        ),
+    );
+    let time = &found.time;
+    let mut parts = vec![format!("{} cutting", clock(time.cutting_s))];
+    for (seconds, what) in [(time.rapid_s, "at rapid"), (time.waiting_s, "waiting")] {
+        if seconds > 0.0 {
+            parts.push(format!("{} {what}", clock(seconds)));
+        }
+    }
+    row(
+        "cycle time",
+        format!("{}: {}", clock(time.cycle_s), parts.join(", ")),
+    );
+    let feed = &found.feed;
+    if feed.way_mm > 0.0 {
+        row(
+            "feed",
+            format!(
+                "{} mm/min of {} programmed on average over {} mm of cuts, {:.1} % ({} instead of {}); at most {}, in line {}; below 95 % for {}",
+                number(feed.true_mean, 0),
+                number(feed.programmed_mean, 0),
+                number(feed.way_mm, 1),
+                100.0 * feed.true_mean / feed.programmed_mean,
+                clock(time.cutting_s),
+                clock(time.cutting_at_feed_s),
+                number(feed.true_largest, 0),
+                feed.largest_nc_line,
+                clock(feed.below_95_percent_s)
+            ),
+        );
+    }
+    let against = match &found.against {
+        Some(file) => format!(", against {file}"),
+        None => String::new(),
+    };
+    row(
+        "contour error",
+        format!("{}{against}", spread(&found.contour.tip_mm, "mm", 4)),
+    );
+    for part in &found.contour.parts {
+        row(&format!("  {}", part.part), spread(&part.tip_mm, "mm", 4));
+    }
+    row("tool axis", spread(&found.contour.axis_deg, "°", 5));
+}
+
+/// `at most 0.0123 mm, in line 812 of the program, CL line 40; RMS 0.0031; 50, 95, 99 % within 0.0010, 0.0030, 0.0040`.
+fn spread(spread: &Spread, unit: &str, decimals: u8) -> String {
+    let show = |value: f64| number(value, decimals);
+    let mut text = format!("at most {} {unit}", show(spread.largest));
+    if spread.largest == 0.0 {
+        return text;
+    }
+    let _ = write!(text, ", in line {} of the program", spread.nc_line);
+    if let Some(line) = spread.cl_line {
+        let _ = write!(text, ", CL line {line}");
+    }
+    let _ = write!(
+        text,
+        "; RMS {}; 50, 95, 99 % within {}, {}, {}",
+        show(spread.rms),
+        show(spread.p50),
+        show(spread.p95),
+        show(spread.p99)
+    );
+    text
+}
+
+fn axes(text: &mut String, axes: &[AxisFound]) {
+    let head = [
+        "axis",
+        "following",
+        "line",
+        "velocity /min",
+        "of",
+        "line",
+        "accel /s²",
+        "of",
+        "line",
+        "jerk /s³",
+        "of",
+        "line",
+    ];
+    let mut rows = vec![head.map(str::to_owned)];
+    for axis in axes {
+        let following = match axis.servo {
+            true => number(axis.following.value, 4),
+            false => "-".to_owned(),
+        };
+        let line = |extreme: &Extreme| match extreme.nc_line {
+            0 => "-".to_owned(),
+            line => line.to_string(),
+        };
+        let limit = |extreme: &Extreme| {
+            extreme
+                .limit
+                .map_or_else(|| "-".to_owned(), |limit| number(limit, 0))
+        };
+        rows.push([
+            format!("{} {}", axis.name, axis.unit),
+            following,
+            match axis.servo {
+                true => line(&axis.following),
+                false => "-".to_owned(),
+            },
+            number(axis.velocity.value, 0),
+            limit(&axis.velocity),
+            line(&axis.velocity),
+            number(axis.acceleration.value, 0),
+            limit(&axis.acceleration),
+            line(&axis.acceleration),
+            number(axis.jerk.value, 0),
+            limit(&axis.jerk),
+            line(&axis.jerk),
+        ]);
+    }
+    text.push('\n');
+    text.push_str(&table(&rows, 1));
+}
+
+fn limits(text: &mut String, found: &Prediction) {
+    let limits = &found.time.limits;
+    if limits.is_empty() {
+        return;
+    }
+    let head = ["limited by", "moves", "time", "share", "beyond the feed"];
+    let mut rows = vec![head.map(str::to_owned)];
+    for row in limits.iter().take(MOST_ROWS) {
+        rows.push([
+            name(row),
+            row.moves.to_string(),
+            clock(row.seconds),
+            format!("{:.1} %", 100.0 * row.share),
+            match row.beyond_feed_s > 0.0 {
+                true => clock(row.beyond_feed_s),
+                false => "-".to_owned(),
+            },
+        ]);
+    }
+    text.push('\n');
+    text.push_str(&table(&rows, 1));
+    more(text, limits.len());
+}
+
+/// `cuts: acceleration of C`.
+fn name(row: &LimitTime) -> String {
+    let of = |what: &str| match &row.axis {
+        Some(axis) => format!("{what} of {axis}"),
+        None => what.to_owned(),
+    };
+    let limit = match row.limit {
+        "feed" => "feed of the program".to_owned(),
+        "axis velocity" => of("velocity"),
+        "axis acceleration" => of("acceleration"),
+        "axis jerk" => of("jerk"),
+        "tip acceleration" => "acceleration of the tip".to_owned(),
+        "tip jerk" => "jerk of the tip".to_owned(),
+        "corner" => "corners and stops".to_owned(),
+        "block time" => "block time of the control".to_owned(),
+        other => other.to_owned(),
+    };
+    match row.kind {
+        "wait" => "waits".to_owned(),
+        kind => format!("{kind}s: {limit}"),
+    }
+}
+
+fn operations(text: &mut String, found: &Prediction) {
+    let operations = &found.time.operations;
+    if operations.len() < 2 {
+        return;
+    }
+    let head = ["tool", "operation", "time", "cutting"];
+    let mut rows = vec![head.map(str::to_owned)];
+    for row in operations.iter().take(MOST_ROWS) {
+        rows.push([
+            row.tool
+                .map_or_else(|| "-".to_owned(), |tool| format!("T{tool}")),
+            row.operation.clone().unwrap_or_else(|| "-".to_owned()),
+            clock(row.seconds),
+            clock(row.cutting_s),
+        ]);
+    }
+    text.push('\n');
+    text.push_str(&table(&rows, 2));
+    more(text, operations.len());
+}
+
+/// How many rows are not shown.
+fn more(text: &mut String, rows: usize) {
+    if rows > MOST_ROWS {
+        let _ = writeln!(text, "and {} more (--summary has them)", rows - MOST_ROWS);
+    }
+}
+
+/// A number with as many decimals as it needs.
+fn short(value: f64) -> String {
+    let text = number(value, 6);
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    text.to_owned()
+}

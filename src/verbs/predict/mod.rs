@@ -1,0 +1,200 @@
+//! `post predict`: what an NC program does on its machine, before it is run there.
+
+mod envelope;
+mod path_pictures;
+mod pictures;
+mod set_points_csv;
+mod spectrum;
+mod trail;
+
+use clap::Args;
+use post_machine::diagnostic::Diagnostic;
+use post_readback::interpret::Limits;
+
+use crate::arguments::JobArguments;
+use crate::arguments::flag_values::positive;
+use crate::failure::Failure;
+use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
+use crate::job::predict::{self, Predicted, Sample};
+use crate::job::{self, nc_program, plugin_finder};
+use crate::terminal;
+use pictures::Rooms;
+use set_points_csv::SetPointsCsv;
+
+/// Predicts what an NC program does on its machine: cycle time, true feed, and how far the tool strays.
+///
+/// The program is read back as its control reads it and becomes set-points of the axes, with the limits of the axes, the
+/// look-ahead and the corners of the control (`[motion]` of the machine file); the servos (`[servo]`) follow them; where
+/// the axes then are is held against the commanded path, and with --against against the path of the CL file. Axes without
+/// a servo are where they are commanded: times and feeds are predicted all the same.
+///
+/// What `post` was told for the job must be told here too (--mount, --tool-length, …).
+#[derive(Debug, Args)]
+#[command(
+    mut_arg("input", |argument| {
+        argument
+            .index(None)
+            .required(false)
+            .long("against")
+            .help("The CL file that the program was made from: how far the tool strays from its path")
+    }),
+    after_help = "Examples:
+  post predict part.nc --machine ac-trunnion
+  post predict part.nc -m my-mill.toml --against part.cls --tool-length 120 --pictures prediction
+  post predict part.nc -m my-mill.toml --period 0.004 --csv set-points.csv --summary prediction.json
+  post predict part.nc -m my-mill.toml --set axis.X.max_accel=2000
+
+Exit codes: 0 predicted; 1 something could not be read, the messages say what; 2 the command line is wrong."
+)]
+pub struct PredictArguments {
+    /// The NC program, `-` for standard input.
+    #[arg(value_name = "NC-FILE", required = true, value_parser = PathArg::parser())]
+    program: Option<PathArg>,
+
+    #[command(flatten)]
+    job: JobArguments,
+
+    /// Time from one set-point to the next, seconds, over `[motion] period` of the machine file.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, help_heading = "Machine")]
+    period: Option<f64>,
+
+    /// What stands in the control's tables, a TOML file: work offsets, lengths by register or tool. Without it lengths are
+    /// those of --tool-length, the machine file and the CL file.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "Machine")]
+    offsets: Option<PathArg>,
+
+    /// Writes every set-point as a row: time (s), lines of the program and of the CL file, whether the tool cuts, each axis
+    /// commanded and actual as the control shows it, tip commanded and actual (mm, part frame), contour error as a vector
+    /// (mm) and of the tool axis (degrees), feed of the tip and of the program (mm/min); `-` is standard output, alone
+    /// there.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    csv: Option<PathArg>,
+
+    /// Writes what was found as JSON for programs to read; `-` is standard output.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    summary: Option<PathArg>,
+
+    /// Draws into this folder, as SVG: errors of the axes and feed over time, contour error along the path, magnified on
+    /// it and by its size, and the spectrum of the axes' errors; and writes the summary beside them.
+    #[arg(long, value_name = "FOLDER", value_parser = PathArg::parser())]
+    pictures: Option<PathArg>,
+
+    /// So many blocks are run once more, by loops, jumps and subprograms; more are refused.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().blocks)]
+    most_blocks: u64,
+
+    /// No table, messages alone.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+const SET_POINTS: Role = Role {
+    what: "table of set-points",
+    remedy: "name another file with --csv",
+};
+
+const SUMMARY: Role = Role {
+    what: "summary",
+    remedy: "name another file with --summary",
+};
+
+const PICTURES: Role = Role {
+    what: "prediction",
+    remedy: "name another folder with --pictures",
+};
+
+/// The file by which a folder of pictures is known, and how it begins.
+const MARK: (&str, &str) = ("prediction.json", "{\n  \"program\": ");
+
+/// Predicts as the arguments say.
+pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
+    let machine = job::machine(&arguments.job, &[])?;
+    let finder = plugin_finder::finder(&arguments.job.plugins)?;
+    job::say_what_is_left(&arguments.job, &machine, &finder);
+    let named = arguments.program.as_ref().unwrap_or(&PathArg::Standard);
+    let against = arguments.job.input.as_ref();
+    if named.path().is_none() && against.is_some_and(|file| file.path().is_none()) {
+        let message = "program and CL file cannot both be standard input";
+        let help = "name one of them";
+        return Err(Diagnostic::error("input", message).help(help).into());
+    }
+    let folder = match &arguments.pictures {
+        Some(folder) => {
+            let folder = OwnFolder::open(folder, PICTURES, MARK, &pictures::NAMES);
+            Some(folder.map_err(|fault| *fault)?)
+        }
+        None => None,
+    };
+    let (name, program) = nc_program::open(named)?;
+    let offsets = match &arguments.offsets {
+        Some(file) => Some(nc_program::offsets(file, &machine)?),
+        None => None,
+    };
+    let mut targets: Vec<(Role, &PathArg)> = Vec::new();
+    targets.extend(arguments.csv.iter().map(|target| (SET_POINTS, target)));
+    targets.extend(arguments.summary.iter().map(|target| (SUMMARY, target)));
+    let mut texts = AtomicFile::create(&targets)?;
+    let asked = predict::Asked {
+        arguments: &arguments.job,
+        machine: &machine,
+        finder: &finder,
+        offsets,
+        limits: Limits {
+            blocks: arguments.most_blocks,
+            ..Limits::default()
+        },
+        period: arguments.period,
+        lines: None,
+    };
+    let mut source = match against {
+        Some(file) => Some(files::ClSource::new(file, true)?),
+        None => None,
+    };
+    let period = asked.period();
+    let mut rooms = folder.as_ref().map(|_| Rooms::new(&machine, period));
+    let predicted = {
+        let mut csv = match (&arguments.csv, texts.first_mut()) {
+            (Some(_), Some(file)) => Some(SetPointsCsv::new(&machine, file)),
+            _ => None,
+        };
+        let mut listen = |sample: &Sample| {
+            if let Some(rooms) = &mut rooms {
+                rooms.take(sample);
+            }
+            match &mut csv {
+                Some(csv) => Ok(csv.take(sample)?),
+                None => Ok(()),
+            }
+        };
+        let predicted = predict::predict(&asked, source.as_mut(), &name, program, &mut listen)?;
+        if let Some(csv) = csv {
+            csv.finish()?;
+        }
+        predicted
+    };
+    let Predicted { found, findings } = predicted;
+    let json = files::json(&found);
+    if let (Some(_), Some(file)) = (&arguments.summary, texts.last_mut()) {
+        file.write_bytes(json.as_bytes())?;
+    }
+    let taken = texts.iter().any(AtomicFile::is_standard);
+    if let (Some(folder), Some(rooms)) = (&folder, &rooms) {
+        let mut files = rooms.files(&found);
+        files.push((MARK.0, json));
+        folder.add(&files, &mut texts)?;
+        AtomicFile::finish(texts)?;
+        folder.tidy(&files)?;
+    } else {
+        AtomicFile::finish(texts)?;
+    }
+    terminal::findings(&findings);
+    if !arguments.quiet {
+        let text = predict::text(&found);
+        if taken {
+            terminal::tell(&text);
+        } else {
+            terminal::print(&text);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,247 @@
+//! The pictures of a prediction: what is kept for them while it runs, and the charts. The figures that they follow are
+//! those of Zhang, Chen 2025: axis errors (figs. 9 to 11), feed (fig. 8), contour error (fig. 12).
+
+use post_machine::description::Machine;
+use post_machine::kinematics::MAX_AXES;
+
+use super::envelope::Envelope;
+use super::path_pictures;
+use super::spectrum::Spectrum;
+use super::trail::Trail;
+use crate::files::chart::{DASHED, Draw, LOOKS, Panel, Panels, Series};
+use crate::job::predict::{Prediction, Sample};
+
+/// The files that there can be.
+pub const NAMES: [&str; 6] = [
+    "axis-errors.svg",
+    "feed.svg",
+    "contour.svg",
+    "contour-vectors.svg",
+    "path.svg",
+    "spectrum.svg",
+];
+
+/// Micrometres of a millimetre, thousandths of a degree of a degree.
+const MICRO: f64 = 1e3;
+
+/// A file of a prediction: its name and its text.
+pub type File = (&'static str, String);
+
+/// What is kept of the set-points for the pictures.
+pub struct Rooms {
+    axes: Vec<DrawnAxis>,
+    period: f64,
+    /// Errors of the axes over time, a channel each.
+    lags: Envelope,
+    /// Feed in cuts over time: that of the tip, that of the program.
+    feeds: Envelope,
+    /// Along the path: the tip's error, the tool axis' error.
+    contour: Envelope,
+    trail: Trail,
+    spectra: Vec<Spectrum>,
+}
+
+/// An axis whose servo is described.
+struct DrawnAxis {
+    /// Its place in the chain.
+    place: usize,
+    name: String,
+    rotary: bool,
+}
+
+impl DrawnAxis {
+    /// From the core's unit to that of the picture.
+    fn unit(&self) -> f64 {
+        match self.rotary {
+            true => 1f64.to_degrees() * MICRO,
+            false => MICRO,
+        }
+    }
+
+    fn label(&self) -> String {
+        let unit = if self.rotary { "0.001°" } else { "µm" };
+        format!("{}, {unit}", self.name)
+    }
+}
+
+impl Rooms {
+    pub fn new(machine: &Machine, period: f64) -> Self {
+        let axes = machine.axes.iter().take(MAX_AXES).enumerate();
+        let axes: Vec<DrawnAxis> = axes
+            .filter(|(_, axis)| axis.servo.is_some())
+            .map(|(place, axis)| DrawnAxis {
+                place,
+                name: axis.name.clone(),
+                rotary: axis.joint.rotary,
+            })
+            .collect();
+        Self {
+            period,
+            lags: Envelope::new(axes.len().max(1), period),
+            feeds: Envelope::new(2, period),
+            contour: Envelope::new(2, 1e-3),
+            trail: Trail::new(),
+            spectra: axes.iter().map(|_| Spectrum::new()).collect(),
+            axes,
+        }
+    }
+
+    /// Takes the next set-point.
+    pub fn take(&mut self, sample: &Sample) {
+        let lag = |axis: &DrawnAxis| sample.commanded[axis.place] - sample.actual[axis.place];
+        self.lags.take(sample.time, self.axes.iter().map(lag));
+        for (axis, spectrum) in self.axes.iter().zip(&mut self.spectra) {
+            spectrum.take(lag(axis));
+        }
+        let feeds = match sample.cuts {
+            true => [sample.feed, sample.programmed],
+            false => [f64::NAN; 2],
+        };
+        self.feeds.take(sample.time, feeds.into_iter());
+        self.trail.take(sample);
+        if sample.cuts {
+            let errors = [sample.size, sample.axis];
+            self.contour.take(self.trail.way, errors.into_iter());
+        }
+    }
+
+    /// All pictures that there is something to show in.
+    pub fn files(&self, found: &Prediction) -> Vec<File> {
+        let note = format!(
+            "{} on {}, set-points every {} ms",
+            found.program,
+            found.machine,
+            1e3 * found.period_s
+        );
+        let cuts = self.trail.cuts();
+        let mut files = vec![("feed.svg", self.feed(&note).svg())];
+        if !self.axes.is_empty() {
+            files.push(("axis-errors.svg", self.axis_errors(&note).svg()));
+        }
+        if found.contour.tip_mm.largest > 0.0 {
+            files.push(("contour.svg", self.along(found, &note).svg()));
+            let vectors = path_pictures::vectors(found, &note, &cuts);
+            files.push(("contour-vectors.svg", vectors));
+            files.push(("path.svg", path_pictures::path(found, &note, &cuts)));
+        }
+        if let Some(spectrum) = self.spectrum(&note) {
+            files.push(("spectrum.svg", spectrum.svg()));
+        }
+        files
+    }
+
+    /// Where each axis is commanded minus where it is, over time.
+    fn axis_errors(&self, note: &str) -> Panels {
+        let panels = self.axes.iter().enumerate().map(|(channel, axis)| Panel {
+            y: axis.label(),
+            logarithmic: false,
+            height: 120.0,
+            series: vec![bands("", self.lags.runs(channel, axis.unit()), "#000000")],
+        });
+        Panels {
+            title: "Following error of the axes: commanded minus actual position".to_owned(),
+            note: note.to_owned(),
+            x: "time, s".to_owned(),
+            panels: panels.collect(),
+        }
+    }
+
+    /// How fast the tip goes in cuts, and how fast it is asked to.
+    fn feed(&self, note: &str) -> Panels {
+        let series = vec![
+            bands(
+                "true, from least to largest",
+                self.feeds.runs(0, 1.0),
+                "#8c8c8c",
+            ),
+            bands("programmed", self.feeds.runs(1, 1.0), "#000000"),
+        ];
+        Panels {
+            title: "Feed of the tip against the part in cuts".to_owned(),
+            note: note.to_owned(),
+            x: "time, s".to_owned(),
+            panels: vec![Panel {
+                y: "mm/min".to_owned(),
+                logarithmic: false,
+                height: 330.0,
+                series,
+            }],
+        }
+    }
+
+    /// The contour error along the path.
+    fn along(&self, found: &Prediction, note: &str) -> Panels {
+        let panel = |y: &str, series: Vec<Series>| Panel {
+            y: y.to_owned(),
+            logarithmic: false,
+            height: 240.0,
+            series,
+        };
+        let most = |level: f64| {
+            let ends = [0.0, self.trail.way.max(1e-6)];
+            vec![[ends[0], level * MICRO], [ends[1], level * MICRO]]
+        };
+        let tip = &found.contour.tip_mm;
+        let mut panels = vec![panel(
+            "tip, µm",
+            vec![
+                bands(
+                    "from least to largest",
+                    self.contour.runs(0, MICRO),
+                    "#8c8c8c",
+                ),
+                Series::line("not passed by 95 %", most(tip.p95), DASHED),
+                Series::line("root of the mean square", most(tip.rms), LOOKS[2]),
+            ],
+        )];
+        if found.contour.axis_deg.largest > 0.0 {
+            let degrees = 1f64.to_degrees() * MICRO;
+            panels.push(panel(
+                "tool axis, 0.001°",
+                vec![bands("", self.contour.runs(1, degrees), "#8c8c8c")],
+            ));
+        }
+        Panels {
+            title: match &found.against {
+                Some(file) => format!("Contour error along the path of {file}"),
+                None => "Contour error along the commanded path".to_owned(),
+            },
+            note: note.to_owned(),
+            x: "way of the tip in cuts, mm".to_owned(),
+            panels,
+        }
+    }
+
+    /// Which frequencies the errors of the axes have.
+    fn spectrum(&self, note: &str) -> Option<Panels> {
+        let panels = self.axes.iter().zip(&self.spectra).map(|(axis, spectrum)| {
+            let amplitudes = spectrum.amplitudes(self.period, axis.unit());
+            (axis, amplitudes)
+        });
+        let panels: Vec<Panel> = panels
+            .filter(|(_, amplitudes)| amplitudes.iter().any(|[_, size]| *size > 0.0))
+            .map(|(axis, amplitudes)| Panel {
+                y: axis.label(),
+                logarithmic: true,
+                height: 130.0,
+                series: vec![Series::line("", amplitudes, LOOKS[0])],
+            })
+            .collect();
+        if panels.is_empty() {
+            return None;
+        }
+        Some(Panels {
+            title: "Spectrum of the axis errors: amplitude by frequency".to_owned(),
+            note: note.to_owned(),
+            x: "frequency, Hz".to_owned(),
+            panels,
+        })
+    }
+}
+
+fn bands(name: &str, runs: Vec<Vec<[f64; 3]>>, grey: &'static str) -> Series {
+    Series {
+        name: name.to_owned(),
+        draw: Draw::Bands(runs, grey),
+    }
+}

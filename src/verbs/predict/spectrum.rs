@@ -1,0 +1,167 @@
+//! Which frequencies the errors of the axes have: amplitudes by Welch's method, averaged over windows that overlap by
+//! half (P. D. Welch, The use of fast Fourier transform for the estimation of power spectra, 1967), Hann's window.
+
+use std::f64::consts::{PI, TAU};
+
+/// Set-points in a window.
+const WINDOW: usize = 2048;
+
+/// The amplitudes of one signal.
+#[derive(Clone, Debug)]
+pub struct Spectrum {
+    /// The last set-points, as many as half a window more than were worked on.
+    waiting: Vec<f64>,
+    /// Sums of the squares of the amplitudes, by frequency.
+    squares: Vec<f64>,
+    windows: u64,
+    tables: Tables,
+}
+
+/// What does not change from window to window.
+#[derive(Clone, Debug)]
+struct Tables {
+    /// Hann's window.
+    hann: Vec<f64>,
+    /// Cosine and sine of the turns of the transform.
+    turns: Vec<[f64; 2]>,
+}
+
+impl Spectrum {
+    pub fn new() -> Self {
+        let angle = |place: usize| TAU * place as f64 / WINDOW as f64;
+        Self {
+            waiting: Vec::with_capacity(WINDOW),
+            squares: vec![0.0; WINDOW / 2],
+            windows: 0,
+            tables: Tables {
+                hann: (0..WINDOW)
+                    .map(|place| 0.5 - 0.5 * libm::cos(angle(place)))
+                    .collect(),
+                turns: (0..WINDOW / 2)
+                    .map(|place| [libm::cos(angle(place)), -libm::sin(angle(place))])
+                    .collect(),
+            },
+        }
+    }
+
+    /// Takes the next value.
+    pub fn take(&mut self, value: f64) {
+        self.waiting.push(value);
+        if self.waiting.len() == WINDOW {
+            self.window();
+            self.waiting.drain(..WINDOW / 2);
+        }
+    }
+
+    fn window(&mut self) {
+        // A constant error would hide the lowest frequencies behind it.
+        let mean = self.waiting.iter().sum::<f64>() / self.waiting.len() as f64;
+        let mut values: Vec<[f64; 2]> = self
+            .waiting
+            .iter()
+            .zip(&self.tables.hann)
+            .map(|(value, weight)| [(value - mean) * weight, 0.0])
+            .collect();
+        values.resize(WINDOW, [0.0; 2]);
+        transform(&mut values, &self.tables.turns);
+        // The mean of Hann's window is a half, and each frequency stands twice in the transform.
+        let scale = 4.0 / self.waiting.len() as f64;
+        for (square, [re, im]) in self.squares.iter_mut().zip(&values) {
+            *square += (re * re + im * im) * scale * scale;
+        }
+        self.windows += 1;
+    }
+
+    /// Amplitudes by frequency, Hz, from the second of the transform on; of signals shorter than a window nothing.
+    pub fn amplitudes(&self, period: f64, unit: f64) -> Vec<[f64; 2]> {
+        if self.windows == 0 {
+            return Vec::new();
+        }
+        let places = self.squares.iter().enumerate().skip(1);
+        places
+            .map(|(place, square)| {
+                let amplitude = libm::sqrt(square / self.windows as f64);
+                [place as f64 / (WINDOW as f64 * period), amplitude * unit]
+            })
+            .collect()
+    }
+}
+
+/// The discrete Fourier transform in place, by halves (J. W. Cooley, J. W. Tukey, 1965).
+fn transform(values: &mut [[f64; 2]], turns: &[[f64; 2]]) {
+    let count = values.len();
+    let bits = count.trailing_zeros();
+    for place in 0..count {
+        let other = place.reverse_bits() >> (usize::BITS - bits);
+        if other > place {
+            values.swap(place, other);
+        }
+    }
+    let mut half = 1;
+    while half < count {
+        for first in (0..count).step_by(2 * half) {
+            for step in 0..half {
+                let [cos, sin] = turns[step * (count / (2 * half))];
+                let [low, high] = [first + step, first + step + half];
+                let [re, im] = values[high];
+                let turned = [re * cos - im * sin, re * sin + im * cos];
+                let [a, b] = values[low];
+                values[low] = [a + turned[0], b + turned[1]];
+                values[high] = [a - turned[0], b - turned[1]];
+            }
+        }
+        half *= 2;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_transform_is_the_sum_that_defines_it() {
+        let count = 16;
+        let angle = |place: usize| TAU * place as f64 / count as f64;
+        let turns: Vec<[f64; 2]> = (0..count / 2)
+            .map(|place| [libm::cos(angle(place)), -libm::sin(angle(place))])
+            .collect();
+        let signal: Vec<[f64; 2]> = (0..count)
+            .map(|place| {
+                [
+                    libm::sin(0.7 * place as f64 * place as f64),
+                    0.1 * place as f64,
+                ]
+            })
+            .collect();
+        let mut fast = signal.clone();
+        transform(&mut fast, &turns);
+        for (frequency, [re, im]) in fast.iter().enumerate() {
+            let mut sum = [0.0, 0.0];
+            for (place, [a, b]) in signal.iter().enumerate() {
+                let turn = angle(frequency * place % count);
+                let [cos, sin] = [libm::cos(turn), -libm::sin(turn)];
+                sum = [sum[0] + a * cos - b * sin, sum[1] + a * sin + b * cos];
+            }
+            assert!((re - sum[0]).abs() < 1e-12 && (im - sum[1]).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_sine_is_seen_at_its_frequency_with_its_amplitude() {
+        let period = 1e-3;
+        let mut spectrum = Spectrum::new();
+        // In the middle of a frequency of the transform.
+        let frequency = 100.0 / (WINDOW as f64 * period);
+        for step in 0..20_000_u32 {
+            let time = f64::from(step) * period;
+            spectrum.take(0.5 + 0.003 * libm::sin(2.0 * PI * frequency * time + 0.4));
+        }
+        let amplitudes = spectrum.amplitudes(period, 1e3);
+        let peak = amplitudes
+            .iter()
+            .max_by(|a, b| a[1].total_cmp(&b[1]))
+            .unwrap();
+        assert!((peak[0] - frequency).abs() < 1e-9, "{peak:?}");
+        assert!((peak[1] - 3.0).abs() < 1e-6, "{peak:?}");
+    }
+}

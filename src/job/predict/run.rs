@@ -129,9 +129,7 @@ pub fn predict<R: Read + Seek>(
                         stages.servos.settle(&first.from.joints);
                     }
                     stages.ahead(&planned);
-                    planner
-                        .push(planned.task)
-                        .map_err(|fault| placed(*fault, name))?;
+                    planner.push(planned.task).map_err(|fault| *fault)?;
                 }
                 if reading.ended {
                     if points.is_none() {

@@ -58,15 +58,21 @@ fn head(text: &mut String, found: &Prediction) {
         row(
             "feed",
             format!(
-                "{} mm/min of {} programmed on average over {} mm of cuts, {:.1} % ({} instead of {}); at most {}, in line {}; below 95 % for {}",
+                "{} mm/min on average over {} mm of cuts, programmed {}; at most {}, in line {}",
                 number(feed.true_mean, 0),
-                number(feed.programmed_mean, 0),
                 number(feed.way_mm, 1),
+                number(feed.programmed_mean, 0),
+                number(feed.true_largest, 0),
+                feed.largest_nc_line,
+            ),
+        );
+        row(
+            "",
+            format!(
+                "{:.1} % of what is programmed: {} instead of {}; below 95 % of it for {}",
                 100.0 * feed.true_mean / feed.programmed_mean,
                 clock(time.cutting_s),
                 clock(time.cutting_at_feed_s),
-                number(feed.true_largest, 0),
-                feed.largest_nc_line,
                 clock(feed.below_95_percent_s)
             ),
         );
@@ -75,36 +81,37 @@ fn head(text: &mut String, found: &Prediction) {
         Some(file) => format!(", against {file}"),
         None => String::new(),
     };
-    row(
-        "contour error",
-        format!("{}{against}", spread(&found.contour.tip_mm, "mm", 4)),
-    );
-    for part in &found.contour.parts {
-        row(&format!("  {}", part.part), spread(&part.tip_mm, "mm", 4));
+    let contour = &found.contour;
+    let tip = largest(&contour.tip_mm, "mm", 4);
+    row("contour error", format!("{tip}{against}"));
+    spread(&mut row, &contour.tip_mm, 4);
+    for part in &contour.parts {
+        row(&format!("  {}", part.part), largest(&part.tip_mm, "mm", 4));
     }
-    row("tool axis", spread(&found.contour.axis_deg, "°", 5));
+    row("tool axis", largest(&contour.axis_deg, "°", 5));
+    spread(&mut row, &contour.axis_deg, 5);
 }
 
-/// `at most 0.0123 mm, in line 812 of the program, CL line 40; RMS 0.0031; 50, 95, 99 % within 0.0010, 0.0030, 0.0040`.
-fn spread(spread: &Spread, unit: &str, decimals: u8) -> String {
-    let show = |value: f64| number(value, decimals);
-    let mut text = format!("at most {} {unit}", show(spread.largest));
-    if spread.largest == 0.0 {
-        return text;
+/// `at most 0.0123 mm, in line 812 of the program, CL line 40`.
+fn largest(spread: &Spread, unit: &str, decimals: u8) -> String {
+    let mut text = format!("at most {} {unit}", number(spread.largest, decimals));
+    if spread.largest > 0.0 {
+        let _ = write!(text, ", in line {} of the program", spread.nc_line);
+        if let Some(line) = spread.cl_line {
+            let _ = write!(text, ", CL line {line}");
+        }
     }
-    let _ = write!(text, ", in line {} of the program", spread.nc_line);
-    if let Some(line) = spread.cl_line {
-        let _ = write!(text, ", CL line {line}");
-    }
-    let _ = write!(
-        text,
-        "; RMS {}; 50, 95, 99 % within {}, {}, {}",
-        show(spread.rms),
-        show(spread.p50),
-        show(spread.p95),
-        show(spread.p99)
-    );
     text
+}
+
+/// `RMS 0.0031; half within 0.0010, 95 % within 0.0030, 99 % within 0.0040`.
+fn spread(row: &mut impl FnMut(&str, String), spread: &Spread, decimals: u8) {
+    if spread.largest > 0.0 {
+        let [rms, p50, p95, p99] =
+            [spread.rms, spread.p50, spread.p95, spread.p99].map(|value| number(value, decimals));
+        let text = format!("RMS {rms}; half within {p50}, 95 % within {p95}, 99 % within {p99}");
+        row("", text);
+    }
 }
 
 fn axes(text: &mut String, axes: &[AxisFound]) {

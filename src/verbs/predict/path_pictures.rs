@@ -207,17 +207,12 @@ impl Picture {
             "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"9\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1.4\"/>"
         );
         let text = format!(
-            "largest: {} µm, line {}",
+            "ring: the largest, {} µm, line {}",
             number(found.contour.tip_mm.largest * 1e3, 2),
             found.contour.tip_mm.nc_line
         );
-        // Towards the side on which there is more room.
-        let (anchor, aside) = match x < LEFT + SIZE[0] / 2.0 {
-            true => ("start", 13.0),
-            false => ("end", -13.0),
-        };
-        let up = if y < TOP + 40.0 { 22.0 } else { -12.0 };
-        label(&mut self.svg, [x + aside, y + up], anchor, &text);
+        let corner = [LEFT + SIZE[0] - 8.0, TOP + SIZE[1] - 10.0];
+        label(&mut self.svg, corner, "end", &text);
     }
 
     fn end(mut self) -> String {

@@ -112,7 +112,8 @@ impl Follower {
     /// Where the table is, for set-points every `period` seconds.
     ///
     /// # Errors
-    /// A period that is not above zero, or longer than a second.
+    /// A period that is not above zero, or longer than a second; numbers whose equations cannot be solved (a machine file
+    /// with such is refused).
     pub fn new(servo: &Servo, period: f64) -> Result<Self, Box<Diagnostic>> {
         Self::with(servo, period, Output::Table)
     }
@@ -137,13 +138,28 @@ impl Follower {
             .is_some_and(|friction| friction.coulomb > 0.0);
         let play_inside = servo.backlash > 0.0 && servo.play_inside();
         let kernel = if friction || play_inside {
-            Kernel::SteppedEight(Box::new(Stepped::new(servo, &space, period, output)))
+            Stepped::new(servo, &space, period, output)
+                .map(Box::new)
+                .map(Kernel::SteppedEight)
         } else {
             match space.order() {
-                0..=4 => Kernel::Four(Box::new(Linear::new(servo, &space, period, output))),
-                5..=8 => Kernel::Eight(Box::new(Linear::new(servo, &space, period, output))),
-                _ => Kernel::Twelve(Box::new(Linear::new(servo, &space, period, output))),
+                0..=4 => Linear::new(servo, &space, period, output)
+                    .map(Box::new)
+                    .map(Kernel::Four),
+                5..=8 => Linear::new(servo, &space, period, output)
+                    .map(Box::new)
+                    .map(Kernel::Eight),
+                _ => Linear::new(servo, &space, period, output)
+                    .map(Box::new)
+                    .map(Kernel::Twelve),
             }
+        };
+        let Some(kernel) = kernel else {
+            let message = "the equations of this servo are out of all proportion";
+            return Err(Diagnostic::error("servo", message)
+                .at(servo.place.clone())
+                .help("are its numbers in the units of the machine file?")
+                .boxed());
         };
         let mut follower = Self { kernel };
         follower.settle(0.0);

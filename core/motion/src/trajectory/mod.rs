@@ -1,6 +1,15 @@
 //! Tasks become set-points: look-ahead over blocks, limits of the axes and of the tip, corners, and the time law.
 
-use crate::{SetPoints, Task};
+mod account;
+mod bounds;
+mod corner;
+mod law;
+mod look_ahead;
+mod planner;
+pub mod profile;
+mod smooth;
+
+pub use planner::Planner;
 
 /// How long a task took, and what kept it from being faster.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,27 +61,4 @@ pub enum Filled {
     Wants,
     /// All tasks are carried out.
     Ended,
-}
-
-/// Makes set-points of tasks, some tasks behind.
-#[derive(Debug)]
-pub struct Planner {}
-
-impl Planner {
-    /// Takes the next task.
-    pub fn push(&mut self, _task: Task) {}
-
-    /// There are no more.
-    pub fn end(&mut self) {}
-
-    /// Fills `out` behind what it holds, up to `most` set-points, as far as is settled; the times of tasks that are done
-    /// go to `times`.
-    pub fn fill(
-        &mut self,
-        _out: &mut SetPoints,
-        _most: usize,
-        _times: &mut Vec<TaskTime>,
-    ) -> Filled {
-        Filled::Ended
-    }
 }

@@ -3,3 +3,4 @@
 
 mod contour;
 mod servo;
+mod trajectory;

@@ -16,10 +16,10 @@ use post_readback::lexicon::Lexicon;
 use post_readback::tasks::{Planned, Tasks};
 use post_readback::{Done, Offsets, Told};
 
-use super::{cl_path, found};
 use super::prediction::Prediction;
 use super::sample::Sample;
 use super::stages::Stages;
+use super::{cl_path, found};
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, FileFault};

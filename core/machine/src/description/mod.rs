@@ -21,6 +21,7 @@ mod quantity;
 mod schema;
 mod servo;
 mod servo_file;
+mod servo_models;
 mod setting;
 mod smoothing;
 mod spindle;

@@ -82,3 +82,68 @@ pub(super) fn add<const N: usize>(sum: &mut [f64; N], vector: &[f64; N], factor:
 pub(super) fn dot<const N: usize>(row: &[f64; N], vector: &[f64; N]) -> f64 {
     row.iter().zip(vector).map(|(one, other)| one * other).sum()
 }
+
+/// Where a table stands that stood at `table` while the motor has gone to `motor`, with play between them.
+#[inline(always)]
+pub(super) fn play(table: f64, motor: f64, half_play: f64) -> f64 {
+    if half_play > 0.0 {
+        table.max(motor - half_play).min(motor + half_play)
+    } else {
+        motor
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The series of the matrix exponential over a step so small that few terms do, then doubled: no Padé fraction, no
+    /// balancing, and the integrals of the inputs as sums of their own.
+    fn by_series(
+        a: &DMatrix<f64>,
+        b: &DVector<f64>,
+        step: f64,
+        doublings: i32,
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let order = a.nrows();
+        let small = step * libm::pow(2.0, f64::from(-doublings));
+        let mut term = DMatrix::identity(order, order);
+        let mut transition = term.clone();
+        let mut integral = &term * small;
+        for power in 1..20 {
+            term = &term * a * small / f64::from(power);
+            transition += &term;
+            integral += &term * (small / f64::from(power + 1));
+        }
+        for _ in 0..doublings {
+            integral = &transition * &integral + integral;
+            transition = &transition * &transition;
+        }
+        (transition, integral * b)
+    }
+
+    #[test]
+    fn the_exponential_is_its_series() {
+        // A stiff winding beside a table that swings, states of very different sizes.
+        let a = DMatrix::from_row_slice(
+            4,
+            4,
+            &[
+                0.0, 1.0, 0.0, 0.0, -3.5e5, -12.0, 3.5e5, 2e2, 0.0, 0.0, -40.0, 1e-3, 5e3, -2e4,
+                0.0, -4e3,
+            ],
+        );
+        let b = DVector::from_column_slice(&[0.0, 1e3, 40.0, 1e6]);
+        let none = DVector::zeros(4);
+        for step in [2.5e-4, 1e-3, 1.5e-2] {
+            let solved = Discrete::new(&a, &b, &none, &b, step);
+            let (transition, input) = by_series(&a, &b, step, 20);
+            let apart = (&solved.transition - &transition).amax();
+            assert!(apart < 1e-9 * transition.amax(), "{step}: {apart:e}");
+            for found in [&solved.value, &solved.force] {
+                let apart = (found - &input).amax();
+                assert!(apart < 1e-9 * input.amax(), "{step}: {apart:e}");
+            }
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use post_machine::servo::{Servo, StateSpace};
 
 use super::Output;
-use super::discrete::{Discrete, add, columns, dot, padded};
+use super::discrete::{Discrete, add, columns, dot, padded, play};
 
 /// The exact solution over one period, and where it stands. N states, those that are not needed zero: arrays of one length
 /// without a test in the loop are what a compiler makes vector instructions of.
@@ -93,9 +93,7 @@ impl<const N: usize> Linear<N> {
             states = sum;
             (commanded, last_change) = (next, change);
             let motor = dot(&self.position, &states) + self.through * next;
-            table = table
-                .max(motor - self.half_play)
-                .min(motor + self.half_play);
+            table = play(table, motor, self.half_play);
             put(index, table);
         }
         self.states = states;

@@ -133,8 +133,8 @@ impl Follower {
             Kernel::SteppedEight(Box::new(Stepped::new(servo, &space, period, output)))
         } else {
             match space.order() {
-                ..=4 => Kernel::Four(Box::new(Linear::new(servo, &space, period, output))),
-                ..=8 => Kernel::Eight(Box::new(Linear::new(servo, &space, period, output))),
+                0..=4 => Kernel::Four(Box::new(Linear::new(servo, &space, period, output))),
+                5..=8 => Kernel::Eight(Box::new(Linear::new(servo, &space, period, output))),
                 _ => Kernel::Twelve(Box::new(Linear::new(servo, &space, period, output))),
             }
         };

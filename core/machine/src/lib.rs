@@ -3,7 +3,7 @@
 //! [`description`] reads the file, [`kinematics`] derives forward and inverse solutions from its chain,
 //! [`axis_words`] turns axis values into the words of a block and back, [`check`] derives what the machine's
 //! builder can compare, [`place`] where a part can sit, and [`tilted_plane`] how
-//! a control is told a plane. [`diagnostic`] is how every storey of the core says what is wrong.
+//! a control is told a plane. [`servo`] has the equations of the axes' servos. [`diagnostic`] is how every storey of the core says what is wrong.
 //! There is no input or output here, no unsafe code, no CL record and no dialect's name.
 
 pub mod axis_words;
@@ -14,4 +14,5 @@ mod halton;
 pub mod kinematics;
 pub mod place;
 pub mod program_text;
+pub mod servo;
 pub mod tilted_plane;

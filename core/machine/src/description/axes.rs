@@ -292,6 +292,7 @@ impl Builder<'_> {
             feed_diameter,
             max_accel,
             max_jerk,
+            servo: None,
         })
     }
 

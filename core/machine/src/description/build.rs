@@ -209,6 +209,7 @@ impl Builder<'_> {
         }
         let mut axes = self.axes(file)?;
         self.seconds(file, &mut axes);
+        self.servos(file, &mut axes);
         let mount = match &file.workpiece.mount {
             Some(mount) => self.vector(mount),
             None => Vector3::zeros(),

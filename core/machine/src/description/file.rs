@@ -11,6 +11,7 @@ use toml::Spanned;
 use super::motion_file::MotionFile;
 use super::program_file::ProgramFile;
 use super::quantity::{Number, Quantity};
+use super::servo_file::ServoFile;
 
 /// A machine tool as `post` knows it. Positions are in mm in the machine frame with every axis at zero;
 /// directions are those of the tool as seen from the part (ISO 841). Any number may be an expression of the
@@ -42,6 +43,10 @@ pub(crate) struct MachineFile {
     /// The axes of the chain by their letters.
     #[schemars(with = "BTreeMap<String, AxisFile>", extend("propertyNames" = { "pattern": "^[A-CEI-LPQRU-Z][0-9]*$" }))]
     pub axis: BTreeMap<String, Spanned<AxisFile>>,
+    /// How far the axes are from their set-points, by their letters; those of an axis without are followed exactly.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, ServoFile>", extend("propertyNames" = { "pattern": "^[A-CEI-LPQRU-Z][0-9]*$" }))]
+    pub servo: BTreeMap<String, Spanned<ServoFile>>,
     /// The control and its language.
     #[schemars(with = "ControlFile")]
     pub control: Spanned<ControlFile>,

@@ -19,6 +19,9 @@ mod program;
 mod program_file;
 mod quantity;
 mod schema;
+mod servo;
+mod servo_file;
+mod servo_models;
 mod setting;
 mod smoothing;
 mod spindle;
@@ -50,6 +53,7 @@ pub use spindle::SpindleSpeeds;
 
 use crate::diagnostic::{Diagnostic, Place};
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
+use crate::servo::Servo;
 
 /// A machine.
 #[derive(Clone, Debug)]
@@ -159,6 +163,8 @@ pub struct Axis {
     pub max_accel: f64,
     /// Largest jerk, mm/s³ or rad/s³; infinite if the file does not say.
     pub max_jerk: f64,
+    /// How far it is from its set-points; none: it follows them exactly.
+    pub servo: Option<Box<Servo>>,
 }
 
 /// An axis that moves off the part alone.

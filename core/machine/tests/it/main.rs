@@ -13,4 +13,5 @@ mod kinematics;
 mod linuxcnc;
 mod machine_file;
 mod place;
+mod servo;
 mod tilted_plane;

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::detour::Detour;
 use super::place::{Apart, Place, Span, free, nearest};
 use super::sweep::Stray;
 use super::track::{MOST, What};
@@ -301,7 +302,6 @@ impl<C: Course> Verifier<'_, C> {
 
     /// A cut begins: where on the course may that be?
     pub(super) fn begin_cut(&mut self, motion: &Motion, place: &Place) {
-        self.look_for_detours(motion);
         let (bound, rapid) = (self.bound, self.rapid_bound);
         let mut reach = std::mem::take(&mut self.reach);
         // Behind what was cut so far.
@@ -336,7 +336,11 @@ impl<C: Course> Verifier<'_, C> {
         }
         self.reach = reach;
         if goes_on {
+            // A cut that is left and gone on with: what was done in between is the program's own business.
             self.found.excursions += 1;
+            self.detour = Detour::default();
+        } else {
+            self.look_for_detours(motion);
         }
         if self.reach.iter().all(Span::is_empty) {
             self.find_cut(motion, place, self.next.unwrap_or(stood));

@@ -712,6 +712,7 @@ fn rapids_that_swing_out_of_where_they_are_asked_for_are_found() {
     let asks = || {
         Asks::default()
             .rapid(0.0, 0.0, 10.0)
+            .rapid(0.0, 0.0, 1.0)
             .cut(0.0, 0.0, -2.0)
             .cut(20.0, 0.0, -2.0)
             .rapid(20.0, 0.0, 10.0)

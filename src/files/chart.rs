@@ -92,6 +92,9 @@ pub const LIMIT: Look = look("#000000", 0.9, "14 4", None);
 /// What something is compared with.
 pub const GREY: Look = look("#8c8c8c", 2.4, "", None);
 
+/// Dots that no other line has.
+pub const DOTTED: Look = look("#000000", 1.6, "2 3", None);
+
 /// Its plain dashes.
 pub const DASHED: Look = look("#000000", 1.4, "9 4", None);
 

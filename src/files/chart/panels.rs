@@ -16,6 +16,8 @@ pub struct Panels {
     pub note: String,
     /// What goes across, with its unit.
     pub x: String,
+    /// It goes across by its logarithm.
+    pub logarithmic: bool,
     /// The plots, the first at the top; a name of the legend counts for all of them.
     pub panels: Vec<Panel>,
 }
@@ -37,7 +39,11 @@ impl Panels {
     pub fn svg(&self) -> String {
         let all = || self.panels.iter().flat_map(|panel| &panel.series);
         let corners: Vec<[f64; 2]> = all().flat_map(Series::corners).collect();
-        let x = Scale::new(corners.iter().map(|corner| corner[0]), 10.0, false);
+        let across = corners.iter().map(|corner| corner[0]);
+        let x = match self.logarithmic {
+            true => Scale::decades(across),
+            false => Scale::new(across, 10.0, false),
+        };
         let mut named: Vec<&Series> = Vec::new();
         for series in all() {
             let known = named.iter().any(|known| known.name == series.name);

@@ -1,16 +1,17 @@
 //! What the stages have found, in the units of the control, and what was taken for granted.
 
+use post_machine::axis_words;
 use post_machine::description::{Axis, Machine};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::MAX_AXES;
 use post_motion::contour::{self, ContourReport, Peak};
 
 use super::prediction::{AxisFound, ContourFound, Extreme, Spread};
 
 /// Of each axis the largest values.
 pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
-    let axes = machine.axes.iter().zip(&report.axes);
-    let axes = axes.map(|(axis, peaks)| {
+    let places = axis_words::order(machine).into_iter();
+    let axes = places.map(|place| {
+        let (axis, peaks) = (&machine.axes[place], &report.axes[place]);
         let extreme = |peak: &Peak, scale: f64, limit: f64| Extreme {
             value: peak.value * scale / axis.unit(),
             limit: Some(limit / axis.unit()).filter(|limit| limit.is_finite()),
@@ -27,7 +28,7 @@ pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
             jerk: extreme(&peaks.jerk, 1.0, axis.max_jerk),
         }
     });
-    axes.take(MAX_AXES).collect()
+    axes.collect()
 }
 
 /// How far the tool is off its path.

@@ -1,5 +1,6 @@
 //! What a program does on the machine before it is run there: set-points, servos, contour error.
 
+mod cl_path;
 mod feeds;
 mod found;
 mod prediction;

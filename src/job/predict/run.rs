@@ -8,21 +8,23 @@ use std::sync::Arc;
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::kinematics::Unreachable;
 use post_motion::trajectory::{Filled, Planner};
 use post_motion::{SetPoints, Task};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};
 use post_readback::lexicon::Lexicon;
 use post_readback::tasks::{Planned, Tasks};
-use post_readback::{Done, Offsets};
+use post_readback::{Done, Offsets, Told};
 
-use super::found;
 use super::prediction::Prediction;
 use super::sample::Sample;
 use super::stages::Stages;
+use super::{cl_path, found};
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, FileFault};
 use crate::job::{nc_program, read_back};
+use crate::terminal::number;
 
 /// Set-points of a batch.
 const BATCH: usize = 256;
@@ -77,17 +79,21 @@ pub fn predict<R: Read + Seek>(
     let period = asked.period();
     let words = nc_program::spoken(asked.finder, asked.machine)?.words;
     let lexicon = Lexicon::new(&words);
-    let tools = Vec::new();
+    let tools = match source {
+        Some(source) => cl_path::tools(asked, source)?,
+        None => Vec::new(),
+    };
     let offsets = match &asked.offsets {
         Some(offsets) => offsets.clone(),
         None => read_back::offsets(asked.arguments, asked.machine, &tools),
     };
-    let machine = &read_back::as_counted(asked.machine, &words, &offsets);
+    let mut machine = read_back::as_counted(asked.machine, &words, &offsets);
+    machine.motion.period = period;
+    let machine = &machine;
     let unreadable = |error| FileFault::Read {
         name: name.to_owned(),
         error,
     };
-    let length = input.seek(SeekFrom::End(0)).map_err(unreadable)?;
     input.seek(SeekFrom::Start(0)).map_err(unreadable)?;
     let input = BufReader::new(&mut input);
     let mut program = Interpreter::new(machine, &lexicon, &offsets, asked.limits, name, input)
@@ -100,13 +106,17 @@ pub fn predict<R: Read + Seek>(
         ended: false,
     };
     let mut stages = Stages::new(machine, period)?;
-    let mut planner = Planner::new(machine, period).map_err(|fault| *fault)?;
+    let mut planner = Planner::new(machine);
     let mut points: Option<SetPoints> = None;
     let mut times = Vec::new();
     loop {
         let filled = match &mut points {
             None => Filled::Wants,
-            Some(points) => planner.fill(points, BATCH, &mut times),
+            Some(points) => {
+                let filled = planner.fill(points, BATCH, &mut times);
+                let line = points.at.last().map_or(0, |at| at.line);
+                filled.map_err(|fault| unreachable(fault, name, line))?
+            }
         };
         stages.done(machine, &mut times);
         if let Some(points) = &mut points
@@ -119,7 +129,7 @@ pub fn predict<R: Read + Seek>(
             Filled::Full => {}
             Filled::Ended => break,
             Filled::Wants => {
-                reading.more(&mut program);
+                reading.more(&mut program, name);
                 if reading.unread.len() >= MOST_UNREAD {
                     break;
                 }
@@ -129,9 +139,13 @@ pub fn predict<R: Read + Seek>(
                         stages.servos.settle(&first.from.joints);
                     }
                     stages.ahead(&planned);
+                    let line = match &planned.task {
+                        Task::Move(task) => task.line,
+                        Task::Wait { line, .. } => *line,
+                    };
                     planner
                         .push(planned.task)
-                        .map_err(|fault| placed(*fault, name))?;
+                        .map_err(|fault| unreachable(fault, name, line))?;
                 }
                 if reading.ended {
                     if points.is_none() {
@@ -165,10 +179,13 @@ struct Reading {
 
 impl Reading {
     /// Runs blocks until there is a task, or the program ends.
-    fn more<R: Read + Seek>(&mut self, program: &mut Interpreter<R>) {
+    fn more<R: Read + Seek>(&mut self, program: &mut Interpreter<R>, name: &str) {
         while self.planned.is_empty() && !self.ended && self.unread.len() < MOST_UNREAD {
             match program.next(&mut self.done) {
-                Ok(true) => self.tasks.take(&mut self.done, &mut self.planned),
+                Ok(true) => {
+                    self.unread.extend(self.head(name));
+                    self.tasks.take(&mut self.done, &mut self.planned);
+                }
                 Ok(false) => {
                     self.tasks.end(&mut self.planned);
                     self.ended = true;
@@ -177,6 +194,46 @@ impl Reading {
             }
         }
     }
+
+    /// A head was swapped in: from here on the axes are others.
+    fn head(&self, name: &str) -> Option<Diagnostic> {
+        self.done.iter().find_map(|done| match done {
+            Done::Told {
+                line,
+                told: Told::Head(head),
+            } => {
+                let message = format!("head {head} is swapped in: other axes move from here on");
+                let help = "predict the programs of its heads one by one (post --split tools)";
+                let place = Place::new(name, *line, "", 0..0);
+                Some(
+                    Diagnostic::error("head", message)
+                        .help(help)
+                        .at(Some(place)),
+                )
+            }
+            _ => None,
+        })
+    }
+}
+
+/// The axes cannot follow a move.
+fn unreachable(fault: Unreachable, name: &str, line: u64) -> Diagnostic {
+    let message = match fault {
+        Unreachable::Axis { miss } => format!(
+            "on this way no rotary angles give the tool axis, by {}°",
+            number(miss.to_degrees(), 4)
+        ),
+        Unreachable::Linear => "on this way the linear axes lie in a plane".to_owned(),
+        Unreachable::Numeric { miss } => format!(
+            "on this way no axis values were found that give tip and tool axis, by {} mm",
+            number(miss, 4)
+        ),
+    };
+    let place = Place::new(name, line, "", 0..0);
+    let help = "tool lengths and work offsets may be others: --tool-length, --offsets, --mount";
+    Diagnostic::error("motion-unreachable", message)
+        .help(help)
+        .at(Some(place))
 }
 
 /// What the reading of the program has to say.

@@ -7,12 +7,14 @@ use post_machine::kinematics::{Joints, Pose};
 pub struct Sample {
     /// When, s from the beginning of the program.
     pub time: f64,
-    /// Line of the program at the nearest point of the path.
+    /// Line of the program that is carried out.
     pub line: u64,
     /// Line of the CL file whose path is nearest, where one is given.
     pub cl_line: Option<u64>,
     /// At feed: the tool cuts.
     pub cuts: bool,
+    /// The tool is nearest to a cut: its error counts.
+    pub counts: bool,
     /// Axis values commanded, mm and radians, counted from the drawing's zero, in chain order.
     pub commanded: Joints,
     /// Axis values of the same time, as the servos make them.
@@ -27,7 +29,7 @@ pub struct Sample {
     pub size: f64,
     /// Angle of the tool axis against the path there, radians.
     pub axis: f64,
-    /// Commanded feed of the tip against the part since the set-point before, mm/min.
+    /// Commanded feed of the tip against the part since the set-point before, mm/min; zero where that was no cut.
     pub feed: f64,
     /// Feed that the program states, mm/min; zero for rapids and waits.
     pub programmed: f64,

@@ -9,7 +9,7 @@ use post_machine::kinematics::{Joints, Solver};
 use post_motion::contour::{Contour, ContourPoint};
 use post_motion::servo::Servos;
 use post_motion::trajectory::TaskTime;
-use post_motion::{SetPoints, Task};
+use post_motion::{At, SetPoints, Task};
 use post_readback::State;
 use post_readback::tasks::Planned;
 
@@ -44,9 +44,9 @@ pub struct Stages {
     state: Option<Arc<State>>,
     operation: usize,
     actual: Vec<Joints>,
-    /// True and programmed feed of set-points whose contour error is not known yet.
-    feeds: VecDeque<[f64; 2]>,
-    /// Where the tip was commanded last, and by which chain.
+    /// Set-points whose contour error is not known yet: what is carried out, and the feed that the tip has and should.
+    waiting: VecDeque<(At, [f64; 2])>,
+    /// Where the tip was commanded last in a cut, and by which chain.
     last: Option<(Vector3<f64>, Arc<Solver>)>,
     times: TimeTally,
     feed_tally: FeedTally,
@@ -65,7 +65,7 @@ impl Stages {
             state: None,
             operation: 0,
             actual: Vec::new(),
-            feeds: VecDeque::new(),
+            waiting: VecDeque::new(),
             last: None,
             times: TimeTally::default(),
             feed_tally: FeedTally::new(period),
@@ -127,21 +127,21 @@ impl Stages {
             let solver = &points.solver;
             // Where another length counts from here on, the tip is elsewhere without having gone there.
             let last = self.last.as_ref();
-            let last = last.filter(|(_, known)| Arc::ptr_eq(known, solver));
-            let way = last.map_or(0.0, |(tip, _)| (pose.tip - tip).norm());
-            self.last = Some((pose.tip, Arc::clone(solver)));
-            let feed = 60.0 * way / self.period;
+            let last = last.filter(|(_, known)| at.cuts && Arc::ptr_eq(known, solver));
+            let way = last.map(|(tip, _)| (pose.tip - tip).norm());
+            let feed = 60.0 * way.unwrap_or(0.0) / self.period;
             let programmed = self.about(at.task).feed;
-            if at.cuts {
+            if way.is_some() {
                 self.feed_tally.take(feed, programmed, at.line);
             }
-            self.feeds.push_back([feed, programmed]);
+            self.last = at.cuts.then(|| (pose.tip, Arc::clone(solver)));
+            self.waiting.push_back((*at, [feed, programmed]));
         }
         self.set_points += points.len() as u64;
         let mut failed = Ok(());
-        let feeds = &mut self.feeds;
+        let waiting = &mut self.waiting;
         self.contour.take(points, &self.actual, &mut |point| {
-            let sample = sample(point, feeds);
+            let sample = sample(point, waiting);
             if failed.is_ok() {
                 failed = listen(&sample);
             }
@@ -165,9 +165,9 @@ impl Stages {
         listen: &mut dyn FnMut(&Sample) -> Result<(), Failure>,
     ) -> Result<Prediction, Failure> {
         let mut failed = Ok(());
-        let feeds = &mut self.feeds;
+        let waiting = &mut self.waiting;
         let contour = self.contour.finish(&mut |point| {
-            let sample = sample(point, feeds);
+            let sample = sample(point, waiting);
             if failed.is_ok() {
                 failed = listen(&sample);
             }
@@ -192,13 +192,14 @@ impl Stages {
 }
 
 /// A set-point with what is known of it by now.
-fn sample(point: &ContourPoint, feeds: &mut VecDeque<[f64; 2]>) -> Sample {
-    let [feed, programmed] = feeds.pop_front().unwrap_or_default();
+fn sample(point: &ContourPoint, waiting: &mut VecDeque<(At, [f64; 2])>) -> Sample {
+    let (at, [feed, programmed]) = waiting.pop_front().unwrap_or_default();
     Sample {
         time: point.time,
-        line: point.at.line,
+        line: at.line,
         cl_line: None,
-        cuts: point.at.cuts,
+        cuts: at.cuts,
+        counts: point.at.cuts,
         commanded: point.commanded_joints,
         actual: point.actual_joints,
         pose: point.commanded,

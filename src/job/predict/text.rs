@@ -58,15 +58,21 @@ fn head(text: &mut String, found: &Prediction) {
         row(
             "feed",
             format!(
-                "{} mm/min of {} programmed on average over {} mm of cuts, {:.1} % ({} instead of {}); at most {}, in line {}; below 95 % for {}",
+                "{} mm/min on average over {} mm of cuts, programmed {}; at most {}, in line {}",
                 number(feed.true_mean, 0),
-                number(feed.programmed_mean, 0),
                 number(feed.way_mm, 1),
+                number(feed.programmed_mean, 0),
+                number(feed.true_largest, 0),
+                feed.largest_nc_line,
+            ),
+        );
+        row(
+            "",
+            format!(
+                "{:.1} % of what is programmed: {} instead of {}; below 95 % of it for {}",
                 100.0 * feed.true_mean / feed.programmed_mean,
                 clock(time.cutting_s),
                 clock(time.cutting_at_feed_s),
-                number(feed.true_largest, 0),
-                feed.largest_nc_line,
                 clock(feed.below_95_percent_s)
             ),
         );
@@ -75,36 +81,67 @@ fn head(text: &mut String, found: &Prediction) {
         Some(file) => format!(", against {file}"),
         None => String::new(),
     };
-    row(
-        "contour error",
-        format!("{}{against}", spread(&found.contour.tip_mm, "mm", 4)),
-    );
-    for part in &found.contour.parts {
-        row(&format!("  {}", part.part), spread(&part.tip_mm, "mm", 4));
+    let contour = &found.contour;
+    let tip = Shown {
+        unit: "µm",
+        scale: 1e3,
+        decimals: 2,
+    };
+    let axis = Shown {
+        unit: "°",
+        scale: 1.0,
+        decimals: 5,
+    };
+    let most = tip.largest(&contour.tip_mm);
+    row("contour error", format!("{most}{against}"));
+    tip.spread(&mut row, &contour.tip_mm);
+    for part in &contour.parts {
+        row(&format!("  {}", part.part), tip.largest(&part.tip_mm));
     }
-    row("tool axis", spread(&found.contour.axis_deg, "°", 5));
+    row("tool axis", axis.largest(&contour.axis_deg));
+    axis.spread(&mut row, &contour.axis_deg);
 }
 
-/// `at most 0.0123 mm, in line 812 of the program, CL line 40; RMS 0.0031; 50, 95, 99 % within 0.0010, 0.0030, 0.0040`.
-fn spread(spread: &Spread, unit: &str, decimals: u8) -> String {
-    let show = |value: f64| number(value, decimals);
-    let mut text = format!("at most {} {unit}", show(spread.largest));
-    if spread.largest == 0.0 {
-        return text;
+/// How errors are shown.
+struct Shown {
+    unit: &'static str,
+    /// From the unit of the JSON.
+    scale: f64,
+    decimals: u8,
+}
+
+impl Shown {
+    fn number(&self, value: f64) -> String {
+        number(value * self.scale, self.decimals)
     }
-    let _ = write!(text, ", in line {} of the program", spread.nc_line);
-    if let Some(line) = spread.cl_line {
-        let _ = write!(text, ", CL line {line}");
+
+    /// `at most 12.30 µm, in line 812 of the program, CL line 40`.
+    fn largest(&self, spread: &Spread) -> String {
+        let mut text = format!("at most {} {}", self.number(spread.largest), self.unit);
+        if self.is_seen(spread) {
+            let _ = write!(text, ", in line {} of the program", spread.nc_line);
+            if let Some(line) = spread.cl_line {
+                let _ = write!(text, ", CL line {line}");
+            }
+        }
+        text
     }
-    let _ = write!(
-        text,
-        "; RMS {}; 50, 95, 99 % within {}, {}, {}",
-        show(spread.rms),
-        show(spread.p50),
-        show(spread.p95),
-        show(spread.p99)
-    );
-    text
+
+    /// `RMS 3.10; half within 1.00, 95 % within 3.00, 99 % within 4.00`.
+    fn spread(&self, row: &mut impl FnMut(&str, String), spread: &Spread) {
+        if self.is_seen(spread) {
+            let [rms, p50, p95, p99] =
+                [spread.rms, spread.p50, spread.p95, spread.p99].map(|value| self.number(value));
+            let text =
+                format!("RMS {rms}; half within {p50}, 95 % within {p95}, 99 % within {p99}");
+            row("", text);
+        }
+    }
+
+    /// The largest is no zero when it is printed.
+    fn is_seen(&self, spread: &Spread) -> bool {
+        self.number(spread.largest) != self.number(0.0)
+    }
 }
 
 fn axes(text: &mut String, axes: &[AxisFound]) {
@@ -125,7 +162,7 @@ fn axes(text: &mut String, axes: &[AxisFound]) {
     let mut rows = vec![head.map(str::to_owned)];
     for axis in axes {
         let following = match axis.servo {
-            true => number(axis.following.value, 4),
+            true => number(axis.following.value, 5),
             false => "-".to_owned(),
         };
         let line = |extreme: &Extreme| match extreme.nc_line {

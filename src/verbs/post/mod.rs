@@ -21,6 +21,7 @@ use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
 use crate::job::one_program::OneProgram;
+use crate::job::predict::{self, Asked, Predicted, Prediction};
 use crate::job::read_back::{self, Held, Reading};
 use crate::job::{self, plugin_finder};
 use crate::terminal;
@@ -34,6 +35,11 @@ const SUMMARY: Role = Role {
 const SETUP_SHEET: Role = Role {
     what: "setup sheet",
     remedy: "name another file with --setup-sheet",
+};
+
+const PREDICTION: Role = Role {
+    what: "prediction",
+    remedy: "name another file with --predict=",
 };
 
 #[derive(Debug, Args)]
@@ -68,6 +74,11 @@ pub struct PostArguments {
     #[arg(long)]
     verify: bool,
 
+    /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axes, and how far the tool
+    /// strays; with =FILE as JSON too, of several programs a list.
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, value_parser = PathArg::parser())]
+    predict: Option<Option<PathArg>>,
+
     /// No summary, warnings and errors alone.
     #[arg(short, long)]
     quiet: bool,
@@ -93,7 +104,9 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     job::say_what_is_left(&arguments.job, &machine, &finder);
     let looks_ahead =
         machine.program.looks_ahead || arguments.split.is_some() || arguments.setup_sheet.is_some();
-    let mut source = ClSource::new(arguments.job.input(), looks_ahead || machine.control.planes)?;
+    let twice =
+        looks_ahead || machine.control.planes || arguments.verify || arguments.predict.is_some();
+    let mut source = ClSource::new(arguments.job.input(), twice)?;
     let ahead = match looks_ahead {
         true => Some(job::look_ahead(
             &arguments.job,
@@ -116,10 +129,13 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             .iter()
             .map(|sheet| (SETUP_SHEET, sheet)),
     );
+    let prediction = arguments.predict.iter().flatten();
+    targets.extend(prediction.map(|target| (PREDICTION, target)));
     // All are opened before the work begins: a program without its summary would be half a result.
     let mut files = AtomicFile::create(&targets)?;
     let mut reports = Vec::new();
     let mut verifications = Vec::new();
+    let mut predictions = Vec::new();
     let mut findings = Vec::new();
     for (part, file) in parts.iter().zip(&mut files) {
         let program = OneProgram {
@@ -149,6 +165,11 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             }
             verifications.push(held.found);
         }
+        if arguments.predict.is_some() {
+            let predicted = predicted(arguments, part, &finder, &mut source, file)?;
+            findings.extend(predicted.findings);
+            predictions.push(predicted.found);
+        }
     }
     let mut others = files[parts.len()..].iter_mut();
     if let (Some(_), Some(file)) = (&arguments.summary, others.next()) {
@@ -158,6 +179,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             .map(|(index, report)| Told {
                 report,
                 verification: verifications.get(index),
+                prediction: predictions.get(index),
             })
             .collect();
         let json = match (arguments.split, told.as_slice()) {
@@ -166,7 +188,12 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         };
         file.write_bytes(json.as_bytes())?;
     }
-    if let (Some(sheet), Some(ahead)) = (&arguments.setup_sheet, &ahead) {
+    let sheet_file = arguments
+        .setup_sheet
+        .is_some()
+        .then(|| others.next())
+        .flatten();
+    if let (Some(sheet), Some(ahead), Some(file)) = (&arguments.setup_sheet, &ahead, sheet_file) {
         let programs: Vec<_> = parts
             .iter()
             .map(|part| &part.target)
@@ -179,9 +206,14 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             ahead,
             &programs,
         );
-        if let Some(file) = files.last_mut() {
-            file.write_bytes(text.as_bytes())?;
-        }
+        file.write_bytes(text.as_bytes())?;
+    }
+    if let (Some(Some(_)), Some(file)) = (&arguments.predict, others.next()) {
+        let json = match (arguments.split, predictions.as_slice()) {
+            (None, [prediction]) => files::json(prediction),
+            (_, predictions) => files::json(&predictions),
+        };
+        file.write_bytes(json.as_bytes())?;
     }
     // Standard output is for a program or for JSON, alone there.
     let taken = files.iter().any(AtomicFile::is_standard);
@@ -198,7 +230,11 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             path.display().to_string()
         });
         for (index, (part, report)) in parts.iter().zip(&reports).enumerate() {
-            let text = summary::text(report, verifications.get(index), &name, &part.target);
+            let mut text = summary::text(report, verifications.get(index), &name, &part.target);
+            if let Some(found) = predictions.get(index) {
+                text.push('\n');
+                text.push_str(&predict::text(found));
+            }
             if taken {
                 terminal::tell(&text);
             } else {
@@ -290,6 +326,28 @@ fn read_back(
     read_back::verify(&reading, source, &name, text, &mut |_| {})
 }
 
+/// Predicts what a program does, read back from the disk.
+fn predicted(
+    arguments: &PostArguments,
+    part: &Part,
+    finder: &Finder,
+    source: &mut ClSource,
+    file: &mut AtomicFile,
+) -> Result<Predicted, Failure> {
+    let asked = Asked {
+        arguments: &arguments.job,
+        machine: &part.machine,
+        finder,
+        offsets: None,
+        limits: Limits::default(),
+        period: None,
+        lines: part.lines.clone(),
+    };
+    let name = file.name().to_owned();
+    let text = file.reread()?;
+    predict::predict(&asked, Some(source), &name, text, &mut |_| Ok(()))
+}
+
 /// What the summary tells as JSON.
 #[derive(Serialize)]
 struct Told<'a> {
@@ -298,6 +356,9 @@ struct Told<'a> {
     /// What reading the program back has found.
     #[serde(skip_serializing_if = "Option::is_none")]
     verification: Option<&'a Verification>,
+    /// What is predicted of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    prediction: Option<&'a Prediction>,
 }
 
 /// Where the program goes.

@@ -1,14 +1,14 @@
 //! The pictures of a prediction: what is kept for them while it runs, and the charts. The figures that they follow are
 //! those of Zhang, Chen 2025: axis errors (figs. 9 to 11), feed (fig. 8), contour error (fig. 12).
 
+use post_machine::axis_words;
 use post_machine::description::Machine;
-use post_machine::kinematics::MAX_AXES;
 
 use super::envelope::Envelope;
 use super::path_pictures;
 use super::spectrum::Spectrum;
 use super::trail::Trail;
-use crate::files::chart::{DASHED, Draw, LOOKS, Panel, Panels, Series};
+use crate::files::chart::{DASHED, DOTTED, Draw, LOOKS, Panel, Panels, Series};
 use crate::job::predict::{Prediction, Sample};
 
 /// The files that there can be.
@@ -24,6 +24,9 @@ pub const NAMES: [&str; 6] = [
 /// Micrometres of a millimetre, thousandths of a degree of a degree.
 const MICRO: f64 = 1e3;
 
+/// The lowest frequency of the spectrum, Hz: what is below it is the path.
+const LOWEST: f64 = 1.0;
+
 /// A file of a prediction: its name and its text.
 pub type File = (&'static str, String);
 
@@ -31,7 +34,7 @@ pub type File = (&'static str, String);
 pub struct Rooms {
     axes: Vec<DrawnAxis>,
     period: f64,
-    /// Errors of the axes over time, a channel each.
+    /// Errors of the axes over time: a channel each in cuts, and one each at rapid.
     lags: Envelope,
     /// Feed in cuts over time: that of the tip, that of the program.
     feeds: Envelope,
@@ -66,7 +69,9 @@ impl DrawnAxis {
 
 impl Rooms {
     pub fn new(machine: &Machine, period: f64) -> Self {
-        let axes = machine.axes.iter().take(MAX_AXES).enumerate();
+        let axes = axis_words::order(machine)
+            .into_iter()
+            .map(|place| (place, &machine.axes[place]));
         let axes: Vec<DrawnAxis> = axes
             .filter(|(_, axis)| axis.servo.is_some())
             .map(|(place, axis)| DrawnAxis {
@@ -77,11 +82,11 @@ impl Rooms {
             .collect();
         Self {
             period,
-            lags: Envelope::new(axes.len().max(1), period),
+            lags: Envelope::new(2 * axes.len().max(1), period),
             feeds: Envelope::new(2, period),
             contour: Envelope::new(2, 1e-3),
             trail: Trail::new(),
-            spectra: axes.iter().map(|_| Spectrum::new()).collect(),
+            spectra: axes.iter().map(|_| Spectrum::new(period)).collect(),
             axes,
         }
     }
@@ -89,17 +94,21 @@ impl Rooms {
     /// Takes the next set-point.
     pub fn take(&mut self, sample: &Sample) {
         let lag = |axis: &DrawnAxis| sample.commanded[axis.place] - sample.actual[axis.place];
-        self.lags.take(sample.time, self.axes.iter().map(lag));
+        let lags = [sample.cuts, !sample.cuts].into_iter().flat_map(|now| {
+            let axes = self.axes.iter();
+            axes.map(move |axis| if now { lag(axis) } else { f64::NAN })
+        });
+        self.lags.take(sample.time, lags);
         for (axis, spectrum) in self.axes.iter().zip(&mut self.spectra) {
             spectrum.take(lag(axis));
         }
-        let feeds = match sample.cuts {
+        let feeds = match sample.feed > 0.0 {
             true => [sample.feed, sample.programmed],
             false => [f64::NAN; 2],
         };
         self.feeds.take(sample.time, feeds.into_iter());
         self.trail.take(sample);
-        if sample.cuts {
+        if sample.counts {
             let errors = [sample.size, sample.axis];
             self.contour.take(self.trail.way, errors.into_iter());
         }
@@ -109,7 +118,7 @@ impl Rooms {
     pub fn files(&self, found: &Prediction) -> Vec<File> {
         let note = format!(
             "{} on {}, set-points every {} ms",
-            found.program,
+            file_name(&found.program),
             found.machine,
             1e3 * found.period_s
         );
@@ -132,16 +141,40 @@ impl Rooms {
 
     /// Where each axis is commanded minus where it is, over time.
     fn axis_errors(&self, note: &str) -> Panels {
-        let panels = self.axes.iter().enumerate().map(|(channel, axis)| Panel {
-            y: axis.label(),
-            logarithmic: false,
-            height: 120.0,
-            series: vec![bands("", self.lags.runs(channel, axis.unit()), "#000000")],
+        let panels = self.axes.iter().enumerate().map(|(channel, axis)| {
+            let cuts = self.lags.runs(channel, axis.unit());
+            let mut rapids = self.lags.runs(self.axes.len() + channel, axis.unit());
+            let largest = cuts
+                .iter()
+                .flatten()
+                .fold(0.0, |largest: f64, [_, low, high]| {
+                    largest.max(-low).max(*high)
+                });
+            if largest > 0.0 {
+                // What the axis lags behind at rapid would leave no room for what counts.
+                for [_, low, high] in rapids.iter_mut().flatten() {
+                    [*low, *high] = [*low, *high].map(|lag| lag.clamp(-largest, largest));
+                }
+            }
+            Panel {
+                y: axis.label(),
+                logarithmic: false,
+                height: 120.0,
+                series: vec![
+                    bands(
+                        "at rapid, cut off where it is larger than in cuts",
+                        rapids,
+                        "#b0b0b0",
+                    ),
+                    bands("in cuts", cuts, "#000000"),
+                ],
+            }
         });
         Panels {
             title: "Following error of the axes: commanded minus actual position".to_owned(),
             note: note.to_owned(),
             x: "time, s".to_owned(),
+            logarithmic: false,
             panels: panels.collect(),
         }
     }
@@ -160,6 +193,7 @@ impl Rooms {
             title: "Feed of the tip against the part in cuts".to_owned(),
             note: note.to_owned(),
             x: "time, s".to_owned(),
+            logarithmic: false,
             panels: vec![Panel {
                 y: "mm/min".to_owned(),
                 logarithmic: false,
@@ -188,26 +222,27 @@ impl Rooms {
                 bands(
                     "from least to largest",
                     self.contour.runs(0, MICRO),
-                    "#8c8c8c",
+                    "#6b6b6b",
                 ),
                 Series::line("not passed by 95 %", most(tip.p95), DASHED),
-                Series::line("root of the mean square", most(tip.rms), LOOKS[2]),
+                Series::line("root of the mean square", most(tip.rms), DOTTED),
             ],
         )];
         if found.contour.axis_deg.largest > 0.0 {
             let degrees = 1f64.to_degrees() * MICRO;
             panels.push(panel(
                 "tool axis, 0.001°",
-                vec![bands("", self.contour.runs(1, degrees), "#8c8c8c")],
+                vec![bands("", self.contour.runs(1, degrees), "#6b6b6b")],
             ));
         }
         Panels {
             title: match &found.against {
-                Some(file) => format!("Contour error along the path of {file}"),
+                Some(file) => format!("Contour error along the path of {}", file_name(file)),
                 None => "Contour error along the commanded path".to_owned(),
             },
             note: note.to_owned(),
             x: "way of the tip in cuts, mm".to_owned(),
+            logarithmic: false,
             panels,
         }
     }
@@ -215,7 +250,8 @@ impl Rooms {
     /// Which frequencies the errors of the axes have.
     fn spectrum(&self, note: &str) -> Option<Panels> {
         let panels = self.axes.iter().zip(&self.spectra).map(|(axis, spectrum)| {
-            let amplitudes = spectrum.amplitudes(self.period, axis.unit());
+            let mut amplitudes = spectrum.amplitudes(self.period, axis.unit());
+            amplitudes.retain(|[frequency, _]| *frequency >= LOWEST);
             (axis, amplitudes)
         });
         let panels: Vec<Panel> = panels
@@ -234,9 +270,15 @@ impl Rooms {
             title: "Spectrum of the axis errors: amplitude by frequency".to_owned(),
             note: note.to_owned(),
             x: "frequency, Hz".to_owned(),
+            logarithmic: true,
             panels,
         })
     }
+}
+
+/// A path without its folder.
+pub fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
 fn bands(name: &str, runs: Vec<Vec<[f64; 3]>>, grey: &'static str) -> Series {

@@ -1,10 +1,13 @@
 //! Which frequencies the errors of the axes have: amplitudes by Welch's method, averaged over windows that overlap by
 //! half (P. D. Welch, The use of fast Fourier transform for the estimation of power spectra, 1967), Hann's window.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
-/// Set-points in a window.
-const WINDOW: usize = 2048;
+/// A window is about so long, s: frequencies are told apart by half a hertz.
+const SECONDS: f64 = 2.0;
+
+/// Set-points in a window, as powers of two.
+const POWERS: [i32; 2] = [7, 13];
 
 /// The amplitudes of one signal.
 #[derive(Clone, Debug)]
@@ -27,17 +30,20 @@ struct Tables {
 }
 
 impl Spectrum {
-    pub fn new() -> Self {
-        let angle = |place: usize| TAU * place as f64 / WINDOW as f64;
+    /// For set-points every `period` seconds.
+    pub fn new(period: f64) -> Self {
+        let power = libm::rint(libm::log2(SECONDS / period)) as i32;
+        let window = 1 << power.clamp(POWERS[0], POWERS[1]);
+        let angle = |place: usize| TAU * place as f64 / window as f64;
         Self {
-            waiting: Vec::with_capacity(WINDOW),
-            squares: vec![0.0; WINDOW / 2],
+            waiting: Vec::with_capacity(window),
+            squares: vec![0.0; window / 2],
             windows: 0,
             tables: Tables {
-                hann: (0..WINDOW)
+                hann: (0..window)
                     .map(|place| 0.5 - 0.5 * libm::cos(angle(place)))
                     .collect(),
-                turns: (0..WINDOW / 2)
+                turns: (0..window / 2)
                     .map(|place| [libm::cos(angle(place)), -libm::sin(angle(place))])
                     .collect(),
             },
@@ -47,22 +53,22 @@ impl Spectrum {
     /// Takes the next value.
     pub fn take(&mut self, value: f64) {
         self.waiting.push(value);
-        if self.waiting.len() == WINDOW {
+        let window = self.tables.hann.len();
+        if self.waiting.len() == window {
             self.window();
-            self.waiting.drain(..WINDOW / 2);
+            self.waiting.drain(..window / 2);
         }
     }
 
     fn window(&mut self) {
         // A constant error would hide the lowest frequencies behind it.
         let mean = self.waiting.iter().sum::<f64>() / self.waiting.len() as f64;
-        let mut values: Vec<[f64; 2]> = self
+        let values = self
             .waiting
             .iter()
             .zip(&self.tables.hann)
-            .map(|(value, weight)| [(value - mean) * weight, 0.0])
-            .collect();
-        values.resize(WINDOW, [0.0; 2]);
+            .map(|(value, weight)| [(value - mean) * weight, 0.0]);
+        let mut values: Vec<[f64; 2]> = values.collect();
         transform(&mut values, &self.tables.turns);
         // The mean of Hann's window is a half, and each frequency stands twice in the transform.
         let scale = 4.0 / self.waiting.len() as f64;
@@ -77,11 +83,12 @@ impl Spectrum {
         if self.windows == 0 {
             return Vec::new();
         }
+        let window = self.tables.hann.len() as f64;
         let places = self.squares.iter().enumerate().skip(1);
         places
             .map(|(place, square)| {
                 let amplitude = libm::sqrt(square / self.windows as f64);
-                [place as f64 / (WINDOW as f64 * period), amplitude * unit]
+                [place as f64 / (window * period), amplitude * unit]
             })
             .collect()
     }
@@ -149,12 +156,12 @@ mod tests {
     #[test]
     fn a_sine_is_seen_at_its_frequency_with_its_amplitude() {
         let period = 1e-3;
-        let mut spectrum = Spectrum::new();
+        let mut spectrum = Spectrum::new(period);
         // In the middle of a frequency of the transform.
-        let frequency = 100.0 / (WINDOW as f64 * period);
+        let frequency = 100.0 / (2048.0 * period);
         for step in 0..20_000_u32 {
             let time = f64::from(step) * period;
-            spectrum.take(0.5 + 0.003 * libm::sin(2.0 * PI * frequency * time + 0.4));
+            spectrum.take(0.5 + 0.003 * libm::sin(TAU * frequency * time + 0.4));
         }
         let amplitudes = spectrum.amplitudes(period, 1e3);
         let peak = amplitudes

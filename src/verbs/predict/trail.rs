@@ -16,8 +16,6 @@ pub struct Spot {
     pub error: [f64; 3],
     /// How far that is, mm.
     pub size: f64,
-    /// Line of the program.
-    pub line: u64,
 }
 
 /// The path.
@@ -46,7 +44,7 @@ impl Trail {
 
     /// Takes the next set-point.
     pub fn take(&mut self, sample: &Sample) {
-        if !sample.cuts {
+        if !sample.counts {
             if self.last.take().is_some() {
                 self.cut += 1;
             }
@@ -74,7 +72,6 @@ impl Trail {
             tip,
             error: sample.error,
             size: sample.size,
-            line: sample.line,
         };
         self.shares[place] = worse(self.shares[place], Some(spot));
     }

@@ -3,7 +3,9 @@
 
 use std::fs;
 
-use post_machine::description::{Machine, Setting, Source, Tcp, load};
+use post_machine::description::{
+    BlendRule, CornerRule, LimitsActOn, Machine, RapidRule, Setting, Source, Tcp, load,
+};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_testkit::repository;
 
@@ -394,6 +396,70 @@ const SLIPS: &[Slip] = &[
         "no finite number",
         false,
     ),
+    // How the control makes motion.
+    (
+        "tolerance = 0.005",
+        "tolerance = 0.005\n\n[motion]\nperiod = 15",
+        "52 15",
+        "at most 1 s is possible",
+        true,
+    ),
+    (
+        "tolerance = 0.005",
+        "tolerance = 0.005\n\n[motion]\nperiod = 0",
+        "52 0",
+        "period is 0; it must be above zero",
+        true,
+    ),
+    (
+        "tolerance = 0.005",
+        "tolerance = 0.005\n\n[motion]\nblock_time = -1",
+        "52 -1",
+        "it must be 0 to 3600 s",
+        true,
+    ),
+    (
+        "tolerance = 0.005",
+        "tolerance = 0.005\n\n[motion]\nlook_ahead = 0",
+        "52 0",
+        "it must be 1 to 100000 blocks",
+        false,
+    ),
+    (
+        "tolerance = 0.005",
+        "tolerance = 0.005\n\n[motion]\ntip_accel = 0",
+        "52 0",
+        "tip_accel is 0; it must be above zero",
+        true,
+    ),
+    (
+        "tolerance = 0.005",
+        "tolerance = 0.005\n\n[motion]\ncorner = \"round\"",
+        "52 \"round\"",
+        "there is no value `round`",
+        true,
+    ),
+    (
+        "tolerance = 0.005",
+        "tolerance = 0.005\n\n[motion]\ncorner_tolerance = -0.01",
+        "52 -0.01",
+        "corner_tolerance is -0.01",
+        true,
+    ),
+    (
+        "tolerance = 0.005",
+        "tolerance = 0.005\n\n[motion]\nspindle = 1e6",
+        "52 1e6",
+        "spindle is 1000000 s",
+        true,
+    ),
+    (
+        "tolerance = 0.005",
+        "tolerance = 0.005\n\n[motion]\njerk = 5",
+        "52 jerk",
+        "there is no key `jerk`",
+        true,
+    ),
 ];
 
 /// All full turns of all rotary axes are weighed with one another, so that there must not be too many.
@@ -508,6 +574,52 @@ fn a_machine_extends_another_key_by_key() {
     assert!(limited.unwrap().axes[0].travel.is_some());
     let kept = try_load("extends = \"good\"\naxis.A.cyclic = false\n", &[]).unwrap();
     assert!(kept.axes[1].travel.is_some());
+}
+
+#[test]
+fn how_a_control_makes_motion_is_merged_key_by_key() {
+    let rules = try_load(GOOD, &[]).unwrap().motion;
+    assert_eq!(
+        (rules.period, rules.block_time, rules.look_ahead),
+        (0.001, 0.0, 200)
+    );
+    assert_eq!(
+        (rules.corner, rules.corner_tolerance),
+        (CornerRule::Blend, None)
+    );
+    assert_eq!(
+        (rules.limits, rules.blend, rules.rapids),
+        (LimitsActOn::Axes, BlendRule::Overlap, RapidRule::Stop)
+    );
+    assert!(rules.tip_accel.is_infinite() && rules.tip_jerk.is_infinite());
+    assert_eq!((rules.tool_change, rules.spindle), (0.0, 0.0));
+
+    let own = "extends = \"good\"\n[motion]\nperiod = \"Zc / 12625\"\nlimits = \"programmed\"\ncorner = \"path\"\n\
+               corner_tolerance = 0.02\nblend = \"round\"\nrapids = \"among-rapids\"\ntip_accel = 900\ntip_jerk = 8000\n";
+    let settings = [
+        "motion.period=0.008",
+        "motion.look_ahead=20",
+        "motion.block_time=0.002",
+    ];
+    let plain = try_load(own, &[]).unwrap().motion;
+    assert_eq!((plain.period, plain.look_ahead), (0.004, 200));
+    let rules = try_load(own, &settings).unwrap().motion;
+    assert_eq!(
+        (rules.period, rules.block_time, rules.look_ahead),
+        (0.008, 0.002, 20)
+    );
+    assert_eq!(
+        (rules.corner, rules.corner_tolerance),
+        (CornerRule::Path, Some(0.02))
+    );
+    assert_eq!(
+        (rules.limits, rules.blend),
+        (LimitsActOn::Programmed, BlendRule::Round)
+    );
+    assert_eq!(
+        (rules.tip_accel, rules.tip_jerk, rules.rapids),
+        (900.0, 8000.0, RapidRule::AmongRapids)
+    );
 }
 
 #[test]

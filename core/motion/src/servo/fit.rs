@@ -1,1 +1,0 @@
-//! Numbers of servos from a measured log.

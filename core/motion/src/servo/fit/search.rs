@@ -1,0 +1,305 @@
+//! The search for the numbers that fit best.
+
+use nalgebra::{DMatrix, DVector};
+use post_machine::diagnostic::{Diagnostic, meant};
+use post_machine::servo::{Servo, StateSpace, stable};
+
+use super::Log;
+use crate::servo::{Follower, Output};
+
+/// Fewer samples than this a number say nothing.
+const LEAST_SAMPLES: usize = 4;
+/// No log is finer, mm or radians: errors are not taken for smaller, so that a log without noise does not seem to determine
+/// what only rounding does.
+const FINEST: f64 = 1e-7;
+/// Half of the difference by which derivatives are taken, as a share.
+const STEP: f64 = 1e-4;
+/// Longest change of a number in one step of the search: a factor of e.
+const LONGEST: f64 = 1.0;
+/// Steps of the search.
+const MOST_STEPS: usize = 100;
+/// Samples of a block.
+const BLOCK: usize = 256;
+
+/// What is searched for, and in what.
+pub(super) struct Search<'a> {
+    servo: &'a Servo,
+    pub(super) log: Log<'a>,
+    pub(super) names: Vec<&'static str>,
+    /// Searched for by its logarithm.
+    pub(super) by_factor: Vec<bool>,
+    pub(super) start: DVector<f64>,
+}
+
+/// Where the search stands.
+pub(super) struct Found {
+    pub(super) place: DVector<f64>,
+    /// Triangle of the derivatives, and of the errors behind them.
+    pub(super) triangle: DMatrix<f64>,
+    pub(super) converged: bool,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(
+        servo: &'a Servo,
+        names: &[&str],
+        log: Log<'a>,
+    ) -> Result<Self, Box<Diagnostic>> {
+        let fault = |message: String, help: String| {
+            Err(Diagnostic::error("fit", message)
+                .at(servo.place.clone())
+                .help(help)
+                .boxed())
+        };
+        let compared = log.commanded.len().saturating_sub(log.lead);
+        if log.commanded.len() != log.measured.len() || compared < LEAST_SAMPLES * (names.len() + 1)
+        {
+            return fault(
+                format!(
+                    "a log of {} commanded and {} measured positions, {compared} of them compared, for {} numbers",
+                    log.commanded.len(),
+                    log.measured.len(),
+                    names.len()
+                ),
+                "both have the same length, and at least four samples are compared for each number"
+                    .to_owned(),
+            );
+        }
+        let mut own = servo.clone();
+        let mut search = Self {
+            servo,
+            log,
+            names: Vec::new(),
+            by_factor: Vec::new(),
+            start: DVector::zeros(names.len()),
+        };
+        for (place, name) in names.iter().enumerate() {
+            let known: Vec<&'static str> =
+                own.parameters().iter().map(|number| number.name).collect();
+            let mut all = own.parameters().into_iter();
+            let Some(number) = all.find(|number| number.name == *name) else {
+                let message = format!("this servo has no number called {name}");
+                return fault(message, meant(name, "known are", &known));
+            };
+            if search.names.contains(&number.name) {
+                let message = format!("{name} is to be fitted twice");
+                return fault(message, "name it once".to_owned());
+            }
+            let by_factor = !number.name.ends_with("feed_forward");
+            if by_factor && *number.value <= 0.0 {
+                let message = format!("{name} is zero: there is nothing to begin with");
+                let help = format!("give {name} a value in the machine file, or leave it out here");
+                return fault(message, help);
+            }
+            search.start[place] = if by_factor {
+                libm::log(*number.value)
+            } else {
+                *number.value
+            };
+            search.names.push(number.name);
+            search.by_factor.push(by_factor);
+        }
+        Ok(search)
+    }
+
+    /// The servo with the numbers of `place`.
+    pub(super) fn servo_at(&self, place: &DVector<f64>) -> Servo {
+        let mut servo = self.servo.clone();
+        for (index, name) in self.names.iter().enumerate() {
+            if let Some(number) = servo.parameter(name) {
+                *number = self.value(place, index);
+            }
+        }
+        servo
+    }
+
+    pub(super) fn value(&self, place: &DVector<f64>, index: usize) -> f64 {
+        if self.by_factor[index] {
+            libm::exp(place[index])
+        } else {
+            place[index]
+        }
+    }
+
+    fn follower(&self, place: &DVector<f64>) -> Result<Follower, Box<Diagnostic>> {
+        let servo = self.servo_at(place);
+        let mut follower = Follower::with(&servo, self.log.period, Output::Measured)?;
+        follower.settle(self.log.commanded.first().copied().unwrap_or_default());
+        Ok(follower)
+    }
+
+    /// It comes to rest.
+    fn stable(&self, place: &DVector<f64>) -> bool {
+        let poles = StateSpace::of(&self.servo_at(place)).poles();
+        poles.is_some_and(|poles| stable(&poles))
+    }
+
+    /// Sum of the squares of measured minus predicted.
+    pub(super) fn squares(&self, place: &DVector<f64>) -> Result<f64, Box<Diagnostic>> {
+        let mut follower = self.follower(place)?;
+        let mut sum = 0.0;
+        let Log {
+            commanded,
+            measured,
+            lead,
+            ..
+        } = self.log;
+        follower.run(
+            commanded.len(),
+            |index| commanded[index],
+            |index, value| {
+                if index >= lead {
+                    let error = measured[index] - value;
+                    sum += error * error;
+                }
+            },
+        );
+        Ok(sum)
+    }
+
+    /// The triangle R of `[J e] = Q·R`: J how the prediction changes with each number, e measured minus predicted.
+    fn triangle(&self, place: &DVector<f64>) -> Result<DMatrix<f64>, Box<Diagnostic>> {
+        let count = self.names.len();
+        let mut followers = vec![self.follower(place)?];
+        for index in 0..count {
+            for sign in [1.0, -1.0] {
+                let mut moved = place.clone();
+                moved[index] += sign * STEP;
+                followers.push(self.follower(&moved)?);
+            }
+        }
+        let Log {
+            commanded,
+            measured,
+            lead,
+            ..
+        } = self.log;
+        let mut triangle = DMatrix::zeros(count + 1, count + 1);
+        let mut predicted = vec![[0.0; BLOCK]; followers.len()];
+        let starts = (0..commanded.len()).step_by(BLOCK);
+        for start in starts {
+            let length = BLOCK.min(commanded.len() - start);
+            for (follower, predicted) in followers.iter_mut().zip(&mut predicted) {
+                follower.run(
+                    length,
+                    |index| commanded[start + index],
+                    |index, value| predicted[index] = value,
+                );
+            }
+            let skipped = lead.saturating_sub(start).min(length);
+            if skipped == length {
+                continue;
+            }
+            let rows = length - skipped;
+            let stacked = DMatrix::from_fn(rows + count + 1, count + 1, |row, column| {
+                let Some(row) = row.checked_sub(count + 1) else {
+                    return triangle[(row, column)];
+                };
+                let row = row + skipped;
+                if column == count {
+                    measured[start + row] - predicted[0][row]
+                } else {
+                    let [above, below] = [1, 2].map(|side| predicted[2 * column + side][row]);
+                    (above - below) / (2.0 * STEP)
+                }
+            });
+            triangle = stacked.qr().r();
+        }
+        Ok(triangle)
+    }
+
+    /// Standard deviation of the log's errors, mm or radians.
+    pub(super) fn spread(&self, triangle: &DMatrix<f64>) -> f64 {
+        let count = self.names.len();
+        let samples = self.log.commanded.len() - self.log.lead;
+        let left = triangle.column(count).norm();
+        (left / libm::sqrt((samples - count) as f64)).max(FINEST)
+    }
+
+    /// Searches from `start`. Each number is drawn back there with the strength `draw`.
+    pub(super) fn run(&self, start: &DVector<f64>, draw: f64) -> Result<Found, Box<Diagnostic>> {
+        let count = self.names.len();
+        let cost = |place: &DVector<f64>, squares: f64| {
+            squares + draw * draw * (place - start).norm_squared()
+        };
+        let mut place = start.clone();
+        let mut triangle = self.triangle(&place)?;
+        let mut best = cost(&place, triangle.column(count).norm_squared());
+        let mut damping = 1e-3;
+        let mut converged = false;
+        for _ in 0..MOST_STEPS {
+            let mut moved = false;
+            // More damping makes the step shorter and turns it towards the steepest descent: in the end one is good, or
+            // none is long enough to count.
+            while !moved && damping < 1e12 {
+                let step = step(&triangle, &(start - &place), draw, damping);
+                let next = self.inside(&(&place + &step));
+                let gain = if self.stable(&next) {
+                    best - cost(&next, self.squares(&next)?)
+                } else {
+                    f64::NEG_INFINITY
+                };
+                let length = (&next - &place).amax();
+                if gain > 0.0 {
+                    moved = true;
+                    damping = (damping / 10.0).max(1e-12);
+                    best -= gain;
+                    place = next;
+                    triangle = self.triangle(&place)?;
+                    converged = gain <= 1e-10 * best || length < 1e-9;
+                } else {
+                    converged = length < 1e-7;
+                    if converged {
+                        break;
+                    }
+                    damping *= 10.0;
+                }
+            }
+            if converged || !moved {
+                break;
+            }
+        }
+        Ok(Found {
+            place,
+            triangle,
+            converged,
+        })
+    }
+
+    /// Feed-forward stays from 0 to 2, as in the machine file.
+    fn inside(&self, place: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(place.len(), |index, _| {
+            if self.by_factor[index] {
+                place[index]
+            } else {
+                place[index].clamp(0.0, 2.0)
+            }
+        })
+    }
+}
+
+/// The step of Levenberg and Marquardt: least squares of what the derivatives leave of the errors, of what is drawn back,
+/// and of the step itself, each number in the measure of its own effect.
+fn step(triangle: &DMatrix<f64>, back: &DVector<f64>, draw: f64, damping: f64) -> DVector<f64> {
+    let count = back.len();
+    let mut matrix = DMatrix::zeros(3 * count, count);
+    let mut wanted = DVector::zeros(3 * count);
+    for column in 0..count {
+        for row in 0..=column {
+            matrix[(row, column)] = triangle[(row, column)];
+        }
+        wanted[column] = triangle[(column, count)];
+        matrix[(count + column, column)] = draw;
+        wanted[count + column] = draw * back[column];
+        let size = triangle.column(column).norm().max(f64::MIN_POSITIVE);
+        matrix[(2 * count + column, column)] = libm::sqrt(damping) * size;
+    }
+    let solved = matrix.svd(true, true).solve(&wanted, f64::MIN_POSITIVE);
+    let step = solved.unwrap_or_else(|_| DVector::zeros(count));
+    let length = step.amax();
+    if length > LONGEST {
+        step * (LONGEST / length)
+    } else {
+        step
+    }
+}

@@ -1,0 +1,156 @@
+//! How fast a move may be run through: its own parameter's largest rate, and the rate's largest change and change of
+//! change, out of what axes and tip do along it.
+//!
+//! With `q` what a limit holds for, over the parameter `t`, its acceleration is `q'·ẗ + q''·ṫ²` and its jerk
+//! `q'·t⃛ + 3·q''·ṫ·ẗ + q'''·ṫ³`. Bounds of the derivatives hold all over the move, so each limit is split once:
+//! at most [`NORMAL`] of an acceleration goes to the curve, and what the curve leaves at the velocity that is then
+//! allowed is the tangential acceleration; a jerk goes in thirds to `q'''`, to the mixed term and to `t⃛`. On an arc with
+//! no turn of a rotary axis the two accelerations stand across each other and share as sides of a right triangle do:
+//! [`ARC`] of it to the curve, half of it along, as LinuxCNC shares it.
+
+use post_machine::kinematics::MAX_AXES;
+
+use super::TimeLimit;
+use crate::limits::{AxisLimits, MoveLimits};
+
+/// The share of an acceleration that the curve may have.
+pub(super) const NORMAL: f64 = 0.75;
+
+/// The share of it on an arc, cos 30°, which leaves a half across.
+const ARC: f64 = 0.866_025_403_784_438_6;
+
+/// No move is run through in less than this, s, and no velocity reached in less, however little is limited.
+const INSTANT: f64 = 1e-6;
+
+/// Bounds over a move, its parameter running from 0 to 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    /// Largest rate, 1/s.
+    pub rate: f64,
+    /// Largest change of the rate, 1/s².
+    pub acceleration: f64,
+    /// Largest change of that, 1/s³; infinite without a jerk limit.
+    pub jerk: f64,
+    /// What bounds the rate, its change, and the change of that.
+    pub by: [TimeLimit; 3],
+}
+
+/// One thing that is limited.
+struct Limited {
+    /// Bounds of the derivatives over the parameter.
+    derivatives: [f64; 3],
+    velocity: f64,
+    acceleration: f64,
+    jerk: f64,
+    by: [TimeLimit; 3],
+}
+
+/// What is limited on a move.
+fn all<'a>(found: &'a MoveLimits, rules: &'a AxisLimits) -> impl Iterator<Item = Limited> + 'a {
+    let axes = (0..MAX_AXES).map(|place| {
+        let axis = place as u8;
+        Limited {
+            derivatives: [found.first[place], found.second[place], found.third[place]],
+            velocity: rules.velocity[place],
+            acceleration: rules.acceleration[place],
+            jerk: rules.jerk[place],
+            by: [
+                TimeLimit::AxisVelocity(axis),
+                TimeLimit::AxisAcceleration(axis),
+                TimeLimit::AxisJerk(axis),
+            ],
+        }
+    });
+    let tip = Limited {
+        derivatives: found.tip,
+        velocity: f64::INFINITY,
+        acceleration: rules.tip_acceleration,
+        jerk: rules.tip_jerk,
+        by: [
+            TimeLimit::Feed,
+            TimeLimit::TipAcceleration,
+            TimeLimit::TipJerk,
+        ],
+    };
+    axes.chain([tip])
+        .filter(|limited| limited.derivatives.iter().any(|value| *value > 0.0))
+}
+
+impl Bounds {
+    /// Of a move that the program wants to take `seconds` (0: as fast as it goes), and whose accelerations may take
+    /// `share` of the limits. `sweep`: it is an arc of so many radians, and nothing else turns.
+    pub fn new(
+        found: &MoveLimits,
+        rules: &AxisLimits,
+        seconds: f64,
+        share: f64,
+        sweep: Option<f64>,
+    ) -> Self {
+        let mut bounds = Self {
+            rate: 1.0 / seconds.max(INSTANT),
+            acceleration: f64::INFINITY,
+            jerk: f64::INFINITY,
+            by: [TimeLimit::Feed; 3],
+        };
+        let least = |bound: &mut f64, own: &mut TimeLimit, value: f64, by: TimeLimit| {
+            if value < *bound {
+                (*bound, *own) = (value, by);
+            }
+        };
+        for limited in all(found, rules) {
+            let [first, second, third] = limited.derivatives;
+            let [velocity, acceleration, jerk] = limited.by;
+            let (rate, by) = (&mut bounds.rate, &mut bounds.by[0]);
+            least(rate, by, limited.velocity / first, velocity);
+            let (across, part) = match sweep {
+                Some(sweep) => (sweep * amplitude(first, second, sweep), ARC),
+                None => (second, NORMAL),
+            };
+            let most = part * share * limited.acceleration / across;
+            least(rate, by, most.sqrt(), acceleration);
+            let most = share * limited.jerk / (3.0 * third);
+            least(rate, by, libm::cbrt(most), jerk);
+        }
+        let rate = bounds.rate;
+        for limited in all(found, rules) {
+            let [first, second, third] = limited.derivatives;
+            let [_, acceleration, jerk] = limited.by;
+            let (most, hardest) = (share * limited.acceleration, share * limited.jerk);
+            let (change, by) = (&mut bounds.acceleration, &mut bounds.by[1]);
+            let along = match sweep {
+                Some(sweep) => {
+                    let first = amplitude(first, second, sweep);
+                    let across = sweep * first * rate * rate;
+                    // Never more than half while the curve may ask for its share.
+                    match second > 0.0 && across > 0.5 * most {
+                        true => (most * most - across * across).max(0.0).sqrt() / first,
+                        false => most * ARC / first,
+                    }
+                }
+                None => (most - second * rate * rate) / first,
+            };
+            least(change, by, along, acceleration);
+            if second > 0.0 {
+                least(
+                    change,
+                    &mut bounds.by[1],
+                    hardest / (9.0 * second * rate),
+                    jerk,
+                );
+            }
+            let spent = third * rate * rate * rate;
+            let mixed = 3.0 * second * rate * bounds.acceleration;
+            let left = (hardest - spent - mixed).max(hardest / 3.0);
+            least(&mut bounds.jerk, &mut bounds.by[2], left / first, jerk);
+        }
+        bounds.acceleration = bounds.acceleration.min(rate / INSTANT);
+        bounds
+    }
+}
+
+/// What the first derivative of an arc's coordinate amounts to somewhere on the whole circle, when on a part of it the
+/// first two are at most these: the sum of the squares of the first and of the second over the sweep is the same all over.
+fn amplitude(first: f64, second: f64, sweep: f64) -> f64 {
+    let bent = second / sweep;
+    (first * first + bent * bent).sqrt()
+}

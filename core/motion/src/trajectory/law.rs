@@ -1,0 +1,216 @@
+//! The time law that is settled, and where the machine stands by it.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use post_machine::kinematics::{Joints, Solver, Unreachable};
+
+use super::TimeLimit;
+use super::profile::Phase;
+use crate::path::{Stance, Way};
+use crate::{At, Move};
+
+/// A stretch of path.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    /// Number of the move.
+    pub entry: u64,
+    pub span: Span,
+    /// Its length in the coordinate of the law.
+    pub length: f64,
+    pub at: At,
+    /// The task of the second move, where it takes part of two.
+    pub second: u64,
+    /// What bounds velocity, acceleration and jerk on it.
+    pub by: [TimeLimit; 3],
+    /// The share of it from which on its time is that of the next task.
+    pub border: Option<f64>,
+}
+
+/// What of a move, or of two.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Span {
+    /// From one place of its parameter to another.
+    Along { from: f64, to: f64 },
+    /// These shares of the move and of the next one, added.
+    Corner { shares: [f64; 2] },
+}
+
+/// Constant jerk on one piece.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Section {
+    /// Number of the run that it belongs to: within one, each begins where the last one ends.
+    pub run: u64,
+    /// Number of the piece.
+    pub piece: u64,
+    /// Where in the piece it begins.
+    pub from: f64,
+    /// When, s.
+    pub begins: f64,
+    pub phase: Phase,
+}
+
+impl Section {
+    /// When it ends, s.
+    pub fn ends(&self) -> f64 {
+        self.begins + self.phase.seconds
+    }
+}
+
+/// Pieces and their sections, from the one that is in progress on.
+#[derive(Debug, Default)]
+pub(super) struct Law {
+    pub sections: VecDeque<Section>,
+    /// Sections of each run.
+    counts: VecDeque<usize>,
+    pieces: VecDeque<Piece>,
+    /// Number of the first piece.
+    first_piece: u64,
+    moves: VecDeque<Move>,
+    /// Number of the first move.
+    first_move: u64,
+}
+
+impl Law {
+    /// Takes a move and says its number.
+    pub fn push_move(&mut self, task: Move) -> u64 {
+        self.moves.push_back(task);
+        self.first_move + self.moves.len() as u64 - 1
+    }
+
+    /// The number of the last one.
+    pub fn last_move(&self) -> Option<u64> {
+        (self.first_move + self.moves.len() as u64).checked_sub(1)
+    }
+
+    /// A move.
+    pub fn task(&self, number: u64) -> &Move {
+        &self.moves[(number - self.first_move) as usize]
+    }
+
+    pub fn push_piece(&mut self, piece: Piece) -> u64 {
+        self.pieces.push_back(piece);
+        self.first_piece + self.pieces.len() as u64 - 1
+    }
+
+    pub fn piece(&self, number: u64) -> &Piece {
+        &self.pieces[(number - self.first_piece) as usize]
+    }
+
+    pub fn push(&mut self, section: Section) {
+        match self.sections.back() {
+            Some(last) if last.run == section.run => {
+                if let Some(count) = self.counts.back_mut() {
+                    *count += 1;
+                }
+            }
+            _ => self.counts.push_back(1),
+        }
+        self.sections.push_back(section);
+    }
+
+    /// Forgets what is over at `time`; the last section stays, as the machine stands where it ends.
+    pub fn advance(&mut self, time: f64) {
+        while self.sections.len() > 1 && time >= self.sections[0].ends() {
+            self.sections.pop_front();
+            self.counts[0] -= 1;
+            if self.counts[0] == 0 {
+                self.counts.pop_front();
+            }
+        }
+        let Some(section) = self.sections.front() else {
+            return;
+        };
+        let gone = section.piece - self.first_piece;
+        self.pieces.drain(..gone as usize);
+        self.first_piece = section.piece;
+        if let Some(piece) = self.pieces.front() {
+            let gone = piece.entry - self.first_move;
+            self.moves.drain(..gone as usize);
+            self.first_move = piece.entry;
+        }
+    }
+
+    /// The chain that is in use.
+    pub fn solver(&self) -> Option<&Arc<Solver>> {
+        let section = self.sections.front()?;
+        Some(&self.task(self.piece(section.piece).entry).solver)
+    }
+
+    /// Where the machine stands at `time`, which nothing that is over precedes, and in which piece; `near`: the axis values
+    /// a little before.
+    pub fn at(&self, time: f64, near: &Joints) -> Result<(Stance, At), Unreachable> {
+        let section = &self.sections[0];
+        let stance = self.stance(section, time, near)?;
+        let at = self.piece(section.piece).at;
+        let count = self.counts.front().copied().unwrap_or_default();
+        let Some(second) = self.sections.get(count).filter(|next| next.begins < time) else {
+            return Ok((stance, at));
+        };
+        // The next run has begun while this one ends.
+        let run = second.run;
+        let second = self
+            .sections
+            .range(count..)
+            .take_while(|section| section.run == run && section.begins <= time)
+            .last()
+            .unwrap_or(second);
+        let next = self.stance(second, time, near)?;
+        let last = self.piece(self.sections[count - 1].piece).entry;
+        let [first, other] = [last, self.piece(second.piece).entry].map(|entry| self.task(entry));
+        let tip_led = [first, other].iter().all(|task| task.way != Way::Axes);
+        added(&first.solver, [&stance, &next], &first.to, tip_led).map(|stance| (stance, at))
+    }
+
+    fn stance(&self, section: &Section, time: f64, near: &Joints) -> Result<Stance, Unreachable> {
+        let piece = self.piece(section.piece);
+        let within = (time - section.begins).clamp(0.0, section.phase.seconds);
+        let covered = section.from + section.phase.length(within);
+        let share = (covered / piece.length).clamp(0.0, 1.0);
+        let task = self.task(piece.entry);
+        let stand = |task: &Move, t: f64| {
+            task.way
+                .stance_at(&task.solver, [&task.from, &task.to], t, near)
+        };
+        match piece.span {
+            Span::Along { from, to } => stand(task, from + (to - from) * share),
+            Span::Corner { shares } => {
+                let next = self.task(piece.entry + 1);
+                let [out, into] = corner_places(share);
+                let first = stand(task, 1.0 - shares[0] * (1.0 - out))?;
+                let second = stand(next, shares[1] * into)?;
+                let tip_led = task.way != Way::Axes && next.way != Way::Axes;
+                added(&task.solver, [&first, &second], &task.to, tip_led)
+            }
+        }
+    }
+}
+
+/// How much of its part of the first move and of the second one is behind at `share` of a corner: the integrals of 1 - h and
+/// of h, which is the smooth step, each over its whole.
+fn corner_places(share: f64) -> [f64; 2] {
+    let cube = share * share * share;
+    let fourth = cube * share;
+    [2.0 * share - 2.0 * cube + fourth, 2.0 * cube - fourth]
+}
+
+/// Where two ways lead together that meet at `corner`: the tip and the rotary axes are added where the control leads the
+/// tip on both, else all axes.
+fn added(
+    solver: &Solver,
+    [first, second]: [&Stance; 2],
+    corner: &Stance,
+    tip_led: bool,
+) -> Result<Stance, Unreachable> {
+    let mut joints: Joints = std::array::from_fn(|place| {
+        first.joints[place] + (second.joints[place] - corner.joints[place])
+    });
+    let chain = solver.chain();
+    let turns = chain.turns(&joints);
+    if tip_led {
+        let tip = first.pose.tip + (second.pose.tip - corner.pose.tip);
+        solver.place(tip, &mut joints, &turns)?;
+    }
+    let pose = chain.pose(&joints, &turns);
+    Ok(Stance { joints, pose })
+}

@@ -1,0 +1,36 @@
+//! The path of a CL file, for the tool to be held against.
+
+use post_machine::diagnostic::Diagnostic;
+use post_readback::course::Course;
+use post_readback::course::cl::{ClCourse, ClTool};
+
+use super::Asked;
+use crate::failure::Failure;
+use crate::files::ClSource;
+use crate::job::read_back;
+
+/// So many faults of a CL file are told.
+const MOST_FAULTS: usize = 50;
+
+/// The tools of a CL file: what they are called and how long they are stands anywhere in it.
+///
+/// # Errors
+/// The file cannot be read, or something in it cannot be understood.
+pub fn tools(asked: &Asked<'_>, source: &mut ClSource) -> Result<Vec<ClTool>, Failure> {
+    let input = source.open()?;
+    let settings = read_back::course_settings(asked.arguments, asked.machine, &input.name);
+    let mut course = ClCourse::new(settings, input.bytes);
+    let mut faults: Vec<Diagnostic> = Vec::new();
+    loop {
+        match course.next() {
+            Ok(Some(_)) => {}
+            Ok(None) => break,
+            Err(fault) if faults.len() < MOST_FAULTS => faults.push(*fault),
+            Err(_) => break,
+        }
+    }
+    match faults.is_empty() {
+        true => Ok(course.tools().to_vec()),
+        false => Err(faults.into()),
+    }
+}

@@ -17,6 +17,9 @@ mod job;
 #[expect(dead_code, reason = "its `main` is that of the example")]
 mod generate;
 
+#[path = "common/peak.rs"]
+mod peak;
+
 use std::error::Error;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
@@ -163,11 +166,11 @@ impl Pair {
     }
 
     fn read(&self) -> Result<u64, Box<dyn Error>> {
-        watched(post(&["read"]).arg(&self.program))
+        peak::of(post(&["read"]).arg(&self.program))
     }
 
     fn verify(&self) -> Result<u64, Box<dyn Error>> {
-        watched(
+        peak::of(
             post(&["verify"])
                 .arg(&self.program)
                 .arg("--against")
@@ -176,7 +179,7 @@ impl Pair {
     }
 
     fn diff(&self) -> Result<u64, Box<dyn Error>> {
-        watched(post(&["diff"]).args([&self.program, &self.program]))
+        peak::of(post(&["diff"]).args([&self.program, &self.program]))
     }
 }
 
@@ -190,29 +193,6 @@ fn post(verb: &[&str]) -> Command {
         command.args(["--set", setting]);
     }
     command
-}
-
-/// Runs a command to its end; the peak of its resident memory, kB, where the system tells it.
-fn watched(command: &mut Command) -> Result<u64, Box<dyn Error>> {
-    let mut child = command
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()?;
-    let status = format!("/proc/{}/status", child.id());
-    let mut peak = 0;
-    loop {
-        if let Some(code) = child.try_wait()? {
-            return match code.success() {
-                true => Ok(peak),
-                false => Err(format!("{command:?}: {code}").into()),
-            };
-        }
-        let now = fs::read_to_string(&status).unwrap_or_default();
-        let high = now.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let high = high.and_then(|text| text.trim().strip_suffix(" kB")?.parse().ok());
-        peak = peak.max(high.unwrap_or(0));
-        std::thread::sleep(Duration::from_millis(2));
-    }
 }
 
 fn rs274(program: &Path) -> Result<(), Box<dyn Error>> {

@@ -45,10 +45,9 @@ impl Accounts {
 
     /// Adds to what a task has spent: `seconds` on a share of it.
     pub fn spend(&mut self, task: u64, seconds: f64, share: f64, limit: TimeLimit) {
-        let Some(first) = self.open.front().map(|open| open.task) else {
-            return;
-        };
-        let Some(open) = self.open.get_mut((task - first) as usize) else {
+        let first = self.open.front().map(|open| open.task);
+        let place = first.and_then(|first| task.checked_sub(first));
+        let Some(open) = place.and_then(|place| self.open.get_mut(place as usize)) else {
             return;
         };
         let beyond = seconds - share * open.asked.unwrap_or(0.0);

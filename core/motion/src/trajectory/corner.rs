@@ -180,8 +180,9 @@ impl Side<'_> {
 /// How much faster the parameter of the second move runs than that of the first where they meet, such that the velocities
 /// of what is limited, each weighed by its acceleration, keep their length; none where they cannot be compared.
 fn ratio(sides: [Side; 2], rules: &AxisLimits) -> Option<f64> {
-    let axes = sides.map(|side| side.task.way == Way::Axes);
-    if rules.programmed.is_some() && axes[0] != axes[1] {
+    // Between coordinates of the tip and of the axes there is no comparison.
+    let coordinates = sides.map(|side| side.task.keeps_tip && side.task.way != Way::Axes);
+    if rules.programmed.is_some() && coordinates[0] != coordinates[1] {
         return None;
     }
     let weight = |place: usize| {

@@ -73,12 +73,15 @@ pub(super) struct LookAhead {
     pub(super) velocity: f64,
     /// Squared velocities where blocks meet: before the first, …, behind the last.
     pub(super) squares: Vec<f64>,
-    /// What a plan with jerk limits works with.
-    smooth: smooth::Work,
+    /// Largest velocities where blocks meet, numbered alike.
+    pub(super) caps: Vec<f64>,
+    /// What a plan with jerk limits works with; none without any.
+    smooth: Option<smooth::Work>,
 }
 
 impl LookAhead {
-    pub fn new(depth: usize) -> Self {
+    /// That sees so many blocks at once; `jerk`: some jerk is limited.
+    pub fn new(depth: usize, jerk: bool) -> Self {
         Self {
             depth: depth.max(1),
             blocks: VecDeque::new(),
@@ -86,7 +89,8 @@ impl LookAhead {
             begun: 0.0,
             velocity: 0.0,
             squares: Vec::new(),
-            smooth: smooth::Work::default(),
+            caps: Vec::new(),
+            smooth: jerk.then(smooth::Work::default),
         }
     }
 
@@ -96,7 +100,9 @@ impl LookAhead {
         self.first = first;
         self.velocity = velocity;
         self.begun = begun;
-        self.smooth.forget();
+        if let Some(smooth) = &mut self.smooth {
+            smooth.forget();
+        }
     }
 
     /// Takes a block.
@@ -114,12 +120,12 @@ impl LookAhead {
             true => count,
             false => count + 1 - self.depth,
         };
-        if self.blocks.iter().any(|block| block.jerk.is_finite()) {
-            let mut work = std::mem::take(&mut self.smooth);
-            work.settle(self, done, take);
-            self.smooth = work;
+        if let Some(mut smooth) = self.smooth.take() {
+            smooth.settle(self, done, take);
+            self.smooth = Some(smooth);
             return;
         }
+        self.set_caps();
         self.envelope();
         let mut corner = Corners::new(self);
         for place in 0..done {
@@ -154,28 +160,25 @@ impl LookAhead {
         (self.blocks[place].length - begun).max(0.0)
     }
 
-    /// The largest velocity between the blocks at `place - 1` and `place`; 0 behind the last.
-    pub(super) fn cap(&self, place: usize) -> f64 {
-        match self.blocks.get(place) {
-            Some(next) => {
-                let last = &self.blocks[place - 1];
-                last.exit.min(last.velocity).min(next.velocity)
-            }
-            None => 0.0,
-        }
+    /// The largest velocities where blocks meet; 0 behind the last.
+    pub(super) fn set_caps(&mut self) {
+        self.caps.clear();
+        self.caps.push(self.velocity);
+        let pairs = self.blocks.iter().zip(self.blocks.iter().skip(1));
+        let cap = |(last, next): (&Block, &Block)| last.exit.min(last.velocity).min(next.velocity);
+        self.caps.extend(pairs.map(cap));
+        self.caps.push(0.0);
     }
 
-    /// The squares of the highest velocities that the accelerations allow, standing still behind the last block.
+    /// The squares of the highest velocities that the accelerations allow.
     pub(super) fn envelope(&mut self) {
         let count = self.blocks.len();
         self.squares.clear();
-        self.squares.resize(count + 1, 0.0);
+        self.squares.extend(self.caps.iter().map(|cap| cap * cap));
         for place in (1..count).rev() {
-            let cap = self.cap(place);
             let gain = 2.0 * self.blocks[place].acceleration * self.blocks[place].length;
-            self.squares[place] = (cap * cap).min(self.squares[place + 1] + gain);
+            self.squares[place] = self.squares[place].min(self.squares[place + 1] + gain);
         }
-        self.squares[0] = self.velocity * self.velocity;
         for place in 0..count {
             let gain = 2.0 * self.blocks[place].acceleration * self.left(place);
             self.squares[place + 1] = self.squares[place + 1].min(self.squares[place] + gain);

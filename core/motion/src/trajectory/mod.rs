@@ -1,4 +1,33 @@
 //! Tasks become set-points: look-ahead over blocks, limits of the axes and of the tip, corners, and the time law.
+//!
+//! | part | does |
+//! |---|---|
+//! | [`Planner`] | takes tasks, cuts their moves into *pieces* of path at the corners and joins these to *runs*, within which the machine does not stand still; fills set-points |
+//! | `bounds` | what limits along a move come to: rate of its parameter, change of the rate, change of that |
+//! | `corner` | what happens between two moves: stop, join, round, overlap |
+//! | `look_ahead` | velocities over the pieces of a run, some blocks ahead: the envelope of accelerations, backwards and forwards |
+//! | `smooth` | the same with jerk limits: a double S from knot to knot of the envelope, whatever blocks it spans |
+//! | [`profile`] | from one velocity to another over a length: trapezoid and double S in closed form |
+//! | `law` | sections of constant jerk, and where the machine stands by them at any time |
+//! | `account` | how long each task took, and what for |
+//!
+//! **Coordinate.** Along a run one coordinate `s` counts the way; its velocity and acceleration go on from piece to piece.
+//! A move's own parameter runs from 0 to 1, and `s` is that parameter times a scale of the move: the first one's is the
+//! time that it takes at full rate, and each next one's such that what is limited (axes, or programmed coordinates; each
+//! weighed by its acceleration) has the same speed on both sides of the joint. So tip ways, rotary ways and ways of which
+//! the program counts the feed otherwise pass into each other without a jump, and no unit has to be chosen.
+//!
+//! **Limits.** They are split once a move (`bounds`), so that a section is a closed form; the split leaves some of an
+//! acceleration unused in curves (at most a quarter goes lost, most of it where the feed is what bounds the velocity
+//! anyway). Curves of a path (`q''`) that begin or end where two moves meet let the acceleration jump there: jerk limits
+//! hold along the path, and inside of moves and corners.
+//!
+//! **Monotone.** With larger limits no program of straight axis ways takes longer (stops, joined paths, both blends). It may
+//! with jerk limits, by a percent or so, as the knots then lie elsewhere; and on curves, where a velocity that is allowed
+//! to be higher leaves less acceleration along the way.
+//!
+//! **Streaming.** What has been seen far enough ahead is settled and can be filled; how set-points are asked for, and when,
+//! has no influence. Memory is that of the blocks in sight.
 
 mod account;
 mod bounds;

@@ -69,13 +69,15 @@ impl Planner {
     /// For a machine.
     pub fn new(machine: &Machine) -> Self {
         let rules = &machine.motion;
+        let limits = AxisLimits::new(machine);
+        let jerk = limits.tip_jerk.is_finite() || limits.jerk.iter().any(|jerk| jerk.is_finite());
         Self {
-            limits: AxisLimits::new(machine),
+            limits,
             blend: rules.blend,
             period: rules.period,
             block_time: rules.block_time,
             law: Law::default(),
-            ahead: LookAhead::new(rules.look_ahead),
+            ahead: LookAhead::new(rules.look_ahead, jerk),
             accounts: Accounts::default(),
             last: None,
             run: 0,
@@ -391,7 +393,7 @@ impl Planner {
     }
 
     fn settle(&mut self, ended: bool) {
-        let mut ahead = std::mem::replace(&mut self.ahead, LookAhead::new(1));
+        let mut ahead = std::mem::replace(&mut self.ahead, LookAhead::new(1, false));
         ahead.settle(ended, &mut |part| self.take(part));
         self.ahead = ahead;
     }
@@ -401,14 +403,6 @@ impl Planner {
         let Part { phase, from, .. } = part;
         let piece = *self.law.piece(part.block);
         let covered = phase.length(phase.seconds);
-        if let Some(border) = piece.border.filter(|_| self.bordered < Some(part.block)) {
-            let place = border * piece.length;
-            if border == 0.0 || from + covered >= place {
-                let time = self.clock + phase.time_at(place - from);
-                self.accounts.border(time);
-                self.bordered = Some(part.block);
-            }
-        }
         let reason = match part.why {
             Why::Velocity => piece.by[0],
             Why::Corner if piece.at.cuts => TimeLimit::Corner,
@@ -418,17 +412,21 @@ impl Planner {
             },
         };
         let share = covered / piece.length;
-        match piece.span {
-            Span::Along { from, to } => {
-                let share = share * (to - from);
-                self.accounts
-                    .spend(piece.at.task, phase.seconds, share, reason);
-            }
-            Span::Corner { shares } => {
-                for (task, whole) in [piece.at.task, piece.second].into_iter().zip(shares) {
-                    let seconds = 0.5 * phase.seconds;
-                    self.accounts.spend(task, seconds, share * whole, reason);
-                }
+        let (task, whole) = match piece.span {
+            Span::Along { from, to } => (piece.at.task, to - from),
+            Span::Corner { shares } => match from + 0.5 * covered < 0.5 * piece.length {
+                true => (piece.at.task, 2.0 * shares[0]),
+                false => (piece.second, 2.0 * shares[1]),
+            },
+        };
+        self.accounts
+            .spend(task, phase.seconds, share * whole, reason);
+        if let Some(border) = piece.border.filter(|_| self.bordered < Some(part.block)) {
+            let place = border * piece.length;
+            if border == 0.0 || from + covered >= place {
+                let time = self.clock + phase.time_at(place - from);
+                self.accounts.border(time);
+                self.bordered = Some(part.block);
             }
         }
         self.law.push(Section {

@@ -1,4 +1,8 @@
 //! Tasks become set-points: the limits hold, the times are those of closed forms and of LinuxCNC.
 
 mod build;
+mod corners;
+mod limits;
 mod linuxcnc;
+mod look_ahead;
+mod profile;

@@ -1,0 +1,160 @@
+//! Corners: how far the path is left, and where the machine stands.
+
+use nalgebra::Vector3;
+use post_machine::description::Machine;
+use post_motion::path::Way;
+use post_motion::{Corner, Pace, Task, Waiting};
+use post_testkit::{randomised, seeded};
+
+use super::build::{Program, run, trunnion};
+
+fn square(machine: &Machine, turn: f64, corner: Corner, feed: f64) -> (Program, [Vector3<f64>; 3]) {
+    let (sine, cosine) = libm::sincos(turn);
+    let points = [
+        Vector3::zeros(),
+        Vector3::new(40.0, 0.0, 0.0),
+        Vector3::new(40.0 + 30.0 * cosine, 30.0 * sine, 0.0),
+    ];
+    let mut program = Program::new(machine, [0.0; 3]);
+    for pair in points.windows(2) {
+        let to = program.stance([pair[1].x, pair[1].y, 0.0], &program.here.joints);
+        let minutes = (pair[1] - pair[0]).norm() / feed;
+        program.go(Way::Tip, to, Pace::Minutes(minutes), corner);
+    }
+    (program, points)
+}
+
+fn off(point: Vector3<f64>, [a, b]: [Vector3<f64>; 2]) -> f64 {
+    let way = b - a;
+    let share = ((point - a).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
+    (a + way * share - point).norm()
+}
+
+#[test]
+fn corners_are_blended_within_their_tolerance() {
+    let (rounds, mut rng) = randomised(60u16, 31);
+    for round in rounds {
+        let blend = ["overlap", "round"][usize::from(round % 2)];
+        let machine = trunnion(
+            "max_feed = 30000, max_accel = 2000",
+            "max_feed = 7200, max_accel = 600",
+            &format!("period = 0.0002\nblend = \"{blend}\""),
+        );
+        let tolerance = rng.order(-3.0, 0.0);
+        let turn = rng.range(0.1, 3.1);
+        let corner = Corner::Blend {
+            tolerance: Some(tolerance),
+        };
+        let (program, [a, b, c]) = square(&machine, turn, corner, rng.order(3.0, 4.3));
+        let run = run(&machine, &program.tasks, &program.solver, 1000);
+        let strays = run
+            .points
+            .poses
+            .iter()
+            .map(|pose| off(pose.tip, [a, b]).min(off(pose.tip, [b, c])));
+        let most = strays.fold(0.0, f64::max);
+        assert!(
+            most <= tolerance * (1.0 + 1e-9),
+            "{blend} {turn}: {most}, tolerance {tolerance}"
+        );
+        // The tolerance is used where it is what bounds the corner.
+        let nearest = run.points.poses.iter().map(|pose| (pose.tip - b).norm());
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        assert!(nearest > 0.0, "{nearest}");
+    }
+}
+
+#[test]
+fn where_a_standstill_is_asked_for_the_end_is_reached() {
+    let mut rng = seeded(32);
+    for jerk in ["", ", max_jerk = 30000"] {
+        let machine = trunnion(
+            &format!("max_feed = 30000, max_accel = 2000{jerk}"),
+            "max_feed = 7200, max_accel = 600",
+            "",
+        );
+        let mut program = Program::new(&machine, [0.0; 3]);
+        let mut ends = Vec::new();
+        for _ in 0..50 {
+            let tip = program.here.pose.tip + rng.point(20.0);
+            let to = program.stance([tip.x, tip.y, tip.z], &program.here.joints);
+            program.go(
+                Way::Tip,
+                to,
+                Pace::Minutes(0.001),
+                Corner::Blend { tolerance: None },
+            );
+            let wait = Task::Wait {
+                line: 0,
+                seconds: 0.01,
+                why: Waiting::Dwell,
+            };
+            program.tasks.push(wait);
+            ends.push(to);
+        }
+        let run = run(&machine, &program.tasks, &program.solver, 1000);
+        for (place, end) in ends.iter().enumerate() {
+            let wait = &run.times[2 * place + 1];
+            assert!(libm::fabs(wait.seconds - 0.01) < 1e-9);
+            let point = ((wait.begins + 0.005) / run.points.period) as usize;
+            let stands = &run.points.joints[point];
+            for (own, due) in stands.iter().zip(&end.joints) {
+                assert!(libm::fabs(own - due) < 1e-9, "{own} {due}");
+            }
+            assert!(!run.points.at[point].cuts);
+        }
+    }
+}
+
+#[test]
+fn a_tangent_is_passed_at_full_speed_and_a_corner_is_not() {
+    let machine = trunnion(
+        "max_feed = 30000, max_accel = 2000",
+        "max_feed = 7200, max_accel = 600",
+        "",
+    );
+    for (turn, fast) in [(0.0, true), (0.001, true), (1.0, false)] {
+        let (program, _) = square(&machine, turn, Corner::Path, 6000.0);
+        let run = run(&machine, &program.tasks, &program.solver, 1000);
+        let seconds: f64 = run.times.iter().map(|time| time.seconds).sum();
+        // A ramp between 0 and 100 mm/s costs 100 / 2a; the second way lies askew to the axes.
+        let [first, second]: [f64; 2] = [
+            2000.0,
+            2000.0 / libm::fmax(libm::cos(turn), libm::sin(turn)),
+        ];
+        let [first, second] = [first, second].map(|acceleration| 50.0 / acceleration);
+        let due = 0.7 + first + second + if fast { 0.0 } else { first + second };
+        assert!(
+            libm::fabs(seconds - due) < 0.003,
+            "{turn}: {seconds} s, not {due} s"
+        );
+    }
+}
+
+#[test]
+fn a_corner_is_slowed_down_for_until_no_axis_jumps_by_more_than_a_period_makes() {
+    let machine = trunnion(
+        "max_feed = 30000, max_accel = 2000",
+        "max_feed = 7200, max_accel = 600",
+        "period = 0.001",
+    );
+    let (program, [_, corner, _]) = square(&machine, 1.2, Corner::Path, 6000.0);
+    let run = run(&machine, &program.tasks, &program.solver, 1000);
+    let tips: Vec<_> = run.points.poses.iter().map(|pose| pose.tip).collect();
+    let speeds = tips.windows(2).map(|pair| {
+        (
+            (pair[1] - pair[0]).norm() / 0.001,
+            (pair[0] - corner).norm(),
+        )
+    });
+    let slowest = speeds
+        .filter(|(_, off)| *off < 1.0)
+        .map(|(speed, _)| speed)
+        .fold(f64::INFINITY, f64::min);
+    // Y jumps by v·sin 1.2 in all, by 2000 mm/s² · 1 ms at most.
+    let due = 2.0 / libm::sin(1.2);
+    assert!(
+        slowest >= due * 0.999 && slowest < due + 2.1,
+        "{slowest} mm/s, not {due}"
+    );
+}

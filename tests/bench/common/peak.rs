@@ -1,0 +1,29 @@
+//! How much memory a command takes at most.
+
+use std::error::Error;
+use std::fs;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+/// Runs a command to its end; the peak of its resident memory, kB, where the system tells it.
+pub fn of(command: &mut Command) -> Result<u64, Box<dyn Error>> {
+    let mut child = command
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()?;
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0;
+    loop {
+        if let Some(code) = child.try_wait()? {
+            return match code.success() {
+                true => Ok(peak),
+                false => Err(format!("{command:?}: {code}").into()),
+            };
+        }
+        let now = fs::read_to_string(&status).unwrap_or_default();
+        let high = now.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let high = high.and_then(|text| text.trim().strip_suffix(" kB")?.parse().ok());
+        peak = peak.max(high.unwrap_or(0));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}

@@ -105,9 +105,8 @@ pub fn predict<R: Read + Seek>(
         Some(offsets) => offsets.clone(),
         None => read_back::offsets(asked.arguments, asked.machine, &tools),
     };
-    let mut machine = read_back::as_counted(asked.machine, &words, &offsets);
-    machine.motion.period = period;
-    let machine = &machine;
+    // The control's own period stays: it says how corners are passed, and not how closely we look.
+    let machine = &read_back::as_counted(asked.machine, &words, &offsets);
     let unreadable = |error| FileFault::Read {
         name: name.to_owned(),
         error,

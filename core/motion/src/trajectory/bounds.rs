@@ -16,6 +16,9 @@ use crate::limits::{AxisLimits, MoveLimits};
 /// The share of an acceleration that the curve may have.
 pub(super) const NORMAL: f64 = 0.75;
 
+/// A jerk goes to so many parts of its own: the curve, the curve and the change of velocity together, that change.
+pub(super) const CURVE: f64 = 3.0;
+
 /// The share of it on an arc, cos 30°, which leaves a half across.
 const ARC: f64 = 0.866_025_403_784_438_6;
 
@@ -108,7 +111,7 @@ impl Bounds {
             };
             let most = part * share * limited.acceleration / across;
             least(rate, by, most.sqrt(), acceleration);
-            let most = share * limited.jerk / (3.0 * third);
+            let most = share * limited.jerk / (CURVE * third);
             least(rate, by, libm::cbrt(most), jerk);
         }
         let rate = bounds.rate;

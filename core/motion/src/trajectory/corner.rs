@@ -24,7 +24,7 @@ use nalgebra::Vector3;
 use post_machine::description::BlendRule;
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use super::bounds::{Bounds, NORMAL};
+use super::bounds::{Bounds, CURVE, NORMAL};
 use crate::limits::{AxisLimits, MoveLimits};
 use crate::path::{Way, turns};
 use crate::{Corner, Move};
@@ -121,21 +121,22 @@ impl Junction {
     ) -> Option<Self> {
         // The unit of length is that of the first move's parameter.
         let (change, tip) = change(sides, ratio);
-        let sharpest = |accelerations: &Joints, tip_acceleration: f64| {
-            let mut most: f64 = tip.norm() / tip_acceleration;
-            for (change, acceleration) in change.iter().zip(accelerations) {
-                most = most.max(libm::fabs(*change) / acceleration);
-            }
-            most * STEEPEST / NORMAL
+        let sharpest = |limits: &Joints, of_tip: f64| {
+            let axes = change.iter().zip(limits);
+            let axes = axes.map(|(change, limit)| libm::fabs(*change) / limit);
+            axes.fold(tip.norm() / of_tip, f64::max)
         };
-        let sharpest = sharpest(&rules.acceleration, rules.tip_acceleration);
-        // x'' = 1.5·Δ/l: so long that the curve's share of the accelerations does at the velocity that is wanted.
-        let mut length = sharpest * wanted * wanted;
+        // x'' = 1.5·Δ/l and x''' = 6·Δ/l²: so long that the curve's share of accelerations and jerks does at the velocity
+        // that is wanted.
+        let bent = sharpest(&rules.acceleration, rules.tip_acceleration) * STEEPEST / NORMAL;
+        let jerked = sharpest(&rules.jerk, rules.tip_jerk) * SHARPEST * CURVE;
+        let mut length = (bent * wanted * wanted).max((jerked * wanted * wanted * wanted).sqrt());
         length = length.min(2.0 * HALF).min(2.0 * HALF / ratio);
         if let Some(tolerance) = tolerance {
             length = length.min(tolerance / (STRAY * tip.norm()));
         }
-        let possible = length > 0.0 && length / sharpest > passing * passing;
+        // A jump would pass the jerk that is allowed, whatever its velocity.
+        let possible = length > 0.0 && (jerked > 0.0 || length / bent > passing * passing);
         possible.then_some(Self::Round {
             ratio,
             shares: [0.5 * length, 0.5 * length * ratio],

@@ -95,11 +95,6 @@ impl Planner {
         }
     }
 
-    /// Time from one set-point to the next, s.
-    pub fn period(&self) -> f64 {
-        self.period
-    }
-
     /// Takes the next task.
     ///
     /// # Errors
@@ -478,7 +473,7 @@ impl Planner {
         times: &mut Vec<TaskTime>,
     ) -> Result<Filled, Unreachable> {
         loop {
-            let time = (out.first + out.len() as u64) as f64 * self.period;
+            let time = out.time(out.len());
             self.accounts.done(time, times);
             if self.finished || self.ended && self.law.sections.is_empty() {
                 self.accounts.done(f64::INFINITY, times);

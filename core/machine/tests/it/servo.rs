@@ -200,7 +200,7 @@ fn numbers_of_any_size_come_to_an_end() {
         (seed >> 33) % most
     };
     let mut loaded = 0;
-    for round in 0..3000 {
+    for round in 0..2000 {
         let odd = |line: &str, exponent: i64| match line.split_once(" = ") {
             Some((key, _)) if !key.ends_with("feed_forward") && key != "feedback" => {
                 format!("{key} = 1e{exponent}")
@@ -224,7 +224,7 @@ fn numbers_of_any_size_come_to_an_end() {
             Err(faults) => assert!(faults.iter().all(|fault| fault.place.is_some())),
         }
     }
-    assert!(loaded > 50, "{loaded}");
+    assert!(loaded > 30, "{loaded}");
 }
 
 /// A change of [`LOOPS`] (or what stands in its place), the line of the fault, and words of what is said.
@@ -288,7 +288,7 @@ const REFUSED: &[(&str, &str, &str, &[&str])] = &[
     ("backlash = 0.002", "backlash = -1", "", &["backlash is -1"]),
     (
         "kv = 50",
-        "kv = 500",
+        "kv = 800",
         "[servo.X.loops]",
         &["not stable", "j", "a smaller kv"],
     ),

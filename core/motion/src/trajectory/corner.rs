@@ -20,7 +20,9 @@
 //!   the ways: then the deviation in the middle of two like parabolas is `P`. Two moves in which no rotary axis turns are
 //!   rounded instead. A move whose end may be left is accelerated by half even where a standstill comes, and one that must
 //!   end where it is programmed with all of it even while it is overlapped, when both together may pass a limit by half of
-//!   it: recorded so of LinuxCNC 2.9.
+//!   it: recorded so of LinuxCNC 2.9. With jerk limits, which that rule knows nothing of, both have half, the next
+//!   move begins when this one is slowed down to half of `v₁`, and is speeded up over twice the time that is left: half of
+//!   either ramp.
 
 use nalgebra::Vector3;
 use post_machine::description::BlendRule;
@@ -157,11 +159,10 @@ impl Junction {
     fn overlap(sides: [Side; 2], tolerance: Option<f64>) -> Self {
         let first = sides[0].half;
         let next = match sides[1].task.corner {
-            Corner::Blend { .. } => sides[1].half,
-            Corner::Stop | Corner::Path => sides[1].whole,
+            Corner::Stop | Corner::Path if sides[1].whole.jerk.is_infinite() => sides[1].whole,
+            _ => sides[1].half,
         };
-        let reached = |bounds: &Bounds| bounds.rate.min(bounds.acceleration.sqrt());
-        let [most_first, most_next] = [reached(first), reached(next)];
+        let [most_first, most_next] = [first.reached(), next.reached()];
         let longest = (1.0 / most_first).min(1.0 / most_next);
         let needed = (most_first / first.acceleration).max(most_next / next.acceleration);
         let seconds = longest.min(needed);

@@ -15,7 +15,7 @@ use crate::arguments::JobArguments;
 use crate::arguments::flag_values::positive;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
-use crate::job::predict::{self, Predicted, Sample};
+use crate::job::predict::{self, Against, Predicted, Sample};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::terminal;
 use pictures::Rooms;
@@ -150,6 +150,10 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         Some(file) => Some(files::ClSource::new(file, true)?),
         None => None,
     };
+    let against = match &mut source {
+        Some(source) => Against::Cl(source),
+        None => Against::Nothing,
+    };
     let period = asked.period();
     let mut rooms = folder.as_ref().map(|_| Rooms::new(&machine, period));
     let predicted = {
@@ -166,7 +170,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
                 None => Ok(()),
             }
         };
-        let predicted = predict::predict(&asked, source.as_mut(), &name, program, &mut listen)?;
+        let predicted = predict::predict(&asked, against, &name, program, &mut listen)?;
         if let Some(csv) = csv {
             csv.finish()?;
         }

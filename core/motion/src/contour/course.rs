@@ -52,14 +52,14 @@ impl Course {
 
     /// The place nearest to a tool that goes along it; `more` hands out further legs.
     pub fn follow(&mut self, tool: &Pose, more: &mut dyn FnMut() -> Option<Leg>) -> Option<Asked> {
-        let way = self.last.map_or(0.0, |last| (tool.tip - last).norm());
+        let way = self.last.map(|last| (tool.tip - last).norm());
         self.last = Some(tool.tip);
         if self.path.is_empty() {
             self.push(&next_cut(more)?);
         }
-        let start = self.path.after(self.path.foot(), way);
+        let start = self.path.after(self.path.foot(), way.unwrap_or(0.0));
         let first = (self.path.point(start) - tool.tip).norm();
-        let wanted = LEAST.max(way + REACH * first);
+        let wanted = LEAST.max(way.unwrap_or(0.0) + REACH * first);
         while let (knots, length) = self.path.ahead()
             && knots < AHEAD
             && length < wanted
@@ -67,10 +67,20 @@ impl Course {
         {
             self.push(&leg);
         }
-        let start = self.path.after(self.path.foot(), way);
-        let (foot, axis) = self.path.seek(tool, start, way);
+        let (foot, axis) = match way {
+            None => self.path.seek_anew(tool),
+            Some(way) => {
+                let start = self.path.after(self.path.foot(), way);
+                self.path.seek(tool, start, way)
+            }
+        };
         self.path.stand(foot);
         Some(self.asked(foot, axis, tool))
+    }
+
+    /// The tool leaves it: at rapid it goes elsewhere.
+    pub fn leave(&mut self) {
+        self.last = None;
     }
 
     /// The place nearest to another one of the tool, close to where the first is.

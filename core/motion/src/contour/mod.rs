@@ -314,8 +314,12 @@ impl<'r> Contour<'r> {
             interpolation: 0.0,
             asked: None,
         };
-        if at.cuts {
-            self.parts(&mut told);
+        match at.cuts {
+            true => self.parts(&mut told),
+            false => {
+                self.programmed.leave();
+                self.asked.leave();
+            }
         }
         self.report.take(&told, nearest.missed);
         listen(&told);

@@ -180,15 +180,28 @@ impl Path {
         }
     }
 
-    /// The place nearest to a tool, from `start` on, and the tool axis that is asked for there: of places that are
-    /// equally near the one whose axis is nearest.
-    /// Further back than `back` mm along the path it is looked for downhill alone.
+    /// The place nearest to a tool, from `start` on downhill, and further back than `back` mm along the path no other
+    /// one; and the tool axis that is asked for there: of places that are equally near the one whose axis is nearest.
     pub fn seek(&self, tool: &Pose, start: Foot, back: f64) -> (Foot, Vector3<f64>) {
-        let first = (self.point(start) - tool.tip).norm();
         let found = self.descend(&tool.tip, start);
+        let first = (self.point(start) - tool.tip).norm();
+        self.among(tool, found, back.min(REACH * first), first)
+    }
+
+    /// The place nearest to a tool that was off the path meanwhile: from where it left, and nowhere before.
+    pub fn seek_anew(&self, tool: &Pose) -> (Foot, Vector3<f64>) {
+        let first = (self.point(self.foot) - tool.tip).norm();
+        let left = Foot {
+            distance: first,
+            ..self.foot
+        };
+        self.among(tool, left, 0.0, first)
+    }
+
+    fn among(&self, tool: &Pose, found: Foot, back: f64, first: f64) -> (Foot, Vector3<f64>) {
         let within = Within {
             ahead: REACH * first,
-            back: back.min(REACH * first),
+            back,
             gain: TIE,
         };
         let foot = self.least(&tool.tip, found, within);

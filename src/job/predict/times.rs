@@ -76,16 +76,16 @@ impl TimeTally {
                 row.cutting_s += time.seconds;
             }
         }
-        let limit = match kind {
+        let now = match kind {
             Kind::Wait => TimeLimit::Wait,
             _ => time.limit,
         };
         let known = self
             .limits
             .iter()
-            .position(|(known, limit, _)| (*known, *limit) == (kind, limit));
+            .position(|(known, limit, _)| (*known, *limit) == (kind, now));
         let place = known.unwrap_or_else(|| {
-            let (called, axis) = name(machine, limit);
+            let (called, axis) = name(machine, now);
             let row = LimitTime {
                 kind: kind.name(),
                 limit: called,
@@ -95,7 +95,7 @@ impl TimeTally {
                 share: 0.0,
                 beyond_feed_s: 0.0,
             };
-            self.limits.push((kind, limit, row));
+            self.limits.push((kind, now, row));
             self.limits.len() - 1
         });
         let row = &mut self.limits[place].2;

@@ -76,22 +76,26 @@ impl TimeTally {
                 row.cutting_s += time.seconds;
             }
         }
+        let now = match kind {
+            Kind::Wait => TimeLimit::Wait,
+            _ => time.limit,
+        };
         let known = self
             .limits
             .iter()
-            .position(|(known, limit, _)| (*known, *limit) == (kind, time.limit));
+            .position(|(known, limit, _)| (*known, *limit) == (kind, now));
         let place = known.unwrap_or_else(|| {
-            let (limit, axis) = name(machine, time.limit);
+            let (called, axis) = name(machine, now);
             let row = LimitTime {
                 kind: kind.name(),
-                limit,
+                limit: called,
                 axis,
                 moves: 0,
                 seconds: 0.0,
                 share: 0.0,
                 beyond_feed_s: 0.0,
             };
-            self.limits.push((kind, time.limit, row));
+            self.limits.push((kind, now, row));
             self.limits.len() - 1
         });
         let row = &mut self.limits[place].2;

@@ -186,6 +186,7 @@ impl Stages {
             time,
             axes: found::axes(machine, &contour),
             contour: found::contour(&contour),
+            measured: None,
             assumed: found::assumed(machine),
         })
     }

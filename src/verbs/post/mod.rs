@@ -104,10 +104,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     job::say_what_is_left(&arguments.job, &machine, &finder);
     let looks_ahead =
         machine.program.looks_ahead || arguments.split.is_some() || arguments.setup_sheet.is_some();
-    let twice = looks_ahead
-        || machine.control.planes
-        || arguments.verify
-        || arguments.predict.is_some();
+    let twice =
+        looks_ahead || machine.control.planes || arguments.verify || arguments.predict.is_some();
     let mut source = ClSource::new(arguments.job.input(), twice)?;
     let ahead = match looks_ahead {
         true => Some(job::look_ahead(
@@ -190,10 +188,12 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         };
         file.write_bytes(json.as_bytes())?;
     }
-    let sheet_file = arguments.setup_sheet.is_some().then(|| others.next()).flatten();
-    if let (Some(sheet), Some(ahead), Some(file)) =
-        (&arguments.setup_sheet, &ahead, sheet_file)
-    {
+    let sheet_file = arguments
+        .setup_sheet
+        .is_some()
+        .then(|| others.next())
+        .flatten();
+    if let (Some(sheet), Some(ahead), Some(file)) = (&arguments.setup_sheet, &ahead, sheet_file) {
         let programs: Vec<_> = parts
             .iter()
             .map(|part| &part.target)

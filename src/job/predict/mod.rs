@@ -3,6 +3,7 @@
 mod cl_path;
 mod feeds;
 mod found;
+pub mod measured;
 mod prediction;
 mod run;
 mod sample;

@@ -15,6 +15,8 @@ const LEAST_SAMPLES: usize = 4;
 const FINEST: f64 = 1e-7;
 /// Half of the difference by which derivatives are taken, as a share.
 const STEP: f64 = 1e-4;
+/// A course that differs by more, mm or radians, has left all bounds.
+const LARGEST: f64 = 1e100;
 /// Longest change of a number in one step of the search: a factor of e.
 const LONGEST: f64 = 1.0;
 /// Steps of the search.
@@ -64,6 +66,13 @@ impl<'a> Search<'a> {
                 ),
                 "both have the same length, and at least four samples are compared for each number"
                     .to_owned(),
+            );
+        }
+        let mut courses = log.commanded.iter().chain(log.measured);
+        if names.is_empty() || !courses.all(|value| value.is_finite()) {
+            return fault(
+                "there is nothing to fit, or the log holds what is no number".to_owned(),
+                "name one number at least, such as X.kv; positions are finite numbers".to_owned(),
             );
         }
         let mut own = servo.clone();
@@ -163,8 +172,9 @@ impl<'a> Search<'a> {
         Ok(errors.iter().map(|error| error * error).sum())
     }
 
-    /// The triangle R of `[J e] = Q·R`: J how the prediction changes with each number, e measured minus predicted.
-    fn triangle(&self, place: &DVector<f64>) -> Result<DMatrix<f64>, Box<Diagnostic>> {
+    /// The triangle R of `[J e] = Q·R`: J how the prediction changes with each number, e measured minus predicted. None
+    /// where a run close by leaves all bounds.
+    fn triangle(&self, place: &DVector<f64>) -> Result<Option<DMatrix<f64>>, Box<Diagnostic>> {
         let count = self.names.len();
         let mut followers = vec![self.follower(place)?];
         for index in 0..count {
@@ -209,9 +219,12 @@ impl<'a> Search<'a> {
                     (above - below) / (2.0 * STEP)
                 }
             });
+            if !stacked.iter().all(|part| libm::fabs(*part) < LARGEST) {
+                return Ok(None);
+            }
             triangle = stacked.qr().r();
         }
-        Ok(triangle)
+        Ok(Some(triangle))
     }
 
     /// Standard deviation of the log's errors, mm or radians: that which independent errors would have that say as little.
@@ -230,7 +243,13 @@ impl<'a> Search<'a> {
             squares + draw * draw * (place - &self.start).norm_squared()
         };
         let mut place = from.clone();
-        let mut triangle = self.triangle(&place)?;
+        let Some(mut triangle) = self.triangle(&place)? else {
+            let message = "this servo does not follow the log: its positions are no numbers";
+            return Err(Diagnostic::error("fit", message)
+                .at(self.servo.place.clone())
+                .help("begin with numbers that are closer to those of the machine")
+                .boxed());
+        };
         let mut best = cost(&place, triangle.column(count).norm_squared());
         let mut damping = 1e-3;
         let mut converged = false;
@@ -247,12 +266,17 @@ impl<'a> Search<'a> {
                     f64::NEG_INFINITY
                 };
                 let length = (&next - &place).amax();
-                if gain > 0.0 {
+                let there = if gain > 0.0 {
+                    self.triangle(&next)?
+                } else {
+                    None
+                };
+                if let Some(there) = there {
                     moved = true;
                     damping = (damping / 10.0).max(1e-12);
                     best -= gain;
                     place = next;
-                    triangle = self.triangle(&place)?;
+                    triangle = there;
                     converged = gain <= 1e-10 * best || length < 1e-9;
                 } else {
                     converged = length < 1e-7;

@@ -279,4 +279,12 @@ fn what_cannot_be_fitted_is_refused() {
         ..log
     };
     assert!(said(&["kv"], uneven).contains("1499 measured"));
+    assert!(said(&[], log).contains("nothing to fit"));
+    let mut holed = commanded.clone();
+    holed[700] = f64::NAN;
+    let holed = Log {
+        measured: &holed,
+        ..log
+    };
+    assert!(said(&["kv"], holed).contains("no number"));
 }

@@ -164,6 +164,17 @@ pub fn length(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A time between two set-points, s: no control is faster, and none so slow.
+pub fn period(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        number if (1e-5..=1.0).contains(&number) => Ok(number),
+        number => Err(format!(
+            "{number} s between two set-points; from 0.00001 to 1 s is possible, and controls have 0.0005 to 0.02 s"
+        )),
+    }
+}
+
+
 /// A number above zero.
 pub fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {

@@ -13,7 +13,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_readback::interpret::Limits;
 
 use crate::arguments::JobArguments;
-use crate::arguments::flag_values::positive;
+use crate::arguments::flag_values;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
 use crate::job::predict::{self, Against, Predicted, Sample};
@@ -57,7 +57,7 @@ pub struct PredictArguments {
     job: JobArguments,
 
     /// Time from one set-point to the next, seconds, over `[motion] period` of the machine file.
-    #[arg(long, value_name = "SECONDS", value_parser = positive, help_heading = "Machine")]
+    #[arg(long, value_name = "SECONDS", value_parser = flag_values::period, help_heading = "Machine")]
     period: Option<f64>,
 
     /// What stands in the control's tables, a TOML file: work offsets, lengths by register or tool. Without it lengths are

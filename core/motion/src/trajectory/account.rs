@@ -7,7 +7,11 @@ use super::{TaskTime, TimeLimit};
 /// Reasons that are kept apart for one task.
 const MOST: usize = 8;
 
-/// Shares of a task's time below this are rounding.
+/// A task that takes longer than was asked by no more than this share of its time keeps its feed: what its ends cost is
+/// not what makes it last.
+const KEPT: f64 = 0.02;
+
+/// Times below this are rounding, s.
 const NOTHING: f64 = 1e-9;
 
 /// A task that is not yet done.
@@ -88,13 +92,13 @@ impl Accounts {
         let begins = if open.empty { time } else { open.begins };
         let seconds = time - begins;
         let asked = open.asked.unwrap_or(seconds);
-        let most = open.spent.iter().copied().fold(
-            (TimeLimit::Feed, NOTHING + NOTHING * seconds),
-            |most, spent| match spent.1 > most.1 {
-                true => spent,
-                false => most,
-            },
-        );
+        let kept = open.asked.is_some() && seconds - asked <= NOTHING + KEPT * seconds;
+        let none = (TimeLimit::Feed, NOTHING);
+        let spent = open.spent.iter().copied().filter(|_| !kept);
+        let most = spent.fold(none, |most, spent| match spent.1 > most.1 {
+            true => spent,
+            false => most,
+        });
         self.done.push_back(TaskTime {
             task: open.task,
             line: open.line,

@@ -5,6 +5,7 @@
 mod arcs;
 mod flow;
 mod read;
+mod set_points;
 
 use std::fs;
 use std::path::Path;

@@ -81,6 +81,8 @@ pub struct MoveLimits {
     pub tip: [f64; 3],
     /// First derivative of the tip where it begins and ends, mm, part frame.
     pub tip_ends: [Vector3<f64>; 2],
+    /// Of an arc on which no rotary axis turns: how large the first derivatives are somewhere on the whole circle.
+    pub circle: Option<Joints>,
 }
 
 /// What the limits ask for on a move.
@@ -122,6 +124,17 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
             &mut found,
         )?;
     }
+    if let Way::Arc {
+        centre,
+        normal,
+        sweep,
+    } = &task.way
+        && !turns
+    {
+        let (arm, _) = crate::path::arm_and_height(task.from.pose.tip, *centre, *normal);
+        let ways = [arm, normal.cross(&arm)].map(|arm| arm * *sweep);
+        found.circle = Some(circle(task, ways, coordinates(task, limits))?);
+    }
     found.time(limits);
     Ok(found)
 }
@@ -132,6 +145,32 @@ fn coordinates<'l>(task: &Move, limits: &'l AxisLimits) -> Option<&'l [Option<us
         .programmed
         .as_ref()
         .filter(|_| task.keeps_tip && task.way != Way::Axes)
+}
+
+/// How large what is limited gets for each place where the tip goes round an ellipse of these half-axes, the rotary axes
+/// standing where the move begins.
+fn circle(
+    task: &Move,
+    [first, second]: [Vector3<f64>; 2],
+    coordinates: Option<&[Option<usize>; MAX_AXES]>,
+) -> Result<Joints, Unreachable> {
+    let from = &task.from;
+    let turns = task.solver.chain().turns(&from.joints);
+    let place = |way: Vector3<f64>| {
+        let mut joints = from.joints;
+        task.solver
+            .place(from.pose.tip + way, &mut joints, &turns)
+            .map(|()| joints)
+    };
+    // Where nothing turns the axes go linearly with the tip.
+    let [rest, first_at, second_at] = [place(Vector3::zeros())?, place(first)?, place(second)?];
+    Ok(std::array::from_fn(|index| {
+        let [a, b] = match coordinates.and_then(|coordinates| coordinates[index]) {
+            Some(coordinate) => [first[coordinate], second[coordinate]],
+            None => [first_at, second_at].map(|joints| joints[index] - rest[index]),
+        };
+        (a * a + b * b).sqrt()
+    }))
 }
 
 impl MoveLimits {

@@ -43,6 +43,8 @@ pub(super) struct Bounds {
 struct Limited {
     /// Bounds of the derivatives over the parameter.
     derivatives: [f64; 3],
+    /// Of an arc: the largest first derivative on the whole circle.
+    circle: f64,
     velocity: f64,
     acceleration: f64,
     jerk: f64,
@@ -55,6 +57,7 @@ fn all<'a>(found: &'a MoveLimits, rules: &'a AxisLimits) -> impl Iterator<Item =
         let axis = place as u8;
         Limited {
             derivatives: [found.first[place], found.second[place], found.third[place]],
+            circle: found.circle.map_or(0.0, |circle| circle[place]),
             velocity: rules.velocity[place],
             acceleration: rules.acceleration[place],
             jerk: rules.jerk[place],
@@ -67,6 +70,7 @@ fn all<'a>(found: &'a MoveLimits, rules: &'a AxisLimits) -> impl Iterator<Item =
     });
     let tip = Limited {
         derivatives: found.tip,
+        circle: found.tip[0],
         velocity: f64::INFINITY,
         acceleration: rules.tip_acceleration,
         jerk: rules.tip_jerk,
@@ -110,7 +114,7 @@ impl Bounds {
             let (rate, by) = (&mut bounds.rate, &mut bounds.by[0]);
             least(rate, by, limited.velocity / first, velocity);
             let (across, part) = match sweep {
-                Some(sweep) => (sweep * amplitude(first, second, sweep), ARC),
+                Some(sweep) => (sweep * limited.circle, ARC),
                 None => (second, NORMAL),
             };
             let most = part * share * limited.acceleration / across;
@@ -126,7 +130,7 @@ impl Bounds {
             let (change, by) = (&mut bounds.acceleration, &mut bounds.by[1]);
             let along = match sweep {
                 Some(sweep) => {
-                    let first = amplitude(first, second, sweep);
+                    let first = limited.circle.max(first);
                     let across = sweep * first * free * free;
                     match second > 0.0 && across > ARC * most {
                         true => 0.5 * most / first,
@@ -159,11 +163,4 @@ impl Bounds {
     pub fn reached(&self) -> f64 {
         self.rate.min(self.acceleration.sqrt())
     }
-}
-
-/// What the first derivative of an arc's coordinate amounts to somewhere on the whole circle, when on a part of it the
-/// first two are at most these: the sum of the squares of the first and of the second over the sweep is the same all over.
-fn amplitude(first: f64, second: f64, sweep: f64) -> f64 {
-    let bent = second / sweep;
-    (first * first + bent * bent).sqrt()
 }

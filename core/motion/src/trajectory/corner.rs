@@ -185,7 +185,11 @@ impl Junction {
         let [rate, next_rate] = rates;
         Self::Overlap {
             rate,
-            change: next.acceleration.min(next_rate * first.acceleration / rate),
+            // Recorded: without a tolerance it is speeded up as hard as it may be from where the overlap begins.
+            change: match tolerance {
+                None => next.acceleration,
+                Some(_) => (next_rate * first.acceleration / rate).min(next.acceleration),
+            },
         }
     }
 }

@@ -17,6 +17,7 @@ mod plan_view;
 pub mod read_files;
 mod rights;
 mod scale;
+mod scratch;
 pub mod standard;
 pub mod svg;
 mod target;
@@ -34,6 +35,7 @@ pub use own_folder::OwnFolder;
 pub use path_arg::PathArg;
 pub use plan_view::PlanView;
 pub use scale::step as round_step;
+pub use scratch::Scratch;
 pub use target::Role;
 pub use temporary::{delete_on_signals, delete_temporary_files};
 

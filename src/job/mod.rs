@@ -1,5 +1,6 @@
 //! A job as the flags mean it: a CL file, a machine with its settings, and the plugins that the machine asks for.
 
+pub mod compensate;
 mod dry_run;
 mod look_ahead;
 pub mod machine_files;

@@ -6,14 +6,15 @@ use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_posting::report::Report;
-use post_posting::{Job, JobFacts, LookedAhead, Post};
+use post_posting::{Job, JobFacts, LookedAhead, Output, PathShift, Post};
 
 use super::plugin_finder;
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
-use crate::files::{AtomicFile, ClSource, PathArg};
+use crate::files::{ClSource, PathArg};
 
 /// What one program is made of.
+#[derive(Clone)]
 pub struct OneProgram<'a> {
     /// The command line of the job.
     pub arguments: &'a JobArguments,
@@ -31,12 +32,13 @@ pub struct OneProgram<'a> {
 
 impl OneProgram<'_> {
     /// Writes it to `file`: its report, if all is good, and every finding. `ahead` is what a first pass over the whole CL
-    /// file has found, where the machine's texts ask for it.
+    /// file has found, where the machine's texts ask for it; the points of its path are moved by `shift`.
     pub fn write(
         self,
         ahead: Option<&LookedAhead>,
         source: &mut ClSource,
-        file: &mut AtomicFile,
+        file: &mut dyn Output,
+        shift: Option<&mut dyn PathShift>,
     ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
         let Self {
             arguments,
@@ -80,6 +82,9 @@ impl OneProgram<'_> {
         };
         let mut post =
             Post::new(machine, job, &mut dialect, &mut model, file).map_err(|finding| *finding)?;
+        if let Some(shift) = shift {
+            post.shift(shift);
+        }
         super::read(input, &mut post)?;
         let (mut report, findings) = post.finish();
         if let Some(report) = &mut report {

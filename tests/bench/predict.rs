@@ -204,7 +204,7 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
         Interpreter::new(&machine, &lexicon, &offsets, limits, "program", file).map_err(text)?;
     let mut tasks = Tasks::new(&machine);
     let mut planner = Planner::new(&machine);
-    let period = planner.period();
+    let period = machine.motion.period;
     let mut servos = Servos::new(&machine, period).map_err(text)?;
     let mut contour = Contour::new();
     let mut costs = Costs {

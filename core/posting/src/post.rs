@@ -20,6 +20,7 @@ use crate::observer::{Observer, Observers, Output};
 use crate::program::{Interpreter, Reading, Step};
 use crate::refusal;
 use crate::report::{AxisRange, Deviation, Report};
+use crate::shift::{PathShift, Shift};
 use crate::stream::{BATCH, Flow, Outlet};
 use crate::timing::Timing;
 use crate::window::Window;
@@ -57,6 +58,7 @@ pub struct Post<'a> {
 /// The stages behind the interpreter, and the batches between them.
 struct Stages<'a> {
     expand: Expand,
+    shift: Option<Shift<'a>>,
     lines: Vec<Flow<Line>>,
     configuration: Configuration<'a>,
     configured: Vec<Flow<Configured>>,
@@ -80,6 +82,7 @@ impl Stages<'_> {
     fn run(&mut self, work: Work<'_>, findings: &Findings) {
         let Self {
             expand,
+            shift,
             lines,
             configuration,
             configured,
@@ -109,8 +112,12 @@ impl Stages<'_> {
         let mut to_blocks =
             |configured: &mut Vec<Flow<Configured>>| blocks.take(configured, &mut to);
         let mut configured = Outlet::new(configured, &mut to_blocks);
-        let mut to_configuration =
-            |lines: &mut Vec<Flow<Line>>| configuration.take(lines, &mut configured, findings);
+        let mut to_configuration = |lines: &mut Vec<Flow<Line>>| {
+            if let Some(shift) = shift {
+                shift.take(lines);
+            }
+            configuration.take(lines, &mut configured, findings);
+        };
         let mut lines = Outlet::new(lines, &mut to_configuration);
         match work {
             Work::Take(steps) => expand.take(steps, &mut lines, findings),
@@ -170,6 +177,7 @@ impl<'a> Post<'a> {
         let tcp_still = writes.has(Capabilities::TCP_STILL) && ahead.is_none();
         let stages = Stages {
             expand: Expand::new(machine, job.reading.chord_tolerance, writes, ahead),
+            shift: None,
             lines: Vec::new(),
             timing: Timing::new(machine, &format)?,
             configuration: Configuration::new(machine, &format, job.tool_length, tcp_still)?,
@@ -198,6 +206,13 @@ impl<'a> Post<'a> {
     /// Shows what is made to `observer` from here on.
     pub fn watch(&mut self, observer: &'a mut dyn Observer) {
         self.stages.observers.add(observer);
+    }
+
+    /// Has the points of cuts moved by `shift`, none by more than `[accuracy] servo_compensation`. What is certified is
+    /// then the path of the moved points.
+    pub fn shift(&mut self, shift: &'a mut dyn PathShift) {
+        let bound = self.machine.accuracy.servo_compensation.unwrap_or(0.0);
+        self.stages.shift = Some(Shift::new(shift, bound));
     }
 
     /// Takes a record.

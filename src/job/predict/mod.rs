@@ -3,6 +3,7 @@
 mod cl_path;
 mod feeds;
 mod found;
+pub mod measured;
 mod prediction;
 mod run;
 mod sample;
@@ -10,6 +11,7 @@ mod stages;
 mod text;
 mod times;
 
+pub use cl_path::tools as cl_tools;
 pub use prediction::Prediction;
 pub use run::{Against, Asked, Predicted, predict};
 pub use sample::Sample;

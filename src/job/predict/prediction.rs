@@ -4,6 +4,8 @@
 
 use serde::Serialize;
 
+use super::measured::MeasuredFound;
+
 /// What was found.
 #[derive(Clone, Debug, Serialize)]
 pub struct Prediction {
@@ -29,6 +31,9 @@ pub struct Prediction {
     pub axes: Vec<AxisFound>,
     /// How far the tool is off its path in cuts.
     pub contour: ContourFound,
+    /// What is left between it and a recorded log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<MeasuredFound>,
     /// What is taken for granted, as sentences.
     pub assumed: Vec<String>,
 }

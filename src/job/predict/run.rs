@@ -8,7 +8,7 @@ use std::sync::Arc;
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place};
-use post_machine::kinematics::Unreachable;
+use post_machine::kinematics::{Solver, Unreachable};
 use post_motion::contour::Reference;
 use post_motion::trajectory::{Filled, Planner};
 use post_motion::{SetPoints, Task};
@@ -74,6 +74,8 @@ pub struct Predicted {
     pub found: Prediction,
     /// What was taken for granted: warnings.
     pub findings: Vec<Diagnostic>,
+    /// The chains that the axes moved by, and the time from which each did, s.
+    pub chains: Vec<(f64, Arc<Solver>)>,
 }
 
 /// Predicts the program `name` from `input`; every set-point is told in order.
@@ -105,9 +107,8 @@ pub fn predict<R: Read + Seek>(
         Some(offsets) => offsets.clone(),
         None => read_back::offsets(asked.arguments, asked.machine, &tools),
     };
-    let mut machine = read_back::as_counted(asked.machine, &words, &offsets);
-    machine.motion.period = period;
-    let machine = &machine;
+    // The control's own period stays: it says how corners are passed, and not how closely we look.
+    let machine = &read_back::as_counted(asked.machine, &words, &offsets);
     let unreadable = |error| FileFault::Read {
         name: name.to_owned(),
         error,
@@ -127,6 +128,7 @@ pub fn predict<R: Read + Seek>(
     let mut planner = Planner::new(machine);
     let mut points: Option<SetPoints> = None;
     let mut times = Vec::new();
+    let mut chains: Vec<(f64, Arc<Solver>)> = Vec::new();
     loop {
         let filled = match &mut points {
             None => Filled::Wants,
@@ -140,6 +142,12 @@ pub fn predict<R: Read + Seek>(
         if let Some(points) = &mut points
             && filled != Filled::Wants
         {
+            let known = chains.last();
+            if !points.is_empty()
+                && known.is_none_or(|(_, known)| !Arc::ptr_eq(known, &points.solver))
+            {
+                chains.push((points.time(0), Arc::clone(&points.solver)));
+            }
             stages.batch(points, listen)?;
             points.clear();
         }
@@ -182,7 +190,11 @@ pub fn predict<R: Read + Seek>(
     told(name, program.report(), &mut findings);
     found::warn(machine, &mut findings);
     let found = stages.finish(machine, name, program.report().blocks, listen)?;
-    Ok(Predicted { found, findings })
+    Ok(Predicted {
+        found,
+        findings,
+        chains,
+    })
 }
 
 /// A program on the way to tasks.

@@ -202,6 +202,7 @@ impl<'r> Stages<'r> {
             time,
             axes: found::axes(machine, &contour),
             contour: found::contour(&contour, held),
+            measured: None,
             assumed: found::assumed(machine),
         })
     }

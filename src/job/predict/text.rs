@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::measured;
 use super::prediction::{AxisFound, Extreme, LimitTime, Prediction, Spread};
 use crate::terminal::{clock, number, table};
 
@@ -15,6 +16,10 @@ pub fn text(found: &Prediction) -> String {
     axes(&mut text, &found.axes);
     limits(&mut text, found);
     operations(&mut text, found);
+    if let Some(measured) = &found.measured {
+        text.push('\n');
+        text.push_str(&measured::text(measured));
+    }
     if !found.assumed.is_empty() {
         text.push_str("\nassumed\n");
         for assumed in &found.assumed {

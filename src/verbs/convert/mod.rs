@@ -221,7 +221,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         lines: None,
         trust_model: false,
     };
-    let (report, findings) = one.write(ahead.as_ref(), &mut source, program)?;
+    let (report, findings) = one.write(ahead.as_ref(), &mut source, program, None)?;
     notes.extend(findings);
     let Some(report) = report else {
         return Err(notes.into());

@@ -20,6 +20,7 @@ use serde::Serialize;
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
+use crate::job::compensate::{self, Compensation, Moved};
 use crate::job::one_program::OneProgram;
 use crate::job::predict::{self, Against, Asked, Predicted, Prediction};
 use crate::job::read_back::{self, Held, Reading};
@@ -74,6 +75,12 @@ pub struct PostArguments {
     #[arg(long)]
     verify: bool,
 
+    /// Moves points of the path so that the tool, the servos in between, comes nearer to the path of the CL file; by no
+    /// more than [accuracy] servo_compensation of the machine file allows, and only where a prediction says that it helps.
+    /// Arcs and splines go as moves then, and no CL point is left out.
+    #[arg(long)]
+    compensate_servo: bool,
+
     /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axes, and how far the tool
     /// strays; with =FILE as JSON too, of several programs a list.
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, value_parser = PathArg::parser())]
@@ -104,8 +111,11 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     job::say_what_is_left(&arguments.job, &machine, &finder);
     let looks_ahead =
         machine.program.looks_ahead || arguments.split.is_some() || arguments.setup_sheet.is_some();
-    let twice =
-        looks_ahead || machine.control.planes || arguments.verify || arguments.predict.is_some();
+    let twice = arguments.compensate_servo
+        || looks_ahead
+        || machine.control.planes
+        || arguments.verify
+        || arguments.predict.is_some();
     let mut source = ClSource::new(arguments.job.input(), twice)?;
     let ahead = match looks_ahead {
         true => Some(job::look_ahead(
@@ -136,6 +146,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let mut reports = Vec::new();
     let mut verifications = Vec::new();
     let mut predictions = Vec::new();
+    let mut compensations = Vec::new();
     let mut findings = Vec::new();
     for (part, file) in parts.iter().zip(&mut files) {
         let program = OneProgram {
@@ -146,7 +157,22 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             lines: part.lines.clone(),
             trust_model: arguments.trust_model,
         };
-        let (report, found) = program.write(ahead.as_ref(), &mut source, file)?;
+        let compensated = match arguments.compensate_servo {
+            true => Some(compensate::compensate(
+                &program,
+                ahead.as_ref(),
+                &mut source,
+            )?),
+            false => None,
+        };
+        let (report, found) = write(
+            program,
+            compensated.as_ref(),
+            ahead.as_ref(),
+            &mut source,
+            file,
+        )?;
+        compensations.extend(compensated.map(|compensated| compensated.found));
         // What is wrong with the file is found again in each of its parts.
         for finding in found {
             if !findings.contains(&finding) {
@@ -180,6 +206,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
                 report,
                 verification: verifications.get(index),
                 prediction: predictions.get(index),
+                servo_compensation: compensations.get(index),
             })
             .collect();
         let json = match (arguments.split, told.as_slice()) {
@@ -231,6 +258,9 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         });
         for (index, (part, report)) in parts.iter().zip(&reports).enumerate() {
             let mut text = summary::text(report, verifications.get(index), &name, &part.target);
+            if let Some(found) = compensations.get(index) {
+                text.push_str(&compensate::text(found));
+            }
             if let Some(found) = predictions.get(index) {
                 text.push('\n');
                 text.push_str(&predict::text(found));
@@ -243,6 +273,22 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// Writes a program, its points moved where that helps.
+fn write(
+    program: OneProgram<'_>,
+    compensated: Option<&Compensation>,
+    ahead: Option<&LookedAhead>,
+    source: &mut ClSource,
+    file: &mut AtomicFile,
+) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
+    let moved = compensated.and_then(|found| Some((&found.machine, found.moves.as_ref()?)));
+    let Some((machine, moves)) = moved else {
+        return program.write(ahead, source, file, None);
+    };
+    let program = OneProgram { machine, ..program };
+    program.write(ahead, source, file, Some(&mut Moved::new(moves)))
 }
 
 /// The machine of the command line, its program so numbered if a number is given.
@@ -311,13 +357,18 @@ fn read_back(
     source: &mut ClSource,
     file: &mut AtomicFile,
 ) -> Result<Held, Failure> {
+    // What was moved on purpose is off the CL file by that.
+    let accuracy = &part.machine.accuracy;
+    let bound = accuracy.servo_compensation;
+    let bound = bound.filter(|_| arguments.compensate_servo);
+    let moved = bound.map(|bound| accuracy.tolerance + bound);
     let reading = Reading {
         arguments: &arguments.job,
         machine: &part.machine,
         finder,
         offsets: None,
         limits: Limits::default(),
-        tolerances: [None, None],
+        tolerances: [moved, None],
         solutions: false,
         lines: part.lines.clone(),
     };
@@ -359,6 +410,9 @@ struct Told<'a> {
     /// What is predicted of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     prediction: Option<&'a Prediction>,
+    /// What moving points for the servos has done.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    servo_compensation: Option<&'a compensate::Found>,
 }
 
 /// Where the program goes.

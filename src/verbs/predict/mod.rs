@@ -1,6 +1,7 @@
 //! `post predict`: what an NC program does on its machine, before it is run there.
 
 mod envelope;
+mod measured_arguments;
 mod path_pictures;
 mod pictures;
 mod set_points_csv;
@@ -18,6 +19,7 @@ use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
 use crate::job::predict::{self, Against, Predicted, Sample};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::terminal;
+use measured_arguments::MeasuredArguments;
 use pictures::Rooms;
 use set_points_csv::SetPointsCsv;
 
@@ -78,6 +80,9 @@ pub struct PredictArguments {
     /// it and by its size, and the spectrum of the axes' errors; and writes the summary beside them.
     #[arg(long, value_name = "FOLDER", value_parser = PathArg::parser())]
     pictures: Option<PathArg>,
+
+    #[command(flatten)]
+    measured: MeasuredArguments,
 
     /// So many blocks are run once more, by loops, jumps and subprograms; more are refused.
     #[arg(long, value_name = "N", default_value_t = Limits::default().blocks)]
@@ -155,6 +160,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         None => Against::Nothing,
     };
     let period = asked.period();
+    let mut overlay = arguments.measured.overlay(&machine, period)?;
     let mut rooms = folder.as_ref().map(|_| Rooms::new(&machine, period));
     let predicted = {
         let mut csv = match (&arguments.csv, texts.first_mut()) {
@@ -162,6 +168,9 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
             _ => None,
         };
         let mut listen = |sample: &Sample| {
+            if let Some(overlay) = &mut overlay {
+                overlay.take(sample)?;
+            }
             if let Some(rooms) = &mut rooms {
                 rooms.take(sample);
             }
@@ -176,7 +185,14 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         }
         predicted
     };
-    let Predicted { found, findings } = predicted;
+    let Predicted {
+        mut found,
+        findings,
+        chains,
+    } = predicted;
+    if let Some(overlay) = &overlay {
+        found.measured = Some(overlay.finish(&machine, &chains, &mut |_| {})?);
+    }
     let json = files::json(&found);
     if let (Some(_), Some(file)) = (&arguments.summary, texts.last_mut()) {
         file.write_bytes(json.as_bytes())?;

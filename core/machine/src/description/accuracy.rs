@@ -38,6 +38,8 @@ pub struct Accuracy {
     pub axis_tolerance: f64,
     /// Largest deviation of the tip in a rapid, mm.
     pub rapid_tolerance: f64,
+    /// By how much a point may be moved to compensate what the servos leave, mm; none: not at all.
+    pub servo_compensation: Option<f64>,
 }
 
 /// The point of the tool whose deviation is bounded.
@@ -92,7 +94,12 @@ impl Builder<'_> {
             }
             count.clamp(1, MOST_POINTS) as u32
         });
+        let servo_compensation = file
+            .servo_compensation
+            .as_ref()
+            .map(|_| self.tolerance("servo_compensation", &file.servo_compensation, 0.0));
         Accuracy {
+            servo_compensation,
             options: options.remove(&model).unwrap_or_default(),
             model,
             model_place: file

@@ -669,4 +669,8 @@ pub(crate) struct AccuracyFile {
     /// Where the path turns by more than this, degrees, a CL point is a corner: it is never dropped; 10 if not said.
     #[schemars(with = "Option<Number>", extend("minimum" = 0, "maximum" = 180))]
     pub corner: Option<Quantity>,
+    /// Contour errors that the servos leave may be compensated (`post --compensate-servo`), no point being moved by more
+    /// than this, mm; if not said, they may not.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub servo_compensation: Option<Quantity>,
 }

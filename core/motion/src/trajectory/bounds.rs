@@ -6,7 +6,8 @@
 //! at most [`NORMAL`] of an acceleration goes to the curve, and what the curve leaves at the velocity that is then
 //! allowed is the tangential acceleration; a jerk goes in thirds to `q'''`, to the mixed term and to `t⃛`. On an arc with
 //! no turn of a rotary axis the two accelerations stand across each other and share as sides of a right triangle do:
-//! [`ARC`] of it to the curve, half of it along, as LinuxCNC shares it.
+//! [`ARC`] of it to the curve, half of it along, or more where even the axes' largest velocities ask for less across, as
+//! LinuxCNC shares it.
 
 use post_machine::kinematics::MAX_AXES;
 
@@ -15,6 +16,9 @@ use crate::limits::{AxisLimits, MoveLimits};
 
 /// The share of an acceleration that the curve may have.
 pub(super) const NORMAL: f64 = 0.75;
+
+/// A jerk goes to so many parts of its own: the curve, the curve and the change of velocity together, that change.
+pub(super) const CURVE: f64 = 3.0;
 
 /// The share of it on an arc, cos 30°, which leaves a half across.
 const ARC: f64 = 0.866_025_403_784_438_6;
@@ -97,9 +101,12 @@ impl Bounds {
                 (*bound, *own) = (value, by);
             }
         };
+        // How fast it could go by the velocities alone, whatever the program asks for.
+        let mut free = f64::INFINITY;
         for limited in all(found, rules) {
             let [first, second, third] = limited.derivatives;
             let [velocity, acceleration, jerk] = limited.by;
+            free = free.min(limited.velocity / first);
             let (rate, by) = (&mut bounds.rate, &mut bounds.by[0]);
             least(rate, by, limited.velocity / first, velocity);
             let (across, part) = match sweep {
@@ -108,7 +115,7 @@ impl Bounds {
             };
             let most = part * share * limited.acceleration / across;
             least(rate, by, most.sqrt(), acceleration);
-            let most = share * limited.jerk / (3.0 * third);
+            let most = share * limited.jerk / (CURVE * third);
             least(rate, by, libm::cbrt(most), jerk);
         }
         let rate = bounds.rate;
@@ -120,11 +127,10 @@ impl Bounds {
             let along = match sweep {
                 Some(sweep) => {
                     let first = amplitude(first, second, sweep);
-                    let across = sweep * first * rate * rate;
-                    // Never more than half while the curve may ask for its share.
-                    match second > 0.0 && across > 0.5 * most {
-                        true => (most * most - across * across).max(0.0).sqrt() / first,
-                        false => most * ARC / first,
+                    let across = sweep * first * free * free;
+                    match second > 0.0 && across > ARC * most {
+                        true => 0.5 * most / first,
+                        false => (most * most - across * across).sqrt() / first,
                     }
                 }
                 None => (most - second * rate * rate) / first,

@@ -5,7 +5,9 @@
 //!   velocities of what is limited jump by `|Δ|·v`, `Δ` the difference of their derivatives along the path, and `v` is
 //!   bounded so that none jumps by more than its acceleration makes of it in one period. For that one period, therefore, an
 //!   acceleration of up to twice the limit can be seen in the set-points; where the direction changes for good, the machine
-//!   all but stands still.
+//!   all but stands still. Where moves overlap by rule it is [`KINK`] of that, and joined moves have the rest of their
+//!   accelerations, so that the limits hold in the set-points too; and moves in which a rotary axis turns are never joined:
+//!   LinuxCNC's way.
 //! - **Round** (a curve within the tolerance): near the corner the one move runs out while the other one runs in, both over
 //!   the same stretch of path and added, so that the derivative along the path goes from that of the one to that of the
 //!   other by the smooth step `h(τ) = 3τ² - 2τ³`: curvature begins and ends with zero. Between straight ways the deviation
@@ -16,15 +18,17 @@
 //!   velocity `v₂` that the next one has reached when this one stands are what comes of the longest common time in which
 //!   neither leaves more than half of its way; a tolerance `P` bounds both by `2·√(a·P/cos θ)`, `θ` half the angle between
 //!   the ways: then the deviation in the middle of two like parabolas is `P`. Two moves in which no rotary axis turns are
-//!   rounded instead. A move before which or behind which something else comes is accelerated by half all the same, as
-//!   LinuxCNC up to 2.9 does it. With jerk limits, which that rule knows nothing of, the next move begins when this one is
-//!   slowed down to half of `v₁`, and is speeded up over twice the time that is left: half of either ramp.
+//!   rounded instead. A move whose end may be left is accelerated by half even where a standstill comes, and one that must
+//!   end where it is programmed with all of it even while it is overlapped, when both together may pass a limit by half of
+//!   it: recorded so of LinuxCNC 2.9. With jerk limits, which that rule knows nothing of, both have half, the next
+//!   move begins when this one is slowed down to half of `v₁`, and is speeded up over twice the time that is left: half of
+//!   either ramp.
 
 use nalgebra::Vector3;
 use post_machine::description::BlendRule;
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use super::bounds::{Bounds, NORMAL};
+use super::bounds::{Bounds, CURVE, NORMAL};
 use crate::limits::{AxisLimits, MoveLimits};
 use crate::path::{Way, turns};
 use crate::{Corner, Move};
@@ -37,6 +41,10 @@ pub(super) const STEEPEST: f64 = 1.5;
 
 /// The steepest change of that slope.
 pub(super) const SHARPEST: f64 = 6.0;
+
+/// The share of an acceleration that a jump of the velocity may take where moves overlap by rule: LinuxCNC's kink ratio.
+/// Joined moves have the rest.
+pub(super) const KINK: f64 = 0.1;
 
 /// No move gives more of itself to a corner.
 const HALF: f64 = 0.5;
@@ -71,15 +79,16 @@ pub(super) enum Junction {
 impl Junction {
     /// Between two moves, the first of which asks for its `corner`.
     pub fn between(sides: [Side; 2], rules: &AxisLimits, blend: BlendRule, period: f64) -> Self {
+        let overlaps = blend == BlendRule::Overlap && sides.iter().any(Side::turns);
         let tolerance = match sides[0].task.corner {
             Corner::Stop => return Self::Stop,
-            Corner::Path => return Self::join(sides, rules, period),
+            Corner::Path if overlaps => return Self::Stop,
+            Corner::Path => return Self::join(sides, rules, period, blend),
             Corner::Blend { tolerance } => tolerance,
         };
-        let overlaps = blend == BlendRule::Overlap && sides.iter().any(Side::turns);
         let join = match overlaps {
             true => return Self::overlap(sides, tolerance),
-            false => Self::join(sides, rules, period),
+            false => Self::join(sides, rules, period, blend),
         };
         let Self::Join { ratio, rate } = join else {
             return match blend {
@@ -98,16 +107,21 @@ impl Junction {
         Self::round(sides, rules, tolerance, ratio, [rate, wanted]).unwrap_or(join)
     }
 
-    fn join(sides: [Side; 2], rules: &AxisLimits, period: f64) -> Self {
+    fn join(sides: [Side; 2], rules: &AxisLimits, period: f64, blend: BlendRule) -> Self {
         let Some(ratio) = ratio(sides, rules) else {
             return Self::Stop;
         };
         let (change, tip) = change(sides, ratio);
         let mut rate = f64::INFINITY;
+        let instant = period
+            * match blend {
+                BlendRule::Overlap => KINK,
+                BlendRule::Round => 1.0,
+            };
         for (place, change) in change.iter().enumerate() {
-            rate = rate.min(rules.acceleration[place] * period / libm::fabs(*change));
+            rate = rate.min(rules.acceleration[place] * instant / libm::fabs(*change));
         }
-        rate = rate.min(rules.tip_acceleration * period / tip.norm());
+        rate = rate.min(rules.tip_acceleration * instant / tip.norm());
         Self::Join { ratio, rate }
     }
 
@@ -121,21 +135,22 @@ impl Junction {
     ) -> Option<Self> {
         // The unit of length is that of the first move's parameter.
         let (change, tip) = change(sides, ratio);
-        let sharpest = |accelerations: &Joints, tip_acceleration: f64| {
-            let mut most: f64 = tip.norm() / tip_acceleration;
-            for (change, acceleration) in change.iter().zip(accelerations) {
-                most = most.max(libm::fabs(*change) / acceleration);
-            }
-            most * STEEPEST / NORMAL
+        let sharpest = |limits: &Joints, of_tip: f64| {
+            let axes = change.iter().zip(limits);
+            let axes = axes.map(|(change, limit)| libm::fabs(*change) / limit);
+            axes.fold(tip.norm() / of_tip, f64::max)
         };
-        let sharpest = sharpest(&rules.acceleration, rules.tip_acceleration);
-        // x'' = 1.5·Δ/l: so long that the curve's share of the accelerations does at the velocity that is wanted.
-        let mut length = sharpest * wanted * wanted;
+        // x'' = 1.5·Δ/l and x''' = 6·Δ/l²: so long that the curve's share of accelerations and jerks does at the velocity
+        // that is wanted.
+        let bent = sharpest(&rules.acceleration, rules.tip_acceleration) * STEEPEST / NORMAL;
+        let jerked = sharpest(&rules.jerk, rules.tip_jerk) * SHARPEST * CURVE;
+        let mut length = (bent * wanted * wanted).max((jerked * wanted * wanted * wanted).sqrt());
         length = length.min(2.0 * HALF).min(2.0 * HALF / ratio);
         if let Some(tolerance) = tolerance {
             length = length.min(tolerance / (STRAY * tip.norm()));
         }
-        let possible = length > 0.0 && length / sharpest > passing * passing;
+        // A jump would pass the jerk that is allowed, whatever its velocity.
+        let possible = length > 0.0 && (jerked > 0.0 || length / bent > passing * passing);
         possible.then_some(Self::Round {
             ratio,
             shares: [0.5 * length, 0.5 * length * ratio],
@@ -143,7 +158,11 @@ impl Junction {
     }
 
     fn overlap(sides: [Side; 2], tolerance: Option<f64>) -> Self {
-        let [first, next] = sides.map(|side| side.half);
+        let first = sides[0].half;
+        let next = match sides[1].task.corner {
+            Corner::Stop | Corner::Path if sides[1].whole.jerk.is_infinite() => sides[1].whole,
+            _ => sides[1].half,
+        };
         let [most_first, most_next] = [first.reached(), next.reached()];
         let longest = (1.0 / most_first).min(1.0 / most_next);
         let needed = (most_first / first.acceleration).max(most_next / next.acceleration);

@@ -7,7 +7,7 @@ use post_machine::kinematics::{Joints, Unreachable};
 
 use super::account::Accounts;
 use super::bounds::Bounds;
-use super::corner::{self, Junction, Side};
+use super::corner::{self, Junction, KINK, Side};
 use super::law::{Law, Piece, Section, Span};
 use super::look_ahead::{Block, LookAhead, Part, Why};
 use super::profile::Phase;
@@ -93,11 +93,6 @@ impl Planner {
             finished: false,
             near: Joints::default(),
         }
-    }
-
-    /// Time from one set-point to the next, s.
-    pub fn period(&self) -> f64 {
-        self.period
     }
 
     /// Takes the next task.
@@ -305,9 +300,16 @@ impl Planner {
             Junction::Stop => blends && self.blend == BlendRule::Overlap,
             _ => false,
         };
-        let bounds = match shared || last.entrance.is_some() {
+        let smooth = last.whole.jerk.is_finite();
+        let bounds = match shared || smooth && last.entrance.is_some() {
             true => &last.half,
             false => &last.whole,
+        };
+        let joined =
+            !last.begins || matches!(junction, Junction::Join { .. } | Junction::Round { .. });
+        let share = match joined && self.blend == BlendRule::Overlap {
+            true => 1.0 - KINK,
+            false => 1.0,
         };
         let scale = last.scale;
         let exit = match junction {
@@ -318,7 +320,7 @@ impl Planner {
         let mut block = Block {
             length: (1.0 - out - last.taken) * scale,
             velocity: bounds.rate * scale,
-            acceleration: bounds.acceleration * scale,
+            acceleration: bounds.acceleration * share * scale,
             jerk: bounds.jerk * scale,
             exit,
         };
@@ -478,7 +480,7 @@ impl Planner {
         times: &mut Vec<TaskTime>,
     ) -> Result<Filled, Unreachable> {
         loop {
-            let time = (out.first + out.len() as u64) as f64 * self.period;
+            let time = out.time(out.len());
             self.accounts.done(time, times);
             if self.finished || self.ended && self.law.sections.is_empty() {
                 self.accounts.done(f64::INFINITY, times);

@@ -161,13 +161,6 @@ impl Columns {
             time_unit: units.time.or(by_name).unwrap_or(1.0),
         })
     }
-
-    /// A column holds the time.
-    pub fn has_time(&self) -> bool {
-        self.contents
-            .iter()
-            .any(|(_, content)| *content == Content::Time)
-    }
 }
 
 /// As the command line says.
@@ -180,7 +173,8 @@ fn told(
     let mut contents = Vec::new();
     for (what, column) in &names.0 {
         let Some(content) = content(machine, what) else {
-            let message = format!("--columns: `{what}` is neither the time nor an axis of the machine");
+            let message =
+                format!("--columns: `{what}` is neither the time nor an axis of the machine");
             return Err(asks_for_columns(message, machine, head));
         };
         let named = head.and_then(|head| {

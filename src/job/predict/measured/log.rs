@@ -82,7 +82,9 @@ impl Log {
             }
             rows.line += 1;
             if read as u64 == LONGEST_LINE {
-                return Err(rows.fault("the line is too long for a row of a log", "").into());
+                return Err(rows
+                    .fault("the line is too long for a row of a log", "")
+                    .into());
             }
             rows.take(&String::from_utf8_lossy(&bytes))?;
         }
@@ -262,9 +264,9 @@ impl<'a> Rows<'a> {
         {
             let message =
                 format!("the time does not increase: {time} s behind {last} s in the row before");
-            return Err(self
-                .fault(message, text)
-                .help("leave out rows that are told twice; a second recording is a log of its own"));
+            return Err(self.fault(message, text).help(
+                "leave out rows that are told twice; a second recording is a log of its own",
+            ));
         }
         if self.times.len() == MOST_ROWS {
             let message = format!("the log has more than {MOST_ROWS} rows");
@@ -284,7 +286,9 @@ impl<'a> Rows<'a> {
     /// Whether the rows begin with this line; else it is of the head.
     fn begins(&mut self, text: &str) -> Result<bool, Diagnostic> {
         let comment = text.trim_start();
-        let comment = comment.starts_with('#').then(|| comment.trim_start_matches('#'));
+        let comment = comment
+            .starts_with('#')
+            .then(|| comment.trim_start_matches('#'));
         let separator = Separator::of(comment.unwrap_or(text));
         let fields = separator.fields(text);
         let numbers = fields
@@ -302,7 +306,9 @@ impl<'a> Rows<'a> {
         }
         let names = self.head.as_deref().map(|head| {
             let names = Separator::of(head).fields(head);
-            let names = names.into_iter().map(|name| name.trim_matches('"').to_owned());
+            let names = names
+                .into_iter()
+                .map(|name| name.trim_matches('"').to_owned());
             names.collect::<Vec<String>>()
         });
         let columns = Columns::find(
@@ -329,7 +335,11 @@ impl<'a> Rows<'a> {
             let message = format!("the log has {rows} rows, at least {FEWEST_ROWS} are needed");
             return Err(self.fault(message, ""));
         }
-        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let mut steps: Vec<f64> = self
+            .times
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .collect();
         let (_, median, _) = steps.select_nth_unstable_by(rows / 2 - 1, f64::total_cmp);
         let median = *median;
         let gap = |pair: &[f64]| pair[1] - pair[0] > GAP * median;
@@ -350,7 +360,11 @@ impl<'a> Rows<'a> {
             false => median,
         };
         let mut has = [[false; MAX_AXES]; 2];
-        for (_, content) in self.columns.iter().flat_map(|(_, columns)| &columns.contents) {
+        for (_, content) in self
+            .columns
+            .iter()
+            .flat_map(|(_, columns)| &columns.contents)
+        {
             match content {
                 Content::Time => {}
                 Content::Commanded(place) => has[0][*place] = true,

@@ -183,7 +183,11 @@ impl Overlay {
 
     /// What is carried out at the set-point `place`, looked for from the run `run` on.
     fn at(&self, place: usize, run: &mut usize) -> At {
-        while self.runs.get(*run + 1).is_some_and(|(from, _)| *from <= place) {
+        while self
+            .runs
+            .get(*run + 1)
+            .is_some_and(|(from, _)| *from <= place)
+        {
             *run += 1;
         }
         self.runs.get(*run).map_or_else(At::default, |(_, at)| *at)
@@ -236,11 +240,7 @@ impl<'a> Laid<'a> {
         })
     }
 
-    fn compare(
-        &mut self,
-        chains: &[(f64, Arc<Solver>)],
-        listen: &mut dyn FnMut(&MeasuredPoint),
-    ) {
+    fn compare(&mut self, chains: &[(f64, Arc<Solver>)], listen: &mut dyn FnMut(&MeasuredPoint)) {
         self.compare_positions();
         let both = self.overlay.log.both();
         if both.is_empty() {
@@ -329,13 +329,17 @@ impl<'a> Laid<'a> {
         let period = self.overlay.commanded.period;
         let set_point = libm::rint((predicted_time - self.overlay.commanded.begins) / period);
         let at = self.overlay.at(set_point.max(0.0) as usize, run);
-        path.take(predicted_time, joints, MeasuredPoint {
-            time: predicted_time,
-            line: at.line,
-            cuts: at.cuts && known,
-            following,
-            contour: [0.0; 2],
-        });
+        path.take(
+            predicted_time,
+            joints,
+            MeasuredPoint {
+                time: predicted_time,
+                line: at.line,
+                cuts: at.cuts && known,
+                following,
+                contour: [0.0; 2],
+            },
+        );
     }
 
     /// Contour errors that are known by now.
@@ -420,7 +424,11 @@ impl<'a> LoggedPath<'a> {
         row: MeasuredPoint,
     ) {
         let mut chain = self.chain;
-        while self.chains.get(chain + 1).is_some_and(|(from, _)| *from <= time) {
+        while self
+            .chains
+            .get(chain + 1)
+            .is_some_and(|(from, _)| *from <= time)
+        {
             chain += 1;
         }
         if chain != self.chain {

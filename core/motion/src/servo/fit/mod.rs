@@ -7,9 +7,9 @@
 //! the log and small singular values are not lost, as they are in the normal equations.
 //!
 //! What a log does not determine stays close to where it was, and is said: each number has a standard deviation from the
-//! covariance `σ²·(JᵀJ)⁻¹`, and combinations that could be anything are listed. That takes the errors of the log for
-//! independent from one sample to the next. Those of real logs are not (what the model does not know comes back in
-//! every move), so that the true deviations are larger, rarely by more than a few times.
+//! covariance `σ²·(JᵀJ)⁻¹`, and combinations that could be anything are listed. σ² is that of the errors that are left, times
+//! the sum of their autocorrelation: what the model does not know comes back in every move, so that many samples of a real
+//! log say no more than a few independent ones.
 
 mod determined;
 mod search;
@@ -82,6 +82,8 @@ pub const LARGEST_DEVIATION: f64 = 0.5;
 
 /// A number is known beforehand to within a factor of e to this, so that what the log says nothing of does not wander.
 const KNOWN: f64 = 5.0;
+/// Rounds of searches; errors that are left fall to a fraction in each, or it was the last.
+const MOST_ROUNDS: usize = 30;
 
 /// Adjusts the numbers of `servo` that are called `names` (keys of the machine file, `kv`) to `log`.
 ///
@@ -90,12 +92,21 @@ const KNOWN: f64 = 5.0;
 /// courses are not of one length.
 pub fn fit(servo: &Servo, names: &[&str], log: Log<'_>) -> Result<Fit, Box<Diagnostic>> {
     let search = Search::new(servo, names, log)?;
-    let start = search.start.clone();
-    let free = search.run(&start, 0.0)?;
-    let spread = search.spread(&free.triangle);
-    // Once more, with what was known before: directions that the noise alone has led along go back.
-    let found = search.run(&start, spread / KNOWN)?;
-    Ok(search.told(&found, search.spread(&found.triangle)))
+    let before = search.squares(&search.start)?;
+    // The more of the errors is explained, the less the numbers are drawn back to where they were.
+    let compared = (log.commanded.len() - log.lead) as f64;
+    let mut spread = libm::sqrt(before / compared);
+    let mut found = search.run(&search.start, spread / KNOWN)?;
+    for _ in 0..MOST_ROUNDS {
+        let left = search.spread(&found)?;
+        let settled = left > 0.5 * spread;
+        spread = left;
+        found = search.run(&found.place, spread / KNOWN)?;
+        if settled {
+            break;
+        }
+    }
+    Ok(search.told(&found, search.spread(&found)?, before))
 }
 
 /// The place in the chain of the axis that `name` is of, and the key in it: `X.kv`.

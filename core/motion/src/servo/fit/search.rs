@@ -5,6 +5,7 @@ use post_machine::diagnostic::{Diagnostic, meant};
 use post_machine::servo::{Servo, StateSpace, stable};
 
 use super::Log;
+use super::determined::hanging_together;
 use crate::servo::{Follower, Output};
 
 /// Fewer samples than this a number say nothing.
@@ -134,27 +135,32 @@ impl<'a> Search<'a> {
         poles.is_some_and(|poles| stable(&poles))
     }
 
-    /// Sum of the squares of measured minus predicted.
-    pub(super) fn squares(&self, place: &DVector<f64>) -> Result<f64, Box<Diagnostic>> {
+    /// Measured minus predicted, of what is compared.
+    pub(super) fn errors(&self, place: &DVector<f64>) -> Result<Vec<f64>, Box<Diagnostic>> {
         let mut follower = self.follower(place)?;
-        let mut sum = 0.0;
         let Log {
             commanded,
             measured,
             lead,
             ..
         } = self.log;
+        let mut errors = Vec::with_capacity(commanded.len() - lead);
         follower.run(
             commanded.len(),
             |index| commanded[index],
             |index, value| {
                 if index >= lead {
-                    let error = measured[index] - value;
-                    sum += error * error;
+                    errors.push(measured[index] - value);
                 }
             },
         );
-        Ok(sum)
+        Ok(errors)
+    }
+
+    /// Sum of their squares.
+    pub(super) fn squares(&self, place: &DVector<f64>) -> Result<f64, Box<Diagnostic>> {
+        let errors = self.errors(place)?;
+        Ok(errors.iter().map(|error| error * error).sum())
     }
 
     /// The triangle R of `[J e] = Q·R`: J how the prediction changes with each number, e measured minus predicted.
@@ -208,21 +214,22 @@ impl<'a> Search<'a> {
         Ok(triangle)
     }
 
-    /// Standard deviation of the log's errors, mm or radians.
-    pub(super) fn spread(&self, triangle: &DMatrix<f64>) -> f64 {
+    /// Standard deviation of the log's errors, mm or radians: that which independent errors would have that say as little.
+    pub(super) fn spread(&self, found: &Found) -> Result<f64, Box<Diagnostic>> {
         let count = self.names.len();
-        let samples = self.log.commanded.len() - self.log.lead;
-        let left = triangle.column(count).norm();
-        (left / libm::sqrt((samples - count) as f64)).max(FINEST)
+        let errors = self.errors(&found.place)?;
+        let squares: f64 = errors.iter().map(|error| error * error).sum();
+        let spread = libm::sqrt(squares / (errors.len() - count) as f64);
+        Ok((spread * libm::sqrt(hanging_together(&errors))).max(FINEST))
     }
 
-    /// Searches from `start`. Each number is drawn back there with the strength `draw`.
-    pub(super) fn run(&self, start: &DVector<f64>, draw: f64) -> Result<Found, Box<Diagnostic>> {
+    /// Searches from `from`. Each number is drawn back to where it was at first with the strength `draw`.
+    pub(super) fn run(&self, from: &DVector<f64>, draw: f64) -> Result<Found, Box<Diagnostic>> {
         let count = self.names.len();
         let cost = |place: &DVector<f64>, squares: f64| {
-            squares + draw * draw * (place - start).norm_squared()
+            squares + draw * draw * (place - &self.start).norm_squared()
         };
-        let mut place = start.clone();
+        let mut place = from.clone();
         let mut triangle = self.triangle(&place)?;
         let mut best = cost(&place, triangle.column(count).norm_squared());
         let mut damping = 1e-3;
@@ -232,7 +239,7 @@ impl<'a> Search<'a> {
             // More damping makes the step shorter and turns it towards the steepest descent: in the end one is good, or
             // none is long enough to count.
             while !moved && damping < 1e12 {
-                let step = step(&triangle, &(start - &place), draw, damping);
+                let step = step(&triangle, &(&self.start - &place), draw, damping);
                 let next = self.inside(&(&place + &step));
                 let gain = if self.stable(&next) {
                     best - cost(&next, self.squares(&next)?)

@@ -101,8 +101,8 @@ pub struct Run {
 /// Runs the planner over tasks, `chunk` set-points at a time.
 pub fn run(machine: &Machine, tasks: &[Task], solver: &Arc<Solver>, chunk: usize) -> Run {
     let mut planner = Planner::new(machine);
-    let mut all = SetPoints::new(Arc::clone(solver), planner.period());
-    let mut batch = SetPoints::new(Arc::clone(solver), planner.period());
+    let mut all = SetPoints::new(Arc::clone(solver), machine.motion.period);
+    let mut batch = SetPoints::new(Arc::clone(solver), machine.motion.period);
     let mut times = Vec::new();
     let mut drain = |planner: &mut Planner, times: &mut Vec<TaskTime>| loop {
         let filled = planner.fill(&mut batch, chunk, times).expect("reachable");

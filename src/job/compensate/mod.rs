@@ -1,0 +1,240 @@
+//! `--compensate-servo`: points of the path are moved so that the tool, the servos in between, comes nearer to the path of
+//! the CL file.
+//!
+//! The program is made, predicted, and held against the points that it was made of; each point of a cut is moved by minus
+//! the error beside it, and so again until it helps no more. No point moves by more than `[accuracy]
+//! servo_compensation`, towards the ends of cuts by nothing; rapids, holes and cuts that the control offsets by the
+//! cutter's radius stay as they are. A corner that the servos round by more than the bound stays rounded. What helps is
+//! judged by prediction alone, against the path of the CL file: a run counts if its root mean square is less than the
+//! last's and its largest error no more than that of the program as it was. Where none does, that program is written.
+
+mod path;
+mod text;
+
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+use post_posting::{LookedAhead, PathShift};
+use post_readback::interpret::Limits;
+use serde::Serialize;
+
+use super::one_program::OneProgram;
+use super::predict::{self, Against, Asked, Sample};
+use super::read_back;
+use crate::failure::Failure;
+use crate::files::{ClSource, Scratch};
+use path::{Errors, Recorded};
+pub use path::{Moved, Moves};
+pub use text::text;
+
+/// Runs at most.
+const RUNS: u32 = 6;
+
+/// Of a run that lowers the root mean square by less than this share nothing more is to be had.
+const ENOUGH: f64 = 0.05;
+
+/// An error that is moved by less than this share of itself is let be.
+const LEAST_GAIN: f64 = 0.2;
+
+/// What the contour error of a program is, against the CL path, the servos in between.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Stray {
+    /// The largest, mm.
+    pub largest_mm: f64,
+    /// Line of the program.
+    pub nc_line: u64,
+    /// Line of the CL file.
+    pub cl_line: Option<u64>,
+    /// Root mean square, mm.
+    pub rms_mm: f64,
+}
+
+/// What compensation has done.
+#[derive(Clone, Debug, Serialize)]
+pub struct Found {
+    /// By how much a point may be moved, mm.
+    pub bound_mm: f64,
+    /// The program as it was.
+    pub before: Stray,
+    /// The program that is written.
+    pub after: Stray,
+    /// Programs that were tried.
+    pub runs: u32,
+    /// Points of the path.
+    pub points: u64,
+    /// Of them those that are moved.
+    pub points_moved: u64,
+    /// The largest move, mm.
+    pub largest_move_mm: f64,
+    /// It helps: the program is written with it.
+    pub kept: bool,
+}
+
+/// How a program is compensated.
+pub struct Compensation {
+    /// The machine that it is posted for: what takes points out of the path is switched off.
+    pub machine: Machine,
+    /// By how much its points are moved; none: it is written as it was.
+    pub moves: Option<Moves>,
+    /// What it does.
+    pub found: Found,
+}
+
+/// Finds by how much the points of a program are moved.
+///
+/// # Errors
+/// The machine file does not allow it or describes no servo, or the program cannot be made.
+pub fn compensate(
+    program: &OneProgram<'_>,
+    ahead: Option<&LookedAhead>,
+    source: &mut ClSource,
+) -> Result<Compensation, Failure> {
+    let bound = allowed(program.machine).map_err(|fault| *fault)?;
+    let mut machine = program.machine.clone();
+    // Moved points lie on no arc any more, and those that are left out cannot be moved.
+    machine.control.arcs.keep = false;
+    machine.control.arcs.fit = false;
+    machine.accuracy.reduce = false;
+    let mut path = Recorded::default();
+    let mut tried = Tried {
+        program,
+        ahead,
+        source,
+    };
+    tried.post(&machine, Some(&mut path))?;
+    let text = tried.post(program.machine, None)?;
+    let mut errors = Errors::of(&path);
+    let before = tried.predict(text, &path, &mut errors)?;
+    let mut moves: Moves = vec![[0.0; 3]; path.len()];
+    let (mut after, mut kept) = (before, false);
+    let (mut gain, mut runs) = (1.0, 0);
+    while runs < RUNS && gain >= LEAST_GAIN {
+        runs += 1;
+        let mut next = moves.clone();
+        path.step(&mut next, &errors, gain, bound);
+        let text = tried.post(&machine, Some(&mut Moved::new(&next)))?;
+        let mut left = Errors::of(&path);
+        let found = tried.predict(text, &path, &mut left)?;
+        if found.rms_mm >= after.rms_mm || found.largest_mm > before.largest_mm {
+            gain *= 0.5;
+            continue;
+        }
+        let enough = found.rms_mm > after.rms_mm * (1.0 - ENOUGH);
+        (moves, errors, after, kept) = (next, left, found, true);
+        if enough {
+            break;
+        }
+    }
+    let sizes = moves.iter().map(|by| {
+        let [x, y, z] = by.map(f64::from);
+        (x * x + y * y + z * z).sqrt()
+    });
+    let found = Found {
+        bound_mm: bound,
+        before,
+        after,
+        runs,
+        points: path.len() as u64,
+        points_moved: sizes.clone().filter(|size| *size > 0.0).count() as u64,
+        largest_move_mm: sizes.fold(0.0, f64::max),
+        kept,
+    };
+    Ok(Compensation {
+        machine,
+        moves: kept.then_some(moves),
+        found,
+    })
+}
+
+/// By how much points may be moved, mm.
+fn allowed(machine: &Machine) -> Result<f64, Box<Diagnostic>> {
+    let Some(bound) = machine.accuracy.servo_compensation else {
+        let message = "the machine file does not say by how much points may be moved";
+        return Err(Diagnostic::error("compensate-servo", message)
+            .help("[accuracy] servo_compensation = 0.003, in mm, allows it")
+            .boxed());
+    };
+    if machine.axes.iter().all(|axis| axis.servo.is_none()) {
+        let message = "the machine file describes no servo: there is nothing to compensate";
+        return Err(Diagnostic::error("compensate-servo", message)
+            .help("[servo.X] for each axis says how it follows")
+            .boxed());
+    }
+    Ok(bound)
+}
+
+/// Makes programs and predicts them.
+struct Tried<'t, 'p> {
+    program: &'t OneProgram<'p>,
+    ahead: Option<&'t LookedAhead>,
+    source: &'t mut ClSource,
+}
+
+impl Tried<'_, '_> {
+    fn post(
+        &mut self,
+        machine: &Machine,
+        shift: Option<&mut dyn PathShift>,
+    ) -> Result<Scratch, Failure> {
+        let mut text = Scratch::new("a program that is tried")?;
+        let program = OneProgram {
+            machine,
+            ..self.program.clone()
+        };
+        let (report, findings) = program.write(self.ahead, self.source, &mut text, shift)?;
+        match report {
+            Some(_) => Ok(text),
+            None => Err(findings.into()),
+        }
+    }
+
+    /// How far the tool is off its path; beside each point the errors are added up.
+    fn predict(
+        &mut self,
+        text: Scratch,
+        path: &Recorded,
+        errors: &mut Errors,
+    ) -> Result<Stray, Failure> {
+        let OneProgram {
+            arguments,
+            machine,
+            finder,
+            lines,
+            ..
+        } = self.program;
+        let mut asked = Asked {
+            arguments,
+            machine,
+            finder,
+            offsets: None,
+            limits: Limits::default(),
+            period: None,
+            lines: lines.clone(),
+        };
+        let tools = predict::cl_tools(&asked, self.source)?;
+        asked.offsets = Some(read_back::offsets(arguments, machine, &tools));
+        let legs = path.legs(machine.control_point.along);
+        let against = Against::Path(Box::new(legs), "the points of the path".to_owned());
+        let mut listen = |sample: &Sample| {
+            if let Some(asked) = &sample.point.asked {
+                let place = sample.point.actual.tip - asked.error;
+                errors.take(path, asked.at.task, &place, &asked.error);
+            }
+            Ok(())
+        };
+        let text = text.reread()?;
+        let found = predict::predict(
+            &asked,
+            against,
+            "a program that is tried",
+            text,
+            &mut listen,
+        )?;
+        let tip = found.found.contour.tip_mm;
+        Ok(Stray {
+            largest_mm: tip.largest,
+            nc_line: tip.nc_line,
+            cl_line: tip.cl_line,
+            rms_mm: tip.rms,
+        })
+    }
+}

@@ -1,0 +1,53 @@
+//! `--measured`: the log that is laid over a prediction.
+
+use clap::Args;
+
+use crate::arguments::flag_values::positive;
+use crate::failure::Failure;
+use crate::files::PathArg;
+use crate::job::nc_program;
+use crate::job::predict::measured::{
+    ColumnNames, Log, LogForm, LogUnits, Overlay, column_names, log_units,
+};
+use post_machine::description::Machine;
+
+/// A recorded log, and how it is written.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Measured")]
+pub struct MeasuredArguments {
+    /// A log that was recorded while the program ran: a table with the time and the commanded and actual positions of the
+    /// axes; commas, semicolons, tabs or blanks between its columns. It is laid over the prediction (its clock and its zeros
+    /// are found), and what is left is told: commanded and actual positions, following errors, contour error.
+    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    measured: Option<PathArg>,
+
+    /// Which column holds what, by name or by number from 1: "t=time,X=cmd_x,X'=act_x" is the time, X commanded and X
+    /// actual. Without it the names in the log's head say so: time, t_ms; X, X_cmd, commanded_X; X', X_act, X_actual.
+    #[arg(long, value_name = "LIST", value_parser = column_names, requires = "measured")]
+    columns: Option<ColumnNames>,
+
+    /// Units of the log, where they are not s, mm, deg: s, ms or us; mm, um, m or inch; deg or rad.
+    #[arg(long, value_name = "LIST", value_parser = log_units, requires = "measured")]
+    log_units: Option<LogUnits>,
+
+    /// Time from row to row of a log without times, seconds.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "measured")]
+    log_period: Option<f64>,
+}
+
+impl MeasuredArguments {
+    /// The log, to be laid over a prediction every `period` seconds.
+    pub fn overlay(&self, machine: &Machine, period: f64) -> Result<Option<Overlay>, Failure> {
+        let Some(file) = &self.measured else {
+            return Ok(None);
+        };
+        let form = LogForm {
+            columns: self.columns.clone(),
+            units: self.log_units.unwrap_or_default(),
+            period: self.log_period,
+        };
+        let (name, input) = nc_program::open(file)?;
+        let log = Log::read(machine, &form, &name, input)?;
+        Ok(Some(Overlay::new(log, period)))
+    }
+}

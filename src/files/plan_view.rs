@@ -58,6 +58,12 @@ impl PlanView {
         ]
     }
 
+    /// How long a vector is as it is seen, mm.
+    pub fn seen(&self, vector: &[f64; 3]) -> f64 {
+        let [across, up] = self.plane;
+        libm::hypot(vector[across], vector[up])
+    }
+
     /// Pixels of a millimetre.
     pub fn scale(&self) -> f64 {
         self.scale

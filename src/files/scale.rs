@@ -76,8 +76,11 @@ impl Scale {
             return (first..=last)
                 .map(|power| {
                     let value = libm::exp10(f64::from(power));
-                    let decimals = usize::try_from(-power).unwrap_or(0);
-                    (value, format!("{value:.decimals$}"))
+                    let text = match usize::try_from(-power).unwrap_or(0) {
+                        decimals @ 0..4 => format!("{value:.decimals$}"),
+                        many => format!("10⁻{}", raised(many)),
+                    };
+                    (value, text)
                 })
                 .collect();
         };
@@ -92,6 +95,14 @@ impl Scale {
             })
             .collect()
     }
+}
+
+/// A number as an exponent.
+fn raised(number: usize) -> String {
+    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let text = number.to_string();
+    let places = text.bytes().map(|digit| usize::from(digit - b'0'));
+    places.map(|place| digits[place]).collect()
 }
 
 /// The smallest of 1, 2 and 5 times a power of ten that is not below `least`.
@@ -124,6 +135,8 @@ mod tests {
         assert_eq!(texts(&up), ["0", "5", "10", "15", "20"]);
         let across = Scale::new([-0.21, 0.2].into_iter(), 4.0, false);
         assert_eq!(texts(&across), ["-0.2", "0.0", "0.2"]);
+        let small = Scale::decades([3e-5, 0.4].into_iter());
+        assert_eq!(texts(&small), ["10⁻⁵", "10⁻⁴", "0.001", "0.01", "0.1", "1"]);
         let decades = Scale::decades([0.0, 0.03, 70.4].into_iter());
         assert_eq!(texts(&decades), ["0.01", "0.1", "1", "10", "100"]);
         assert_eq!(decades.share(0.0), 0.0);

@@ -35,6 +35,8 @@ pub enum Waiting {
     ToolChange,
     /// The spindle.
     Spindle,
+    /// A word that is carried out at rest: coolant, a stop, another head.
+    Word,
 }
 
 /// A way from one stance to another.
@@ -50,6 +52,9 @@ pub struct Move {
     pub to: Stance,
     /// The chain that it is meant for, with the tool in use.
     pub solver: Arc<Solver>,
+    /// The control keeps the tip (G43.4, TRAORI, M128): what is programmed are the coordinates of the tip, else those of the
+    /// axes.
+    pub keeps_tip: bool,
     /// How fast it is asked for.
     pub pace: Pace,
     /// How the control passes from it into the next one.

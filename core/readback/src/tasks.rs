@@ -1,12 +1,12 @@
 //! What a program did becomes what its control carries out: moves with their pace and corners, and waits.
 //!
-//! Where the control stands still is settled here, as far as it does not follow from the path: at waits, tool changes and
-//! words for the spindle and the coolant, where kinematics or the length in force change, at the ends of rapids where the
-//! machine file says so, at G9, and at the turning points of a cycle's hole.
+//! Where the control stands still is settled here, as far as it does not follow from the path: at waits (of no time at
+//! words for the coolant and the like), at the ends of rapids where the machine file says so, at G9, and at the turning
+//! points of a cycle's hole.
 
 use std::sync::Arc;
 
-use post_machine::description::{CornerRule, Machine};
+use post_machine::description::{CornerRule, Machine, RapidRule};
 use post_machine::diagnostic::Diagnostic;
 use post_motion::{Corner, Move, Pace, Task, Waiting};
 
@@ -33,7 +33,7 @@ pub struct Tasks {
     usual: Corner,
     /// By how much a corner may be left where the program names no tolerance, mm.
     tolerance: Option<f64>,
-    rapid_stops: bool,
+    rapids: RapidRule,
     tool_change: f64,
     spindle_seconds: f64,
     /// The motion that waits for the one behind it.
@@ -58,7 +58,7 @@ impl Tasks {
                 CornerRule::Blend => Corner::Blend { tolerance: None },
             },
             tolerance: rules.corner_tolerance,
-            rapid_stops: rules.rapid_stops,
+            rapids: rules.rapids,
             tool_change: rules.tool_change,
             spindle_seconds: rules.spindle,
             pending: None,
@@ -84,7 +84,7 @@ impl Tasks {
 
     /// The program has ended: the last motion is settled.
     pub fn end(&mut self, out: &mut Vec<Planned>) {
-        self.stand(out);
+        out.extend(self.pending.take());
     }
 
     /// What was taken for granted so far.
@@ -120,8 +120,7 @@ impl Tasks {
         if let Some(pending) = &mut self.pending
             && let Task::Move(last) = &mut pending.task
         {
-            let halts = self.rapid_stops && pending.rapid != rapid;
-            if halts || !Arc::ptr_eq(&last.solver, &motion.state.solver) {
+            if self.rapids != RapidRule::Blend && pending.rapid != rapid {
                 last.corner = Corner::Stop;
             }
         }
@@ -141,6 +140,7 @@ impl Tasks {
                 from: motion.from,
                 to: motion.to,
                 solver: Arc::clone(&motion.state.solver),
+                keeps_tip: motion.state.tcp,
                 pace,
                 corner,
             }),
@@ -154,7 +154,7 @@ impl Tasks {
     /// How the control passes into whatever comes behind a motion.
     fn corner(&mut self, motion: &Motion) -> Corner {
         let rapid = motion.kind == MotionKind::Rapid;
-        if motion.stops || rapid && self.rapid_stops {
+        if motion.stops || rapid && self.rapids == RapidRule::Stop {
             return Corner::Stop;
         }
         let said = match motion.state.corners {
@@ -190,17 +190,19 @@ impl Tasks {
             Told::Spindle(_) => (self.spindle_seconds, Waiting::Spindle),
             Told::Stop | Told::OptionalStop => {
                 self.stop.get_or_insert(line);
-                return self.stand(out);
+                (0.0, Waiting::Word)
             }
             Told::Subprogram(_) => {
                 self.subprogram.get_or_insert(line);
-                return self.stand(out);
+                (0.0, Waiting::Word)
             }
-            Told::Coolant(_) | Told::Head(_) | Told::End => return self.stand(out),
+            Told::Coolant(_) | Told::Head(_) => (0.0, Waiting::Word),
             _ => return,
         };
-        self.stand(out);
-        if seconds > 0.0 {
+        // Where it stands already, a wait that takes no time is none.
+        let moved = self.pending.is_some();
+        out.extend(self.pending.take());
+        if seconds > 0.0 || moved {
             out.push(Planned {
                 task: Task::Wait { line, seconds, why },
                 feed: 0.0,
@@ -208,17 +210,6 @@ impl Tasks {
                 state: self.state.clone(),
             });
         }
-    }
-
-    /// The machine stands still here.
-    fn stand(&mut self, out: &mut Vec<Planned>) {
-        let Some(mut last) = self.pending.take() else {
-            return;
-        };
-        if let Task::Move(last) = &mut last.task {
-            last.corner = Corner::Stop;
-        }
-        out.push(last);
     }
 
     /// Seconds of so many turns of the spindle.

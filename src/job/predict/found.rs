@@ -5,7 +5,7 @@ use post_machine::description::{Axis, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_motion::contour::{self, ContourReport, Peak};
 
-use super::prediction::{AxisFound, ContourFound, Extreme, Spread};
+use super::prediction::{AxisFound, ContourFound, Extreme, Part, Spread};
 
 /// Of each axis the largest values.
 pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
@@ -32,11 +32,26 @@ pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
 }
 
 /// How far the tool is off its path.
-pub fn contour(report: &ContourReport) -> ContourFound {
+pub fn contour(report: &ContourReport, against_a_path: bool) -> ContourFound {
+    let part = |part: &'static str, found: &contour::Spread| Part {
+        part,
+        tip_mm: spread(found, 1.0),
+    };
+    let mut parts = vec![
+        part("following", &report.cuts),
+        part("interpolation", &report.interpolation),
+    ];
+    let (tip, axis) = match against_a_path {
+        true => {
+            parts.push(part("program", &report.program));
+            (&report.asked, &report.asked_axis)
+        }
+        false => (&report.cuts, &report.axis),
+    };
     ContourFound {
-        tip_mm: spread(&report.cuts, 1.0),
-        axis_deg: spread(&report.axis, 1f64.to_degrees()),
-        parts: Vec::new(),
+        tip_mm: spread(tip, 1.0),
+        axis_deg: spread(axis, 1f64.to_degrees()),
+        parts,
     }
 }
 

@@ -8,7 +8,12 @@ use std::sync::Arc;
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place};
+<<<<<<< HEAD
 use post_machine::kinematics::{Solver, Unreachable};
+=======
+use post_machine::kinematics::Unreachable;
+use post_motion::contour::Reference;
+>>>>>>> main
 use post_motion::trajectory::{Filled, Planner};
 use post_motion::{SetPoints, Task};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};
@@ -57,6 +62,16 @@ impl Asked<'_> {
     }
 }
 
+/// What the tool is held against, besides the path that is commanded.
+pub enum Against<'a> {
+    /// Nothing.
+    Nothing,
+    /// The path of a CL file.
+    Cl(&'a mut ClSource),
+    /// A path, and what it is called.
+    Path(Box<dyn Reference + 'a>, String),
+}
+
 /// What came of it.
 pub struct Predicted {
     /// What was found.
@@ -67,13 +82,13 @@ pub struct Predicted {
     pub chains: Vec<(f64, Arc<Solver>)>,
 }
 
-/// Predicts the program `name` from `input`, if a CL file is given against its path; every set-point is told in order.
+/// Predicts the program `name` from `input`; every set-point is told in order.
 ///
 /// # Errors
 /// The machine cannot be used, a block of the program or the CL file cannot be read, or whoever listens fails.
 pub fn predict<R: Read + Seek>(
     asked: &Asked<'_>,
-    source: Option<&mut ClSource>,
+    against: Against<'_>,
     name: &str,
     mut input: R,
     listen: &mut dyn FnMut(&Sample) -> Result<(), Failure>,
@@ -81,9 +96,16 @@ pub fn predict<R: Read + Seek>(
     let period = asked.period();
     let words = nc_program::spoken(asked.finder, asked.machine)?.words;
     let lexicon = Lexicon::new(&words);
-    let tools = match source {
-        Some(source) => cl_path::tools(asked, source)?,
-        None => Vec::new(),
+    let mut tools = Vec::new();
+    // The file was read once before: what is wrong with it is known.
+    let mut faults = Vec::new();
+    let path = match against {
+        Against::Nothing => None,
+        Against::Path(path, name) => Some((path, name)),
+        Against::Cl(source) => {
+            tools = cl_path::tools(asked, source)?;
+            Some(cl_path::open(asked, source, &mut faults)?)
+        }
     };
     let offsets = match &asked.offsets {
         Some(offsets) => offsets.clone(),
@@ -107,7 +129,7 @@ pub fn predict<R: Read + Seek>(
         unread: Vec::new(),
         ended: false,
     };
-    let mut stages = Stages::new(machine, period)?;
+    let mut stages = Stages::new(machine, period, path)?;
     let mut planner = Planner::new(machine);
     let mut points: Option<SetPoints> = None;
     let mut times = Vec::new();

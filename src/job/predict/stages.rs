@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, Solver};
-use post_motion::contour::{Contour, ContourPoint};
+use post_motion::contour::{Contour, ContourPoint, Reference};
 use post_motion::servo::Servos;
 use post_motion::trajectory::TaskTime;
 use post_motion::{At, SetPoints, Task};
@@ -31,9 +31,10 @@ struct Ahead {
 }
 
 /// The stages, and what waits between them.
-pub struct Stages {
+pub struct Stages<'r> {
     pub servos: Servos,
-    contour: Contour,
+    contour: Contour<'r>,
+    against: Option<String>,
     period: f64,
     /// Tasks that are planned or carried out, and the number of the first of them.
     ahead: VecDeque<Ahead>,
@@ -53,11 +54,24 @@ pub struct Stages {
     set_points: u64,
 }
 
-impl Stages {
-    pub fn new(machine: &Machine, period: f64) -> Result<Self, Failure> {
+impl<'r> Stages<'r> {
+    /// Of a machine with set-points every `period` seconds; the tool is held against `path` too, and what it is called, if
+    /// one is given.
+    pub fn new(
+        machine: &Machine,
+        period: f64,
+        path: Option<(Box<dyn Reference + 'r>, String)>,
+    ) -> Result<Self, Failure> {
+        let mut contour = Contour::new();
+        let mut against = None;
+        if let Some((path, name)) = path {
+            contour = contour.against(path);
+            against = Some(name);
+        }
         Ok(Self {
             servos: Servos::new(machine, period).map_err(|fault| *fault)?,
-            contour: Contour::new(),
+            contour,
+            against,
             period,
             ahead: VecDeque::new(),
             first: 0,
@@ -75,6 +89,7 @@ impl Stages {
 
     /// A task is planned now.
     pub fn ahead(&mut self, planned: &Planned) {
+        self.contour.ahead(&planned.task);
         let same = match (&self.state, &planned.state) {
             (Some(known), Some(state)) => Arc::ptr_eq(known, state),
             (None, None) => !self.ahead.is_empty(),
@@ -174,18 +189,19 @@ impl Stages {
         });
         failed?;
         let time = self.times.finish();
+        let held = self.against.is_some();
         Ok(Prediction {
             program: name.to_owned(),
             machine: machine.name.clone(),
             dialect: machine.control.dialect.clone(),
-            against: None,
+            against: self.against,
             blocks,
             set_points: self.set_points,
             period_s: self.period,
             feed: self.feed_tally.finish(&time),
             time,
             axes: found::axes(machine, &contour),
-            contour: found::contour(&contour),
+            contour: found::contour(&contour, held),
             measured: None,
             assumed: found::assumed(machine),
         })
@@ -196,19 +212,9 @@ impl Stages {
 fn sample(point: &ContourPoint, waiting: &mut VecDeque<(At, [f64; 2])>) -> Sample {
     let (at, [feed, programmed]) = waiting.pop_front().unwrap_or_default();
     Sample {
-        time: point.time,
-        line: at.line,
-        cl_line: None,
-        cuts: at.cuts,
-        counts: point.at.cuts,
-        commanded: point.commanded_joints,
-        actual: point.actual_joints,
-        pose: point.commanded,
-        actual_pose: point.actual,
-        error: point.error.into(),
-        size: point.distance,
-        axis: point.axis,
+        at,
         feed,
         programmed,
+        point: *point,
     }
 }

@@ -87,35 +87,65 @@ fn head(text: &mut String, found: &Prediction) {
         None => String::new(),
     };
     let contour = &found.contour;
-    let tip = largest(&contour.tip_mm, "mm", 4);
-    row("contour error", format!("{tip}{against}"));
-    spread(&mut row, &contour.tip_mm, 4);
+    let tip = Shown {
+        unit: "µm",
+        scale: 1e3,
+        decimals: 2,
+    };
+    let axis = Shown {
+        unit: "°",
+        scale: 1.0,
+        decimals: 5,
+    };
+    let most = tip.largest(&contour.tip_mm);
+    row("contour error", format!("{most}{against}"));
+    tip.spread(&mut row, &contour.tip_mm);
     for part in &contour.parts {
-        row(&format!("  {}", part.part), largest(&part.tip_mm, "mm", 4));
+        row(&format!("  {}", part.part), tip.largest(&part.tip_mm));
     }
-    row("tool axis", largest(&contour.axis_deg, "°", 5));
-    spread(&mut row, &contour.axis_deg, 5);
+    row("tool axis", axis.largest(&contour.axis_deg));
+    axis.spread(&mut row, &contour.axis_deg);
 }
 
-/// `at most 0.0123 mm, in line 812 of the program, CL line 40`.
-fn largest(spread: &Spread, unit: &str, decimals: u8) -> String {
-    let mut text = format!("at most {} {unit}", number(spread.largest, decimals));
-    if spread.largest > 0.0 {
-        let _ = write!(text, ", in line {} of the program", spread.nc_line);
-        if let Some(line) = spread.cl_line {
-            let _ = write!(text, ", CL line {line}");
+/// How errors are shown.
+struct Shown {
+    unit: &'static str,
+    /// From the unit of the JSON.
+    scale: f64,
+    decimals: u8,
+}
+
+impl Shown {
+    fn number(&self, value: f64) -> String {
+        number(value * self.scale, self.decimals)
+    }
+
+    /// `at most 12.30 µm, in line 812 of the program, CL line 40`.
+    fn largest(&self, spread: &Spread) -> String {
+        let mut text = format!("at most {} {}", self.number(spread.largest), self.unit);
+        if self.is_seen(spread) {
+            let _ = write!(text, ", in line {} of the program", spread.nc_line);
+            if let Some(line) = spread.cl_line {
+                let _ = write!(text, ", CL line {line}");
+            }
+        }
+        text
+    }
+
+    /// `RMS 3.10; half within 1.00, 95 % within 3.00, 99 % within 4.00`.
+    fn spread(&self, row: &mut impl FnMut(&str, String), spread: &Spread) {
+        if self.is_seen(spread) {
+            let [rms, p50, p95, p99] =
+                [spread.rms, spread.p50, spread.p95, spread.p99].map(|value| self.number(value));
+            let text =
+                format!("RMS {rms}; half within {p50}, 95 % within {p95}, 99 % within {p99}");
+            row("", text);
         }
     }
-    text
-}
 
-/// `RMS 0.0031; half within 0.0010, 95 % within 0.0030, 99 % within 0.0040`.
-fn spread(row: &mut impl FnMut(&str, String), spread: &Spread, decimals: u8) {
-    if spread.largest > 0.0 {
-        let [rms, p50, p95, p99] =
-            [spread.rms, spread.p50, spread.p95, spread.p99].map(|value| number(value, decimals));
-        let text = format!("RMS {rms}; half within {p50}, 95 % within {p95}, 99 % within {p99}");
-        row("", text);
+    /// The largest is no zero when it is printed.
+    fn is_seen(&self, spread: &Spread) -> bool {
+        self.number(spread.largest) != self.number(0.0)
     }
 }
 
@@ -137,7 +167,7 @@ fn axes(text: &mut String, axes: &[AxisFound]) {
     let mut rows = vec![head.map(str::to_owned)];
     for axis in axes {
         let following = match axis.servo {
-            true => number(axis.following.value, 4),
+            true => number(axis.following.value, 5),
             false => "-".to_owned(),
         };
         let line = |extreme: &Extreme| match extreme.nc_line {

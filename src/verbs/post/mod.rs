@@ -21,7 +21,7 @@ use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
 use crate::job::one_program::OneProgram;
-use crate::job::predict::{self, Asked, Predicted, Prediction};
+use crate::job::predict::{self, Against, Asked, Predicted, Prediction};
 use crate::job::read_back::{self, Held, Reading};
 use crate::job::{self, plugin_finder};
 use crate::terminal;
@@ -345,7 +345,7 @@ fn predicted(
     };
     let name = file.name().to_owned();
     let text = file.reread()?;
-    predict::predict(&asked, Some(source), &name, text, &mut |_| Ok(()))
+    predict::predict(&asked, Against::Cl(source), &name, text, &mut |_| Ok(()))
 }
 
 /// What the summary tells as JSON.

@@ -81,12 +81,6 @@ impl Envelope {
         }
         runs
     }
-
-    /// The largest value of the channel, share by share, of those that have one.
-    pub fn largest(&self, channel: usize, unit: f64) -> Vec<[f64; 2]> {
-        let runs = self.runs(channel, unit).into_iter().flatten();
-        runs.map(|[at, _, high]| [at, high]).collect()
-    }
 }
 
 #[cfg(test)]

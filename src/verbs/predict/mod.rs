@@ -16,7 +16,7 @@ use crate::arguments::JobArguments;
 use crate::arguments::flag_values::positive;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
-use crate::job::predict::{self, Predicted, Sample};
+use crate::job::predict::{self, Against, Predicted, Sample};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::terminal;
 use measured_arguments::MeasuredArguments;
@@ -155,6 +155,10 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         Some(file) => Some(files::ClSource::new(file, true)?),
         None => None,
     };
+    let against = match &mut source {
+        Some(source) => Against::Cl(source),
+        None => Against::Nothing,
+    };
     let period = asked.period();
     let mut overlay = arguments.measured.overlay(&machine, period)?;
     let mut rooms = folder.as_ref().map(|_| Rooms::new(&machine, period));
@@ -175,7 +179,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
                 None => Ok(()),
             }
         };
-        let predicted = predict::predict(&asked, source.as_mut(), &name, program, &mut listen)?;
+        let predicted = predict::predict(&asked, against, &name, program, &mut listen)?;
         if let Some(csv) = csv {
             csv.finish()?;
         }

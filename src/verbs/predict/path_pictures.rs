@@ -33,7 +33,11 @@ const STEPS: [(&str, f64); LEVELS] = [
 /// The error vectors, magnified and drawn outward from the path (Zhang, Chen 2025, fig. 12).
 pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
     let mut picture = Picture::new("Contour error, magnified, drawn from the path", note, cuts);
-    let largest = found.contour.tip_mm.largest.max(1e-9);
+    let seen = cuts
+        .iter()
+        .flatten()
+        .map(|spot| picture.view.seen(&spot.error));
+    let largest = seen.fold(1e-9, f64::max);
     // Rounded down, so that nothing is drawn longer than meant.
     let wanted = LONGEST / (picture.view.scale() * largest);
     let times = match round_step(wanted) {
@@ -99,7 +103,8 @@ pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
 pub fn path(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
     let mut picture = Picture::new("Contour error on the path", note, cuts);
     let largest = found.contour.tip_mm.largest.max(1e-9);
-    let step = round_step(largest / LEVELS as f64);
+    // A few places that are far off would leave all others in the first step.
+    let step = round_step(found.contour.tip_mm.p99.max(1e-9) / (LEVELS - 1) as f64);
     let level = |size: f64| ((size / step) as usize).min(LEVELS - 1);
     // Of each step its pieces of the path.
     let mut pieces: [Vec<Vec<[f64; 2]>>; LEVELS] = Default::default();
@@ -129,7 +134,11 @@ pub fn path(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
         let foot = TOP + SIZE[1] + 28.0 + 26.0 * (place / 3) as f64;
         picture.line(&[[left, foot], [left + 38.0, foot]], grey, *width);
         let [from, to] = [place, place + 1].map(|place| micrometres(place as f64 * step));
-        picture.text([left + 46.0, foot + 4.5], &format!("{from} to {to} µm"));
+        let text = match place + 1 < LEVELS {
+            true => format!("{from} to {to} µm"),
+            false => format!("{from} µm and more"),
+        };
+        picture.text([left + 46.0, foot + 4.5], &text);
     }
     picture.end()
 }

@@ -93,12 +93,17 @@ impl Rooms {
 
     /// Takes the next set-point.
     pub fn take(&mut self, sample: &Sample) {
-        let lag = |axis: &DrawnAxis| sample.commanded[axis.place] - sample.actual[axis.place];
-        let lags = [sample.cuts, !sample.cuts].into_iter().flat_map(|now| {
-            let axes = self.axes.iter();
-            axes.map(move |axis| if now { lag(axis) } else { f64::NAN })
-        });
-        self.lags.take(sample.time, lags);
+        let lag = |axis: &DrawnAxis| {
+            let point = &sample.point;
+            point.commanded_joints[axis.place] - point.actual_joints[axis.place]
+        };
+        let lags = [sample.at.cuts, !sample.at.cuts]
+            .into_iter()
+            .flat_map(|now| {
+                let axes = self.axes.iter();
+                axes.map(move |axis| if now { lag(axis) } else { f64::NAN })
+            });
+        self.lags.take(sample.point.time, lags);
         for (axis, spectrum) in self.axes.iter().zip(&mut self.spectra) {
             spectrum.take(lag(axis));
         }
@@ -106,10 +111,10 @@ impl Rooms {
             true => [sample.feed, sample.programmed],
             false => [f64::NAN; 2],
         };
-        self.feeds.take(sample.time, feeds.into_iter());
+        self.feeds.take(sample.point.time, feeds.into_iter());
         self.trail.take(sample);
-        if sample.counts {
-            let errors = [sample.size, sample.axis];
+        if sample.counts() {
+            let errors = [sample.size(), sample.axis()];
             self.contour.take(self.trail.way, errors.into_iter());
         }
     }

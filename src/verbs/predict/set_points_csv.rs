@@ -45,27 +45,33 @@ impl<'a, 'f> SetPointsCsv<'a, 'f> {
     /// Takes the next set-point.
     pub fn take(&mut self, sample: &Sample) -> Result<(), FileFault> {
         let text = &mut self.text;
-        fixed(text, sample.time, 6);
+        let point = &sample.point;
+        fixed(text, point.time, 6);
         let cl_line = sample
-            .cl_line
+            .cl_line()
             .map_or_else(String::new, |line| line.to_string());
         // Writing to a String cannot fail.
-        let _ = write!(text, ",{},{cl_line},{}", sample.line, u8::from(sample.cuts));
+        let _ = write!(
+            text,
+            ",{},{cl_line},{}",
+            sample.at.line,
+            u8::from(sample.at.cuts)
+        );
         let mut column = |value: f64, decimals: u8| {
             text.push(',');
             fixed(text, value, decimals);
         };
-        for joints in [&sample.commanded, &sample.actual] {
+        for joints in [&point.commanded_joints, &point.actual_joints] {
             for place in &self.order {
                 column(self.machine.axes[*place].reading(joints[*place]), 6);
             }
         }
-        for tip in [&sample.pose.tip, &sample.actual_pose.tip] {
+        for tip in [&point.commanded.tip, &point.actual.tip] {
             tip.iter().for_each(|value| column(*value, 6));
         }
-        sample.error.iter().for_each(|value| column(*value, 7));
-        column(sample.size, 7);
-        column(sample.axis.to_degrees(), 7);
+        sample.error().iter().for_each(|value| column(*value, 7));
+        column(sample.size(), 7);
+        column(sample.axis().to_degrees(), 7);
         column(sample.feed, 2);
         column(sample.programmed, 2);
         self.text.push('\n');

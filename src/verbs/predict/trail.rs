@@ -44,13 +44,13 @@ impl Trail {
 
     /// Takes the next set-point.
     pub fn take(&mut self, sample: &Sample) {
-        if !sample.counts {
+        if !sample.counts() {
             if self.last.take().is_some() {
                 self.cut += 1;
             }
             return;
         }
-        let tip: [f64; 3] = sample.pose.tip.into();
+        let tip: [f64; 3] = sample.point.commanded.tip.into();
         if let Some(last) = self.last.replace(tip) {
             let squares = last.iter().zip(tip).map(|(a, b)| (b - a) * (b - a));
             self.way += libm::sqrt(squares.sum());
@@ -70,8 +70,8 @@ impl Trail {
         let spot = Spot {
             cut: self.cut,
             tip,
-            error: sample.error,
-            size: sample.size,
+            error: sample.error(),
+            size: sample.size(),
         };
         self.shares[place] = worse(self.shares[place], Some(spot));
     }

@@ -295,13 +295,21 @@ pub(crate) fn overlay<'i>(base: &mut DeTable<'i>, layer: DeTable<'i>) {
             }
         }
     }
+    lay(base, layer);
+}
+
+/// Key by key, none in another's place.
+fn lay<'i>(base: &mut DeTable<'i>, layer: DeTable<'i>) {
     for (key, value) in layer {
         let name = key.get_ref().to_string();
         let span = value.span();
         match (base.get_mut(name.as_str()), value.into_inner()) {
             (Some(old), DeValue::Table(table)) if old.get_ref().is_table() => {
-                if let DeValue::Table(old) = old.get_mut() {
-                    overlay(old, table);
+                match old.get_mut() {
+                    // Names of the user's own: a parameter called gear takes none called direct away.
+                    DeValue::Table(old) if name == "parameters" => lay(old, table),
+                    DeValue::Table(old) => overlay(old, table),
+                    _ => {}
                 }
             }
             (_, value) => {

@@ -44,7 +44,7 @@ pub use frame::Frame;
 pub use layers::Source;
 pub use limits::MOST_BYTES;
 pub use motion::MotionRules;
-pub use motion_file::{BlendRule, CornerRule, LimitsActOn};
+pub use motion_file::{BlendRule, CornerRule, LimitsActOn, RapidRule};
 pub use program::{ProgramRules, ProgramText, TextPlace};
 pub use schema::schema;
 pub use setting::Setting;

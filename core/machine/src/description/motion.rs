@@ -1,7 +1,7 @@
 //! What a machine file says of how the control makes motion: `[motion]`.
 
 use super::build::Builder;
-use super::motion_file::{BlendRule, CornerRule, LimitsActOn, MotionFile};
+use super::motion_file::{BlendRule, CornerRule, LimitsActOn, MotionFile, RapidRule};
 use super::quantity::Quantity;
 use crate::diagnostic::Short;
 
@@ -27,8 +27,8 @@ pub struct MotionRules {
     pub corner_tolerance: Option<f64>,
     /// How it leaves the path at a corner.
     pub blend: BlendRule,
-    /// It stands still at the end of each rapid, whatever holds for cuts.
-    pub rapid_stops: bool,
+    /// How it passes into and out of rapids.
+    pub rapids: RapidRule,
     /// A tool change takes so long, s.
     pub tool_change: f64,
     /// The program waits so long where the spindle starts, stops or changes its sense, s.
@@ -101,7 +101,7 @@ impl Builder<'_> {
             corner: file.corner,
             corner_tolerance,
             blend: file.blend,
-            rapid_stops: file.rapid_stops.unwrap_or(true),
+            rapids: file.rapids,
             tool_change: seconds("tool_change", &file.tool_change),
             spindle: seconds("spindle", &file.spindle),
         }

@@ -39,9 +39,9 @@ pub(crate) struct MotionFile {
     /// How it leaves the path at a corner; overlap if not said.
     #[serde(default)]
     pub blend: BlendRule,
-    /// It stands still at the end of each rapid (in-position check), whatever holds for cuts; true if not said.
-    #[schemars(with = "Option<bool>")]
-    pub rapid_stops: Option<bool>,
+    /// Whether it passes into and out of rapids without standing still; stop if not said.
+    #[serde(default)]
+    pub rapids: RapidRule,
     /// A tool change takes so long, s; 0 if not said.
     #[schemars(with = "Option<Number>", extend("minimum" = 0))]
     pub tool_change: Option<Quantity>,
@@ -71,6 +71,19 @@ pub enum CornerRule {
     Path,
     /// It may leave the path (continuous path).
     #[default]
+    Blend,
+}
+
+/// How a control passes into and out of rapids.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum RapidRule {
+    /// It stands still before and behind each (in-position check).
+    #[default]
+    Stop,
+    /// As between cuts from one rapid into the next; between rapids and cuts it stands still (LinuxCNC).
+    AmongRapids,
+    /// As between cuts.
     Blend,
 }
 

@@ -11,13 +11,16 @@ use super::keys::axes_are;
 use super::quantity::Quantity;
 use super::servo_file::{FrictionFile, ServoFile};
 use crate::diagnostic::Short;
-use crate::servo::{Drive, Feedback, Friction, Servo, ServoModel, StateSpace, stable};
+use crate::servo::{Drive, Feedback, Friction, Pole, Servo, ServoModel, StateSpace, stable};
 
 /// A position loop whose gain at rest is further from 1 leaves the axis beside where it is commanded.
 const UNIT_GAIN: f64 = 1e-6;
 
 /// The fastest that a table may swing on its transmission, rad/s: nothing of a machine tool does.
 const FASTEST: f64 = 1e5;
+
+/// The fastest pole, 1/s: windings have some thousands.
+const FASTEST_POLE: f64 = 1e7;
 
 /// What a number of a servo may be.
 #[derive(Clone, Copy)]
@@ -158,6 +161,16 @@ impl Builder<'_> {
             self.fault("machine-servo", span, message, help);
             return;
         };
+        let largest = poles.iter().map(Pole::size).fold(0.0, f64::max);
+        if largest > FASTEST_POLE {
+            let message = format!(
+                "the servo of {name} has a pole of {} 1/s; up to {FASTEST_POLE} are possible",
+                Short(largest)
+            );
+            let help = "are its numbers in the units of the machine file: mH, kg·m², s?";
+            self.fault("machine-servo", span, message, help);
+            return;
+        }
         if !stable(&poles) {
             let told: Vec<String> = poles.iter().map(ToString::to_string).collect();
             let message = format!(
@@ -177,7 +190,8 @@ impl Builder<'_> {
             return;
         }
         let gain = space.static_gain().unwrap_or(f64::NAN);
-        if libm::fabs(gain - 1.0).is_nan() || libm::fabs(gain - 1.0) > UNIT_GAIN {
+        let arrives = libm::fabs(gain - 1.0) <= UNIT_GAIN;
+        if !arrives {
             let message = format!(
                 "the servo of {name} would come to rest at {} of where it is commanded",
                 Short(gain)

@@ -16,6 +16,13 @@ pub struct Pole {
     pub imaginary: f64,
 }
 
+impl Pole {
+    /// Its distance from zero, 1/s.
+    pub fn size(&self) -> f64 {
+        libm::hypot(self.real, self.imaginary)
+    }
+}
+
 impl fmt::Display for Pole {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", Short(self.real))?;
@@ -34,8 +41,12 @@ const MOST_STEPS: usize = 1_000;
 const AT_ZERO: f64 = 1e-12;
 
 impl StateSpace {
-    /// The poles, the slowest first: eigenvalues of the matrix. None where the search for them does not end.
+    /// The poles, the slowest first: eigenvalues of the matrix. None where they are
+    /// too large to be numbers, or the search for them does not end.
     pub fn poles(&self) -> Option<Vec<Pole>> {
+        if !self.a.iter().all(|part| part.is_finite()) {
+            return None;
+        }
         let steps = MOST_STEPS * self.order();
         let schur = Schur::try_new(self.a.clone(), f64::EPSILON, steps)?;
         let mut poles: Vec<Pole> = schur
@@ -55,7 +66,6 @@ impl StateSpace {
 
 /// Every motion of its own dies away.
 pub fn stable(poles: &[Pole]) -> bool {
-    let size = |pole: &Pole| libm::hypot(pole.real, pole.imaginary);
-    let largest = poles.iter().map(size).fold(0.0, f64::max);
+    let largest = poles.iter().map(Pole::size).fold(0.0, f64::max);
     poles.iter().all(|pole| pole.real < -AT_ZERO * largest)
 }

@@ -52,6 +52,9 @@ pub struct Released {
     pub damping: f64,
 }
 
+/// Squares of larger numbers, added up, may not be finite.
+const LARGEST: f64 = 1e150;
+
 /// A quantity as a linear function of the states, and of `r`, `r'` and `r''`.
 #[derive(Clone, Debug)]
 struct Signal {
@@ -124,7 +127,12 @@ impl StateSpace {
         Some((&self.position * self.rest()?)[0] + self.through)
     }
 
+    /// Rows and columns of the matrix become as equal in size as powers of two make them. What has no finite size, or a
+    /// square that has none, stays: balancing it would not end.
     fn balance(&mut self) {
+        if !self.a.iter().all(|part| libm::fabs(*part) < LARGEST) {
+            return;
+        }
         let mut balanced = self.a.clone();
         let scale = balance_parlett_reinsch(&mut balanced);
         self.a = balanced;

@@ -4,7 +4,7 @@
 use std::fs;
 
 use post_machine::description::{
-    BlendRule, CornerRule, LimitsActOn, Machine, Setting, Source, Tcp, load,
+    BlendRule, CornerRule, LimitsActOn, Machine, RapidRule, Setting, Source, Tcp, load,
 };
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_testkit::repository;
@@ -588,14 +588,14 @@ fn how_a_control_makes_motion_is_merged_key_by_key() {
         (CornerRule::Blend, None)
     );
     assert_eq!(
-        (rules.limits, rules.blend),
-        (LimitsActOn::Axes, BlendRule::Overlap)
+        (rules.limits, rules.blend, rules.rapids),
+        (LimitsActOn::Axes, BlendRule::Overlap, RapidRule::Stop)
     );
-    assert!(rules.rapid_stops && rules.tip_accel.is_infinite() && rules.tip_jerk.is_infinite());
+    assert!(rules.tip_accel.is_infinite() && rules.tip_jerk.is_infinite());
     assert_eq!((rules.tool_change, rules.spindle), (0.0, 0.0));
 
     let own = "extends = \"good\"\n[motion]\nperiod = \"Zc / 12625\"\nlimits = \"programmed\"\ncorner = \"path\"\n\
-               corner_tolerance = 0.02\nblend = \"round\"\nrapid_stops = false\ntip_accel = 900\ntip_jerk = 8000\n";
+               corner_tolerance = 0.02\nblend = \"round\"\nrapids = \"among-rapids\"\ntip_accel = 900\ntip_jerk = 8000\n";
     let settings = [
         "motion.period=0.008",
         "motion.look_ahead=20",
@@ -617,8 +617,8 @@ fn how_a_control_makes_motion_is_merged_key_by_key() {
         (LimitsActOn::Programmed, BlendRule::Round)
     );
     assert_eq!(
-        (rules.tip_accel, rules.tip_jerk, rules.rapid_stops),
-        (900.0, 8000.0, false)
+        (rules.tip_accel, rules.tip_jerk, rules.rapids),
+        (900.0, 8000.0, RapidRule::AmongRapids)
     );
 }
 

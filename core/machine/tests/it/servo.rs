@@ -175,6 +175,58 @@ fn a_file_that_extends_another_says_what_differs() {
     );
 }
 
+/// Parameters are names of the user's own: none stands in another's place.
+#[test]
+fn a_parameter_takes_no_other_away() {
+    let parent =
+        format!("{BARE}{LOOPS}").replace("heavy = 450", "heavy = 450\ndirect = 2\nplane = 1");
+    let text = "extends = \"parent\"\n[parameters]\ngear = 3\ndistance = 4\n[servo.X.loops.screw]\ntable_mass = \"direct * plane + gear + distance\"\n";
+    let machine = load(source("m.toml", text.to_owned()), &[], &mut |_| {
+        Ok(source("parent.toml", parent.clone()))
+    })
+    .unwrap();
+    let mut servo = axis(&machine, "X").servo.clone().unwrap();
+    assert_eq!(servo.parameter("table_mass").copied(), Some(9.0));
+}
+
+/// Numbers of any size are loaded or refused, and the run comes to an end.
+#[test]
+fn numbers_of_any_size_come_to_an_end() {
+    let mut seed = 7_u64;
+    let mut next = |most: u64| {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) % most
+    };
+    let mut loaded = 0;
+    for round in 0..2000 {
+        let odd = |line: &str, exponent: i64| match line.split_once(" = ") {
+            Some((key, _)) if !key.ends_with("feed_forward") && key != "feedback" => {
+                format!("{key} = 1e{exponent}")
+            }
+            _ => line.to_owned(),
+        };
+        let lines: Vec<String> = LOOPS
+            .lines()
+            .map(|line| match (round % 3, next(8)) {
+                // All, or some here and there, over all sizes or those that are left after others were refused.
+                (0, _) | (_, 0) => odd(
+                    line,
+                    next(if round % 2 == 0 { 620 } else { 24 }) as i64
+                        - if round % 2 == 0 { 320 } else { 12 },
+                ),
+                _ => line.to_owned(),
+            })
+            .collect();
+        match try_load(&lines.join("\n")) {
+            Ok(_) => loaded += 1,
+            Err(faults) => assert!(faults.iter().all(|fault| fault.place.is_some())),
+        }
+    }
+    assert!(loaded > 30, "{loaded}");
+}
+
 /// A change of [`LOOPS`] (or what stands in its place), the line of the fault, and words of what is said.
 const REFUSED: &[(&str, &str, &str, &[&str])] = &[
     ("kv = 50", "kv = 0", "", &["kv is 0; it must be above zero"]),
@@ -236,7 +288,7 @@ const REFUSED: &[(&str, &str, &str, &[&str])] = &[
     ("backlash = 0.002", "backlash = -1", "", &["backlash is -1"]),
     (
         "kv = 50",
-        "kv = 500",
+        "kv = 800",
         "[servo.X.loops]",
         &["not stable", "j", "a smaller kv"],
     ),
@@ -245,6 +297,12 @@ const REFUSED: &[(&str, &str, &str, &[&str])] = &[
         "axial_stiffness = 1e10",
         "[servo.X.loops]",
         &["rad/s", "N/µm"],
+    ),
+    (
+        "inductance = 5",
+        "inductance = 1e-6",
+        "[servo.X.loops]",
+        &["pole of", "10000000 are possible", "mH"],
     ),
     (
         "[servo.X.loops]",

@@ -10,11 +10,19 @@
 //! them, with derivatives of five set-points each, so that its error falls with the fourth power of the period. At
 //! corners, stops and reversals it goes by the chords and overshoots nothing; `spline.rs` states the rule.
 //!
+//! # The parts
+//! From the actual tip to its nearest point on the commanded path (*following*: the servos), from there to the nearest
+//! point of the path that the program asks for, straight between its blocks, on its arcs and splines (*interpolation*:
+//! axes that go linearly, chords between set-points, corners that are left), and from there to the CL path (*program*:
+//! points that are rounded, put in and left out). Each by itself; the whole is no more than their sum.
+//!
 //! # The nearest point
 //! It is carried on from set-point to set-point; `path.rs` states which one is meant where the path crosses itself, where
 //! the tool cuts a corner, and where it stands.
 
 mod axes;
+mod course;
+mod leg;
 mod path;
 mod spline;
 mod spread;
@@ -25,9 +33,11 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose, Solver};
 
-use crate::{At, SetPoints};
+use crate::{At, Pace, SetPoints, Task};
 use axes::AxesPeaks;
 pub use axes::AxisPeaks;
+use course::Course;
+pub use leg::{Leg, Reference};
 use path::{Knot, Path};
 pub use spread::{Peak, Spread};
 
@@ -60,6 +70,25 @@ pub struct ContourPoint {
     pub distance: f64,
     /// Angle between the tool axis and the one at the nearest point, radians.
     pub axis: f64,
+    /// Distance of that nearest point from the path that the program asks for, mm; zero where no task has been told.
+    pub interpolation: f64,
+    /// How the tool stands to the CL path; none at rapid, and where there is none.
+    pub asked: Option<AskedPoint>,
+}
+
+/// How the tool stands to the CL path.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AskedPoint {
+    /// What asks for the nearest point: the line of the CL file, and the number that the leg was handed out with.
+    pub at: At,
+    /// Actual tip minus that point, mm, part frame.
+    pub error: Vector3<f64>,
+    /// Its length, mm.
+    pub distance: f64,
+    /// Angle between the tool axis and the one that is asked for there, radians.
+    pub axis: f64,
+    /// Distance of the program's path from the CL path, mm.
+    pub program: f64,
 }
 
 /// What has been found about a program, or what was so far.
@@ -71,6 +100,14 @@ pub struct ContourReport {
     pub axis: Spread,
     /// Contour error at rapid, mm.
     pub rapids: Spread,
+    /// Distance of the commanded path from the path that the program asks for, in cuts, mm.
+    pub interpolation: Spread,
+    /// Distance of the program's path from the CL path, in cuts, mm; none without one.
+    pub program: Spread,
+    /// Distance of the tip from the CL path, in cuts, mm; none without one.
+    pub asked: Spread,
+    /// Angle of the tool axis against that of the CL path, in cuts, radians.
+    pub asked_axis: Spread,
     /// Distance of the tip from where it is commanded at the same time, in cuts, mm.
     pub following: Spread,
     /// How far the tool stays off a corner of its path in a cut, mm: it passes from one leg to the other, and so the
@@ -95,8 +132,14 @@ struct Pending {
 }
 
 /// Finds contour errors of one batch of set-points after the other.
-#[derive(Debug, Default)]
-pub struct Contour {
+#[derive(Default)]
+pub struct Contour<'r> {
+    /// What the program asks for.
+    programmed: Course,
+    tasks: u64,
+    /// The CL path, and what is known of it.
+    reference: Option<Box<dyn Reference + 'r>>,
+    asked: Course,
     solver: Option<Arc<Solver>>,
     path: Path,
     /// Five set-points, of which the middle one becomes the next knot, and how many of them are real.
@@ -109,10 +152,36 @@ pub struct Contour {
     report: ContourReport,
 }
 
-impl Contour {
+impl<'r> Contour<'r> {
     /// Nothing has moved yet.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Holds the tool against a CL path too.
+    pub fn against(mut self, reference: Box<dyn Reference + 'r>) -> Self {
+        self.reference = Some(reference);
+        self
+    }
+
+    /// What the program asks for, all of it in order and each before its first set-point is taken: without, nothing is
+    /// known of what comes of interpolating.
+    pub fn ahead(&mut self, task: &Task) {
+        let number = self.tasks;
+        self.tasks += 1;
+        if let Task::Move(go) = task {
+            self.programmed.push(&Leg {
+                at: At {
+                    task: number,
+                    line: go.line,
+                    cuts: go.pace != Pace::Rapid,
+                },
+                way: go.way.clone(),
+                from: go.from.pose,
+                to: go.to.pose,
+                along: 0.0,
+            });
+        }
     }
 
     /// Takes set-points and where the axes are at their times, `actual` as many; `listen` is told of each, some batches
@@ -197,6 +266,7 @@ impl Contour {
             tip_ways: spline::tangents([&a.2, &b.2, &c.2, &d.2, &e.2]),
             axis_ways: spline::tangents([&a.3, &b.3, &c.3, &d.3, &e.3]),
             length: 0.0,
+            gap: false,
         });
     }
 
@@ -223,24 +293,61 @@ impl Contour {
         let actual = point.actual;
         let commanded = (point.number, &point.commanded.tip);
         let nearest = self.path.nearest(&actual, commanded);
-        let told = ContourPoint {
+        let at = nearest.at;
+        let axis = angle(&actual.axis, &nearest.axis);
+        let commanded = Pose {
+            tip: nearest.tip,
+            axis: nearest.axis,
+            edge: Vector3::zeros(),
+        };
+        let mut told = ContourPoint {
             time: point.time,
-            at: nearest.at,
+            at,
             commanded_joints: point.joints[0],
             actual_joints: point.joints[1],
             commanded: point.commanded,
             actual,
-            nearest: Pose {
-                tip: nearest.tip,
-                axis: nearest.axis,
-                edge: Vector3::zeros(),
-            },
+            nearest: commanded,
             error: actual.tip - nearest.tip,
             distance: nearest.distance,
-            axis: angle(&actual.axis, &nearest.axis),
+            axis,
+            interpolation: 0.0,
+            asked: None,
         };
+        match at.cuts {
+            true => self.parts(&mut told),
+            false => {
+                self.programmed.leave();
+                self.asked.leave();
+            }
+        }
         self.report.take(&told, nearest.missed);
         listen(&told);
+    }
+}
+
+impl Contour<'_> {
+    /// What lies between the commanded path and what is asked for.
+    fn parts(&mut self, told: &mut ContourPoint) {
+        let mut programmed = told.nearest;
+        if let Some(asked) = self.programmed.follow(&told.nearest, &mut || None) {
+            told.interpolation = asked.distance;
+            (programmed.tip, programmed.axis) = (asked.tip, asked.axis);
+        }
+        let Some(reference) = &mut self.reference else {
+            return;
+        };
+        let program = self.asked.follow(&programmed, &mut || reference.next());
+        let beside = self.asked.beside(&told.actual);
+        if let (Some(program), Some(asked)) = (program, beside) {
+            told.asked = Some(AskedPoint {
+                at: asked.at,
+                error: told.actual.tip - asked.tip,
+                distance: asked.distance,
+                axis: angle(&told.actual.axis, &asked.axis),
+                program: program.distance,
+            });
+        }
     }
 }
 
@@ -250,7 +357,7 @@ impl ContourReport {
             value,
             time: point.time,
             line: point.at.line,
-            cl_line: None,
+            cl_line: point.asked.map(|asked| asked.at.line),
             tip: point.nearest.tip,
         };
         if !point.at.cuts {
@@ -260,6 +367,12 @@ impl ContourReport {
         self.cuts.take(peak(point.distance));
         self.axis.take(peak(point.axis));
         self.missed.take(peak(missed));
+        self.interpolation.take(peak(point.interpolation));
+        if let Some(asked) = &point.asked {
+            self.asked.take(peak(asked.distance));
+            self.asked_axis.take(peak(asked.axis));
+            self.program.take(peak(asked.program));
+        }
         let following = (point.commanded.tip - point.actual.tip).norm();
         self.following.take(peak(following));
     }

@@ -17,7 +17,7 @@ use super::spline::{Cubic, Tangents};
 use crate::At;
 
 /// Other places are looked for so many times the first distance along the path.
-const REACH: f64 = 16.0;
+pub(super) const REACH: f64 = 16.0;
 
 /// Knots behind the nearest point that are kept.
 const BEHIND: usize = 2048;
@@ -51,6 +51,8 @@ pub(super) struct Knot {
     pub axis_ways: Tangents,
     /// No less than the way of the tip to it, mm.
     pub length: f64,
+    /// What follows it begins elsewhere: between the two there is no path.
+    pub gap: bool,
 }
 
 /// A place on the path: behind which knot, and what share of the piece that begins there.
@@ -60,6 +62,25 @@ pub(super) struct Foot {
     pub share: f64,
     /// Distance of the tip, mm.
     pub distance: f64,
+}
+
+/// How far along the path other places are looked for, mm.
+#[derive(Clone, Copy, Debug)]
+struct Within {
+    ahead: f64,
+    back: f64,
+    /// They count if they are nearer by more than this, mm.
+    gain: f64,
+}
+
+impl Within {
+    fn all(reach: f64) -> Self {
+        Self {
+            ahead: reach,
+            back: reach,
+            gain: 0.0,
+        }
+    }
 }
 
 /// What was found.
@@ -85,6 +106,20 @@ impl Path {
     pub fn clear(&mut self) {
         self.knots.clear();
         self.foot = Foot::default();
+    }
+
+    /// Takes the first knot of a leg: where the last one ended, or behind a gap.
+    pub fn join(&mut self, mut knot: Knot) {
+        if let Some(last) = self.knots.back_mut() {
+            if last.tip == knot.tip && last.axis == knot.axis {
+                last.tip_ways[1] = knot.tip_ways[1];
+                last.axis_ways[1] = knot.axis_ways[1];
+                return;
+            }
+            last.gap = true;
+            knot.length = last.length + (knot.tip - last.tip).norm();
+        }
+        self.knots.push_back(knot);
     }
 
     /// Takes the next knot; one on which the machine stands as on the one before is the same.
@@ -116,12 +151,12 @@ impl Path {
         };
     }
 
-    /// The point nearest to where the tool is, while `commanded` is the number of the set-point of the same time.
+    /// The point nearest to where the tool is, while `commanded` is the set-point of the same time.
     pub fn nearest(&mut self, actual: &Pose, commanded: (u64, &Vector3<f64>)) -> Nearest {
         let start = self.further(self.foot);
         let first = (self.point(start) - actual.tip).norm();
         let found = self.descend(&actual.tip, start);
-        let mut foot = self.least(&actual.tip, found, REACH * first);
+        let mut foot = self.least(&actual.tip, found, Within::all(REACH * first));
         let missed = self.missed(&actual.tip, found, foot);
         let following = (commanded.1 - actual.tip).norm();
         if foot.distance > following {
@@ -129,16 +164,13 @@ impl Path {
             let here = self.place_of(commanded.0);
             let other = self.descend(&actual.tip, here);
             if other.distance < foot.distance {
-                foot = self.least(&actual.tip, other, REACH * following);
+                foot = self.least(&actual.tip, other, Within::all(REACH * following));
             }
         }
         let tip = self.point(foot);
         let (tied, axis) = self.tied(actual, foot);
-        let at = self.knots[self.rounded(tied)].at;
-        self.foot = tied;
-        if tied.knot > 2 * BEHIND {
-            self.drop_first(BEHIND);
-        }
+        let at = self.at(tied);
+        self.stand(tied);
         Nearest {
             tip,
             axis,
@@ -148,9 +180,95 @@ impl Path {
         }
     }
 
-    fn rounded(&self, foot: Foot) -> usize {
-        let knot = foot.knot + usize::from(foot.share > 0.5);
-        knot.min(self.knots.len() - 1)
+    /// The place nearest to a tool, from `start` on downhill, and further back than `back` mm along the path no other
+    /// one; and the tool axis that is asked for there: of places that are equally near the one whose axis is nearest.
+    pub fn seek(&self, tool: &Pose, start: Foot, back: f64) -> (Foot, Vector3<f64>) {
+        let found = self.descend(&tool.tip, start);
+        let first = (self.point(start) - tool.tip).norm();
+        self.among(tool, found, back.min(REACH * first), first)
+    }
+
+    /// The place nearest to a tool that was off the path meanwhile: from where it left, and nowhere before.
+    pub fn seek_anew(&self, tool: &Pose) -> (Foot, Vector3<f64>) {
+        let first = (self.point(self.foot) - tool.tip).norm();
+        let left = Foot {
+            distance: first,
+            ..self.foot
+        };
+        self.among(tool, left, 0.0, first)
+    }
+
+    fn among(&self, tool: &Pose, found: Foot, back: f64, first: f64) -> (Foot, Vector3<f64>) {
+        let within = Within {
+            ahead: REACH * first,
+            back,
+            gain: TIE,
+        };
+        let foot = self.least(&tool.tip, found, within);
+        let (_, axis) = self.tied(tool, foot);
+        (foot, axis)
+    }
+
+    /// The tool has come to a place: what lies far behind it is forgotten.
+    pub fn stand(&mut self, foot: Foot) {
+        self.foot = foot;
+        if foot.knot > 2 * BEHIND {
+            self.drop_first(BEHIND);
+        }
+    }
+
+    pub fn foot(&self) -> Foot {
+        self.foot
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.knots.is_empty()
+    }
+
+    /// Knots ahead of the tool, and how far they reach, mm.
+    pub fn ahead(&self) -> (usize, f64) {
+        let knots = self.knots.len() - 1 - self.foot.knot;
+        let last = self.knots.back().map_or(0.0, |last| last.length);
+        (knots, last - self.length(self.foot))
+    }
+
+    /// The length of the way to a place, mm.
+    fn length(&self, foot: Foot) -> f64 {
+        let length = self.knots[foot.knot].length;
+        let next = self.knots.get(foot.knot + 1);
+        length + foot.share * next.map_or(0.0, |next| next.length - length)
+    }
+
+    /// The place so many mm behind another.
+    pub fn after(&self, foot: Foot, way: f64) -> Foot {
+        let wanted = self.length(foot) + way;
+        let mut knot = foot.knot;
+        while let Some(next) = self.knots.get(knot + 1) {
+            let length = self.knots[knot].length;
+            if next.length > wanted {
+                let share = match self.knots[knot].gap {
+                    true => 0.0,
+                    false => (wanted - length) / (next.length - length),
+                };
+                return Foot {
+                    knot,
+                    share,
+                    ..foot
+                };
+            }
+            knot += 1;
+        }
+        Foot {
+            knot,
+            share: 0.0,
+            ..foot
+        }
+    }
+
+    /// What asks for a place: a piece is asked for by the knot at its end.
+    pub fn at(&self, foot: Foot) -> At {
+        let knot = foot.knot + usize::from(foot.share > 0.0);
+        self.knots[knot.min(self.knots.len() - 1)].at
     }
 
     /// The place where a set-point stands.
@@ -178,11 +296,15 @@ impl Path {
     fn cubic(&self, knot: usize) -> Option<Cubic> {
         let next = self.knots.get(knot + 1)?;
         let last = &self.knots[knot];
+        if last.gap {
+            return None;
+        }
         let ends = [&last.tip, &next.tip];
         Some(Cubic::new(ends, &last.tip_ways[1], &next.tip_ways[0]))
     }
 
-    fn point(&self, foot: Foot) -> Vector3<f64> {
+    /// The tip at a place.
+    pub fn point(&self, foot: Foot) -> Vector3<f64> {
         self.cubic(foot.knot)
             .map_or(self.knots[foot.knot].tip, |cubic| cubic.at(foot.share))
     }
@@ -199,6 +321,11 @@ impl Path {
         axis.try_normalize(0.1).unwrap_or(last.axis)
     }
 
+    /// No path leads to a knot.
+    fn begins(&self, knot: usize) -> bool {
+        knot == 0 || self.knots[knot - 1].gap
+    }
+
     /// Downhill from a place, to where the distance rises both ways.
     fn descend(&self, from: &Vector3<f64>, start: Foot) -> Foot {
         let mut foot = start;
@@ -208,7 +335,7 @@ impl Path {
             let Some(cubic) = self.cubic(foot.knot) else {
                 // At the end of the path: inside it, or there.
                 foot.share = 0.0;
-                if went > 0 || foot.knot == 0 {
+                if went > 0 || self.begins(foot.knot) {
                     break;
                 }
                 (foot.knot, foot.share, went) = (foot.knot - 1, 1.0, -1);
@@ -219,7 +346,7 @@ impl Path {
                 (foot.knot, foot.share, went) = (foot.knot + 1, 0.0, 1);
                 continue;
             }
-            if share <= 0.0 && went <= 0 && foot.knot > 0 {
+            if share <= 0.0 && went <= 0 && !self.begins(foot.knot) {
                 (foot.knot, foot.share, went) = (foot.knot - 1, 1.0, -1);
                 continue;
             }
@@ -233,10 +360,10 @@ impl Path {
         foot
     }
 
-    /// The nearest place within `reach` along the path of where it is itself.
-    fn least(&self, from: &Vector3<f64>, mut found: Foot, reach: f64) -> Foot {
+    /// The nearest place within a reach along the path of where it is itself.
+    fn least(&self, from: &Vector3<f64>, mut found: Foot, within: Within) -> Foot {
         loop {
-            let other = self.others(from, found, reach);
+            let other = self.others(from, found, within);
             if other.distance >= found.distance {
                 return found;
             }
@@ -244,17 +371,12 @@ impl Path {
         }
     }
 
-    /// A place that is nearer than the one found, within `reach` of it along the path both ways.
-    fn others(&self, from: &Vector3<f64>, found: Foot, reach: f64) -> Foot {
-        let share = self
-            .knots
-            .get(found.knot + 1)
-            .map_or(0.0, |next| next.length - self.knots[found.knot].length)
-            * found.share;
-        let length = self.knots[found.knot].length + share;
+    /// A place that is nearer than the one found, within a reach of it along the path both ways.
+    fn others(&self, from: &Vector3<f64>, found: Foot, within: Within) -> Foot {
+        let length = self.length(found);
         let mut best = found;
         let mut look = |piece: usize| {
-            if let Some(other) = self.nearer(from, piece, best.distance) {
+            if let Some(other) = self.nearer(from, piece, best.distance - within.gain) {
                 best = other;
             }
             best.distance
@@ -265,7 +387,7 @@ impl Path {
             nearest = look(found.knot);
         }
         let mut knot = (found.knot + 1).min(last);
-        while knot < last && self.knots[knot].length - length < reach {
+        while knot < last && self.knots[knot].length - length < within.ahead {
             let free = (self.knots[knot].tip - from).norm() - nearest;
             let passed = self.knots[knot].length + free;
             if self.knots[knot + 1].length > passed {
@@ -277,7 +399,7 @@ impl Path {
             }
         }
         let mut knot = found.knot;
-        while knot > 0 && length - self.knots[knot].length < reach {
+        while knot > 0 && length - self.knots[knot].length < within.back {
             let free = (self.knots[knot].tip - from).norm() - nearest;
             let passed = self.knots[knot].length - free;
             if self.knots[knot - 1].length < passed {
@@ -306,6 +428,9 @@ impl Path {
     /// The place in a piece that is nearer than `distance`, or beyond it downhill from there.
     fn nearer(&self, from: &Vector3<f64>, piece: usize, distance: f64) -> Option<Foot> {
         let (last, next) = (&self.knots[piece], &self.knots[piece + 1]);
+        if last.gap {
+            return None;
+        }
         let chord = next.tip - last.tip;
         let square = chord.norm_squared();
         let offset = from - last.tip;
@@ -324,7 +449,7 @@ impl Path {
         }
         let cubic = self.cubic(piece)?;
         let mut best: Option<Foot> = None;
-        for start in [along, 0.5 * along, 0.5 + 0.5 * along] {
+        for start in [along, 0.125, 0.375, 0.625, 0.875] {
             let share = lowest(&cubic, from, start);
             let foot = Foot {
                 knot: piece,

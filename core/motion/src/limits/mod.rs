@@ -101,7 +101,9 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
     };
     let straight_axes = match task.way {
         Way::Axes => true,
-        Way::Tip | Way::TipAndAxis => !turns || limits.programmed.is_some() && task.way == Way::Tip,
+        Way::Tip | Way::TipAndAxis => {
+            !turns || coordinates(task, limits).is_some() && task.way == Way::Tip
+        }
         Way::Arc { .. } | Way::Spline(_) => false,
     };
     if straight_axes {
@@ -126,7 +128,10 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
 
 /// The coordinates of the tip that stand for axes on this move; none on one whose axes are led by themselves.
 fn coordinates<'l>(task: &Move, limits: &'l AxisLimits) -> Option<&'l [Option<usize>; MAX_AXES]> {
-    limits.programmed.as_ref().filter(|_| task.way != Way::Axes)
+    limits
+        .programmed
+        .as_ref()
+        .filter(|_| task.keeps_tip && task.way != Way::Axes)
 }
 
 impl MoveLimits {

@@ -51,6 +51,7 @@ fn task(machine: &Machine, way: Way, tips: [[f64; 3]; 2], angles: [[f64; 2]; 2])
         from,
         to,
         solver,
+        keeps_tip: true,
         pace: Pace::Rapid,
         corner: Corner::Stop,
     }

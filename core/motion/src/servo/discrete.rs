@@ -3,6 +3,9 @@
 use nalgebra::linalg::balancing::{balance_parlett_reinsch, unbalance};
 use nalgebra::{DMatrix, DVector};
 
+/// No servo whose machine file was not refused, over a step of a second at most, has a larger number in its matrix.
+const LARGEST: f64 = 1e100;
+
 /// The exact solution of `x' = a·x + value·r + rate·r' + force·f` after a step of time in which r changes linearly by Δ and
 /// f is constant: `x⁺ = transition·x + value·r + change·Δ + force·f`, r taken at the beginning.
 #[derive(Clone, Debug)]
@@ -16,14 +19,14 @@ pub(super) struct Discrete {
 impl Discrete {
     /// Over `step` seconds. The inputs are states of their own of a larger system whose matrix exponential holds all
     /// (Van Loan 1978, "Computing integrals involving the matrix exponential"): over the step r grows by Δ, and neither Δ
-    /// nor f changes.
+    /// nor f changes. None where the equations are out of all proportion to the step.
     pub(super) fn new(
         a: &DMatrix<f64>,
         value: &DVector<f64>,
         rate: &DVector<f64>,
         force: &DVector<f64>,
         step: f64,
-    ) -> Self {
+    ) -> Option<Self> {
         let order = a.nrows();
         let mut whole = DMatrix::zeros(order + 3, order + 3);
         whole
@@ -38,16 +41,20 @@ impl Discrete {
                 .copy_from(column);
         }
         whole[(order, order + 1)] = 1.0;
+        let sound = |part: &f64| libm::fabs(*part) < LARGEST;
+        if !whole.iter().all(sound) {
+            return None;
+        }
         let scale = balance_parlett_reinsch(&mut whole);
         let mut solved = whole.exp();
         unbalance(&mut solved, &scale);
         let column = |place: usize| solved.view((0, order + place), (order, 1)).column(0).into();
-        Self {
+        Some(Self {
             transition: solved.view((0, 0), (order, order)).into(),
             value: column(0),
             change: column(1),
             force: column(2),
-        }
+        })
     }
 }
 
@@ -94,6 +101,7 @@ pub(super) fn play(table: f64, motor: f64, half_play: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
 
@@ -136,7 +144,7 @@ mod tests {
         let b = DVector::from_column_slice(&[0.0, 1e3, 40.0, 1e6]);
         let none = DVector::zeros(4);
         for step in [2.5e-4, 1e-3, 1.5e-2] {
-            let solved = Discrete::new(&a, &b, &none, &b, step);
+            let solved = Discrete::new(&a, &b, &none, &b, step).unwrap();
             let (transition, input) = by_series(&a, &b, step, 20);
             let apart = (&solved.transition - &transition).amax();
             assert!(apart < 1e-9 * transition.amax(), "{step}: {apart:e}");

@@ -33,15 +33,20 @@ pub(super) struct Linear<const N: usize> {
 }
 
 impl<const N: usize> Linear<N> {
-    pub(super) fn new(servo: &Servo, space: &StateSpace, period: f64, output: Output) -> Self {
-        let solved = Discrete::new(&space.a, &space.value, &space.rate, &space.push, period);
+    pub(super) fn new(
+        servo: &Servo,
+        space: &StateSpace,
+        period: f64,
+        output: Output,
+    ) -> Option<Self> {
+        let solved = Discrete::new(&space.a, &space.value, &space.rate, &space.push, period)?;
         // A kink of the command by v makes the states jump by jump·v at the beginning of the period.
         let kink = &solved.transition * &space.jump / period;
         let row = match output {
             Output::Table => &space.position,
             Output::Measured => &space.measured,
         };
-        Self {
+        Some(Self {
             transition: columns(&solved.transition),
             value: padded(solved.value.iter().copied()),
             change: padded((&solved.change + &kink).iter().copied()),
@@ -57,7 +62,7 @@ impl<const N: usize> Linear<N> {
             commanded: 0.0,
             last_change: 0.0,
             table: 0.0,
-        }
+        })
     }
 
     pub(super) fn settle(&mut self, value: f64) {

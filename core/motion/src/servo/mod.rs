@@ -1,9 +1,16 @@
 //! Servos: where the axes are while they follow their set-points.
 //!
-//! [`Servos`] does it for a machine, [`Follower`] for one axis. The equations are those of [`post_machine::servo`]; they are
-//! solved exactly from set-point to set-point by the matrix exponential, with the commanded position linear between
-//! set-points, so that the answer is that of the differential equations whatever the period ([`discrete`]). Dry friction
-//! and play inside the loops are not linear: with them a period is gone through in smaller steps ([`stepped`]).
+//! [`Servos`] does it for a machine, [`Follower`] for one axis. The equations are those of [`post_machine::servo`]. They are
+//! solved exactly from set-point to set-point, by the matrix exponential, with the commanded position linear between
+//! set-points (a first-order hold): the answer is that of the differential equations, whatever the period. The velocity of
+//! the command jumps at a set-point, and with the acceleration fed forward the current (or the speed, where the torque
+//! follows its command at once) jumps with it; that is what the equations say of such a command.
+//!
+//! Dry friction, and play inside the loops, are not linear. With them a period is gone through in equal steps of at most
+//! 0.1 ms, and of at most 0.2 radians of the swing of the table on its transmission; within a step the equations are solved
+//! exactly, with the friction's force constant (that of the velocity at the step's end, or what stops the table there) and
+//! the flanks touching or not as at its beginning. Errors are in proportion to the step.
+//!
 //! [`Response`] answers in the frequency domain, [`fit`] adjusts numbers of a servo to a measured log.
 
 mod discrete;
@@ -105,7 +112,8 @@ impl Follower {
     /// Where the table is, for set-points every `period` seconds.
     ///
     /// # Errors
-    /// A period that is not above zero, or longer than a second.
+    /// A period that is not above zero, or longer than a second; numbers whose equations cannot be solved (a machine file
+    /// with such is refused).
     pub fn new(servo: &Servo, period: f64) -> Result<Self, Box<Diagnostic>> {
         Self::with(servo, period, Output::Table)
     }
@@ -130,13 +138,28 @@ impl Follower {
             .is_some_and(|friction| friction.coulomb > 0.0);
         let play_inside = servo.backlash > 0.0 && servo.play_inside();
         let kernel = if friction || play_inside {
-            Kernel::SteppedEight(Box::new(Stepped::new(servo, &space, period, output)))
+            Stepped::new(servo, &space, period, output)
+                .map(Box::new)
+                .map(Kernel::SteppedEight)
         } else {
             match space.order() {
-                0..=4 => Kernel::Four(Box::new(Linear::new(servo, &space, period, output))),
-                5..=8 => Kernel::Eight(Box::new(Linear::new(servo, &space, period, output))),
-                _ => Kernel::Twelve(Box::new(Linear::new(servo, &space, period, output))),
+                0..=4 => Linear::new(servo, &space, period, output)
+                    .map(Box::new)
+                    .map(Kernel::Four),
+                5..=8 => Linear::new(servo, &space, period, output)
+                    .map(Box::new)
+                    .map(Kernel::Eight),
+                _ => Linear::new(servo, &space, period, output)
+                    .map(Box::new)
+                    .map(Kernel::Twelve),
             }
+        };
+        let Some(kernel) = kernel else {
+            let message = "the equations of this servo are out of all proportion";
+            return Err(Diagnostic::error("servo", message)
+                .at(servo.place.clone())
+                .help("are its numbers in the units of the machine file?")
+                .boxed());
         };
         let mut follower = Self { kernel };
         follower.settle(0.0);

@@ -75,9 +75,9 @@ impl Response {
 
     /// The least frequency beyond which `holds` of the gain is false.
     fn first_beyond(&self, holds: impl Fn(f64) -> bool) -> f64 {
-        let size = |pole: &Pole| libm::hypot(pole.real, pole.imaginary);
-        let least = self.poles.iter().map(size).fold(f64::INFINITY, f64::min);
-        let most = self.poles.iter().map(size).fold(0.0, f64::max);
+        let sizes = self.poles.iter().map(Pole::size);
+        let least = sizes.clone().fold(f64::INFINITY, f64::min);
+        let most = sizes.fold(0.0, f64::max);
         if !(least > 0.0 && most.is_finite()) {
             return f64::INFINITY;
         }

@@ -95,7 +95,12 @@ impl<const N: usize> Step<N> {
 }
 
 impl<const N: usize> Stepped<N> {
-    pub(super) fn new(servo: &Servo, space: &StateSpace, period: f64, output: Output) -> Self {
+    pub(super) fn new(
+        servo: &Servo,
+        space: &StateSpace,
+        period: f64,
+        output: Output,
+    ) -> Option<Self> {
         let swing = match &servo.model {
             ServoModel::Loops(loops) => loops.drive.mechanics().natural_frequency(),
             ServoModel::Transfer(_) | ServoModel::Pid(_) => None,
@@ -105,33 +110,31 @@ impl<const N: usize> Stepped<N> {
         let count = libm::ceil(period / longest * (1.0 - 1e-9)).max(1.0);
         let step = period / count;
         let solve = |a, force| Discrete::new(a, &space.value, &space.rate, force, step);
-        let touching = solve(&space.a, &space.push);
+        let touching = solve(&space.a, &space.push)?;
         // In axis units; the equations have m or radians.
         let whole_play = servo.backlash * servo.unit();
         let length = if servo.rotary { 1.0 } else { 1e-3 };
         let inside = servo.play_inside() && whole_play > 0.0;
-        let released = space.released.as_ref().filter(|_| inside).map(|released| {
-            let half = whole_play / 2.0 * length;
-            let pulled = solve(&space.a, &released.force);
-            Play {
-                step: Step::new(space, &solve(&released.a, &space.push)),
-                stretch: padded(released.stretch.iter().copied()),
-                half,
-                offset: padded(
-                    pulled
-                        .force
-                        .iter()
-                        .map(|part| part * released.stiffness * half),
-                ),
+        let released = match space.released.as_ref().filter(|_| inside) {
+            None => None,
+            Some(released) => {
+                let half = whole_play / 2.0 * length;
+                let pulled = solve(&space.a, &released.force)?.force * (released.stiffness * half);
+                Some(Play {
+                    step: Step::new(space, &solve(&released.a, &space.push)?),
+                    stretch: padded(released.stretch.iter().copied()),
+                    half,
+                    offset: padded(pulled.iter().copied()),
+                })
             }
-        });
+        };
         let row = match output {
             Output::Table => &space.position,
             Output::Measured => &space.measured,
         };
         let outside = output == Output::Table && !servo.play_inside();
         let friction = servo.friction;
-        Self {
+        Some(Self {
             touching: Step::new(space, &touching),
             released,
             count: count as u32,
@@ -146,7 +149,7 @@ impl<const N: usize> Stepped<N> {
             commanded: 0.0,
             last_change: 0.0,
             table: 0.0,
-        }
+        })
     }
 
     pub(super) fn settle(&mut self, value: f64) {

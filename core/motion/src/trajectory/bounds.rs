@@ -148,6 +148,13 @@ impl Bounds {
     }
 }
 
+impl Bounds {
+    /// The highest rate over the whole move from rest to rest, no jerk regarded, 1/s.
+    pub fn reached(&self) -> f64 {
+        self.rate.min(self.acceleration.sqrt())
+    }
+}
+
 /// What the first derivative of an arc's coordinate amounts to somewhere on the whole circle, when on a part of it the
 /// first two are at most these: the sum of the squares of the first and of the second over the sweep is the same all over.
 fn amplitude(first: f64, second: f64, sweep: f64) -> f64 {

@@ -17,7 +17,8 @@
 //!   neither leaves more than half of its way; a tolerance `P` bounds both by `2·√(a·P/cos θ)`, `θ` half the angle between
 //!   the ways: then the deviation in the middle of two like parabolas is `P`. Two moves in which no rotary axis turns are
 //!   rounded instead. A move before which or behind which something else comes is accelerated by half all the same, as
-//!   LinuxCNC up to 2.9 does it.
+//!   LinuxCNC up to 2.9 does it. With jerk limits, which that rule knows nothing of, the next move begins when this one is
+//!   slowed down to half of `v₁`, and is speeded up over twice the time that is left: half of either ramp.
 
 use nalgebra::Vector3;
 use post_machine::description::BlendRule;
@@ -143,8 +144,7 @@ impl Junction {
 
     fn overlap(sides: [Side; 2], tolerance: Option<f64>) -> Self {
         let [first, next] = sides.map(|side| side.half);
-        let reached = |bounds: &Bounds| bounds.rate.min(bounds.acceleration.sqrt());
-        let [most_first, most_next] = [reached(first), reached(next)];
+        let [most_first, most_next] = [first.reached(), next.reached()];
         let longest = (1.0 / most_first).min(1.0 / most_next);
         let needed = (most_first / first.acceleration).max(most_next / next.acceleration);
         let seconds = longest.min(needed);
@@ -180,8 +180,9 @@ impl Side<'_> {
 /// How much faster the parameter of the second move runs than that of the first where they meet, such that the velocities
 /// of what is limited, each weighed by its acceleration, keep their length; none where they cannot be compared.
 fn ratio(sides: [Side; 2], rules: &AxisLimits) -> Option<f64> {
-    let axes = sides.map(|side| side.task.way == Way::Axes);
-    if rules.programmed.is_some() && axes[0] != axes[1] {
+    // Between coordinates of the tip and of the axes there is no comparison.
+    let coordinates = sides.map(|side| side.task.keeps_tip && side.task.way != Way::Axes);
+    if rules.programmed.is_some() && coordinates[0] != coordinates[1] {
         return None;
     }
     let weight = |place: usize| {

@@ -60,6 +60,8 @@ impl Section {
 /// Pieces and their sections, from the one that is in progress on.
 #[derive(Debug, Default)]
 pub(super) struct Law {
+    /// Ways that lead the tip add up as tip and rotary axes: what is limited are the programmed coordinates.
+    programmed: bool,
     pub sections: VecDeque<Section>,
     /// Sections of each run.
     counts: VecDeque<usize>,
@@ -72,6 +74,14 @@ pub(super) struct Law {
 }
 
 impl Law {
+    /// None yet; `programmed`: the programmed coordinates are limited, not the axes.
+    pub fn new(programmed: bool) -> Self {
+        Self {
+            programmed,
+            ..Self::default()
+        }
+    }
+
     /// Takes a move and says its number.
     pub fn push_move(&mut self, task: Move) -> u64 {
         self.moves.push_back(task);
@@ -158,8 +168,12 @@ impl Law {
         let next = self.stance(second, time, near)?;
         let last = self.piece(self.sections[count - 1].piece).entry;
         let [first, other] = [last, self.piece(second.piece).entry].map(|entry| self.task(entry));
-        let tip_led = [first, other].iter().all(|task| task.way != Way::Axes);
+        let tip_led = self.adds_tips([first, other]);
         added(&first.solver, [&stance, &next], &first.to, tip_led).map(|stance| (stance, at))
+    }
+
+    fn adds_tips(&self, moves: [&Move; 2]) -> bool {
+        self.programmed && moves.iter().all(|task| task.way != Way::Axes)
     }
 
     fn stance(&self, section: &Section, time: f64, near: &Joints) -> Result<Stance, Unreachable> {
@@ -179,7 +193,7 @@ impl Law {
                 let [out, into] = corner_places(share);
                 let first = stand(task, 1.0 - shares[0] * (1.0 - out))?;
                 let second = stand(next, shares[1] * into)?;
-                let tip_led = task.way != Way::Axes && next.way != Way::Axes;
+                let tip_led = self.adds_tips([task, next]);
                 added(&task.solver, [&first, &second], &task.to, tip_led)
             }
         }
@@ -194,8 +208,8 @@ fn corner_places(share: f64) -> [f64; 2] {
     [2.0 * share - 2.0 * cube + fourth, 2.0 * cube - fourth]
 }
 
-/// Where two ways lead together that meet at `corner`: the tip and the rotary axes are added where the control leads the
-/// tip on both, else all axes.
+/// Where two ways lead together that meet at `corner`: what is limited is added, the tip and the rotary axes (`tip_led`) or
+/// all axes, so that velocities and accelerations add up as they were shared out.
 fn added(
     solver: &Solver,
     [first, second]: [&Stance; 2],

@@ -20,6 +20,8 @@ use crate::{At, Corner, Move, Pace, SetPoints, Task};
 #[derive(Debug)]
 pub struct Planner {
     limits: AxisLimits,
+    /// Some jerk is limited.
+    jerk: bool,
     blend: BlendRule,
     period: f64,
     block_time: f64,
@@ -72,11 +74,12 @@ impl Planner {
         let limits = AxisLimits::new(machine);
         let jerk = limits.tip_jerk.is_finite() || limits.jerk.iter().any(|jerk| jerk.is_finite());
         Self {
+            law: Law::new(limits.programmed.is_some()),
             limits,
+            jerk,
             blend: rules.blend,
             period: rules.period,
             block_time: rules.block_time,
-            law: Law::default(),
             ahead: LookAhead::new(rules.look_ahead, jerk),
             accounts: Accounts::default(),
             last: None,
@@ -265,17 +268,22 @@ impl Planner {
                 self.accounts.border(self.clock);
             }
             Junction::Overlap { rate, change } => {
-                let settled = self.clock;
-                let before = self.before;
+                let earliest = self.clock.max(self.before);
                 self.finish();
                 let ends = self.clock;
-                let begins = self
-                    .overlap_from(rate * last.scale)
-                    .max(settled)
-                    .max(before);
-                self.clock = begins;
-                next.entrance = Some([change, ends - begins]);
-                self.accounts.border(0.5 * (begins + ends));
+                let (begins, change) = match self.jerk {
+                    false => (self.overlap_from(rate * last.scale), change),
+                    true => {
+                        // Half of either ramp: what is left of the one and what there is of the other are one at most.
+                        let reached = next.half.reached();
+                        let begins = self.overlap_from(0.5 * rate * last.scale);
+                        let begins = begins.max(ends - 1.0 / reached).max(earliest);
+                        (begins, change.min(0.5 * reached / (ends - begins)))
+                    }
+                };
+                self.clock = begins.max(earliest);
+                next.entrance = Some([change, ends - self.clock]);
+                self.accounts.border(0.5 * (self.clock + ends));
             }
             Junction::Join { ratio, .. } | Junction::Round { ratio, .. } => {
                 next.begins = false;
@@ -333,7 +341,7 @@ impl Planner {
             let mut begun = [0.0; 2];
             if let Some([change, seconds]) = last.entrance {
                 let change = change * scale;
-                if block.jerk.is_finite() {
+                if self.jerk {
                     block.acceleration = block.acceleration.min(change);
                 } else if change < block.acceleration * (1.0 - 1e-9) && seconds > 0.0 {
                     let phase = Phase {

@@ -13,6 +13,7 @@
 pub mod cl;
 pub mod done;
 mod facts;
+mod legs;
 mod piece;
 mod window;
 
@@ -26,6 +27,7 @@ use crate::SplineWay;
 use crate::{MotionKind, Told};
 
 pub use facts::{CourseFacts, Operation};
+pub use legs::Legs;
 pub use window::Window;
 
 /// A path that is handed out in order.

@@ -76,17 +76,19 @@ fn a_control_stands_still_where_it_waits_and_at_rapids() {
             (1, STOP),
             (2, STOP),
             (3, BLEND),
-            (4, STOP),
+            (4, BLEND),
+            (5, Err(0.0)),
             (6, BLEND),
-            (7, STOP),
+            (7, BLEND),
             (8, Err(0.5)),
             (9, BLEND),
             (10, STOP),
             // A rapid is next.
             (11, STOP),
             (12, STOP),
+            (13, Err(0.0)),
             (14, BLEND),
-            (15, STOP),
+            (15, BLEND),
         ]
     );
     assert_eq!(notes.len(), 1, "{notes:?}");
@@ -106,7 +108,7 @@ fn a_control_stands_still_where_it_waits_and_at_rapids() {
 fn the_machine_file_says_what_a_program_leaves_open() {
     let program =
         "T1 M6\nM3 S600\nG0 X0 Y0 Z-10.\nX10.\nG1 X20. F600.\nX30.\nG61 X40.\nG64 X50.\nX60.\n";
-    let motion = "[motion]\ncorner = \"path\"\ncorner_tolerance = 0.01\nrapid_stops = false\ntool_change = 6\nspindle = 1.5";
+    let motion = "[motion]\ncorner = \"path\"\ncorner_tolerance = 0.01\nrapids = \"blend\"\ntool_change = 6\nspindle = 1.5";
     let (planned, notes) = tasks(&machine(motion), program);
     let path = Ok(Corner::Path);
     let within = Ok(Corner::Blend {
@@ -122,9 +124,10 @@ fn the_machine_file_says_what_a_program_leaves_open() {
             (4, path),
             (5, path),
             (6, path),
+            // Fanuc's G61.
             (7, STOP),
             (8, within),
-            (9, STOP),
+            (9, within),
         ]
     );
     let waits: Vec<Waiting> = planned

@@ -48,22 +48,22 @@ fn path(points: &[Vector3<f64>]) -> Path {
             tip_ways: tangents([-2, -1, 0, 1, 2].map(near)),
             axis_ways: [Vector3::zeros(); 2],
             length: 0.0,
+            gap: false,
         });
     }
     path
 }
 
-/// The places of a path, finely: length along it and point.
+/// The places of a path, finely: length along it, as the search counts it, and point.
 fn fine(path: &Path, parts: usize) -> Vec<(f64, Vector3<f64>)> {
-    let mut places: Vec<(f64, Vector3<f64>)> = Vec::new();
+    let mut places = Vec::new();
     for knot in 0..path.knots.len() - 1 {
         let cubic = path.cubic(knot).unwrap();
+        let length = path.knots[knot].length;
+        let way = path.knots[knot + 1].length - length;
         for part in 0..parts {
-            let point = cubic.at(part as f64 / parts as f64);
-            let length = places
-                .last()
-                .map_or(0.0, |(length, last)| length + (point - last).norm());
-            places.push((length, point));
+            let share = part as f64 / parts as f64;
+            places.push((length + way * share, cubic.at(share)));
         }
     }
     places

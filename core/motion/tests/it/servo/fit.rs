@@ -9,6 +9,9 @@ use super::{direct_loops, feedrate_paper, gear_loops, of_loops, screw_loops, wit
 
 const PERIOD: f64 = 1e-3;
 
+/// Names of numbers, and the factors by which they are wrong at the beginning.
+type Wrong<'a> = &'a [(&'a str, f64)];
+
 /// Normally distributed errors (Box, Muller 1958).
 struct Noise(u64);
 
@@ -53,7 +56,7 @@ fn measured(servo: &Servo, commanded: &[f64], spread: f64, seed: u64) -> Vec<f64
 /// Fits `names`, from values that are wrong by these factors.
 fn fitted(
     truth: &Servo,
-    wrong: &[(&str, f64)],
+    wrong: Wrong<'_>,
     commanded: &[f64],
     measured: &[f64],
     lead: usize,
@@ -83,7 +86,7 @@ fn the_true_numbers_come_back() {
     let gear = of_loops(gear_loops(Feedback::Motor, [0.8, 0.0]));
     let direct = of_loops(direct_loops([0.7, 0.6]));
     let rubbing = with_friction(screw.clone(), 250.0, 2.0);
-    let cases: [(&Servo, &[(&str, f64)]); 5] = [
+    let cases: [(&Servo, Wrong<'_>); 5] = [
         (
             &screw,
             &[

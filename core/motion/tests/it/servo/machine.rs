@@ -2,6 +2,7 @@
 
 use post_machine::description::{Machine, Source, load};
 use post_machine::kinematics::Joints;
+use post_machine::servo::{ServoModel, StateSpace, stable};
 use post_motion::servo::fit::named;
 use post_motion::servo::{Follower, Servos};
 
@@ -105,4 +106,56 @@ fn numbers_are_named_by_axis_and_key() {
         let fault = named(&machine, name).unwrap_err();
         assert!(fault.help.as_ref().unwrap().contains(said), "{fault:?}");
     }
+}
+
+/// Numbers of any size: what is stable can be followed, and no step of it is anything but a number.
+#[test]
+fn whatever_is_stable_can_be_followed() {
+    let mut seed = 3_u64;
+    let mut factor = |most: f64| {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        libm::pow(
+            10.0,
+            most * ((seed >> 33) as f64 / (1_u64 << 30) as f64 - 1.0),
+        )
+    };
+    let mut followed = 0;
+    for round in 0..180 {
+        let most = [0.5, 2.0, 12.0][round % 3];
+        for loops in super::all_loops() {
+            let mut servo = super::of_loops(loops);
+            for number in servo.parameters() {
+                if !number.name.ends_with("feed_forward") {
+                    *number.value *= factor(most);
+                }
+            }
+            let poles = StateSpace::of(&servo).poles().unwrap_or_default();
+            let fast = poles.iter().any(|pole| pole.size() > 1e7);
+            if fast || poles.is_empty() || !stable(&poles) {
+                continue;
+            }
+            let period = [1e-3, 15e-3, 1.0][round / 3 % 3];
+            if round % 5 == 0 && period < 1e-2 {
+                servo = super::with_friction(servo, factor(most), 0.0);
+                servo.backlash = factor(1.0);
+            }
+            let swing = match &servo.model {
+                ServoModel::Loops(loops) => loops.drive.mechanics().natural_frequency(),
+                _ => None,
+            };
+            if swing.is_some_and(|swing| swing > 1e4) {
+                continue;
+            }
+            let mut follower = Follower::new(&servo, period).unwrap();
+            follower.settle(100.0);
+            for k in 0..20 {
+                let found = follower.next(100.0 + f64::from(k));
+                assert!(found.is_finite(), "{servo:?}");
+            }
+            followed += 1;
+        }
+    }
+    assert!(followed > 100, "{followed}");
 }

@@ -83,6 +83,7 @@ impl Program {
             from: self.here,
             to,
             solver: Arc::clone(&self.solver),
+            keeps_tip: true,
             pace,
             corner,
         };

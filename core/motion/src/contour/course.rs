@@ -1,0 +1,113 @@
+//! A path that is asked for, as far as it is needed, and how far the tool has come on it.
+//!
+//! A place on it is carried on with the way that was gone meanwhile, and the nearest point is looked for from there by the
+//! rule of `path.rs`, but nowhere before where the tool has been. What does not cut is left out: the end of one cut and the beginning of the next are neighbours, as
+//! far apart as they are, so that the tool finds the next cut when it cuts again. A place further along counts only
+//! where it is nearer by more than a tenth of a micrometre: a contour that is cut twice is gone along in order.
+
+use nalgebra::Vector3;
+use post_machine::kinematics::Pose;
+
+use super::leg::Leg;
+use super::path::{Foot, Path, REACH};
+use crate::At;
+
+/// Knots ahead of the tool that are kept; a way between two cuts is followed that far.
+const AHEAD: usize = 20_000;
+
+/// What lies ahead is known at least so far, mm.
+const LEAST: f64 = 1.0;
+
+/// The nearest point of a path that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Asked {
+    pub at: At,
+    pub tip: Vector3<f64>,
+    pub axis: Vector3<f64>,
+    pub distance: f64,
+}
+
+/// How far a path that is asked for has been followed.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Course {
+    path: Path,
+    last: Option<Vector3<f64>>,
+}
+
+impl Course {
+    /// A leg behind those that are known.
+    pub fn push(&mut self, leg: &Leg) {
+        if !leg.at.cuts {
+            return;
+        }
+        let mut first = true;
+        leg.knots(&mut |knot| {
+            match first {
+                true => self.path.join(knot),
+                false => self.path.push(knot),
+            }
+            first = false;
+        });
+    }
+
+    /// The place nearest to a tool that goes along it; `more` hands out further legs.
+    pub fn follow(&mut self, tool: &Pose, more: &mut dyn FnMut() -> Option<Leg>) -> Option<Asked> {
+        let way = self.last.map(|last| (tool.tip - last).norm());
+        self.last = Some(tool.tip);
+        if self.path.is_empty() {
+            self.push(&next_cut(more)?);
+        }
+        let start = self.path.after(self.path.foot(), way.unwrap_or(0.0));
+        let first = (self.path.point(start) - tool.tip).norm();
+        let wanted = LEAST.max(way.unwrap_or(0.0) + REACH * first);
+        while let (knots, length) = self.path.ahead()
+            && knots < AHEAD
+            && length < wanted
+            && let Some(leg) = next_cut(more)
+        {
+            self.push(&leg);
+        }
+        let (foot, axis) = match way {
+            None => self.path.seek_anew(tool),
+            Some(way) => {
+                let start = self.path.after(self.path.foot(), way);
+                self.path.seek(tool, start, way)
+            }
+        };
+        self.path.stand(foot);
+        Some(self.asked(foot, axis, tool))
+    }
+
+    /// The tool leaves it: at rapid it goes elsewhere.
+    pub fn leave(&mut self) {
+        self.last = None;
+    }
+
+    /// The place nearest to another one of the tool, close to where the first is.
+    pub fn beside(&self, tool: &Pose) -> Option<Asked> {
+        if self.path.is_empty() {
+            return None;
+        }
+        let (foot, axis) = self.path.seek(tool, self.path.foot(), f64::INFINITY);
+        Some(self.asked(foot, axis, tool))
+    }
+
+    fn asked(&self, foot: Foot, axis: Vector3<f64>, tool: &Pose) -> Asked {
+        let tip = self.path.point(foot);
+        Asked {
+            at: self.path.at(foot),
+            tip,
+            axis,
+            distance: (tip - tool.tip).norm(),
+        }
+    }
+}
+
+fn next_cut(more: &mut dyn FnMut() -> Option<Leg>) -> Option<Leg> {
+    loop {
+        let leg = more()?;
+        if leg.at.cuts {
+            return Some(leg);
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Legs of a path that is asked for: by the program, or by a CL file; and the knots that they are made of.
+
+use nalgebra::Vector3;
+use post_machine::kinematics::Pose;
+
+use super::path::Knot;
+use crate::At;
+use crate::path::{Way, between, on_arc};
+
+/// A knot stands at least after such a turn, radians: the cubic between leaves an arc by less than a radius times the
+/// fourth power of this over 1944, 3 nm of a metre.
+const TURN: f64 = 0.05;
+
+/// Knots in a span of a spline.
+const SPANS: usize = 16;
+
+/// Knots of a leg at most.
+const MOST: f64 = 4096.0;
+
+/// A leg of a path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leg {
+    /// What asks for it: the line, and the task where it is one of a program; whether it cuts.
+    pub at: At,
+    /// How the tip goes; along [`Way::Axes`] and [`Way::Tip`] straight.
+    pub way: Way,
+    /// Where it begins: tip and tool axis, part frame.
+    pub from: Pose,
+    /// Where it ends; the tool axis goes on the great circle.
+    pub to: Pose,
+    /// How far the point of the tool that goes so stands above the tip, mm.
+    pub along: f64,
+}
+
+/// A path that is asked for, handed out in order.
+pub trait Reference {
+    /// The next leg; none at its end. A leg that does not begin where the last one ended is reached somehow.
+    fn next(&mut self) -> Option<Leg>;
+}
+
+impl Leg {
+    /// Tip and tool axis at `t` from 0 to 1.
+    pub fn at(&self, t: f64) -> Pose {
+        let (from, to) = (&self.from, &self.to);
+        let axis = match from.axis == to.axis {
+            true => from.axis,
+            false => between(from.axis, to.axis, t),
+        };
+        let tip = match &self.way {
+            Way::Axes | Way::Tip | Way::TipAndAxis => {
+                let [start, end] = [from, to].map(|pose| pose.tip + pose.axis * self.along);
+                start + (end - start) * t - axis * self.along
+            }
+            Way::Arc {
+                centre,
+                normal,
+                sweep,
+            } => on_arc([from.tip, to.tip], *centre, *normal, *sweep, t),
+            Way::Spline(way) => way.at(t),
+        };
+        let edge = Vector3::zeros();
+        Pose { tip, axis, edge }
+    }
+
+    /// Hands out its knots, that of its beginning first.
+    pub(super) fn knots(&self, take: &mut dyn FnMut(Knot)) {
+        let turn = libm::atan2(
+            self.from.axis.cross(&self.to.axis).norm(),
+            self.from.axis.dot(&self.to.axis),
+        );
+        let sweep = match &self.way {
+            Way::Arc { sweep, .. } => sweep.abs(),
+            _ => 0.0,
+        };
+        let spans = match &self.way {
+            Way::Spline(way) => SPANS * way.spans().count(),
+            _ => 1,
+        };
+        let pieces = libm::ceil(turn.max(sweep) / TURN).max(spans as f64);
+        let pieces = pieces.clamp(1.0, MOST) as usize;
+        let step = 1.0 / pieces as f64;
+        let mut last = self.at(0.0);
+        let mut reached = [Vector3::zeros(); 2];
+        for piece in 0..pieces {
+            let start = piece as f64 * step;
+            let inner = [1.0, 2.0].map(|third| self.at(start + step * third / 3.0));
+            let end = match piece + 1 == pieces {
+                true => self.at(1.0),
+                false => self.at(start + step),
+            };
+            let points = [&last, &inner[0], &inner[1], &end];
+            let tip = through(points.map(|pose| &pose.tip));
+            let axis = through(points.map(|pose| &pose.axis));
+            take(self.knot(&last, [reached[0], tip[0]], [reached[1], axis[0]]));
+            reached = [tip[1], axis[1]];
+            last = end;
+        }
+        let zero = Vector3::zeros();
+        take(self.knot(&last, [reached[0], zero], [reached[1], zero]));
+    }
+
+    fn knot(&self, pose: &Pose, tip: [Vector3<f64>; 2], axis: [Vector3<f64>; 2]) -> Knot {
+        Knot {
+            number: 0,
+            at: self.at,
+            tip: pose.tip,
+            axis: pose.axis,
+            tip_ways: tip,
+            axis_ways: axis,
+            length: 0.0,
+            gap: false,
+        }
+    }
+}
+
+/// The tangents at both ends of the cubic through four points at thirds.
+fn through([a, b, c, d]: [&Vector3<f64>; 4]) -> [Vector3<f64>; 2] {
+    [
+        (b * 18.0 - a * 11.0 - c * 9.0 + d * 2.0) * 0.5,
+        (d * 11.0 - c * 18.0 + b * 9.0 - a * 2.0) * 0.5,
+    ]
+}

@@ -1,0 +1,78 @@
+//! A course as the legs that a predicted tool is held against.
+
+use post_machine::diagnostic::Diagnostic;
+use post_motion::At;
+use post_motion::contour::{Leg, Reference};
+
+use super::{Course, Curve, Item, Piece};
+use crate::{MotionKind, Way};
+
+/// So many faults of a course are kept.
+const MOST_FAULTS: usize = 50;
+
+/// The cuts of a course.
+#[derive(Debug)]
+pub struct Legs<'c, C> {
+    course: C,
+    along: f64,
+    faults: &'c mut Vec<Diagnostic>,
+}
+
+impl<'c, C: Course> Legs<'c, C> {
+    /// Those of `course`, whose guided point stands `along` above the tip, mm (`[tool] control_point`); what of it cannot
+    /// be understood goes to `faults`, as far as the first fifty.
+    pub fn new(course: C, along: f64, faults: &'c mut Vec<Diagnostic>) -> Self {
+        Self {
+            course,
+            along,
+            faults,
+        }
+    }
+}
+
+impl<C: Course> Reference for Legs<'_, C> {
+    fn next(&mut self) -> Option<Leg> {
+        loop {
+            match self.course.next() {
+                Ok(Some(Item::Piece(piece))) if piece.kind != MotionKind::Rapid => {
+                    return Some(leg(piece, self.along));
+                }
+                Ok(Some(_)) => {}
+                Ok(None) => return None,
+                Err(fault) => {
+                    if self.faults.len() >= MOST_FAULTS {
+                        return None;
+                    }
+                    self.faults.push(*fault);
+                }
+            }
+        }
+    }
+}
+
+fn leg(piece: Piece, along: f64) -> Leg {
+    let way = match piece.curve {
+        Curve::Straight => Way::TipAndAxis,
+        Curve::Arc {
+            centre,
+            normal,
+            sweep,
+        } => Way::Arc {
+            centre,
+            normal,
+            sweep,
+        },
+        Curve::Spline(way) => Way::Spline(way),
+    };
+    Leg {
+        at: At {
+            task: 0,
+            line: piece.line,
+            cuts: true,
+        },
+        way,
+        from: piece.from,
+        to: piece.to,
+        along,
+    }
+}

@@ -83,8 +83,8 @@ impl Overlay {
     pub fn take(&mut self, sample: &Sample) -> Result<(), Failure> {
         let place = self.commanded.joints.len();
         if place == 0 {
-            self.commanded.begins = sample.time;
-            self.actual.begins = sample.time;
+            self.commanded.begins = sample.point.time;
+            self.actual.begins = sample.point.time;
         }
         if place == MOST_SET_POINTS {
             let message = format!(
@@ -95,14 +95,14 @@ impl Overlay {
         }
         let at = At {
             task: 0,
-            line: sample.line,
-            cuts: sample.cuts,
+            line: sample.at.line,
+            cuts: sample.at.cuts,
         };
         if self.runs.last().is_none_or(|(_, last)| *last != at) {
             self.runs.push((place, at));
         }
-        self.commanded.joints.push(sample.commanded);
-        self.actual.joints.push(sample.actual);
+        self.commanded.joints.push(sample.point.commanded_joints);
+        self.actual.joints.push(sample.point.actual_joints);
         Ok(())
     }
 

@@ -8,12 +8,8 @@ use std::sync::Arc;
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place};
-<<<<<<< HEAD
 use post_machine::kinematics::{Solver, Unreachable};
-=======
-use post_machine::kinematics::Unreachable;
 use post_motion::contour::Reference;
->>>>>>> main
 use post_motion::trajectory::{Filled, Planner};
 use post_motion::{SetPoints, Task};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};

@@ -401,7 +401,7 @@ struct LoggedPath<'a> {
     period: f64,
     /// Actual axis values of `points`.
     actual: [Vec<Joints>; 2],
-    contours: [Contour; 2],
+    contours: [Contour<'static>; 2],
     /// Rows whose contour errors are not known yet, and errors whose rows have not been told.
     rows: VecDeque<MeasuredPoint>,
     errors: [VecDeque<f64>; 2],

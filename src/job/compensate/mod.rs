@@ -32,6 +32,9 @@ const RUNS: u32 = 6;
 /// Of a run that lowers the root mean square by less than this share nothing more is to be had.
 const ENOUGH: f64 = 0.05;
 
+/// A run that lowers it by less than this share is none that helps.
+const WORTH: f64 = 0.01;
+
 /// An error that is moved by less than this share of itself is let be.
 const LEAST_GAIN: f64 = 0.2;
 
@@ -114,7 +117,8 @@ pub fn compensate(
         let text = tried.post(&machine, Some(&mut Moved::new(&next)))?;
         let mut left = Errors::of(&path);
         let found = tried.predict(text, &path, &mut left)?;
-        if found.rms_mm >= after.rms_mm || found.largest_mm > before.largest_mm {
+        // Arcs that go as moves may differ by a hair, and that is no help.
+        if found.rms_mm > after.rms_mm * (1.0 - WORTH) || found.largest_mm > before.largest_mm {
             gain *= 0.5;
             continue;
         }

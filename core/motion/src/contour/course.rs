@@ -25,13 +25,16 @@ pub(super) struct Asked {
     pub tip: Vector3<f64>,
     pub axis: Vector3<f64>,
     pub distance: f64,
+    /// How far the place has gone on along the path, mm.
+    pub way: f64,
 }
 
 /// How far a path that is asked for has been followed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Course {
     path: Path,
-    last: Option<Vector3<f64>>,
+    /// The tool is on it.
+    on: bool,
 }
 
 impl Course {
@@ -50,10 +53,16 @@ impl Course {
         });
     }
 
-    /// The place nearest to a tool that goes along it; `more` hands out further legs.
-    pub fn follow(&mut self, tool: &Pose, more: &mut dyn FnMut() -> Option<Leg>) -> Option<Asked> {
-        let way = self.last.map(|last| (tool.tip - last).norm());
-        self.last = Some(tool.tip);
+    /// The place nearest to a tool that goes along it, and has gone `way` mm since it was asked last; `more` hands out
+    /// further legs.
+    pub fn follow(
+        &mut self,
+        tool: &Pose,
+        way: f64,
+        more: &mut dyn FnMut() -> Option<Leg>,
+    ) -> Option<Asked> {
+        let way = self.on.then_some(way);
+        self.on = true;
         if self.path.is_empty() {
             self.push(&next_cut(more)?);
         }
@@ -74,13 +83,16 @@ impl Course {
                 self.path.seek(tool, start, way)
             }
         };
+        let last = self.path.length(self.path.foot());
+        let mut asked = self.asked(foot, axis, tool);
+        asked.way = (self.path.length(foot) - last).max(0.0);
         self.path.stand(foot);
-        Some(self.asked(foot, axis, tool))
+        Some(asked)
     }
 
     /// The tool leaves it: at rapid it goes elsewhere.
     pub fn leave(&mut self) {
-        self.last = None;
+        self.on = false;
     }
 
     /// The place nearest to another one of the tool, close to where the first is.
@@ -99,6 +111,7 @@ impl Course {
             tip,
             axis,
             distance: (tip - tool.tip).norm(),
+            way: 0.0,
         }
     }
 }

@@ -315,7 +315,7 @@ impl<'r> Contour<'r> {
             asked: None,
         };
         match at.cuts {
-            true => self.parts(&mut told),
+            true => self.parts(&mut told, nearest.way),
             false => {
                 self.programmed.leave();
                 self.asked.leave();
@@ -328,16 +328,19 @@ impl<'r> Contour<'r> {
 
 impl Contour<'_> {
     /// What lies between the commanded path and what is asked for.
-    fn parts(&mut self, told: &mut ContourPoint) {
+    fn parts(&mut self, told: &mut ContourPoint, mut way: f64) {
         let mut programmed = told.nearest;
-        if let Some(asked) = self.programmed.follow(&told.nearest, &mut || None) {
+        if let Some(asked) = self.programmed.follow(&told.nearest, way, &mut || None) {
             told.interpolation = asked.distance;
             (programmed.tip, programmed.axis) = (asked.tip, asked.axis);
+            way = asked.way;
         }
         let Some(reference) = &mut self.reference else {
             return;
         };
-        let program = self.asked.follow(&programmed, &mut || reference.next());
+        let program = self
+            .asked
+            .follow(&programmed, way, &mut || reference.next());
         let beside = self.asked.beside(&told.actual);
         if let (Some(program), Some(asked)) = (program, beside) {
             told.asked = Some(AskedPoint {

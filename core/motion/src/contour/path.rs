@@ -5,7 +5,8 @@
 //! and at a corner the tool passes from one leg to the other without standing on the corner: so other places are looked
 //! at as far as [`REACH`] times that first distance along the path, and the nearest of them is taken. The distance at the
 //! beginning is about the contour error itself, not the following error, so that a crossing is no corner: the way round a
-//! loop is far longer. Points of the path that cannot be nearer are passed over by its length: a point `l` further along
+//! loop is far longer. Where the tool goes back on its path, though, it is held against a piece ahead that it stands on as
+//! well: out and back on one line (a peck) are told apart by their order. Points of the path that cannot be nearer are passed over by its length: a point `l` further along
 //! it is no more than `l` nearer.
 
 use std::collections::VecDeque;
@@ -83,6 +84,9 @@ impl Within {
     }
 }
 
+/// Pieces that the tool stands on alike are no farther apart than this, mm: the rounding of the spline.
+const SAME: f64 = 5e-10;
+
 /// What was found.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
@@ -93,6 +97,8 @@ pub(super) struct Nearest {
     pub at: At,
     /// The farthest point of what is passed over at a corner, mm.
     pub missed: f64,
+    /// How far the place has gone on along the path, mm; zero where it went back.
+    pub way: f64,
 }
 
 /// The path.
@@ -157,6 +163,11 @@ impl Path {
         let first = (self.point(start) - actual.tip).norm();
         let found = self.descend(&actual.tip, start);
         let mut foot = self.least(&actual.tip, found, Within::all(REACH * first));
+        if self.length(foot) < self.length(self.foot) - TIE
+            && let Some(other) = self.onward(&actual.tip, foot.distance + SAME, commanded.0)
+        {
+            foot = other;
+        }
         let missed = self.missed(&actual.tip, found, foot);
         let following = (commanded.1 - actual.tip).norm();
         if foot.distance > following {
@@ -170,8 +181,10 @@ impl Path {
         let tip = self.point(foot);
         let (tied, axis) = self.tied(actual, foot);
         let at = self.at(tied);
+        let way = (self.length(tied) - self.length(self.foot)).max(0.0);
         self.stand(tied);
         Nearest {
+            way,
             tip,
             axis,
             distance: foot.distance,
@@ -233,7 +246,7 @@ impl Path {
     }
 
     /// The length of the way to a place, mm.
-    fn length(&self, foot: Foot) -> f64 {
+    pub fn length(&self, foot: Foot) -> f64 {
         let length = self.knots[foot.knot].length;
         let next = self.knots.get(foot.knot + 1);
         length + foot.share * next.map_or(0.0, |next| next.length - length)
@@ -278,6 +291,15 @@ impl Path {
             knot: knot.saturating_sub(1),
             ..Foot::default()
         }
+    }
+
+    /// The first place nearer than `bound` that lies ahead, up to the set-point that is commanded.
+    fn onward(&self, from: &Vector3<f64>, bound: f64, commanded: u64) -> Option<Foot> {
+        let last = self.place_of(commanded).knot.min(self.knots.len() - 1);
+        let reached = self.length(self.foot);
+        (self.foot.knot + 1..last)
+            .filter_map(|piece| self.nearer(from, piece, bound))
+            .find(|foot| self.length(*foot) > reached)
     }
 
     /// A place a period later.

@@ -399,6 +399,37 @@ fn out_and_back_are_told_apart() {
     assert!(off(&told, 45, 0.0) < 0.03);
 }
 
+/// Pecks: down a hole and up and down again, each deeper, the tool far behind. It is on its path all the time, and at each
+/// end it turns early by its lag, which is no error beside the path.
+#[test]
+fn pecks_are_gone_along_in_order() {
+    let mut depths = Vec::new();
+    for peck in 1..=5 {
+        let deep = 6 * peck;
+        depths.extend((0..100 * deep).map(|n| -0.01 * f64::from(n)));
+        depths.extend((0..25 * deep).map(|n| -0.01 * f64::from(4 * (25 * deep - n))));
+    }
+    depths.extend((0..4000).map(|n| -0.01 * f64::from(n)));
+    let mut late = 0.0;
+    let way: Vec<_> = depths
+        .iter()
+        .map(|depth| {
+            late += 0.02 * (depth - late);
+            (Point::new(3.0, 4.0, *depth), Point::new(3.0, 4.0, late))
+        })
+        .collect();
+    let (told, _) = run(0.001, &Rotation3::identity(), &way);
+    for (number, point) in told.iter().enumerate().skip(5) {
+        assert!(
+            point.distance < 1e-3,
+            "set-point {number}: {}",
+            point.distance
+        );
+    }
+    let last = told[told.len() - 200];
+    assert!((last.nearest.tip - last.actual.tip).norm() < 1e-6);
+}
+
 /// The tool turns about its tip: it lags, and its axis is on its way all the same.
 #[test]
 fn a_tool_that_turns_about_its_tip_has_no_contour_error() {

@@ -53,9 +53,6 @@ pub struct MeasuredPoint {
     pub line: u64,
     /// The tool cuts.
     pub cuts: bool,
-    /// Actual minus commanded axis values as measured, and as predicted from the commanded ones of the log; mm, radians; 0
-    /// of axes that the log does not have both of.
-    pub following: [Joints; 2],
     /// Contour error as measured, and as predicted, mm.
     pub contour: [f64; 2],
 }
@@ -95,8 +92,7 @@ impl Overlay {
         }
         let at = At {
             task: 0,
-            line: sample.at.line,
-            cuts: sample.at.cuts,
+            ..sample.at
         };
         if self.runs.last().is_none_or(|(_, last)| *last != at) {
             self.runs.push((place, at));
@@ -311,7 +307,6 @@ impl<'a> Laid<'a> {
             return;
         };
         let known = time >= self.known_from;
-        let mut following = [Joints::default(); 2];
         // Axes that the log does not have are where they are predicted, and follow exactly.
         let mut joints = [others; 3];
         for axis in both {
@@ -320,9 +315,6 @@ impl<'a> Laid<'a> {
             let errors = [row[1] - row[0], row[2] - row[0]];
             for which in 0..3 {
                 joints[which][*axis] = row[which] - zero;
-            }
-            for which in 0..2 {
-                following[which][*axis] = errors[which];
             }
             if known {
                 let [_, _, measured, predicted, left] = &mut self.sums[*axis];
@@ -341,7 +333,6 @@ impl<'a> Laid<'a> {
                 time: predicted_time,
                 line: at.line,
                 cuts: at.cuts && known,
-                following,
                 contour: [0.0; 2],
             },
         );

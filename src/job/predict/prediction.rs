@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::measured::MeasuredFound;
+use super::measured::{AxisFitted, MeasuredFound};
 
 /// What was found.
 #[derive(Clone, Debug, Serialize)]
@@ -34,6 +34,9 @@ pub struct Prediction {
     /// What is left between it and a recorded log.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<MeasuredFound>,
+    /// Servos adjusted to the log.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fitted: Vec<AxisFitted>,
     /// What is taken for granted, as sentences.
     pub assumed: Vec<String>,
 }

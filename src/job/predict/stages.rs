@@ -203,6 +203,7 @@ impl<'r> Stages<'r> {
             axes: found::axes(machine, &contour),
             contour: found::contour(&contour, held),
             measured: None,
+            fitted: Vec::new(),
             assumed: found::assumed(machine),
         })
     }

@@ -19,6 +19,7 @@ pub fn text(found: &Prediction) -> String {
     if let Some(measured) = &found.measured {
         text.push('\n');
         text.push_str(&measured::text(measured));
+        text.push_str(&measured::fitted_text(&found.fitted));
     }
     if !found.assumed.is_empty() {
         text.push_str("\nassumed\n");

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::files::PathArg;
 use crate::job::nc_program;
 use crate::job::predict::measured::{
-    ColumnNames, Log, LogForm, LogUnits, Overlay, column_names, log_units,
+    self, AxisFitted, ColumnNames, Log, LogForm, LogUnits, Overlay, column_names, log_units,
 };
 use post_machine::description::Machine;
 
@@ -33,6 +33,16 @@ pub struct MeasuredArguments {
     /// Time from row to row of a log without times, seconds.
     #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "measured")]
     log_period: Option<f64>,
+
+    /// Adjusts these numbers of the servos (X.kv,X.velocity_gain) to the log by least squares, axis by axis, and says how
+    /// well each is determined; the machine file is not changed.
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        requires = "measured"
+    )]
+    fit: Vec<String>,
 }
 
 impl MeasuredArguments {
@@ -49,5 +59,10 @@ impl MeasuredArguments {
         let (name, input) = nc_program::open(file)?;
         let log = Log::read(machine, &form, &name, input)?;
         Ok(Some(Overlay::new(log, period)))
+    }
+
+    /// Servos adjusted to the log, if any are to be.
+    pub fn fitted(&self, machine: &Machine, log: &Log) -> Result<Vec<AxisFitted>, Failure> {
+        measured::fitted(machine, log, &self.fit)
     }
 }

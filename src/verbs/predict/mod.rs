@@ -192,6 +192,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     } = predicted;
     if let Some(overlay) = &overlay {
         found.measured = Some(overlay.finish(&machine, &chains, &mut |_| {})?);
+        found.fitted = arguments.measured.fitted(&machine, overlay.log())?;
     }
     let json = files::json(&found);
     if let (Some(_), Some(file)) = (&arguments.summary, texts.last_mut()) {

@@ -1,7 +1,8 @@
 //! How much later the clock of a log runs, and how far its axes count from other zeros.
 //!
 //! The shift τ and the zeros z make the mean square of `log(t) - predicted(t - τ) - z` least, each axis weighted by what it
-//! moves in all. At any τ the best zeros are the mean differences, so that what is left is a variance. It has many minima
+//! moves in all. At any τ the best zeros are the mean differences, so that what is left is a variance; a zero that is no
+//! larger than a few times what is left anyway is taken for none, and the shift found once more without it. It has many minima
 //! where a path goes to and fro, so all shifts are tried first, on means over so long a time that few are left; the best of
 //! them are followed down through means over half the time each, to the samples; the last step, between the samples, is
 //! Gauss and Newton's.
@@ -28,6 +29,10 @@ const ALIKE: f64 = 0.7;
 
 /// A second shift that leaves less than this many times the variance of the best one is a rival.
 const RIVAL: f64 = 2.0;
+
+/// A zero below so many times what is left (root of the mean square) is none: the prediction being early here and late
+/// there leaves such means too.
+const NO_ZERO: f64 = 3.0;
 
 /// Steps of Gauss and Newton.
 const STEPS: usize = 20;
@@ -102,7 +107,14 @@ pub fn align(predicted: &Track, log: &Track, axes: &[usize]) -> Result<Alignment
     let (best, rival) = followed(&levels).ok_or(Unaligned::Still)?;
     let began = log.begins - predicted.begins;
     let shift = |score: &Score| began + score.shift as f64 * step;
-    let found = settled(predicted, log, &axes, shift(&best), step);
+    let mut free = [true; MAX_AXES];
+    let mut found = settled(predicted, log, &axes, free, shift(&best), step);
+    for (axis, _) in &axes {
+        free[*axis] = found.zeros[*axis].abs() > NO_ZERO * found.left[*axis];
+    }
+    if free.contains(&false) {
+        found = settled(predicted, log, &axes, free, found.shift, step);
+    }
     let correlation = best.correlation.max(found.correlation);
     if correlation < ALIKE {
         return Err(Unaligned::Unlike(correlation));
@@ -304,16 +316,17 @@ fn settled(
     predicted: &Track,
     log: &Track,
     axes: &[(usize, f64)],
+    free: [bool; MAX_AXES],
     shift: f64,
     step: f64,
 ) -> Alignment {
-    let mut best = normal(predicted, log, axes, shift);
+    let mut best = normal(predicted, log, axes, free, shift);
     for _ in 0..STEPS {
         let mut by = best.change.clamp(-step, step);
-        let mut next = normal(predicted, log, axes, best.found.shift + by);
+        let mut next = normal(predicted, log, axes, free, best.found.shift + by);
         while next.squares > best.squares && by.abs() > SETTLED {
             by /= 2.0;
-            next = normal(predicted, log, axes, best.found.shift + by);
+            next = normal(predicted, log, axes, free, best.found.shift + by);
         }
         if by.abs() <= SETTLED {
             break;
@@ -332,8 +345,14 @@ struct Normal {
     found: Alignment,
 }
 
-/// The normal equation at a shift, and all that is told of it.
-fn normal(predicted: &Track, log: &Track, axes: &[(usize, f64)], shift: f64) -> Normal {
+/// The normal equation at a shift, and all that is told of it. Axes that are not `free` count from the same zero in both.
+fn normal(
+    predicted: &Track,
+    log: &Track,
+    axes: &[(usize, f64)],
+    free: [bool; MAX_AXES],
+    shift: f64,
+) -> Normal {
     let mut count = 0.0;
     // Sums of difference, its square, rate, its square, and both multiplied.
     let mut sums = [[0.0; 5]; MAX_AXES];
@@ -348,7 +367,9 @@ fn normal(predicted: &Track, log: &Track, axes: &[(usize, f64)], shift: f64) -> 
         count += 1.0;
         overlap = [overlap[0].min(time), overlap[1].max(time)];
         let differences: Joints = std::array::from_fn(|axis| joints[axis] - values[axis]);
-        let first = first.get_or_insert(differences);
+        let first = first.get_or_insert_with(|| {
+            std::array::from_fn(|axis| if free[axis] { differences[axis] } else { 0.0 })
+        });
         for (axis, _) in axes {
             let (difference, rate) = (differences[*axis] - first[*axis], rates[*axis]);
             let parts = [
@@ -375,8 +396,12 @@ fn normal(predicted: &Track, log: &Track, axes: &[(usize, f64)], shift: f64) -> 
     };
     let (mut squares, mut slope, mut curve, mut moved) = (0.0, 0.0, 0.0, 0.0);
     for (axis, weight) in axes {
-        let [difference, square, rate, rate_square, product] =
-            sums[*axis].map(|sum| sum / f64::max(count, 1.0));
+        let mut sums = sums[*axis].map(|sum| sum / f64::max(count, 1.0));
+        if !free[*axis] {
+            // Nothing is taken off the means.
+            (sums[0], sums[2]) = (0.0, 0.0);
+        }
+        let [difference, square, rate, rate_square, product] = sums;
         let left = (square - difference * difference).max(0.0);
         found.zeros[*axis] = first[*axis] + difference;
         found.left[*axis] = left.sqrt();

@@ -111,6 +111,23 @@ fn noise_moves_it_as_far_as_is_told() {
 }
 
 #[test]
+fn what_is_early_here_and_late_there_moves_no_zero() {
+    let predicted = track(0.0, 0.001, 20.0, path);
+    // 0.3 s slower from the 14th second on: the path stands where it would in 5.7 s.
+    let log = track(2.0, 0.001, 20.0, |time| {
+        let time = time - 2.0;
+        path(if time < 14.0 {
+            time
+        } else {
+            14.0 + (time - 14.0) * 0.95
+        })
+    });
+    let found = align(&predicted, &log, &AXES).unwrap();
+    assert_eq!(found.zeros, Joints::default(), "{found:?}");
+    assert!((found.shift - 2.0).abs() < 0.1, "{found:?}");
+}
+
+#[test]
 fn a_coarse_prediction_and_a_fine_log() {
     let predicted = track(0.0, 0.015, 20.0, path);
     let log = log(0.4567, 0.0, 0.001, 20.0, 0.0);

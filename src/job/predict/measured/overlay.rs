@@ -26,10 +26,10 @@ const MOST_SET_POINTS: usize = 2_000_000;
 
 /// What the servos were doing before the log began is not known; if the axes move there, so long passes before anything is
 /// compared, s.
-const UNKNOWN: f64 = 0.5;
+pub const UNKNOWN: f64 = 0.5;
 
-/// An axis that is commanded by less than this from row to row stands, mm or radians.
-const STANDS: f64 = 1e-6;
+/// An axis that is commanded by more than this from row to row moves, mm or radians.
+pub const MOVES: f64 = 1e-6;
 
 /// Rows of a batch.
 const BATCH: usize = 256;
@@ -181,6 +181,11 @@ impl Overlay {
         Ok(found)
     }
 
+    /// The log.
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+
     /// What is carried out at the set-point `place`, looked for from the run `run` on.
     fn at(&self, place: usize, run: &mut usize) -> At {
         while self
@@ -225,7 +230,7 @@ impl<'a> Laid<'a> {
         let mut known_from = track.begins;
         if let [first, second, ..] = log.commanded.joints[..] {
             servos.settle(&first);
-            let moves = (0..MAX_AXES).any(|axis| (second[axis] - first[axis]).abs() > STANDS);
+            let moves = (0..MAX_AXES).any(|axis| (second[axis] - first[axis]).abs() > MOVES);
             known_from += if moves { UNKNOWN } else { 0.0 };
         }
         Ok(Self {

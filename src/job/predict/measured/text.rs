@@ -2,7 +2,10 @@
 
 use std::fmt::Write as _;
 
+use super::fitting::AxisFitted;
 use super::report::{AxisLaid, Left, MeasuredFound};
+use post_machine::diagnostic::Short;
+
 use crate::terminal::{clock, number, table};
 
 /// The tables of a log.
@@ -95,6 +98,58 @@ fn axes(text: &mut String, axes: &[AxisLaid]) {
         "taken off first, because the log counts from other zeros: {}",
         zeros.join(", ")
     );
+}
+
+/// The tables of servos that were adjusted.
+pub fn fitted_text(fitted: &[AxisFitted]) -> String {
+    let mut text = String::new();
+    for axis in fitted {
+        let _ = writeln!(
+            text,
+            "\nservo of {}: RMS {} {unit} with the numbers as they were, {} {unit} with these{}",
+            axis.name,
+            number(axis.before, 5),
+            number(axis.after, 5),
+            match axis.converged {
+                true => "",
+                false => "; the search was given up",
+            },
+            unit = axis.unit
+        );
+        let head = [
+            "number",
+            "was",
+            "is",
+            "standard deviation",
+            "determined",
+            "exchangeable for",
+        ];
+        let mut rows = vec![head.map(str::to_owned)];
+        for one in &axis.numbers {
+            rows.push([
+                one.name.to_owned(),
+                Short(one.before).to_string(),
+                Short(one.value).to_string(),
+                one.deviation.map_or_else(
+                    || "infinite".to_owned(),
+                    |deviation| format!("{deviation:.2e}"),
+                ),
+                if one.determined { "yes" } else { "no" }.to_owned(),
+                one.correlated
+                    .map_or_else(|| "-".to_owned(), |(name, by)| format!("{name} ({by:.2})")),
+            ]);
+        }
+        text.push_str(&table(&rows, 1));
+        for direction in &axis.undetermined {
+            let names: Vec<&str> = direction.iter().map(|(name, _)| *name).collect();
+            let _ = writeln!(
+                text,
+                "the log does not determine {} apart",
+                names.join(", ")
+            );
+        }
+    }
+    text
 }
 
 fn cells(left: Option<&Left>, decimals: u8) -> [String; 4] {

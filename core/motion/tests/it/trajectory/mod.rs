@@ -6,4 +6,3 @@ mod limits;
 mod linuxcnc;
 mod look_ahead;
 mod profile;
-mod robust;

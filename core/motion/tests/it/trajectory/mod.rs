@@ -6,3 +6,4 @@ mod limits;
 mod linuxcnc;
 mod look_ahead;
 mod profile;
+mod robust;

@@ -165,9 +165,9 @@ impl Law {
             .take_while(|section| section.run == run && section.begins <= time)
             .last()
             .unwrap_or(second);
-        let next = self.stance(second, time, near)?;
         let last = self.piece(self.sections[count - 1].piece).entry;
         let [first, other] = [last, self.piece(second.piece).entry].map(|entry| self.task(entry));
+        let next = self.stance(second, time, &less(near, &stance, &first.to))?;
         let tip_led = self.adds_tips([first, other]);
         added(&first.solver, [&stance, &next], &first.to, tip_led).map(|stance| (stance, at))
     }
@@ -182,22 +182,27 @@ impl Law {
         let covered = section.from + section.phase.length(within);
         let share = (covered / piece.length).clamp(0.0, 1.0);
         let task = self.task(piece.entry);
-        let stand = |task: &Move, t: f64| {
+        let stand = |task: &Move, t: f64, near: &Joints| {
             task.way
                 .stance_at(&task.solver, [&task.from, &task.to], t, near)
         };
         match piece.span {
-            Span::Along { from, to } => stand(task, from + (to - from) * share),
+            Span::Along { from, to } => stand(task, from + (to - from) * share, near),
             Span::Corner { shares } => {
                 let next = self.task(piece.entry + 1);
                 let [out, into] = corner_places(share);
-                let first = stand(task, 1.0 - shares[0] * (1.0 - out))?;
-                let second = stand(next, shares[1] * into)?;
+                let first = stand(task, 1.0 - shares[0] * (1.0 - out), near)?;
+                let second = stand(next, shares[1] * into, &less(near, &first, &task.to))?;
                 let tip_led = self.adds_tips([task, next]);
                 added(&task.solver, [&first, &second], &task.to, tip_led)
             }
         }
     }
+}
+
+/// The axis values without what the first of two ways that meet at `corner` has yet to go.
+fn less(joints: &Joints, first: &Stance, corner: &Stance) -> Joints {
+    std::array::from_fn(|place| joints[place] - (first.joints[place] - corner.joints[place]))
 }
 
 /// How much of its part of the first move and of the second one is behind at `share` of a corner: the integrals of 1 - h and

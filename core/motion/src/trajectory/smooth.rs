@@ -8,8 +8,8 @@
 //! one; so does a ramp down that ends as late as it can. Where a hill is too short to get from one knot's velocity to the
 //! other's, the higher one is lowered: backwards, then forwards.
 //!
-//! Knots closer together than an acceleration takes to rise (`a/j`) are worth nothing, as none between them could be
-//! used: what lies between them is run through at the least of their velocities.
+//! Knots closer together than an acceleration takes to rise (`a/j`, or `√(v/j)` where that is less) are worth little, as
+//! what lies between could hardly be used: if their velocities are alike it is run through at the least of them.
 //!
 //! At a knot the acceleration is zero. A plan is carried out up to such a place; what was planned behind it, down to the
 //! standstill at its end, is kept and carried out in its turn where a new plan, which sees more, cannot go on from there
@@ -20,6 +20,10 @@ use super::profile::{Phase, Profile, Ramp};
 
 /// Velocities this near to each other, as a share, are one.
 const SAME: f64 = 1e-9;
+
+/// Knots are brought to one velocity where its square is no less than this of the largest one's: a slow corner must not
+/// hold up what is near it.
+const ALIKE: f64 = 0.5;
 
 /// A place of the envelope where a bound is met, and what follows on it.
 #[derive(Clone, Copy, Debug)]
@@ -158,8 +162,10 @@ impl Work {
             }
             let begins = place;
             let block = &ahead.blocks[begins];
-            let mut left = block.acceleration / block.jerk;
+            let rise = block.acceleration / block.jerk;
+            let mut left = rise.min((self.velocities[begins] / block.jerk).sqrt());
             let (mut last, mut least) = (begins, ahead.squares[begins]);
+            let mut most = least;
             while place + 1 < count {
                 let ends = [place, place + 1].map(|place| ahead.squares[place].sqrt());
                 left -= 2.0 * ahead.blocks[place].length / (ends[0] + ends[1]);
@@ -168,7 +174,12 @@ impl Work {
                 }
                 place += 1;
                 if self.is_knot(ahead, place) {
-                    (last, least) = (place, least.min(ahead.squares[place]));
+                    let square = ahead.squares[place];
+                    most = most.max(square);
+                    if least.min(square) < ALIKE * most {
+                        break;
+                    }
+                    (last, least) = (place, least.min(square));
                 }
             }
             if last > begins {

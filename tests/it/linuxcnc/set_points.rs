@@ -185,7 +185,7 @@ fn off_path(theirs: &[Point], ours: &[Point]) -> f64 {
         let off: [f64; 5] = std::array::from_fn(|axis| arm[axis] - way[axis] * share);
         dot(&off, &off).sqrt()
     };
-    let (mut at, mut worst) = (1, 0.0f64);
+    let (mut at, mut worst) = (1usize, 0.0f64);
     for row in theirs {
         let near = at.saturating_sub(60).max(1)..(at + 300).min(ours.len());
         let nearest = near

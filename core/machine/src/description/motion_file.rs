@@ -36,7 +36,7 @@ pub(crate) struct MotionFile {
     /// if not said.
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub corner_tolerance: Option<Quantity>,
-    /// How it leaves the path at a corner; overlap if not said.
+    /// How it leaves the path at a corner; round if not said.
     #[serde(default)]
     pub blend: BlendRule,
     /// Whether it passes into and out of rapids without standing still; stop if not said.
@@ -91,9 +91,10 @@ pub enum RapidRule {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum BlendRule {
-    /// The next block is speeded up while the last one is slowed down (acceleration behind the interpolation; LinuxCNC).
-    #[default]
+    /// The next block is speeded up while the last one is slowed down: LinuxCNC's rule, with its halves of accelerations;
+    /// blocks in which rotary axes turn have a standstill between them on an exact path.
     Overlap,
-    /// A curve through the corner takes the place of both ends.
+    /// A curve takes the place of both ends.
+    #[default]
     Round,
 }

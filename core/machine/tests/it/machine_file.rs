@@ -589,13 +589,13 @@ fn how_a_control_makes_motion_is_merged_key_by_key() {
     );
     assert_eq!(
         (rules.limits, rules.blend, rules.rapids),
-        (LimitsActOn::Axes, BlendRule::Overlap, RapidRule::Stop)
+        (LimitsActOn::Axes, BlendRule::Round, RapidRule::Stop)
     );
     assert!(rules.tip_accel.is_infinite() && rules.tip_jerk.is_infinite());
     assert_eq!((rules.tool_change, rules.spindle), (0.0, 0.0));
 
     let own = "extends = \"good\"\n[motion]\nperiod = \"Zc / 12625\"\nlimits = \"programmed\"\ncorner = \"path\"\n\
-               corner_tolerance = 0.02\nblend = \"round\"\nrapids = \"among-rapids\"\ntip_accel = 900\ntip_jerk = 8000\n";
+               corner_tolerance = 0.02\nblend = \"overlap\"\nrapids = \"among-rapids\"\ntip_accel = 900\ntip_jerk = 8000\n";
     let settings = [
         "motion.period=0.008",
         "motion.look_ahead=20",
@@ -614,7 +614,7 @@ fn how_a_control_makes_motion_is_merged_key_by_key() {
     );
     assert_eq!(
         (rules.limits, rules.blend),
-        (LimitsActOn::Programmed, BlendRule::Round)
+        (LimitsActOn::Programmed, BlendRule::Overlap)
     );
     assert_eq!(
         (rules.tip_accel, rules.tip_jerk, rules.rapids),

@@ -174,7 +174,6 @@ pub fn period(text: &str) -> Result<f64, String> {
     }
 }
 
-
 /// A number above zero.
 pub fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {

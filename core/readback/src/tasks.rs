@@ -119,10 +119,10 @@ impl Tasks {
         let rapid = motion.kind == MotionKind::Rapid;
         if let Some(pending) = &mut self.pending
             && let Task::Move(last) = &mut pending.task
+            && self.rapids != RapidRule::Blend
+            && pending.rapid != rapid
         {
-            if self.rapids != RapidRule::Blend && pending.rapid != rapid {
-                last.corner = Corner::Stop;
-            }
+            last.corner = Corner::Stop;
         }
         let corner = self.corner(&motion);
         let pace = match motion.kind {

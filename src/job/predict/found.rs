@@ -86,7 +86,8 @@ pub fn assumed(machine: &Machine) -> Vec<String> {
 
 /// What the machine file leaves out that makes the time of a program too short.
 pub fn warn(machine: &Machine, findings: &mut Vec<Diagnostic>) {
-    let keys: [(&str, fn(&Axis) -> f64, &str); 2] = [
+    type Limit = fn(&Axis) -> f64;
+    let keys: [(&str, Limit, &str); 2] = [
         (
             "max_feed",
             |axis| axis.max_feed,

@@ -325,8 +325,12 @@ fn short_blocks() -> String {
     let mut program = "G43 H1\nM428\nG1 X10 Y0 Z20 F2400\n".to_owned();
     for block in 1..=40 {
         let w = f64::from(block) / 60.0 * std::f64::consts::PI;
-        let turned = [-20.0 * (w / 2.0).sin(), 30.0 * w / std::f64::consts::PI];
-        let tip = [10.0 * w.cos(), 10.0 * w.sin(), 20.0 + 2.0 * (2.0 * w).sin()];
+        let turned = [-20.0 * libm::sin(w / 2.0), 30.0 * w / std::f64::consts::PI];
+        let tip = [
+            10.0 * libm::cos(w),
+            10.0 * libm::sin(w),
+            20.0 + 2.0 * libm::sin(2.0 * w),
+        ];
         program += &format!(
             "G1 X{:.4} Y{:.4} Z{:.4} A{:.4} C{:.4}\n",
             tip[0], tip[1], tip[2], turned[0], turned[1]

@@ -164,14 +164,11 @@ fn check(what: &str, machine: &Machine, task: &Move) {
             let within = LOOSE[order] * 3f64.sqrt();
             assert!(found.tip[order] <= tip * within + noise, "{what}: tip");
         }
-        for end in 0..2 {
-            for place in 0..machine.axes.len() {
-                let off = (found.ends[end][place] - ends[end][place]).abs();
-                assert!(off < 1e-4 * (1.0 + ends[end][place].abs()), "{what}: {off}");
-            }
-            for row in 0..3 {
-                let wanted = ends[end][MAX_AXES + row];
-                let off = (found.tip_ends[end][row] - wanted).abs();
+        for (end, wanted) in ends.iter().enumerate() {
+            let axes = found.ends[end][..machine.axes.len()].iter().zip(wanted);
+            let tip = found.tip_ends[end].iter().zip(&wanted[MAX_AXES..]);
+            for (found, wanted) in axes.chain(tip) {
+                let off = (found - wanted).abs();
                 assert!(off < 1e-4 * (1.0 + wanted.abs()), "{what}: {off}");
             }
         }

@@ -96,7 +96,7 @@ impl Junction {
                 BlendRule::Round => join,
             };
         };
-        let wanted = sides[0].whole.rate.min(sides[1].whole.rate * ratio);
+        let wanted = sides[0].whole.rate.min(sides[1].whole.rate / ratio);
         if rate >= wanted {
             return join;
         }

@@ -123,7 +123,7 @@ impl Columns {
         units: LogUnits,
         head: Option<&[String]>,
         count: usize,
-    ) -> Result<Self, Diagnostic> {
+    ) -> Result<Self, Box<Diagnostic>> {
         let contents = match names {
             Some(names) => told(machine, names, head, count)?,
             None => match head {
@@ -169,7 +169,7 @@ fn told(
     names: &ColumnNames,
     head: Option<&[String]>,
     count: usize,
-) -> Result<Vec<(usize, Content)>, Diagnostic> {
+) -> Result<Vec<(usize, Content)>, Box<Diagnostic>> {
     let mut contents = Vec::new();
     for (what, column) in &names.0 {
         let Some(content) = content(machine, what) else {
@@ -268,7 +268,11 @@ fn spoken_content(machine: &Machine, content: Content) -> String {
     }
 }
 
-fn asks_for_columns(message: String, machine: &Machine, head: Option<&[String]>) -> Diagnostic {
+fn asks_for_columns(
+    message: String,
+    machine: &Machine,
+    head: Option<&[String]>,
+) -> Box<Diagnostic> {
     let axis = machine.axes.first().map_or("X", |axis| axis.name.as_str());
     let mut help = format!(
         "--columns \"t=COLUMN,{axis}=COLUMN,{axis}'=COLUMN\": time, {axis} commanded and {axis} actual, by name or by number from 1"
@@ -278,5 +282,5 @@ fn asks_for_columns(message: String, machine: &Machine, head: Option<&[String]>)
         let names: Vec<&str> = head.iter().map(|name| name.trim()).take(40).collect();
         help.push_str(&names.join(", "));
     }
-    Diagnostic::error("log-columns", message).help(help)
+    Diagnostic::error("log-columns", message).help(help).boxed()
 }

@@ -200,7 +200,7 @@ impl<'a> Rows<'a> {
         Diagnostic::error("log", message).at(Some(place))
     }
 
-    fn take(&mut self, text: &str) -> Result<(), Diagnostic> {
+    fn take(&mut self, text: &str) -> Result<(), Box<Diagnostic>> {
         let text = text.trim_start_matches('\u{feff}');
         if text.trim().is_empty() {
             return Ok(());
@@ -222,11 +222,11 @@ impl<'a> Rows<'a> {
                     fields.len(),
                     column + 1
                 );
-                return Err(self.fault(message, text));
+                return Err(self.fault(message, text).boxed());
             };
             let Some(number) = separator.number(field) else {
                 let message = format!("`{field}` in column {} is no number", column + 1);
-                return Err(self.fault(message, text));
+                return Err(self.fault(message, text).boxed());
             };
             let (which, place) = match content {
                 Content::Time => {
@@ -256,7 +256,7 @@ impl<'a> Rows<'a> {
             (None, None) => {
                 let message = "no column of the log holds the time";
                 let help = "--columns with t=COLUMN, or --log-period SECONDS where rows lie at equal distances in time";
-                return Err(Diagnostic::error("log-columns", message).help(help));
+                return Err(Diagnostic::error("log-columns", message).help(help).boxed());
             }
         };
         if let Some(last) = self.times.last()
@@ -264,15 +264,13 @@ impl<'a> Rows<'a> {
         {
             let message =
                 format!("the time does not increase: {time} s behind {last} s in the row before");
-            return Err(self.fault(message, text).help(
-                "leave out rows that are told twice; a second recording is a log of its own",
-            ));
+            let help = "leave out rows that are told twice; a second recording is a log of its own";
+            return Err(self.fault(message, text).help(help).boxed());
         }
         if self.times.len() == MOST_ROWS {
             let message = format!("the log has more than {MOST_ROWS} rows");
-            return Err(self
-                .fault(message, text)
-                .help("take a part of it, or every second row"));
+            let help = "take a part of it, or every second row";
+            return Err(self.fault(message, text).help(help).boxed());
         }
         self.turns += turned;
         self.times.push(time);
@@ -284,7 +282,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Whether the rows begin with this line; else it is of the head.
-    fn begins(&mut self, text: &str) -> Result<bool, Diagnostic> {
+    fn begins(&mut self, text: &str) -> Result<bool, Box<Diagnostic>> {
         let comment = text.trim_start();
         let comment = comment
             .starts_with('#')
@@ -299,7 +297,7 @@ impl<'a> Rows<'a> {
         if comment.is_some() || 2 * numbers <= fields.len() {
             if self.line > MOST_HEAD {
                 let message = format!("there is no row of numbers in the first {MOST_HEAD} lines");
-                return Err(self.fault(message, text));
+                return Err(self.fault(message, text).boxed());
             }
             self.head = Some(comment.unwrap_or(text).to_owned());
             return Ok(false);
@@ -321,7 +319,9 @@ impl<'a> Rows<'a> {
         .map_err(|fault| match fault.place {
             None => {
                 let text = text.trim_end();
-                fault.at(Some(Place::new(self.name, self.line, text, 0..text.len())))
+                fault
+                    .at(Some(Place::new(self.name, self.line, text, 0..text.len())))
+                    .boxed()
             }
             Some(_) => fault,
         })?;
@@ -329,11 +329,11 @@ impl<'a> Rows<'a> {
         Ok(true)
     }
 
-    fn finish(mut self) -> Result<Log, Diagnostic> {
+    fn finish(mut self) -> Result<Log, Box<Diagnostic>> {
         let rows = self.times.len();
         if rows < FEWEST_ROWS {
             let message = format!("the log has {rows} rows, at least {FEWEST_ROWS} are needed");
-            return Err(self.fault(message, ""));
+            return Err(self.fault(message, "").boxed());
         }
         let mut steps: Vec<f64> = self
             .times
@@ -351,7 +351,10 @@ impl<'a> Rows<'a> {
                 (to - from) / median
             );
             let help = "what happened between is not known; take the part before it or behind it";
-            return Err(self.fault_at(self.lines[place + 1], message, "").help(help));
+            return Err(self
+                .fault_at(self.lines[place + 1], message, "")
+                .help(help)
+                .boxed());
         }
         // Rounded times make the median coarse; the mean of all is not.
         let whole = (self.times[rows - 1] - self.times[0]) / (rows - 1) as f64;

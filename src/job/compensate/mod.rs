@@ -18,10 +18,10 @@ use post_readback::interpret::Limits;
 use serde::Serialize;
 
 use super::one_program::OneProgram;
-use super::predict::{self, Against, Asked, Sample};
 use super::read_back;
 use crate::failure::Failure;
 use crate::files::{ClSource, Scratch};
+use crate::job::predict::{self, Against, Asked, Sample};
 use path::{Errors, Recorded};
 pub use path::{Moved, Moves};
 pub use text::text;

@@ -119,5 +119,7 @@ pub fn warn(machine: &Machine, findings: &mut Vec<Diagnostic>) {
 
 fn named(machine: &Machine, which: impl Fn(&Axis) -> bool) -> Vec<String> {
     let axes = machine.axes.iter().filter(|axis| which(axis));
-    axes.map(|axis| axis.name.clone()).collect()
+    let mut names: Vec<String> = axes.map(|axis| axis.name.clone()).collect();
+    names.sort_unstable();
+    names
 }

@@ -198,7 +198,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         }
     }
     let mut others = files[parts.len()..].iter_mut();
-    if let (Some(_), Some(file)) = (&arguments.summary, others.next()) {
+    let mut next_if = |asked: bool| asked.then(|| others.next()).flatten();
+    if let Some(file) = next_if(arguments.summary.is_some()) {
         let told: Vec<Told<'_>> = reports
             .iter()
             .enumerate()
@@ -215,11 +216,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         };
         file.write_bytes(json.as_bytes())?;
     }
-    let sheet_file = arguments
-        .setup_sheet
-        .is_some()
-        .then(|| others.next())
-        .flatten();
+    let sheet_file = next_if(arguments.setup_sheet.is_some());
     if let (Some(sheet), Some(ahead), Some(file)) = (&arguments.setup_sheet, &ahead, sheet_file) {
         let programs: Vec<_> = parts
             .iter()
@@ -235,7 +232,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         );
         file.write_bytes(text.as_bytes())?;
     }
-    if let (Some(Some(_)), Some(file)) = (&arguments.predict, others.next()) {
+    if let Some(file) = next_if(matches!(arguments.predict, Some(Some(_)))) {
         let json = match (arguments.split, predictions.as_slice()) {
             (None, [prediction]) => files::json(prediction),
             (_, predictions) => files::json(&predictions),

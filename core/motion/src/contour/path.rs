@@ -164,7 +164,11 @@ impl Path {
         let found = self.descend(&actual.tip, start);
         let mut foot = self.least(&actual.tip, found, Within::all(REACH * first));
         if self.length(foot) < self.length(self.foot) - TIE
-            && let Some(other) = self.onward(&actual.tip, foot.distance + SAME, commanded.0)
+            && let Some(other) = self.onward(
+                &actual.tip,
+                foot.distance + SAME,
+                self.place_of(commanded.0).knot,
+            )
         {
             foot = other;
         }
@@ -196,8 +200,14 @@ impl Path {
     /// The place nearest to a tool, from `start` on downhill, and further back than `back` mm along the path no other
     /// one; and the tool axis that is asked for there: of places that are equally near the one whose axis is nearest.
     pub fn seek(&self, tool: &Pose, start: Foot, back: f64) -> (Foot, Vector3<f64>) {
-        let found = self.descend(&tool.tip, start);
+        let mut found = self.descend(&tool.tip, start);
         let first = (self.point(start) - tool.tip).norm();
+        if self.length(found) < self.length(self.foot) - TIE {
+            let last = self.after(start, REACH * first).knot + 1;
+            if let Some(other) = self.onward(&tool.tip, found.distance + TIE, last) {
+                found = other;
+            }
+        }
         self.among(tool, found, back.min(REACH * first), first)
     }
 
@@ -293,9 +303,9 @@ impl Path {
         }
     }
 
-    /// The first place nearer than `bound` that lies ahead, up to the set-point that is commanded.
-    fn onward(&self, from: &Vector3<f64>, bound: f64, commanded: u64) -> Option<Foot> {
-        let last = self.place_of(commanded).knot.min(self.knots.len() - 1);
+    /// The first place nearer than `bound` that lies ahead, in a piece before that of the knot `last`.
+    fn onward(&self, from: &Vector3<f64>, bound: f64, last: usize) -> Option<Foot> {
+        let last = last.min(self.knots.len() - 1);
         let reached = self.length(self.foot);
         (self.foot.knot + 1..last)
             .filter_map(|piece| self.nearer(from, piece, bound))

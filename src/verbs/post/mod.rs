@@ -76,7 +76,8 @@ pub struct PostArguments {
     verify: bool,
 
     /// Moves points of the path so that the tool, the servos in between, comes nearer to the path of the CL file; by no
-    /// more than [accuracy] servo_compensation of the machine file allows, and only where a prediction says that it helps.
+    /// more than the machine file allows (`servo_compensation` under `[accuracy]`), and only where a prediction says that it
+    /// helps.
     /// Arcs and splines go as moves then, and no CL point is left out.
     #[arg(long)]
     compensate_servo: bool,

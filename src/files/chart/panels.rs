@@ -1,9 +1,9 @@
 //! Several plots over one axis.
 
-use super::super::scale::Scale;
-use super::super::svg::{self, label, upright};
 use super::Series;
 use super::plot::{Area, LEFT, ROW, TOP, WIDTH, columns_of, legend, titles, width};
+use crate::files::scale::Scale;
+use crate::files::svg::{self, label, upright};
 
 /// From one plot to the one below, px.
 const GAP: f64 = 16.0;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::super::scale::Scale;
-use super::super::svg::label;
 use super::{Draw, Look, Marker, Series};
+use crate::files::scale::Scale;
+use crate::files::svg::label;
 
 pub(super) const WIDTH: f64 = 760.0;
 pub(super) const LEFT: f64 = 78.0;

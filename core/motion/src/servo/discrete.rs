@@ -2,6 +2,7 @@
 
 use nalgebra::linalg::balancing::{balance_parlett_reinsch, unbalance};
 use nalgebra::{DMatrix, DVector};
+use post_machine::servo::StateSpace;
 
 /// No servo whose machine file was not refused, over a step of a second at most, has a larger number in its matrix.
 const LARGEST: f64 = 1e100;
@@ -88,6 +89,38 @@ pub(super) fn add<const N: usize>(sum: &mut [f64; N], vector: &[f64; N], factor:
 #[inline(always)]
 pub(super) fn dot<const N: usize>(row: &[f64; N], vector: &[f64; N]) -> f64 {
     row.iter().zip(vector).map(|(one, other)| one * other).sum()
+}
+
+/// Where a servo stands, and what it was told last.
+#[derive(Clone, Debug)]
+pub(super) struct Stand<const N: usize> {
+    /// States at rest at the command 1.
+    rest: [f64; N],
+    pub states: [f64; N],
+    pub commanded: f64,
+    pub last_change: f64,
+    /// Where the table is within the play behind the loops.
+    pub table: f64,
+}
+
+impl<const N: usize> Stand<N> {
+    pub(super) fn new(space: &StateSpace) -> Self {
+        Self {
+            rest: padded(space.rest().iter().flatten().copied()),
+            states: [0.0; N],
+            commanded: 0.0,
+            last_change: 0.0,
+            table: 0.0,
+        }
+    }
+
+    /// At rest at `value`.
+    pub(super) fn settle(&mut self, value: f64) {
+        self.states = self.rest.map(|part| part * value);
+        self.commanded = value;
+        self.last_change = 0.0;
+        self.table = value;
+    }
 }
 
 /// Where a table stands that stood at `table` while the motor has gone to `motor`, with play between them.

@@ -3,7 +3,7 @@
 use post_machine::servo::{Servo, StateSpace};
 
 use super::Output;
-use super::discrete::{Discrete, add, columns, dot, padded, play};
+use super::discrete::{Discrete, Stand, add, columns, dot, padded, play};
 
 /// The exact solution over one period, and where it stands. N states, those that are not needed zero: arrays of one length
 /// without a test in the loop are what a compiler makes vector instructions of.
@@ -21,15 +21,9 @@ pub(super) struct Linear<const N: usize> {
     position: [f64; N],
     /// What of the command is in the position at once.
     through: f64,
-    /// States at rest at the command 1.
-    rest: [f64; N],
     /// Half of the play behind the loops, axis units.
     half_play: f64,
-    states: [f64; N],
-    commanded: f64,
-    last_change: f64,
-    /// Where the table is within its play.
-    table: f64,
+    stand: Stand<N>,
 }
 
 impl<const N: usize> Linear<N> {
@@ -53,27 +47,20 @@ impl<const N: usize> Linear<N> {
             earlier: padded(kink.iter().map(|part| -part)),
             position: padded(row.iter().copied()),
             through: space.through,
-            rest: padded(space.rest().iter().flatten().copied()),
             half_play: match output {
                 Output::Table => servo.backlash * servo.unit() / 2.0,
                 Output::Measured => 0.0,
             },
-            states: [0.0; N],
-            commanded: 0.0,
-            last_change: 0.0,
-            table: 0.0,
+            stand: Stand::new(space),
         })
     }
 
     pub(super) fn settle(&mut self, value: f64) {
-        self.states = self.rest.map(|part| part * value);
-        self.commanded = value;
-        self.last_change = 0.0;
-        self.table = value;
+        self.stand.settle(value);
     }
 
     pub(super) fn states(&self) -> &[f64] {
-        &self.states
+        &self.stand.states
     }
 
     pub(super) fn run(
@@ -82,9 +69,9 @@ impl<const N: usize> Linear<N> {
         command: impl Fn(usize) -> f64,
         mut put: impl FnMut(usize, f64),
     ) {
-        let mut states = self.states;
-        let (mut commanded, mut last_change) = (self.commanded, self.last_change);
-        let mut table = self.table;
+        let mut states = self.stand.states;
+        let (mut commanded, mut last_change) = (self.stand.commanded, self.stand.last_change);
+        let mut table = self.stand.table;
         for index in 0..count {
             let next = command(index);
             let change = next - commanded;
@@ -101,8 +88,8 @@ impl<const N: usize> Linear<N> {
             table = play(table, motor, self.half_play);
             put(index, table);
         }
-        self.states = states;
-        (self.commanded, self.last_change) = (commanded, last_change);
-        self.table = table;
+        self.stand.states = states;
+        (self.stand.commanded, self.stand.last_change) = (commanded, last_change);
+        self.stand.table = table;
     }
 }

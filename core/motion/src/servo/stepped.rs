@@ -14,7 +14,7 @@
 use post_machine::servo::{Servo, ServoModel, StateSpace};
 
 use super::Output;
-use super::discrete::{Discrete, add, columns, dot, padded, play};
+use super::discrete::{Discrete, Stand, add, columns, dot, padded, play};
 
 /// Longest step, s.
 const LONGEST_STEP: f64 = 1e-4;
@@ -50,14 +50,9 @@ pub(super) struct Stepped<const N: usize> {
     width: f64,
     velocity: [f64; N],
     position: [f64; N],
-    rest: [f64; N],
     /// Half of the play behind the loops, axis units.
     half_play: f64,
-    states: [f64; N],
-    commanded: f64,
-    last_change: f64,
-    /// Where the table is within the play behind the loops.
-    table: f64,
+    stand: Stand<N>,
 }
 
 #[derive(Clone, Debug)]
@@ -143,24 +138,17 @@ impl<const N: usize> Stepped<N> {
             width: friction.map_or(0.0, |friction| friction.width * servo.unit() * length),
             velocity: padded(space.velocity.iter().copied()),
             position: padded(row.iter().copied()),
-            rest: padded(space.rest().iter().flatten().copied()),
             half_play: if outside { whole_play / 2.0 } else { 0.0 },
-            states: [0.0; N],
-            commanded: 0.0,
-            last_change: 0.0,
-            table: 0.0,
+            stand: Stand::new(space),
         })
     }
 
     pub(super) fn settle(&mut self, value: f64) {
-        self.states = self.rest.map(|part| part * value);
-        self.commanded = value;
-        self.last_change = 0.0;
-        self.table = value;
+        self.stand.settle(value);
     }
 
     pub(super) fn states(&self) -> &[f64] {
-        &self.states
+        &self.stand.states
     }
 
     pub(super) fn run(
@@ -171,17 +159,21 @@ impl<const N: usize> Stepped<N> {
     ) {
         for index in 0..count {
             let next = command(index);
-            let change = next - self.commanded;
-            add(&mut self.states, &self.kink, change - self.last_change);
+            let change = next - self.stand.commanded;
+            add(
+                &mut self.stand.states,
+                &self.kink,
+                change - self.stand.last_change,
+            );
             let part = change / f64::from(self.count);
             for step in 0..self.count {
-                self.step(self.commanded + part * f64::from(step), part);
+                self.step(self.stand.commanded + part * f64::from(step), part);
             }
-            self.commanded = next;
-            self.last_change = change;
-            let motor = dot(&self.position, &self.states);
-            self.table = play(self.table, motor, self.half_play);
-            put(index, self.table);
+            self.stand.commanded = next;
+            self.stand.last_change = change;
+            let motor = dot(&self.position, &self.stand.states);
+            self.stand.table = play(self.stand.table, motor, self.half_play);
+            put(index, self.stand.table);
         }
     }
 
@@ -190,7 +182,7 @@ impl<const N: usize> Stepped<N> {
         let (step, offset) = match &self.released {
             None => (&self.touching, None),
             Some(play) => {
-                let stretch = dot(&play.stretch, &self.states);
+                let stretch = dot(&play.stretch, &self.stand.states);
                 if libm::fabs(stretch) < play.half {
                     (&play.step, None)
                 } else {
@@ -198,7 +190,7 @@ impl<const N: usize> Stepped<N> {
                 }
             }
         };
-        let mut free = step.free(&self.states, commanded, change);
+        let mut free = step.free(&self.stand.states, commanded, change);
         if let Some((offset, stretch)) = offset {
             add(&mut free, offset, -libm::copysign(1.0, stretch));
         }
@@ -208,6 +200,6 @@ impl<const N: usize> Stepped<N> {
             let force = force.clamp(-self.coulomb, self.coulomb);
             add(&mut free, &step.push, force);
         }
-        self.states = free;
+        self.stand.states = free;
     }
 }

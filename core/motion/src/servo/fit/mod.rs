@@ -12,6 +12,7 @@
 //! log say no more than a few independent ones.
 
 mod determined;
+mod independence;
 mod search;
 
 use post_machine::description::Machine;

@@ -5,7 +5,7 @@ use post_machine::diagnostic::{Diagnostic, meant};
 use post_machine::servo::{Servo, StateSpace, stable};
 
 use super::Log;
-use super::determined::hanging_together;
+use super::independence::hanging_together;
 use crate::servo::{Follower, Output};
 
 /// Fewer samples than this a number say nothing.

@@ -2,7 +2,7 @@
 
 use post_grammar::nc::{NcBlock, NcExpression, NcItem, NcValue};
 
-use super::flow::{Answer, fault};
+use super::astray::{Answer, fault};
 use super::variables::{Value, Variables};
 use crate::lexicon::Language;
 

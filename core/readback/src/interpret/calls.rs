@@ -2,8 +2,8 @@
 
 use post_grammar::nc::{NcBlock, NcItem, NcValue, NcWord};
 
+use super::astray::{Answer, elsewhere, fault};
 use super::expression::whole;
-use super::flow::{Answer, elsewhere, fault};
 use super::variables::Variables;
 use crate::lexicon::Language;
 

@@ -14,13 +14,12 @@ use post_grammar::nc::{
 };
 use post_machine::diagnostic::{Diagnostic, Place, unreadable};
 
+use super::astray::{Answer, elsewhere, fault, no_target};
 use super::calls::{self, Pending};
 use super::expression::whole;
 use super::variables::{Value, Variables};
 use super::{Limits, assigned};
 use crate::lexicon::Language;
-
-pub(super) type Answer<T> = Result<T, Box<Diagnostic>>;
 
 /// So many lines that are looked through for a label take the time of a block that is run.
 const SEARCHED: u64 = 64;
@@ -606,28 +605,6 @@ fn wanted(target: &NcExpression, variables: &Variables) -> Answer<NcTarget> {
                 .map_err(|_| fault("the number of a block is negative"))
         }
     }
-}
-
-pub(super) fn fault(message: &str) -> Box<Diagnostic> {
-    Diagnostic::error("nc-flow", message).boxed()
-}
-
-fn no_target(name: &str) -> Box<Diagnostic> {
-    fault(&format!(
-        "`{name}` is gone to, and it does not stand in this file"
-    ))
-}
-
-/// A program in another file is called.
-pub(super) fn elsewhere(name: &str) -> Box<Diagnostic> {
-    Diagnostic::error(
-        "nc-subprogram",
-        format!(
-            "`{name}` is called, and it does not stand in this file: what it does is not known"
-        ),
-    )
-    .help("put it into this file, or write its blocks in the place of the call")
-    .boxed()
 }
 
 #[cfg(test)]

@@ -12,11 +12,12 @@
 //! | `go`, `arcs`, `machine_moves` | from words to axis values, tip and tool axis |
 //! | `feed`, `tools` | time, tool lengths |
 //! | `frame` | frames within one another |
-//! | `flow`, `expression`, `variables` | what leads the program elsewhere, and numbers that are worked out |
+//! | `flow`, `astray`, `expression`, `variables` | what leads the program elsewhere, and numbers that are worked out |
 //! | `cycles`, `planes`, `frames`, `conversational` | cycles, tilted planes, shifts; Heidenhain's blocks |
 
 mod arcs;
 mod assigned;
+mod astray;
 mod block;
 mod calls;
 mod compensation;

@@ -178,7 +178,7 @@ impl Control {
             Sense::Means(meaning) => self.meant(0, meaning, words, asked),
             // A name alone may be that of a subprogram.
             Sense::Unknown if self.lexicon.language() == Language::Names => {
-                Err(self.placed(*super::flow::elsewhere(name)).boxed())
+                Err(self.placed(*super::astray::elsewhere(name)).boxed())
             }
             Sense::Unknown => {
                 let message =

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use post_machine::description::{Axis, Machine};
 use post_machine::kinematics::travel::passed;
-use post_machine::kinematics::{Joints, KeptTip, MAX_AXES, Slides, Solver, Trace};
+use post_machine::kinematics::{Joints, KeptTip, Slides, Solver, Trace};
 
 use crate::{Motion, MotionKind, Way};
 
@@ -61,19 +61,11 @@ impl Axes {
                 }
             }
             Way::Arc { .. } | Way::Spline(_) => {
-                let looks = looks(motion);
                 let mut last = [motion.from.joints; 2];
-                for look in 1..=looks {
-                    let joints = match look == looks {
-                        true => motion.to.joints,
-                        false => match joints_at(motion, f64::from(look) / f64::from(looks)) {
-                            Some(joints) => joints,
-                            None => break,
-                        },
-                    };
+                for (place, joints) in looked(motion).enumerate() {
                     for joint in 0..machine.axes.len() {
                         let three = [last[0][joint], last[1][joint], joints[joint]];
-                        let turn = if look > 1 { vertex(three) } else { three[2] };
+                        let turn = if place > 0 { vertex(three) } else { three[2] };
                         least[joint] = least[joint].min(joints[joint]).min(turn);
                         most[joint] = most[joint].max(joints[joint]).max(turn);
                     }
@@ -137,18 +129,11 @@ impl Axes {
             take(slides.minutes, slides.slowest);
         }
         if curved {
-            let looks = looks(motion);
+            let looks = f64::from(looks(motion));
             let mut last = motion.from.joints;
-            for look in 1..=looks {
-                let joints = match look == looks {
-                    true => motion.to.joints,
-                    false => match joints_at(motion, f64::from(look) / f64::from(looks)) {
-                        Some(joints) => joints,
-                        None => break,
-                    },
-                };
+            for joints in looked(motion) {
                 for joint in 0..machine.axes.len() {
-                    let way = libm::fabs(joints[joint] - last[joint]) * f64::from(looks);
+                    let way = libm::fabs(joints[joint] - last[joint]) * looks;
                     take(way * self.slowness[joint], joint);
                 }
                 last = joints;
@@ -236,13 +221,20 @@ fn slides(motion: &Motion, slowness: &Joints) -> Option<Slides> {
     KeptTip::new(solver, 0.0, &from, &to)?.slides(slowness, f64::INFINITY.min(motion.minutes))
 }
 
-/// Axis values at a share of a curve.
-fn joints_at(motion: &Motion, share: f64) -> Option<Joints> {
-    let solver = &motion.state.solver;
-    let mut joints = super::chop::joints_between(&motion.from.joints, &motion.to.joints, share);
-    debug_assert!(joints.len() == MAX_AXES);
-    let turns = solver.chain().turns(&joints);
-    let tip = motion.at(share).tip;
-    solver.place(tip, &mut joints, &turns).ok()?;
-    Some(joints)
+/// Where the axes stand at so many places along a curve, its end the last: up to where they cannot follow.
+fn looked(motion: &Motion) -> impl Iterator<Item = Joints> + '_ {
+    let looks = looks(motion);
+    let ends = [&motion.from, &motion.to];
+    (1..=looks).map_while(move |look| {
+        if look == looks {
+            return Some(motion.to.joints);
+        }
+        let share = f64::from(look) / f64::from(looks);
+        let at = |near| {
+            motion
+                .way
+                .joints_at(&motion.state.solver, ends, share, near)
+        };
+        at(&motion.from.joints).ok()
+    })
 }

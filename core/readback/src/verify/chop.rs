@@ -1,7 +1,5 @@
 //! Ways cut into pieces so short that each may be taken for straight.
 
-use post_machine::kinematics::{Joints, MAX_AXES};
-
 use super::place::{Bound, Place};
 use crate::course::{Curve, Piece};
 use crate::{Motion, Way};
@@ -88,13 +86,4 @@ pub(super) fn piece(piece: &Piece, along: f64, sag: &Bound, places: &mut Vec<Pla
 fn pieces_of(turn: f64) -> usize {
     // A number of pieces, bounded whatever the program says of turns.
     (libm::ceil(turn / TURN).max(1.0) as usize).min(4096)
-}
-
-/// Axis values at a share of the way between two stances, all axes linearly.
-pub(super) fn joints_between(from: &Joints, to: &Joints, share: f64) -> Joints {
-    let mut joints = Joints::default();
-    for index in 0..MAX_AXES {
-        joints[index] = from[index] + (to[index] - from[index]) * share;
-    }
-    joints
 }

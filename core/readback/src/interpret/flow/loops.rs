@@ -5,7 +5,8 @@ use std::io::{Read, Seek};
 use post_grammar::nc::{NcExpression, NcFlow, NcItem, NcMark};
 use post_machine::diagnostic::Diagnostic;
 
-use super::{Answer, Flow, Running, fault};
+use super::super::astray::{Answer, fault};
+use super::{Flow, Running};
 use crate::interpret::expression::whole;
 use crate::interpret::variables::{Value, Variables};
 

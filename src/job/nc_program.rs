@@ -116,6 +116,20 @@ pub fn offsets(source: &PathArg, machine: &Machine) -> Result<Offsets, Failure> 
     Ok(Offsets::parse(&text, &name, machine)?)
 }
 
+/// Refuses a program and a CL file that are both standard input.
+pub fn not_both_standard(
+    program: &PathArg,
+    against: Option<&PathArg>,
+) -> Result<(), Box<Diagnostic>> {
+    if program.path().is_none() && against.is_some_and(|file| file.path().is_none()) {
+        let message = "program and CL file cannot both be standard input";
+        return Err(Diagnostic::error("input", message)
+            .help("name one of them")
+            .boxed());
+    }
+    Ok(())
+}
+
 /// Opens a file that can be gone back in, with its name for messages: standard input and pipes are copied first.
 pub fn open(source: &PathArg) -> Result<(String, File), FileFault> {
     let (Some(path), Some(named)) = (source.absolute(), source.path()) else {

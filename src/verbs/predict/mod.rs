@@ -9,7 +9,6 @@ mod spectrum;
 mod trail;
 
 use clap::Args;
-use post_machine::diagnostic::Diagnostic;
 use post_readback::interpret::Limits;
 
 use crate::arguments::JobArguments;
@@ -118,11 +117,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     job::say_what_is_left(&arguments.job, &machine, &finder);
     let named = arguments.program.as_ref().unwrap_or(&PathArg::Standard);
     let against = arguments.job.input.as_ref();
-    if named.path().is_none() && against.is_some_and(|file| file.path().is_none()) {
-        let message = "program and CL file cannot both be standard input";
-        let help = "name one of them";
-        return Err(Diagnostic::error("input", message).help(help).into());
-    }
+    nc_program::not_both_standard(named, against)?;
     let folder = match &arguments.pictures {
         Some(folder) => {
             let folder = OwnFolder::open(folder, PICTURES, MARK, &pictures::NAMES);

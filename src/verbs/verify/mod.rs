@@ -3,7 +3,6 @@
 mod verify_text;
 
 use clap::Args;
-use post_machine::diagnostic::Diagnostic;
 use post_readback::interpret::Limits;
 
 use crate::arguments::JobArguments;
@@ -89,11 +88,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let finder = plugin_finder::finder(&arguments.job.plugins)?;
     job::say_what_is_left(&arguments.job, &machine, &finder);
     let named = arguments.program.as_ref().unwrap_or(&PathArg::Standard);
-    if named.path().is_none() && arguments.job.input().path().is_none() {
-        let message = "program and CL file cannot both be standard input";
-        let help = "name one of them";
-        return Err(Diagnostic::error("input", message).help(help).into());
-    }
+    nc_program::not_both_standard(named, Some(arguments.job.input()))?;
     let (name, program) = nc_program::open(named)?;
     let offsets = match &arguments.offsets {
         Some(file) => Some(nc_program::offsets(file, &machine)?),

@@ -1,0 +1,177 @@
+//! Why there is no plan: which limit, and where.
+
+use std::fmt;
+
+use crate::problem::{Problem, Source};
+
+/// Why no feed keeps every limit. Samples are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Infeasible {
+    /// Fewer than two samples, arrays whose lengths do not fit, or ends that are negative or not finite.
+    Shape,
+    /// The parameter does not grow from this sample to the next.
+    Standstill {
+        /// The first of the two.
+        sample: usize,
+    },
+    /// No limit bounds the speed at this sample.
+    Unbounded {
+        /// Where.
+        sample: usize,
+    },
+    /// A limit came out negative or not finite.
+    NotANumber {
+        /// There, or between it and the next.
+        sample: usize,
+        /// Which limit.
+        source: Source,
+    },
+    /// From the given start, even by the hardest braking, the speed is above a bound further on.
+    TooFastStart {
+        /// Where the bound is first broken.
+        sample: usize,
+        /// The bound.
+        source: Source,
+        /// `q` there by the hardest braking.
+        needed: f64,
+        /// Largest `q` there.
+        allowed: f64,
+        /// The row that keeps it from braking harder, if any does.
+        braking: Option<Source>,
+    },
+    /// The given end speed cannot be reached: to have it at the end the speed would have to be above a bound before.
+    OutOfReach {
+        /// The last sample, counted from the end, where the bound is broken.
+        sample: usize,
+        /// The bound.
+        source: Source,
+        /// `q` there by the hardest acceleration from there on.
+        needed: f64,
+        /// Largest `q` there.
+        allowed: f64,
+        /// The row that keeps it from accelerating harder, if any does.
+        accelerating: Option<Source>,
+    },
+    /// The limits of one interval contradict each other for every speed that can be reached there.
+    Contradiction {
+        /// The interval begins here.
+        sample: usize,
+        /// One of the limits.
+        source: Source,
+    },
+}
+
+impl Infeasible {
+    /// The sample where it shows, if it is one.
+    #[must_use]
+    pub fn sample(&self) -> Option<usize> {
+        match *self {
+            Self::Shape => None,
+            Self::Standstill { sample }
+            | Self::Unbounded { sample }
+            | Self::NotANumber { sample, .. }
+            | Self::TooFastStart { sample, .. }
+            | Self::OutOfReach { sample, .. }
+            | Self::Contradiction { sample, .. } => Some(sample),
+        }
+    }
+
+    /// The same fault of a part of a path that begins with sample `first` of the whole.
+    pub(crate) fn shifted(mut self, first: usize) -> Self {
+        match &mut self {
+            Self::Shape => {}
+            Self::Standstill { sample }
+            | Self::Unbounded { sample }
+            | Self::NotANumber { sample, .. }
+            | Self::TooFastStart { sample, .. }
+            | Self::OutOfReach { sample, .. }
+            | Self::Contradiction { sample, .. } => *sample += first,
+        }
+        self
+    }
+
+    /// The limit that it breaks, if it is one.
+    #[must_use]
+    pub fn source(&self) -> Option<Source> {
+        match *self {
+            Self::Shape | Self::Standstill { .. } | Self::Unbounded { .. } => None,
+            Self::NotANumber { source, .. }
+            | Self::TooFastStart { source, .. }
+            | Self::OutOfReach { source, .. }
+            | Self::Contradiction { source, .. } => Some(source),
+        }
+    }
+
+    /// A sentence with the limit by its name in `problem`.
+    #[must_use]
+    pub fn describe(&self, problem: &Problem) -> String {
+        let by = |row: Option<Source>| match row {
+            Some(source) => format!(" ({} allows no more)", problem.name(source)),
+            None => String::new(),
+        };
+        match *self {
+            Self::TooFastStart {
+                sample,
+                source,
+                needed,
+                allowed,
+                braking,
+            } => format!(
+                "the start is too fast: at sample {sample} the squared parameter speed is still {needed:.6} after the \
+                 hardest braking{}, and {} allows {allowed:.6}",
+                by(braking),
+                problem.name(source)
+            ),
+            Self::OutOfReach {
+                sample,
+                source,
+                needed,
+                allowed,
+                accelerating,
+            } => format!(
+                "the end is too fast: at sample {sample} the squared parameter speed would have to be {needed:.6} \
+                 already{}, and {} allows {allowed:.6}",
+                by(accelerating),
+                problem.name(source)
+            ),
+            Self::NotANumber { sample, source } => format!(
+                "{} is no limit at sample {sample}: not finite, or negative",
+                problem.name(source)
+            ),
+            Self::Contradiction { sample, source } => format!(
+                "behind sample {sample} the limits contradict each other, among them {}",
+                problem.name(source)
+            ),
+            Self::Shape | Self::Standstill { .. } | Self::Unbounded { .. } => self.to_string(),
+        }
+    }
+}
+
+impl fmt::Display for Infeasible {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Shape => f.write_str(
+                "there is no path to plan: fewer than two samples, or ends that are no speeds",
+            ),
+            Self::Standstill { sample } => {
+                write!(f, "the path parameter does not grow behind sample {sample}")
+            }
+            Self::Unbounded { sample } => write!(f, "no limit bounds the speed at sample {sample}"),
+            Self::NotANumber { sample, .. } => {
+                write!(f, "a limit at sample {sample} is not finite, or negative")
+            }
+            Self::TooFastStart { sample, .. } => {
+                write!(f, "the start is too fast for the limit at sample {sample}")
+            }
+            Self::OutOfReach { sample, .. } => {
+                write!(f, "the end is too fast for the limit at sample {sample}")
+            }
+            Self::Contradiction { sample, .. } => {
+                write!(f, "the limits behind sample {sample} contradict each other")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Infeasible {}

@@ -1,0 +1,38 @@
+//! Jerk of each axis.
+
+use super::{Channel, Limit, Order};
+use crate::problem::Table;
+use crate::samples::Samples;
+
+/// `|Q' * s⃛ + 3 * Q'' * ṡ * s̈ + Q''' * ṡ³| <= j` of each axis.
+///
+/// It ties three neighbours and is not convex: `crate::jerk` keeps it; the solvers without jerk do not know it.
+#[derive(Clone, Debug)]
+pub struct AxisJerk {
+    /// Of each axis, in its unit per second cubed.
+    pub limits: Vec<f64>,
+}
+
+impl Limit for AxisJerk {
+    fn name(&self) -> &str {
+        "axis jerk"
+    }
+
+    /// Nothing: `(j / |Q'''|)^(2/3)` bounds only a plan that goes on evenly; one that slows down may pass a sample
+    /// faster.
+    fn apply(&self, _: &Samples, _: &mut Table<'_>) {}
+
+    fn channels(&self, samples: &Samples, interval: usize, sink: &mut dyn FnMut(Channel)) {
+        for (index, (axis, &limit)) in samples.axes.iter().zip(&self.limits).enumerate() {
+            let pair = |all: &[f64]| [all[interval], all[interval + 1]];
+            sink(Channel {
+                first: pair(&axis.first),
+                second: pair(&axis.second),
+                third: pair(&axis.third),
+                order: Order::Jerk,
+                limit,
+                axis: Some(index as u16),
+            });
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! What limits of acceleration and jerk have in common: a function of the path whose second or third derivative by
+//! time is limited.
+
+use std::f64::consts::PI;
+
+use crate::samples::{Samples, dot};
+
+/// Which derivative by time is limited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// The second.
+    Acceleration,
+    /// The third.
+    Jerk,
+}
+
+/// A function of the path parameter between two samples, with a limit on a derivative by time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Channel {
+    /// Its first derivative by the parameter, at both samples.
+    pub first: [f64; 2],
+    /// The second.
+    pub second: [f64; 2],
+    /// The third.
+    pub third: [f64; 2],
+    /// Which derivative by time is limited.
+    pub order: Order,
+    /// To at most this, in both directions.
+    pub limit: f64,
+    /// The axis it is, if it is one.
+    pub axis: Option<u16>,
+}
+
+/// Directions so dense that a vector whose component along each is small enough is short enough itself.
+pub(super) struct Directions {
+    units: Vec<[f64; 3]>,
+    /// Cosine of the largest angle that a vector can have with the nearest of them, or with its opposite.
+    share: f64,
+}
+
+impl Directions {
+    /// Those that a path needs: eight if it stays in a plane parallel to XY, else the 31 axes of an icosahedron.
+    pub(super) fn of(samples: &Samples) -> Self {
+        let flat = |vectors: &Vec<[f64; 3]>| vectors.iter().all(|vector| vector[2] == 0.0);
+        if samples.tip.iter().all(flat) {
+            Self::plane(8)
+        } else {
+            Self::icosahedron()
+        }
+    }
+
+    fn plane(pairs: usize) -> Self {
+        let unit = |pair: usize| {
+            let angle = pair as f64 * PI / pairs as f64;
+            [libm::cos(angle), libm::sin(angle), 0.0]
+        };
+        Self {
+            units: (0..pairs).map(unit).collect(),
+            share: libm::cos(0.5 * PI / pairs as f64),
+        }
+    }
+
+    /// Through 12 corners, 20 faces and 30 edges.
+    fn icosahedron() -> Self {
+        let golden = 0.5 * (1.0 + 5f64.sqrt());
+        let mut units: Vec<[f64; 3]> = Vec::with_capacity(31);
+        let mut push = |x: f64, y: f64, z: f64| {
+            let length = (x * x + y * y + z * z).sqrt();
+            let unit = [x / length, y / length, z / length];
+            // Of a direction and its opposite the first is enough.
+            if units
+                .iter()
+                .all(|other| dot(*other, unit).abs() < 1.0 - 1e-9)
+            {
+                units.push(unit);
+            }
+        };
+        let signs = [1.0, -1.0];
+        for a in signs {
+            for b in signs {
+                for c in signs {
+                    let corner = [0.0, a, b * golden];
+                    let face = [0.0, b * golden, a / golden];
+                    let edge = [a, b * golden * golden, c * golden];
+                    for turn in 0..3 {
+                        let at = |vector: [f64; 3], axis: usize| vector[(axis + turn) % 3];
+                        push(at(corner, 0), at(corner, 1), at(corner, 2));
+                        push(at(face, 0), at(face, 1), at(face, 2));
+                        push(at(edge, 0), at(edge, 1), at(edge, 2));
+                        let axis: [f64; 3] = [1.0, 0.0, 0.0];
+                        push(at(axis, 0), at(axis, 1), at(axis, 2));
+                    }
+                    push(a, b, c);
+                }
+            }
+        }
+        // The circle around a triangle of neighbours: a corner, a face and an edge, with a right angle at the edge.
+        Self {
+            units,
+            share: ICOSAHEDRON,
+        }
+    }
+}
+
+/// Cosine of the angle from the middle of the triangle between an axis through a corner, one through a face and one
+/// through an edge to each of the three; the test below measures it.
+const ICOSAHEDRON: f64 = 0.946;
+
+/// The channels of the tip along each direction.
+pub(super) fn tip_channels(
+    samples: &Samples,
+    interval: usize,
+    directions: &Directions,
+    order: Order,
+    limit: f64,
+    sink: &mut dyn FnMut(Channel),
+) {
+    for &unit in &directions.units {
+        let pair = |all: &[[f64; 3]]| [dot(unit, all[interval]), dot(unit, all[interval + 1])];
+        sink(Channel {
+            first: pair(&samples.tip[0]),
+            second: pair(&samples.tip[1]),
+            third: pair(&samples.tip[2]),
+            order,
+            limit: limit * directions.share,
+            axis: None,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest angle to the nearest direction, over a dense spiral on the sphere.
+    #[test]
+    fn every_vector_is_near_a_direction() {
+        let directions = Directions::icosahedron();
+        assert_eq!(directions.units.len(), 31);
+        let count = 200_000;
+        let mut least: f64 = 1.0;
+        for index in 0..count {
+            let z = 1.0 - 2.0 * (index as f64 + 0.5) / count as f64;
+            let radius = (1.0 - z * z).sqrt();
+            let angle = index as f64 * PI * (3.0 - 5f64.sqrt());
+            let vector = [radius * libm::cos(angle), radius * libm::sin(angle), z];
+            let nearest = directions
+                .units
+                .iter()
+                .fold(0.0, |most: f64, unit| most.max(dot(*unit, vector).abs()));
+            least = least.min(nearest);
+        }
+        assert!(least >= directions.share, "{least}");
+        assert!(least < directions.share + 0.003, "{least}");
+    }
+}

@@ -1,0 +1,317 @@
+//! What a plan has to keep: upper bounds at the samples and linear rows between neighbours.
+
+use crate::infeasible::Infeasible;
+use crate::limits::Limit;
+use crate::samples::Samples;
+
+/// Which limit a bound or row comes from: an index into [`Problem::names`], and the axis where there is one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Source {
+    /// Index into [`Problem::names`].
+    pub limit: u16,
+    /// Index of the axis, in the order of [`Samples::axes`].
+    pub axis: Option<u16>,
+}
+
+/// `-1 <= here * q[i] + next * q[i + 1] <= 1`: what is limited, as a share of its limit, on the way from one sample to
+/// the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Row {
+    /// Coefficient of `q[i]`, in 1 / (unit of q).
+    pub here: f64,
+    /// Coefficient of `q[i + 1]`, in 1 / (unit of q).
+    pub next: f64,
+}
+
+impl Row {
+    /// The limited value as a share of its limit, with its sign.
+    #[must_use]
+    pub fn value(self, here: f64, next: f64) -> f64 {
+        self.here * here + self.next * next
+    }
+}
+
+/// The speed of the path parameter squared that the plan begins and ends with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ends {
+    /// `q` at the first sample; 0 is at rest.
+    pub start: f64,
+    /// `q` at the last sample; 0 is at rest.
+    pub end: f64,
+}
+
+/// The limits of a path, sampled at `n + 1` values of its parameter, for the unknowns `q = (ds/dt)^2` there.
+///
+/// Between two samples `q` is linear in the parameter, so that the second derivative of the parameter by time,
+/// `(q[i + 1] - q[i]) / (2 * step)`, is constant: the law of eq. 21 of the feedrate paper and of reachability analysis.
+///
+/// Every interval has the same number of rows, in the order of [`Problem::sources`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Problem {
+    /// Names of the limits, for reports.
+    pub names: Vec<String>,
+    /// Increase of the path parameter from each sample to the next: one fewer than samples.
+    pub steps: Vec<f64>,
+    /// Largest `q` at each sample.
+    pub upper: Vec<f64>,
+    /// Where each upper bound comes from.
+    pub causes: Vec<Source>,
+    /// Where the rows of an interval come from.
+    pub sources: Vec<Source>,
+    /// Rows, interval by interval.
+    pub rows: Vec<Row>,
+    /// What the plan begins and ends with.
+    pub ends: Ends,
+}
+
+impl Problem {
+    /// The limits of `samples`, each asked in turn.
+    ///
+    /// # Errors
+    /// Where a number is not finite, where no limit bounds the speed, where the parameter does not grow.
+    pub fn new(samples: &Samples, limits: &[&dyn Limit], ends: Ends) -> Result<Self, Infeasible> {
+        let mut problem = Self::default();
+        problem.refill(samples, limits, ends)?;
+        Ok(problem)
+    }
+
+    /// As [`Problem::new`], in the memory of an earlier problem: a stream of batches allocates nothing.
+    ///
+    /// # Errors
+    /// As [`Problem::new`].
+    pub fn refill(
+        &mut self,
+        samples: &Samples,
+        limits: &[&dyn Limit],
+        ends: Ends,
+    ) -> Result<(), Infeasible> {
+        let count = samples.parameter.len();
+        self.ends = ends;
+        self.steps.clear();
+        self.steps
+            .extend(samples.parameter.windows(2).map(|pair| pair[1] - pair[0]));
+        self.upper.clear();
+        self.upper.resize(count, f64::INFINITY);
+        self.causes.clear();
+        self.causes.resize(count, Source::default());
+        self.sources.clear();
+        self.names.clear();
+        for (index, limit) in limits.iter().enumerate() {
+            self.names.push(limit.name().to_owned());
+            let limit_index = index as u16;
+            let axes = limit.rows(samples);
+            self.sources.extend(axes.into_iter().map(|axis| Source {
+                limit: limit_index,
+                axis,
+            }));
+        }
+        self.rows.clear();
+        self.rows
+            .resize(self.sources.len() * count.saturating_sub(1), Row::default());
+        let mut first = 0;
+        for (index, limit) in limits.iter().enumerate() {
+            let rows = self.sources[first..]
+                .iter()
+                .take_while(|source| usize::from(source.limit) == index)
+                .count();
+            limit.apply(
+                samples,
+                &mut Table {
+                    limit: index as u16,
+                    first,
+                    stride: self.sources.len(),
+                    upper: &mut self.upper,
+                    causes: &mut self.causes,
+                    rows: &mut self.rows,
+                },
+            );
+            first += rows;
+        }
+        self.check()
+    }
+
+    /// A problem from numbers alone, at rest at both ends: one limit, called `bound`, is behind all bounds, another,
+    /// called `row`, behind all rows.
+    #[must_use]
+    pub fn from_rows(steps: Vec<f64>, upper: Vec<f64>, stride: usize, rows: Vec<Row>) -> Self {
+        let row = Source {
+            limit: 1,
+            axis: None,
+        };
+        Self {
+            names: vec!["bound".to_owned(), "row".to_owned()],
+            causes: vec![Source::default(); upper.len()],
+            sources: vec![row; stride],
+            steps,
+            upper,
+            rows,
+            ends: Ends::default(),
+        }
+    }
+
+    /// Number of rows of each interval.
+    #[must_use]
+    pub fn stride(&self) -> usize {
+        self.sources.len()
+    }
+
+    /// Rows between sample `interval` and the next.
+    #[must_use]
+    pub fn rows_of(&self, interval: usize) -> &[Row] {
+        let stride = self.stride();
+        &self.rows[interval * stride..(interval + 1) * stride]
+    }
+
+    /// The name of where a bound or row comes from, as reports print it.
+    #[must_use]
+    pub fn name(&self, source: Source) -> String {
+        let name = self
+            .names
+            .get(usize::from(source.limit))
+            .map_or("limit", String::as_str);
+        match source.axis {
+            Some(axis) => format!("{name} of axis {axis}"),
+            None => name.to_owned(),
+        }
+    }
+
+    /// Whether the numbers describe a problem at all.
+    ///
+    /// # Errors
+    /// The first sample where a number is not finite or negative, no limit bounds the speed, the parameter does not
+    /// grow, or the arrays differ in length.
+    pub fn check(&self) -> Result<(), Infeasible> {
+        let count = self.upper.len();
+        let lengths = self.causes.len() == count
+            && self.steps.len() + 1 == count
+            && self.rows.len() == self.steps.len() * self.stride();
+        if count < 2 || !lengths {
+            return Err(Infeasible::Shape);
+        }
+        for (sample, &upper) in self.upper.iter().enumerate() {
+            if upper == f64::INFINITY {
+                return Err(Infeasible::Unbounded { sample });
+            }
+            if upper.is_nan() || upper < 0.0 {
+                let source = self.causes[sample];
+                return Err(Infeasible::NotANumber { sample, source });
+            }
+        }
+        // The negation also catches a step that is not a number.
+        if let Some(sample) = self.steps.iter().position(|&step| !(step > 0.0)) {
+            return Err(Infeasible::Standstill { sample });
+        }
+        let bad = |row: &Row| !(row.here.is_finite() && row.next.is_finite());
+        if let Some(place) = self.rows.iter().position(bad) {
+            return Err(Infeasible::NotANumber {
+                sample: place / self.stride(),
+                source: self.sources[place % self.stride()],
+            });
+        }
+        let Ends { start, end } = self.ends;
+        if !(start >= 0.0 && end >= 0.0 && start.is_finite() && end.is_finite()) {
+            return Err(Infeasible::Shape);
+        }
+        Ok(())
+    }
+
+    /// The largest share of a limit that `q` uses, bounds and rows alike, and where: at most 1 where it keeps all.
+    ///
+    /// A bound counts as `q / upper`, a negative `q` as infinite.
+    #[must_use]
+    pub fn worst(&self, q: &[f64]) -> Usage {
+        let mut worst = Usage::default();
+        for (sample, (&q, &upper)) in q.iter().zip(&self.upper).enumerate() {
+            let share = if q < 0.0 {
+                f64::INFINITY
+            } else if q <= upper {
+                if upper > 0.0 { q / upper } else { 0.0 }
+            } else {
+                // A bound of 0 that is not kept.
+                (q / upper).max(1.0 + q)
+            };
+            worst.raise(share, sample, self.causes[sample]);
+        }
+        for (interval, pair) in q.windows(2).enumerate() {
+            for (row, &source) in self.rows_of(interval).iter().zip(&self.sources) {
+                worst.raise(row.value(pair[0], pair[1]).abs(), interval, source);
+            }
+        }
+        worst
+    }
+
+    /// The limit that is used most at a sample: its bound, and the rows of both intervals that it ends.
+    #[must_use]
+    pub fn active(&self, q: &[f64], sample: usize) -> Usage {
+        let mut worst = Usage::default();
+        if self.upper[sample] > 0.0 {
+            let share = q[sample] / self.upper[sample];
+            worst.raise(share, sample, self.causes[sample]);
+        }
+        for interval in sample.saturating_sub(1)..(sample + 1).min(self.steps.len()) {
+            for (row, &source) in self.rows_of(interval).iter().zip(&self.sources) {
+                let share = row.value(q[interval], q[interval + 1]).abs();
+                worst.raise(share, sample, source);
+            }
+        }
+        worst
+    }
+}
+
+/// How much of a limit is used, and where.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Usage {
+    /// Value over limit.
+    pub share: f64,
+    /// At this sample, or between it and the next.
+    pub sample: usize,
+    /// Which limit.
+    pub source: Source,
+}
+
+impl Usage {
+    pub(crate) fn raise(&mut self, share: f64, sample: usize, source: Source) {
+        // What is not a number breaks every limit.
+        if share > self.share || share.is_nan() {
+            *self = Self {
+                share: if share.is_nan() { f64::INFINITY } else { share },
+                sample,
+                source,
+            };
+        }
+    }
+}
+
+/// What a [`Limit`] writes its bounds and rows into.
+pub struct Table<'a> {
+    limit: u16,
+    first: usize,
+    stride: usize,
+    upper: &'a mut [f64],
+    causes: &'a mut [Source],
+    rows: &'a mut [Row],
+}
+
+impl Table<'_> {
+    /// Lowers the upper bound of `q` at a sample to `bound`, if it is not lower already.
+    pub fn lower(&mut self, sample: usize, bound: f64, axis: Option<u16>) {
+        // What is not a number must not get lost in a comparison.
+        if bound < self.upper[sample] || bound.is_nan() {
+            self.upper[sample] = bound;
+            self.causes[sample] = Source {
+                limit: self.limit,
+                axis,
+            };
+        }
+    }
+
+    /// Sets the limit's row number `row` of an interval.
+    pub fn set(&mut self, interval: usize, row: usize, value: Row) {
+        self.rows[interval * self.stride + self.first + row] = value;
+    }
+
+    /// The rows of an interval from the limit's first row on.
+    pub fn rows_mut(&mut self, interval: usize) -> &mut [Row] {
+        &mut self.rows[interval * self.stride + self.first..(interval + 1) * self.stride]
+    }
+}

@@ -1,0 +1,215 @@
+//! Reachability analysis: the fastest plan in linear time, two passes.
+//!
+//! Backwards, the *controllable set* of each sample is found: the interval of `q` from which the rest of the path can
+//! be gone without breaking a limit. Forwards, the largest `q` is taken at each sample that the one before allows and
+//! that stays in the controllable set. So the plan keeps every limit at zero-inertia points too, and where limits are
+//! not monotone: the forward pass cannot run into a place that has no way on (Pham and Pham, *A new approach to
+//! time-optimal path parameterization based on reachability analysis*, 2018).
+//!
+//! Where every row is monotone (`here` and `next` have not the same sign) no plan is faster at any sample: the plans
+//! that keep all limits are then closed under taking the larger `q` at each sample, so that one of them is the largest
+//! everywhere, and both passes only ever cut what cannot belong to it.
+
+mod step;
+pub mod stream;
+
+use crate::infeasible::Infeasible;
+use crate::problem::{Problem, Row};
+
+pub use stream::Stream;
+
+/// Controllable sets, and the plan through them; its memory is used again from problem to problem.
+#[derive(Clone, Debug, Default)]
+pub struct Reach {
+    /// Smallest `q` of each sample from which the rest of the path can be gone.
+    low: Vec<f64>,
+    /// The largest.
+    high: Vec<f64>,
+}
+
+impl Reach {
+    /// Finds the controllable sets of `problem`.
+    ///
+    /// # Errors
+    /// Where one is empty, or does not hold the speed that the plan begins with: which limit, and where.
+    pub fn controllable(&mut self, problem: &Problem) -> Result<(), Infeasible> {
+        let count = problem.upper.len();
+        self.low.clear();
+        self.low.resize(count, 0.0);
+        self.high.clear();
+        self.high.resize(count, 0.0);
+        let last = count - 1;
+        let end = problem.ends.end;
+        if end > problem.upper[last] {
+            return Err(Infeasible::OutOfReach {
+                sample: last,
+                source: problem.causes[last],
+                needed: end,
+                allowed: problem.upper[last],
+                accelerating: None,
+            });
+        }
+        (self.low[last], self.high[last]) = (end, end);
+        for sample in (0..last).rev() {
+            let rows = problem.rows_of(sample);
+            let (low, high) = (self.low[sample + 1], self.high[sample + 1]);
+            let Some((low, high)) = before(rows, problem.upper[sample], low, high) else {
+                let fault = out_of_reach(problem);
+                return Err(fault.unwrap_or_else(|| contradiction(problem, sample, low, high)));
+            };
+            (self.low[sample], self.high[sample]) = (low, high);
+        }
+        let start = problem.ends.start;
+        // A start that was itself the outcome of a pass may differ from the bound by rounding.
+        let margin = 1e-12 * problem.upper[0];
+        if start > self.high[0] + margin {
+            let fault = too_fast(problem);
+            return Err(fault.unwrap_or_else(|| contradiction(problem, 0, start, start)));
+        }
+        if start < self.low[0] - margin {
+            let fault = out_of_reach(problem);
+            return Err(fault.unwrap_or_else(|| contradiction(problem, 0, start, start)));
+        }
+        Ok(())
+    }
+
+    /// The smallest and largest `q` of each sample from which the rest of the path can be gone, as
+    /// [`Reach::controllable`] found them.
+    #[must_use]
+    pub fn sets(&self) -> (&[f64], &[f64]) {
+        (&self.low, &self.high)
+    }
+
+    /// The fastest plan by reachability analysis, put into `plan`.
+    ///
+    /// Rows are kept up to rounding: 1e-12 of a limit.
+    ///
+    /// # Errors
+    /// Which limit cannot be kept, and where.
+    pub fn solve_into(&mut self, problem: &Problem, plan: &mut Vec<f64>) -> Result<(), Infeasible> {
+        self.controllable(problem)?;
+        plan.clear();
+        plan.push(problem.ends.start);
+        let mut q = problem.ends.start;
+        for sample in 0..problem.steps.len() {
+            let (low, high) = (self.low[sample + 1], self.high[sample + 1]);
+            q = step::highest_after(problem.rows_of(sample), q, low, high);
+            plan.push(q);
+        }
+        Ok(())
+    }
+
+    /// The plan nearest to `wish` that a forward pass can have: each `q` is moved into what the one before allows and
+    /// the controllable set. So a solution that breaks limits by an iteration's tolerance is made to keep them.
+    ///
+    /// Wants the sets that [`Reach::controllable`] found.
+    pub(crate) fn settle(&self, problem: &Problem, wish: &mut [f64]) {
+        wish[0] = problem.ends.start;
+        for sample in 0..problem.steps.len() {
+            let rows = problem.rows_of(sample);
+            let (low, high) = (self.low[sample + 1], self.high[sample + 1]);
+            let most = step::highest_after(rows, wish[sample], low, high);
+            let (least, _) = step::lowest_after(rows, wish[sample]);
+            let wished = wish[sample + 1].max(least.max(low));
+            wish[sample + 1] = wished.min(most);
+        }
+    }
+}
+
+/// The fastest plan of `problem` by reachability analysis: `q` at each sample.
+///
+/// # Errors
+/// Which limit cannot be kept, and where.
+pub fn solve(problem: &Problem) -> Result<Vec<f64>, Infeasible> {
+    problem.check()?;
+    let mut plan = Vec::with_capacity(problem.upper.len());
+    Reach::default().solve_into(problem, &mut plan)?;
+    Ok(plan)
+}
+
+/// The controllable set of a sample, from that of the next.
+#[inline]
+fn before(rows: &[Row], upper: f64, low: f64, high: f64) -> Option<(f64, f64)> {
+    let highest = step::highest_before(rows, upper, low, high)?;
+    let lowest = step::lowest_before(rows, upper, low, high)?;
+    // A single point may come out turned round by rounding.
+    Some((lowest.min(highest), highest))
+}
+
+/// Names the bound that the hardest braking from the start still breaks.
+fn too_fast(problem: &Problem) -> Option<Infeasible> {
+    let last = problem.steps.len();
+    let mut q = problem.ends.start;
+    let mut braking = None;
+    for sample in 0..=last {
+        let (allowed, source) = if sample == last {
+            let given = problem.ends.end;
+            (given, braking.unwrap_or(problem.causes[last]))
+        } else {
+            (problem.upper[sample], problem.causes[sample])
+        };
+        if q > allowed * (1.0 + 1e-12) {
+            return Some(Infeasible::TooFastStart {
+                sample,
+                source,
+                needed: q,
+                allowed,
+                braking,
+            });
+        }
+        if sample < last {
+            let (least, row) = step::lowest_after(problem.rows_of(sample), q);
+            q = least;
+            braking = row.map(|row| problem.sources[row]);
+        }
+    }
+    None
+}
+
+/// Names the bound that is broken where the end speed is to be reached by the hardest acceleration.
+fn out_of_reach(problem: &Problem) -> Option<Infeasible> {
+    let last = problem.steps.len();
+    let mut q = problem.ends.end;
+    let mut accelerating = None;
+    for sample in (0..=last).rev() {
+        let (allowed, source) = if sample == 0 {
+            let given = problem.ends.start;
+            (given, accelerating.unwrap_or(problem.causes[0]))
+        } else {
+            (problem.upper[sample], problem.causes[sample])
+        };
+        if q > allowed * (1.0 + 1e-12) {
+            return Some(Infeasible::OutOfReach {
+                sample,
+                source,
+                needed: q,
+                allowed,
+                accelerating,
+            });
+        }
+        if sample > 0 {
+            let (least, row) = step::least_before(problem.rows_of(sample - 1), q);
+            q = least;
+            accelerating = row.map(|row| problem.sources[row]);
+        }
+    }
+    None
+}
+
+/// Names the row of an interval that is farthest from being kept, whatever `q` of the first sample and of `low..=high`
+/// at the second: limits that are not monotone may leave nothing between each other.
+fn contradiction(problem: &Problem, sample: usize, low: f64, high: f64) -> Infeasible {
+    let least = |row: &Row| {
+        let corners = [(0.0, low), (0.0, high), (1.0, low), (1.0, high)];
+        let values = corners.map(|(x, y)| row.value(x * problem.upper[sample], y));
+        let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        lowest.max(-highest)
+    };
+    let rows = problem.rows_of(sample).iter().zip(&problem.sources);
+    let worst = rows.max_by(|(a, _), (b, _)| least(a).total_cmp(&least(b)));
+    Infeasible::Contradiction {
+        sample,
+        source: worst.map_or(problem.causes[sample], |(_, source)| *source),
+    }
+}

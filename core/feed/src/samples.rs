@@ -1,0 +1,126 @@
+//! A path as limits see it: derivatives by its parameter at samples, one array a quantity.
+
+/// Derivatives of one axis by the path parameter. Lengths in mm, or rad for an axis that turns, or whatever unit the
+/// axis's limits are in.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AxisSamples {
+    /// First derivative at each sample.
+    pub first: Vec<f64>,
+    /// Second derivative.
+    pub second: Vec<f64>,
+    /// Third derivative.
+    pub third: Vec<f64>,
+}
+
+/// The path at `n + 1` values of its parameter. The parameter may be the arc length or any other that grows along the
+/// path; `q` is the square of its speed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Samples {
+    /// The parameter, growing.
+    pub parameter: Vec<f64>,
+    /// First, second and third derivative of the tip in the part frame, mm.
+    pub tip: [Vec<[f64; 3]>; 3],
+    /// Curvature of the tip's path, 1/mm.
+    pub curvature: Vec<f64>,
+    /// The machine's axes.
+    pub axes: Vec<AxisSamples>,
+    /// Length of the block of the program that goes on behind each sample, in units of the parameter; empty where
+    /// there are no blocks.
+    pub blocks: Vec<f64>,
+}
+
+impl Samples {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.parameter.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.parameter.is_empty()
+    }
+
+    /// Number of intervals between samples.
+    #[must_use]
+    pub fn intervals(&self) -> usize {
+        self.len().saturating_sub(1)
+    }
+
+    /// From sample `interval` to the next, in units of the parameter.
+    #[must_use]
+    pub fn step(&self, interval: usize) -> f64 {
+        self.parameter[interval + 1] - self.parameter[interval]
+    }
+
+    /// Removes all samples and keeps the memory.
+    pub fn clear(&mut self) {
+        self.parameter.clear();
+        self.tip.iter_mut().for_each(Vec::clear);
+        self.curvature.clear();
+        for axis in &mut self.axes {
+            axis.first.clear();
+            axis.second.clear();
+            axis.third.clear();
+        }
+        self.blocks.clear();
+    }
+
+    /// Appends a sample: parameter, first to third derivative of the tip, first to third derivative of each axis. The
+    /// curvature follows from the tip.
+    pub fn push(&mut self, parameter: f64, tip: [[f64; 3]; 3], axes: &[[f64; 3]]) {
+        self.parameter.push(parameter);
+        for (all, one) in self.tip.iter_mut().zip(tip) {
+            all.push(one);
+        }
+        self.curvature.push(curvature(tip[0], tip[1]));
+        self.axes.resize_with(axes.len(), AxisSamples::default);
+        for (axis, &[first, second, third]) in self.axes.iter_mut().zip(axes) {
+            axis.first.push(first);
+            axis.second.push(second);
+            axis.third.push(third);
+        }
+    }
+
+    /// Speed of the tip at each sample per unit of parameter speed: `|dP/ds|`, 1 for the arc length.
+    #[must_use]
+    pub fn stretch(&self, sample: usize) -> f64 {
+        norm(self.tip[0][sample])
+    }
+
+    /// Weights with which the sum of `q` is the sum of the squares of the feed: the objective of the feedrate paper's
+    /// linear program (eq. 25).
+    #[must_use]
+    pub fn squared_feed_weights(&self) -> Vec<f64> {
+        let square = |vector: &[f64; 3]| dot(*vector, *vector);
+        self.tip[0].iter().map(square).collect()
+    }
+}
+
+/// Curvature of a path with these first and second derivatives; 0 where the first is.
+#[must_use]
+pub fn curvature(first: [f64; 3], second: [f64; 3]) -> f64 {
+    let speed = norm(first);
+    if speed > 0.0 {
+        norm(cross(first, second)) / (speed * speed * speed)
+    } else {
+        0.0
+    }
+}
+
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+pub(crate) fn norm(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}

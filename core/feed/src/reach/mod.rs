@@ -10,6 +10,7 @@
 //! that keep all limits are then closed under taking the larger `q` at each sample, so that one of them is the largest
 //! everywhere, and both passes only ever cut what cannot belong to it.
 
+mod blame;
 mod step;
 pub mod stream;
 
@@ -54,8 +55,7 @@ impl Reach {
             let rows = problem.rows_of(sample);
             let (low, high) = (self.low[sample + 1], self.high[sample + 1]);
             let Some((low, high)) = before(rows, problem.upper[sample], low, high) else {
-                let fault = out_of_reach(problem);
-                return Err(fault.unwrap_or_else(|| contradiction(problem, sample, low, high)));
+                return Err(blame::end(problem, sample, low, high));
             };
             (self.low[sample], self.high[sample]) = (low, high);
         }
@@ -63,12 +63,10 @@ impl Reach {
         // A start that was itself the outcome of a pass may differ from the bound by rounding.
         let margin = 1e-12 * problem.upper[0];
         if start > self.high[0] + margin {
-            let fault = too_fast(problem);
-            return Err(fault.unwrap_or_else(|| contradiction(problem, 0, start, start)));
+            return Err(blame::start(problem));
         }
         if start < self.low[0] - margin {
-            let fault = out_of_reach(problem);
-            return Err(fault.unwrap_or_else(|| contradiction(problem, 0, start, start)));
+            return Err(blame::end(problem, 0, start, start));
         }
         Ok(())
     }
@@ -134,82 +132,4 @@ fn before(rows: &[Row], upper: f64, low: f64, high: f64) -> Option<(f64, f64)> {
     let lowest = step::lowest_before(rows, upper, low, high)?;
     // A single point may come out turned round by rounding.
     Some((lowest.min(highest), highest))
-}
-
-/// Names the bound that the hardest braking from the start still breaks.
-fn too_fast(problem: &Problem) -> Option<Infeasible> {
-    let last = problem.steps.len();
-    let mut q = problem.ends.start;
-    let mut braking = None;
-    for sample in 0..=last {
-        let (allowed, source) = if sample == last {
-            let given = problem.ends.end;
-            (given, braking.unwrap_or(problem.causes[last]))
-        } else {
-            (problem.upper[sample], problem.causes[sample])
-        };
-        if q > allowed * (1.0 + 1e-12) {
-            return Some(Infeasible::TooFastStart {
-                sample,
-                source,
-                needed: q,
-                allowed,
-                braking,
-            });
-        }
-        if sample < last {
-            let (least, row) = step::lowest_after(problem.rows_of(sample), q);
-            q = least;
-            braking = row.map(|row| problem.sources[row]);
-        }
-    }
-    None
-}
-
-/// Names the bound that is broken where the end speed is to be reached by the hardest acceleration.
-fn out_of_reach(problem: &Problem) -> Option<Infeasible> {
-    let last = problem.steps.len();
-    let mut q = problem.ends.end;
-    let mut accelerating = None;
-    for sample in (0..=last).rev() {
-        let (allowed, source) = if sample == 0 {
-            let given = problem.ends.start;
-            (given, accelerating.unwrap_or(problem.causes[0]))
-        } else {
-            (problem.upper[sample], problem.causes[sample])
-        };
-        if q > allowed * (1.0 + 1e-12) {
-            return Some(Infeasible::OutOfReach {
-                sample,
-                source,
-                needed: q,
-                allowed,
-                accelerating,
-            });
-        }
-        if sample > 0 {
-            let (least, row) = step::least_before(problem.rows_of(sample - 1), q);
-            q = least;
-            accelerating = row.map(|row| problem.sources[row]);
-        }
-    }
-    None
-}
-
-/// Names the row of an interval that is farthest from being kept, whatever `q` of the first sample and of `low..=high`
-/// at the second: limits that are not monotone may leave nothing between each other.
-fn contradiction(problem: &Problem, sample: usize, low: f64, high: f64) -> Infeasible {
-    let least = |row: &Row| {
-        let corners = [(0.0, low), (0.0, high), (1.0, low), (1.0, high)];
-        let values = corners.map(|(x, y)| row.value(x * problem.upper[sample], y));
-        let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        lowest.max(-highest)
-    };
-    let rows = problem.rows_of(sample).iter().zip(&problem.sources);
-    let worst = rows.max_by(|(a, _), (b, _)| least(a).total_cmp(&least(b)));
-    Infeasible::Contradiction {
-        sample,
-        source: worst.map_or(problem.causes[sample], |(_, source)| *source),
-    }
 }

@@ -143,23 +143,6 @@ pub(super) fn lowest_after(rows: &[Row], x: f64) -> (f64, Option<usize>) {
     least
 }
 
-/// The smallest `x` from which `y` can be had, and a row that allows no less.
-pub(super) fn least_before(rows: &[Row], y: f64) -> (f64, Option<usize>) {
-    // The rows read the other way round.
-    let mut least = (0.0, None);
-    for (index, row) in rows.iter().enumerate() {
-        if row.here.abs() <= FLAT {
-            continue;
-        }
-        let inverse = 1.0 / row.here;
-        let low = -row.next * inverse * y - inverse.abs();
-        if low > least.0 {
-            least = (low, Some(index));
-        }
-    }
-    least
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -189,6 +172,5 @@ mod tests {
         assert_eq!(lowest_before(&rows, 10.0, 7.0, 8.0), None);
         assert_eq!(highest_after(&rows, 4.0, 0.0, 8.0), 6.0);
         assert_eq!(lowest_after(&rows, 4.0), (2.0, Some(0)));
-        assert_eq!(least_before(&rows, 4.0), (2.0, Some(0)));
     }
 }

@@ -1,4 +1,6 @@
 //! What the tests share.
 
+pub mod jet;
 pub mod oracle;
+pub mod paths;
 pub mod random;

@@ -1,1 +1,149 @@
-fn main() {}
+//! Samples a second of each solver on the same problem. `cargo bench -p post-feed`
+//!
+//! The path is a random smooth one, a sample every 0.1 mm, from rest to rest. `BENCH_MOST=1000000` goes on to a
+//! million samples (clarabel then takes minutes and gigabytes); the default is 1e5.
+
+#[path = "../tests/it/support/oracle.rs"]
+mod oracle;
+#[path = "../tests/it/support/random.rs"]
+#[expect(dead_code, reason = "the tests ask for more kinds of problems")]
+mod random;
+
+use std::hint::black_box;
+use std::io::Write;
+use std::time::Instant;
+
+use post_feed::limits::Collocation;
+use post_feed::reach::{Reach, Stream};
+use post_feed::{Ends, Problem, linear_program};
+use random::{Limits, Random};
+
+/// Samples that a stream looks ahead.
+const LOOKAHEAD: usize = 1024;
+
+/// Samples of a batch.
+const BATCH: usize = 4096;
+
+fn main() {
+    let most = std::env::var("BENCH_MOST").ok();
+    let most = most.and_then(|most| most.parse().ok()).unwrap_or(100_000);
+    say("samples a second, and how many times as fast as clarabel on the same problem");
+    say(&format!(
+        "{:>4} {:<10} {:>8} {:>10} {:>10} {:>10} {:>12} {:>12} {:>8} {:>9}",
+        "axes",
+        "rows kept",
+        "samples",
+        "limits",
+        "reach",
+        "stream",
+        "own program",
+        "clarabel",
+        "reach x",
+        "program x"
+    ));
+    for axes in [3, 5] {
+        for collocation in [Collocation::Start, Collocation::Throughout] {
+            let mut count = 1000;
+            while count <= most {
+                compare(axes, collocation, count);
+                count *= 10;
+            }
+        }
+    }
+}
+
+fn compare(axes: usize, collocation: Collocation, count: usize) {
+    let mut random = Random::new(7);
+    let samples = random::samples(&mut random, axes, count, 0.1 * count as f64);
+    let limits = Limits::new(&mut random, axes, collocation);
+    let limits = limits.all();
+    let ends = Ends::default();
+    let Ok(mut problem) = Problem::new(&samples, &limits, ends) else {
+        say("no problem");
+        return;
+    };
+    let filled = seconds(count, || {
+        black_box(problem.refill(&samples, &limits, ends).is_ok());
+    });
+    let mut reach = Reach::default();
+    let mut plan = Vec::new();
+    let fast = seconds(count, || {
+        black_box(reach.solve_into(&problem, &mut plan).is_ok());
+    });
+    let batches: Vec<Problem> = (0..count - 1)
+        .step_by(BATCH)
+        .map(|first| part(&problem, first, (first + BATCH).min(count - 1)))
+        .collect();
+    let mut stream = Stream::new(problem.stride(), LOOKAHEAD);
+    let mut streamed = Vec::with_capacity(count);
+    let flowing = seconds(count, || {
+        streamed.clear();
+        for batch in &batches {
+            black_box(stream.push(batch, &mut |q| streamed.push(q)).is_ok());
+        }
+        black_box(stream.finish(0.0, &mut |q| streamed.push(q)).is_ok());
+    });
+    assert!(
+        streamed == plan || !stream.all_certain(),
+        "the stream has the plan of the whole"
+    );
+    let weights = vec![1.0; count];
+    let begin = Instant::now();
+    let best = linear_program::solve(&problem, &weights);
+    let own = begin.elapsed().as_secs_f64();
+    let begin = Instant::now();
+    let oracle = oracle::solve(&problem, &weights);
+    let general = begin.elapsed().as_secs_f64();
+    let rate = |seconds: f64| format!("{:.3e}", count as f64 / seconds);
+    say(&format!(
+        "{axes:>4} {:<10} {count:>8} {:>10} {:>10} {:>10} {:>12} {:>12} {:>8.0} {:>9.1}",
+        format!("{collocation:?}"),
+        rate(filled),
+        rate(fast),
+        rate(flowing),
+        rate(own),
+        rate(general),
+        general / fast,
+        general / own
+    ));
+    if let (Ok(best), Some((_, objective))) = (best, oracle) {
+        let sum: f64 = plan.iter().sum();
+        say(&format!(
+            "     objectives: own {:+.1e} of clarabel, proven gap {:.1e}, {} iterations; reach {:.5} of own; certain {}",
+            best.objective / objective - 1.0,
+            best.gap(),
+            best.iterations,
+            sum / best.objective,
+            stream.all_certain()
+        ));
+    }
+}
+
+/// Median of a few runs, of small problems many at a time.
+fn seconds(count: usize, mut run: impl FnMut()) -> f64 {
+    let repeats = (100_000 / count).max(1);
+    let mut times: Vec<f64> = (0..5)
+        .map(|_| {
+            let begin = Instant::now();
+            (0..repeats).for_each(|_| run());
+            begin.elapsed().as_secs_f64() / repeats as f64
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[2]
+}
+
+fn part(problem: &Problem, first: usize, last: usize) -> Problem {
+    let stride = problem.stride();
+    Problem {
+        steps: problem.steps[first..last].to_vec(),
+        upper: problem.upper[first..=last].to_vec(),
+        causes: problem.causes[first..=last].to_vec(),
+        rows: problem.rows[first * stride..last * stride].to_vec(),
+        ..problem.clone()
+    }
+}
+
+fn say(line: &str) {
+    let _ = writeln!(std::io::stdout(), "{line}");
+}

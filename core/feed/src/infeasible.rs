@@ -53,6 +53,17 @@ pub enum Infeasible {
         /// The row that keeps it from accelerating harder, if any does.
         accelerating: Option<Source>,
     },
+    /// A plan with jerk limits needs four intervals between two stops; sample the path finer there.
+    TooShort {
+        /// The stop before.
+        sample: usize,
+    },
+    /// The interior-point method ended without a plan on the stretch that begins here. Its limits may be so far apart
+    /// that numbers run out of digits.
+    NoProgress {
+        /// Where the stretch begins.
+        sample: usize,
+    },
     /// The limits of one interval contradict each other for every speed that can be reached there.
     Contradiction {
         /// The interval begins here.
@@ -70,6 +81,8 @@ impl Infeasible {
             Self::Shape => None,
             Self::Standstill { sample }
             | Self::Unbounded { sample }
+            | Self::TooShort { sample }
+            | Self::NoProgress { sample }
             | Self::NotANumber { sample, .. }
             | Self::TooFastStart { sample, .. }
             | Self::OutOfReach { sample, .. }
@@ -83,6 +96,8 @@ impl Infeasible {
             Self::Shape => {}
             Self::Standstill { sample }
             | Self::Unbounded { sample }
+            | Self::TooShort { sample }
+            | Self::NoProgress { sample }
             | Self::NotANumber { sample, .. }
             | Self::TooFastStart { sample, .. }
             | Self::OutOfReach { sample, .. }
@@ -95,7 +110,11 @@ impl Infeasible {
     #[must_use]
     pub fn source(&self) -> Option<Source> {
         match *self {
-            Self::Shape | Self::Standstill { .. } | Self::Unbounded { .. } => None,
+            Self::Shape
+            | Self::Standstill { .. }
+            | Self::Unbounded { .. }
+            | Self::TooShort { .. }
+            | Self::NoProgress { .. } => None,
             Self::NotANumber { source, .. }
             | Self::TooFastStart { source, .. }
             | Self::OutOfReach { source, .. }
@@ -143,7 +162,7 @@ impl Infeasible {
                 "behind sample {sample} the limits contradict each other, among them {}",
                 problem.name(source)
             ),
-            Self::Shape | Self::Standstill { .. } | Self::Unbounded { .. } => self.to_string(),
+            _ => self.to_string(),
         }
     }
 }
@@ -158,6 +177,14 @@ impl fmt::Display for Infeasible {
                 write!(f, "the path parameter does not grow behind sample {sample}")
             }
             Self::Unbounded { sample } => write!(f, "no limit bounds the speed at sample {sample}"),
+            Self::TooShort { sample } => write!(
+                f,
+                "behind sample {sample} there are fewer than four intervals to the next stop"
+            ),
+            Self::NoProgress { sample } => write!(
+                f,
+                "behind sample {sample} no plan with jerk limits was found"
+            ),
             Self::NotANumber { sample, .. } => {
                 write!(f, "a limit at sample {sample} is not finite, or negative")
             }

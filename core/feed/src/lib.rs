@@ -10,7 +10,7 @@
 //! |---|---|---|---|
 //! | [`reach`] | velocity, acceleration, errors | linear, two passes; streams | the default |
 //! | [`linear_program`] | the same | linear an iteration, some twenty of them | the paper's optimum of `Σ f²`, with a proof |
-//! | `jerk` | jerk too | linear an iteration, some hundred of them | where drives have jerk limits |
+//! | [`jerk`] | jerk too | linear an iteration, some hundred of them | where drives have jerk limits |
 //!
 //! ```
 //! use post_feed::limits::{AxisAcceleration, AxisVelocity, Collocation, Feed};
@@ -40,6 +40,7 @@
 pub mod curve;
 mod infeasible;
 mod interior;
+pub mod jerk;
 pub mod limits;
 pub mod linear_program;
 pub mod problem;

@@ -21,9 +21,9 @@ impl Random {
     }
 }
 
-/// A smooth path of `axes` axes, each a straight part and three waves along 100 mm; the first three are the tip too.
+/// A smooth path of `axes` axes, each a straight part and three waves; the first three are the tip too.
 /// Axes stand still for an instant here and there: zero-inertia points.
-pub fn samples(random: &mut Random, axes: usize, count: usize) -> Samples {
+pub fn samples(random: &mut Random, axes: usize, count: usize, length: f64) -> Samples {
     let waves: Vec<[[f64; 3]; 3]> = (0..axes)
         .map(|_| {
             std::array::from_fn(|_| {
@@ -38,7 +38,7 @@ pub fn samples(random: &mut Random, axes: usize, count: usize) -> Samples {
     let straight: Vec<f64> = (0..axes).map(|_| random.of(-0.6, 0.6)).collect();
     let mut samples = Samples::default();
     for index in 0..count {
-        let s = 100.0 * index as f64 / (count - 1) as f64;
+        let s = length * index as f64 / (count - 1) as f64;
         let each: Vec<[f64; 3]> = waves
             .iter()
             .zip(&straight)
@@ -63,26 +63,45 @@ pub fn samples(random: &mut Random, axes: usize, count: usize) -> Samples {
     samples
 }
 
-/// Limits of the size of small machines on such a path.
+/// Limits of the size of small machines.
+pub struct Limits {
+    feed: Feed,
+    velocity: AxisVelocity,
+    acceleration: AxisAcceleration,
+}
+
+impl Limits {
+    pub fn new(random: &mut Random, axes: usize, collocation: Collocation) -> Self {
+        let limits = (0..axes).map(|_| random.of(20.0, 120.0)).collect();
+        let velocity = AxisVelocity {
+            limits,
+            collocation,
+        };
+        let limits = (0..axes).map(|_| random.of(50.0, 2000.0)).collect();
+        Self {
+            velocity,
+            acceleration: AxisAcceleration {
+                limits,
+                collocation,
+            },
+            feed: Feed {
+                most: random.of(30.0, 200.0),
+                collocation,
+            },
+        }
+    }
+
+    pub fn all(&self) -> [&dyn Limit; 3] {
+        [&self.feed, &self.velocity, &self.acceleration]
+    }
+}
+
+/// Such a path of 100 mm under such limits.
 pub fn problem(seed: u64, axes: usize, count: usize, collocation: Collocation) -> Problem {
     let mut random = Random::new(seed);
-    let samples = samples(&mut random, axes, count);
-    let limits = (0..axes).map(|_| random.of(20.0, 120.0)).collect();
-    let velocity = AxisVelocity {
-        limits,
-        collocation,
-    };
-    let limits = (0..axes).map(|_| random.of(50.0, 2000.0)).collect();
-    let acceleration = AxisAcceleration {
-        limits,
-        collocation,
-    };
-    let feed = Feed {
-        most: random.of(30.0, 200.0),
-        collocation,
-    };
-    let limits: [&dyn Limit; 3] = [&feed, &velocity, &acceleration];
-    Problem::new(&samples, &limits, Ends::default()).unwrap()
+    let samples = samples(&mut random, axes, count, 100.0);
+    let limits = Limits::new(&mut random, axes, collocation);
+    Problem::new(&samples, &limits.all(), Ends::default()).unwrap()
 }
 
 /// A problem all of whose rows are monotone, with bounds that jump and steep rows, not from any path.

@@ -1,0 +1,207 @@
+//! Acceleration and jerk over one interval as polynomials of the parameter, linear in the Bernstein coefficients of a
+//! quadratic `q`.
+//!
+//! With `q = ṡ²` the parameter has `s̈ = q' / 2` and `s⃛ = q'' ṡ / 2`. So the second derivative of a function `Q(s)` by
+//! time is `Q' q' / 2 + Q'' q`, and the third is `sqrt(q) * (Q' q'' / 2 + 3/2 Q'' q' + Q''' q)`. Over an interval `Q'`
+//! is taken as quadratic, `Q''` and `Q'''` as linear, so that both brackets are cubics; a cubic lies between its least
+//! and its largest Bernstein coefficient.
+
+use crate::limits::{Channel, first_derivative};
+
+/// A linear form in the three Bernstein coefficients of `q`.
+pub(super) type Form = [f64; 3];
+
+/// Bernstein coefficients of a cubic.
+pub(super) type Cubic<T> = [T; 4];
+
+/// `Q' q' / 2 + Q'' q`.
+pub(super) fn acceleration(channel: &Channel, step: f64) -> Cubic<Form> {
+    let [p0, p1, p2] = first_derivative(channel.first, channel.second, step);
+    let [e0, e1] = slope(step);
+    // Q' q' / 2, a quadratic times a linear function.
+    let push = [
+        scaled(p0, e0),
+        sum(scaled(2.0 / 3.0 * p1, e0), scaled(p0 / 3.0, e1)),
+        sum(scaled(p2 / 3.0, e0), scaled(2.0 / 3.0 * p1, e1)),
+        scaled(p2, e1),
+    ];
+    let bend = times_q(channel.second);
+    std::array::from_fn(|index| sum(scaled(0.5, push[index]), bend[index]))
+}
+
+/// `Q' q'' / 2 + 3/2 Q'' q' + Q''' q`.
+pub(super) fn jerk(channel: &Channel, step: f64) -> Cubic<Form> {
+    let first = elevated(first_derivative(channel.first, channel.second, step));
+    let [c0, c1] = channel.second;
+    let [e0, e1] = slope(step);
+    let bend = 1.0 / (step * step);
+    // q'' / 2.
+    let half = [bend, -2.0 * bend, bend];
+    let (x0, x2) = (scaled(1.5 * c0, e0), scaled(1.5 * c1, e1));
+    let x1 = sum(scaled(0.75 * c0, e1), scaled(0.75 * c1, e0));
+    let middle = [
+        x0,
+        sum(scaled(1.0 / 3.0, x0), scaled(2.0 / 3.0, x1)),
+        sum(scaled(2.0 / 3.0, x1), scaled(1.0 / 3.0, x2)),
+        x2,
+    ];
+    let last = times_q(channel.third);
+    std::array::from_fn(|index| sum(sum(scaled(first[index], half), middle[index]), last[index]))
+}
+
+/// `q` itself as a cubic.
+pub(super) const Q: Cubic<Form> = [
+    [1.0, 0.0, 0.0],
+    [1.0 / 3.0, 2.0 / 3.0, 0.0],
+    [0.0, 2.0 / 3.0, 1.0 / 3.0],
+    [0.0, 0.0, 1.0],
+];
+
+/// What `q` at the far end of an interval that begins at rest is multiplied with, at most, to give the second
+/// derivative: there `q = q1 * share^(4/3)`, and it is `q1 * share^(1/3) * (2/3 Q' / step + Q'' * share)`.
+pub(super) fn leaving_acceleration(channel: &Channel, step: f64) -> f64 {
+    let [p0, p1, p2] = first_derivative(channel.first, channel.second, step);
+    let push = 2.0 / 3.0 / step;
+    let [c0, c1] = channel.second;
+    largest(&[push * p0, push * p1 + 0.5 * c0, push * p2 + c1])
+}
+
+/// The same for the third derivative and `q1^(3/2)`: `2/9 Q' / step² + 2 Q'' * share / step + Q''' * share²`.
+pub(super) fn leaving_jerk(channel: &Channel, step: f64) -> f64 {
+    let first = elevated(first_derivative(channel.first, channel.second, step));
+    let [c0, c1] = channel.second;
+    let middle = elevated([0.0, 0.5 * c0, c1]);
+    let [t0, t1] = channel.third;
+    let last = [0.0, 0.0, t0 / 3.0, t1];
+    let at = |index: usize| {
+        2.0 / 9.0 * first[index] / (step * step) + 2.0 * middle[index] / step + last[index]
+    };
+    largest(&[at(0), at(1), at(2), at(3)])
+}
+
+/// The same function with the parameter running the other way.
+pub(super) fn reversed(channel: &Channel) -> Channel {
+    let [f0, f1] = channel.first;
+    let [c0, c1] = channel.second;
+    let [t0, t1] = channel.third;
+    Channel {
+        first: [-f1, -f0],
+        second: [c1, c0],
+        third: [-t1, -t0],
+        ..*channel
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values
+        .iter()
+        .fold(0.0, |most: f64, value| most.max(value.abs()))
+}
+
+/// Bernstein coefficients of `q'`.
+fn slope(step: f64) -> [Form; 2] {
+    let rate = 2.0 / step;
+    [[-rate, rate, 0.0], [0.0, -rate, rate]]
+}
+
+/// A linear function times `q`.
+fn times_q([a, b]: [f64; 2]) -> Cubic<Form> {
+    [
+        [a, 0.0, 0.0],
+        [b / 3.0, 2.0 / 3.0 * a, 0.0],
+        [0.0, 2.0 / 3.0 * b, a / 3.0],
+        [0.0, 0.0, b],
+    ]
+}
+
+/// A quadratic as a cubic.
+fn elevated([a, b, c]: [f64; 3]) -> Cubic<f64> {
+    [a, (a + 2.0 * b) / 3.0, (2.0 * b + c) / 3.0, c]
+}
+
+fn scaled(factor: f64, form: Form) -> Form {
+    form.map(|value| factor * value)
+}
+
+fn sum(a: Form, b: Form) -> Form {
+    std::array::from_fn(|index| a[index] + b[index])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::law::Piece;
+    use super::*;
+    use crate::limits::Order;
+
+    fn bernstein(coefficients: [f64; 4], t: f64) -> f64 {
+        let u = 1.0 - t;
+        let [a, b, c, d] = coefficients;
+        a * u * u * u + 3.0 * b * u * u * t + 3.0 * c * u * t * t + d * t * t * t
+    }
+
+    /// `Q = s³ - 2 s² + 5 s`, on `1..=1.5`.
+    fn channel() -> (Channel, impl Fn(f64) -> [f64; 3]) {
+        let at = |s: f64| [3.0 * s * s - 4.0 * s + 5.0, 6.0 * s - 4.0, 6.0];
+        let (here, next) = (at(1.0), at(1.5));
+        let channel = Channel {
+            first: [here[0], next[0]],
+            second: [here[1], next[1]],
+            third: [here[2], next[2]],
+            order: Order::Jerk,
+            limit: 1.0,
+            axis: None,
+        };
+        (channel, at)
+    }
+
+    #[test]
+    fn the_cubics_are_the_derivatives_by_time() {
+        let (channel, at) = channel();
+        let q = [4.0, 7.0, 6.0];
+        let piece = Piece::Quadratic(q);
+        let value = |forms: Cubic<Form>| {
+            forms.map(|form| form.iter().zip(q).map(|(a, b)| a * b).sum::<f64>())
+        };
+        let (second, third) = (
+            value(acceleration(&channel, 0.5)),
+            value(jerk(&channel, 0.5)),
+        );
+        for step in 0..=10 {
+            let share = f64::from(step) / 10.0;
+            let [first, bend, twist] = at(1.0 + 0.5 * share);
+            let [q, slope, curve] = piece.at(share, 0.5);
+            let want = 0.5 * first * slope + bend * q;
+            assert!((bernstein(second, share) - want).abs() < 1e-11);
+            let want = 0.5 * first * curve + 1.5 * bend * slope + twist * q;
+            assert!((bernstein(third, share) - want).abs() < 1e-11);
+            assert!((bernstein(value(Q), share) - q).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn off_from_rest_the_bounds_hold_and_are_met() {
+        let (channel, at) = channel();
+        let piece = Piece::Leave(3.0);
+        let (mut second, mut third): (f64, f64) = (0.0, 0.0);
+        for step in 1..=1000 {
+            let share = f64::from(step) / 1000.0;
+            let [first, bend, twist] = at(1.0 + 0.5 * share);
+            let [q, slope, curve] = piece.at(share, 0.5);
+            second = second.max((0.5 * first * slope + bend * q).abs());
+            third = third
+                .max(((0.5 * first * curve + 1.5 * bend * slope + twist * q) * q.sqrt()).abs());
+        }
+        let bounds = [
+            3.0 * leaving_acceleration(&channel, 0.5),
+            3.0 * 3f64.sqrt() * leaving_jerk(&channel, 0.5),
+        ];
+        assert!(
+            second <= bounds[0] && second > 0.9 * bounds[0],
+            "{second} {bounds:?}"
+        );
+        assert!(
+            third <= bounds[1] && third > 0.9 * bounds[1],
+            "{third} {bounds:?}"
+        );
+    }
+}

@@ -1,0 +1,123 @@
+//! The feed between samples of a plan with jerk limits.
+
+/// `q = (ds/dt)²` over one interval of the parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Piece {
+    /// A quadratic, by its three Bernstein coefficients.
+    Quadratic([f64; 3]),
+    /// Off from rest to this `q` at the interval's end, with constant jerk along the path: `q * share^(4/3)`.
+    Leave(f64),
+    /// To rest from this `q` at its beginning.
+    Arrive(f64),
+}
+
+impl Piece {
+    /// `q` and its first and second derivative by the parameter at a share of the interval, 0 to 1. At rest the second
+    /// is infinite; the path's jerk, `q'' * sqrt(q) / 2`, is not.
+    #[must_use]
+    pub fn at(self, share: f64, step: f64) -> [f64; 3] {
+        match self {
+            Self::Quadratic([a, b, c]) => {
+                let [left, right] = [a + (b - a) * share, b + (c - b) * share];
+                [
+                    left + (right - left) * share,
+                    2.0 * (right - left) / step,
+                    2.0 * (a - 2.0 * b + c) / (step * step),
+                ]
+            }
+            Self::Leave(q) => {
+                let root = libm::cbrt(share);
+                [
+                    q * share * root,
+                    q * 4.0 / 3.0 * root / step,
+                    q * 4.0 / 9.0 / (root * root * step * step),
+                ]
+            }
+            Self::Arrive(q) => {
+                let [value, slope, bend] = Self::Leave(q).at(1.0 - share, step);
+                [value, -slope, bend]
+            }
+        }
+    }
+
+    /// The time it takes, s.
+    #[must_use]
+    pub fn duration(self, step: f64) -> f64 {
+        match self {
+            // The integral of step * share^(-2/3) / sqrt(q).
+            Self::Leave(q) | Self::Arrive(q) => 3.0 * step / q.sqrt(),
+            Self::Quadratic(_) => {
+                let speed = |share: f64| self.at(share, step)[0].sqrt();
+                let each = GAUSS.iter().map(|[node, weight]| {
+                    weight * (1.0 / speed(0.5 - node) + 1.0 / speed(0.5 + node))
+                });
+                step * each.sum::<f64>()
+            }
+        }
+    }
+}
+
+/// Nodes from the middle, and weights, of Gauss' rule of six points on an interval of length 1.
+const GAUSS: [[f64; 2]; 3] = [
+    [0.119_309_593_041_598_5, 0.233_956_967_286_345_5],
+    [0.330_604_693_233_132_25, 0.180_380_786_524_069_3],
+    [0.466_234_757_101_576_05, 0.085_662_246_189_585_17],
+];
+
+/// The feed of a whole path. Velocity and acceleration are continuous; the jerk along the path jumps at samples.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Law {
+    /// Increase of the parameter over each interval.
+    pub steps: Vec<f64>,
+    /// `q` over each.
+    pub pieces: Vec<Piece>,
+}
+
+impl Law {
+    /// The time of the whole path, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        let each = self.pieces.iter().zip(&self.steps);
+        each.map(|(piece, &step)| piece.duration(step)).sum()
+    }
+
+    /// `q` at each sample.
+    #[must_use]
+    pub fn q(&self) -> Vec<f64> {
+        let each = self.pieces.iter().zip(&self.steps);
+        let mut q: Vec<f64> = each
+            .clone()
+            .map(|(piece, &step)| piece.at(0.0, step)[0])
+            .collect();
+        q.extend(each.last().map(|(piece, &step)| piece.at(1.0, step)[0]));
+        q
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With 60 mm/s³ from rest, after half a second: 1.25 mm, 7.5 mm/s, 30 mm/s².
+    #[test]
+    fn leaving_rest_is_a_motion_of_constant_jerk() {
+        let piece = Piece::Leave(7.5 * 7.5);
+        let step = 1.25;
+        assert!((piece.duration(step) - 0.5).abs() < 1e-15);
+        assert!((piece.at(1.0, step)[1] / 2.0 - 30.0).abs() < 1e-12);
+        for share in [1e-9, 0.1, 0.7, 1.0] {
+            for (piece, share) in [(piece, share), (Piece::Arrive(7.5 * 7.5), 1.0 - share)] {
+                let [q, _, bend] = piece.at(share, step);
+                assert!((0.5 * bend * q.sqrt() - 60.0).abs() < 1e-5, "{share}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_time_of_a_quadratic_is_that_of_its_motion() {
+        // q = (3 + 2 t)² with s = 3 t + t²: constant acceleration, q = 9 + 4 s.
+        let piece = Piece::Quadratic([9.0, 17.0, 25.0]);
+        assert!((piece.duration(4.0) - 1.0).abs() < 1e-7);
+        assert_eq!(piece.at(0.5, 4.0), [17.0, 4.0, 0.0]);
+    }
+}

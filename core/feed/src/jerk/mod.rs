@@ -1,0 +1,109 @@
+//! Plans that keep limits of jerk too, everywhere along the path.
+//!
+//! **The law.** `q` is a quadratic spline of the parameter, with the samples as knots: acceleration is continuous and
+//! linear in the parameter, jerk finite. Off from rest (and to it) no such spline exists; the first interval has
+//! constant jerk along the path, `q ~ share^(4/3)`, which joins the spline with value and slope if the spline's
+//! coefficient there is 0 and the interval counts as half as long again. So there is one unknown an interval.
+//!
+//! **The limits.** The jerk of an axis is `sqrt(q) * L(q)` with `L` linear in `q`, `q'`, `q''`: not convex. But
+//! `|L| <= j / sqrt(q)` has a convex right side, which lies above each of its tangents: with any `m > 0`,
+//! `|L| <= j * (3/2 - q / 2m) / sqrt(m)` is *sufficient*, and linear. Each round solves the convex program with `m`
+//! from the round before (a convex-concave procedure), by the interior-point method with five diagonals: whatever
+//! round is the last, its plan keeps every limit. Between samples too: both sides are cubics over an interval, and the
+//! rows hold their Bernstein coefficients apart (see `forms`), exactly so for an axis that follows a cubic there.
+//!
+//! **The cost** is the time, `Σ weight / sqrt(coefficient)`, which by convexity is never below the true time.
+
+mod forms;
+mod law;
+mod rounds;
+
+pub use law::{Law, Piece};
+
+use crate::infeasible::Infeasible;
+use crate::limits::Limit;
+use crate::problem::Problem;
+use crate::samples::Samples;
+use crate::{profile, reach};
+
+/// How long to go on.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Largest number of rounds.
+    pub rounds: usize,
+    /// The rounds end where one shortens the time by no more than this share.
+    pub progress: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            rounds: 40,
+            progress: 1e-5,
+        }
+    }
+}
+
+/// A plan with jerk limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The feed at every point of the path.
+    pub law: Law,
+    /// Its time, s.
+    pub seconds: f64,
+    /// The time of the plan without jerk limits by reachability analysis, which no plan with them is below but for
+    /// the difference of the laws between samples.
+    pub bound: f64,
+    /// Rounds of the convex-concave procedure, and iterations of the interior-point method in all of them.
+    pub rounds: usize,
+    /// See `rounds`.
+    pub iterations: usize,
+}
+
+/// Plans a path under `limits`, from rest to rest, or with given speeds at its ends and no acceleration there. Where an
+/// upper bound is 0 it stops on the way.
+///
+/// `problem` is made of the same samples and limits, with [`crate::limits::Collocation::Throughout`].
+///
+/// # Errors
+/// Which limit cannot be kept, and where; [`Infeasible::TooShort`] where there are fewer than four intervals between
+/// two stops.
+pub fn solve(
+    samples: &Samples,
+    limits: &[&dyn Limit],
+    problem: &Problem,
+    settings: Settings,
+) -> Result<Plan, Infeasible> {
+    let fast = reach::solve(problem)?;
+    let last = problem.steps.len();
+    let mut plan = Plan {
+        law: Law {
+            steps: problem.steps.clone(),
+            pieces: Vec::with_capacity(last),
+        },
+        seconds: 0.0,
+        bound: profile::duration(&problem.steps, &fast),
+        rounds: 0,
+        iterations: 0,
+    };
+    let mut first = 0;
+    while first < last {
+        let stop = (first + 1..last).find(|&sample| problem.upper[sample] == 0.0);
+        let next = stop.unwrap_or(last);
+        if next - first < 4 {
+            return Err(Infeasible::TooShort { sample: first });
+        }
+        let stretch = rounds::Stretch {
+            samples,
+            limits,
+            problem,
+            fast: &fast,
+            first,
+            last: next,
+        };
+        stretch.plan(settings, &mut plan)?;
+        first = next;
+    }
+    plan.seconds = plan.law.duration();
+    Ok(plan)
+}

@@ -197,8 +197,9 @@ impl Problem {
                 return Err(Infeasible::NotANumber { sample, source });
             }
         }
-        // The negation also catches a step that is not a number.
-        if let Some(sample) = self.steps.iter().position(|&step| !(step > 0.0)) {
+        // What is not a number does not grow.
+        let grows = |step: f64| step > 0.0;
+        if let Some(sample) = self.steps.iter().position(|&step| !grows(step)) {
             return Err(Infeasible::Standstill { sample });
         }
         let bad = |row: &Row| !(row.here.is_finite() && row.next.is_finite());

@@ -8,12 +8,13 @@ pub struct AxisSamples {
     pub first: Vec<f64>,
     /// Second derivative.
     pub second: Vec<f64>,
-    /// Third derivative.
+    /// Third derivative; where it jumps (at the knots of a cubic spline, which then must be samples), the one behind.
     pub third: Vec<f64>,
 }
 
 /// The path at `n + 1` values of its parameter. The parameter may be the arc length or any other that grows along the
-/// path; `q` is the square of its speed.
+/// path; `q` is the square of its speed. First and second derivatives must be continuous: a path with corners, or with
+/// arcs beside lines, is more than one path, or stops there.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
     /// The parameter, growing.

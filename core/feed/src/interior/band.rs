@@ -20,8 +20,9 @@ impl<const K: usize> Band<K> {
             let mut factor = pivot;
             for k in 1..K.min(size - column) {
                 factor[k] = pivot[k] / pivot[0];
-                for m in k..K.min(size - column) {
-                    self.rows[column + k][m - k] -= factor[k] * pivot[m];
+                let row = self.rows[column + k].iter_mut();
+                for (entry, pivot) in row.zip(&pivot[k..]) {
+                    *entry -= factor[k] * pivot;
                 }
             }
             self.rows[column] = factor;

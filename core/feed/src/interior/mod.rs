@@ -152,10 +152,11 @@ impl<const K: usize> Program<K> {
         let mut slope: Vec<f64> = self.weights.iter().map(|weight| -weight).collect();
         let mut bound = 0.0;
         for (first, rows) in self.offsets.windows(2).enumerate() {
-            for row in rows[0]..rows[1] {
-                let multiplier = multipliers[row].max(0.0);
-                bound -= multiplier * self.rows[row].most;
-                for (slope, a) in slope[first..].iter_mut().zip(self.rows[row].a) {
+            let range = rows[0]..rows[1];
+            for (row, multiplier) in self.rows[range.clone()].iter().zip(&multipliers[range]) {
+                let multiplier = multiplier.max(0.0);
+                bound -= multiplier * row.most;
+                for (slope, a) in slope[first..].iter_mut().zip(row.a) {
                     *slope += multiplier * a;
                 }
             }
@@ -269,8 +270,9 @@ impl<'a, const K: usize> State<'a, K> {
                 for k in 0..K {
                     self.dual[first + k] += a[k] * pair.z;
                     let scaled = ratio * a[k];
-                    for m in k..K {
-                        self.band.rows[first + k][m - k] += scaled * a[m];
+                    let entries = self.band.rows[first + k].iter_mut();
+                    for (entry, a) in entries.zip(&a[k..]) {
+                        *entry += scaled * a;
                     }
                 }
             }

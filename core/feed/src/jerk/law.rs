@@ -60,8 +60,8 @@ impl Piece {
 /// Nodes from the middle, and weights, of Gauss' rule of six points on an interval of length 1.
 const GAUSS: [[f64; 2]; 3] = [
     [0.119_309_593_041_598_5, 0.233_956_967_286_345_5],
-    [0.330_604_693_233_132_25, 0.180_380_786_524_069_3],
-    [0.466_234_757_101_576_05, 0.085_662_246_189_585_17],
+    [0.330_604_693_233_132_2, 0.180_380_786_524_069_3],
+    [0.466_234_757_101_576, 0.085_662_246_189_585_2],
 ];
 
 /// The feed of a whole path. Velocity and acceleration are continuous; the jerk along the path jumps at samples.
@@ -84,12 +84,13 @@ impl Law {
     /// `q` at each sample.
     #[must_use]
     pub fn q(&self) -> Vec<f64> {
-        let each = self.pieces.iter().zip(&self.steps);
-        let mut q: Vec<f64> = each
-            .clone()
-            .map(|(piece, &step)| piece.at(0.0, step)[0])
-            .collect();
-        q.extend(each.last().map(|(piece, &step)| piece.at(1.0, step)[0]));
+        let mut q: Vec<f64> = Vec::with_capacity(self.pieces.len() + 1);
+        for (index, (piece, &step)) in self.pieces.iter().zip(&self.steps).enumerate() {
+            if index == 0 {
+                q.push(piece.at(0.0, step)[0]);
+            }
+            q.push(piece.at(1.0, step)[0]);
+        }
         q
     }
 }

@@ -1,5 +1,6 @@
 //! Acceleration of each axis (feedrate paper, eqs. 19, 21, 23).
 
+use super::channel::axis_channels;
 use super::{Channel, Collocation, Limit, Order, first_derivative};
 use crate::problem::{Row, Table};
 use crate::samples::Samples;
@@ -50,17 +51,7 @@ impl Limit for AxisAcceleration {
     }
 
     fn channels(&self, samples: &Samples, interval: usize, sink: &mut dyn FnMut(Channel)) {
-        for (index, (axis, &limit)) in samples.axes.iter().zip(&self.limits).enumerate() {
-            let pair = |all: &[f64]| [all[interval], all[interval + 1]];
-            sink(Channel {
-                first: pair(&axis.first),
-                second: pair(&axis.second),
-                third: pair(&axis.third),
-                order: Order::Acceleration,
-                limit,
-                axis: Some(index as u16),
-            });
-        }
+        axis_channels(samples, interval, Order::Acceleration, &self.limits, sink);
     }
 }
 

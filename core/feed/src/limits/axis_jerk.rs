@@ -1,5 +1,6 @@
 //! Jerk of each axis.
 
+use super::channel::axis_channels;
 use super::{Channel, Limit, Order};
 use crate::problem::Table;
 use crate::samples::Samples;
@@ -23,16 +24,6 @@ impl Limit for AxisJerk {
     fn apply(&self, _: &Samples, _: &mut Table<'_>) {}
 
     fn channels(&self, samples: &Samples, interval: usize, sink: &mut dyn FnMut(Channel)) {
-        for (index, (axis, &limit)) in samples.axes.iter().zip(&self.limits).enumerate() {
-            let pair = |all: &[f64]| [all[interval], all[interval + 1]];
-            sink(Channel {
-                first: pair(&axis.first),
-                second: pair(&axis.second),
-                third: pair(&axis.third),
-                order: Order::Jerk,
-                limit,
-                axis: Some(index as u16),
-            });
-        }
+        axis_channels(samples, interval, Order::Jerk, &self.limits, sink);
     }
 }

@@ -21,7 +21,7 @@ pub struct Channel {
     pub first: [f64; 2],
     /// The second.
     pub second: [f64; 2],
-    /// The third.
+    /// The third, from inside.
     pub third: [f64; 2],
     /// Which derivative by time is limited.
     pub order: Order,
@@ -29,6 +29,50 @@ pub struct Channel {
     pub limit: f64,
     /// The axis it is, if it is one.
     pub axis: Option<u16>,
+}
+
+impl Channel {
+    /// Of the derivatives at two samples, the second one `step` behind the first. The third derivative may jump at a
+    /// sample (at the knot of a cubic spline it does), and a sample has the one behind it: at the interval's end it
+    /// follows from the second.
+    pub(super) fn between(
+        first: [f64; 2],
+        second: [f64; 2],
+        third: f64,
+        step: f64,
+        order: Order,
+        limit: f64,
+    ) -> Self {
+        let mean = (second[1] - second[0]) / step;
+        Self {
+            first,
+            second,
+            third: [third, 2.0 * mean - third],
+            order,
+            limit,
+            axis: None,
+        }
+    }
+}
+
+/// The channels of each axis.
+pub(super) fn axis_channels(
+    samples: &Samples,
+    interval: usize,
+    order: Order,
+    limits: &[f64],
+    sink: &mut dyn FnMut(Channel),
+) {
+    let step = samples.step(interval);
+    for (index, (axis, &limit)) in samples.axes.iter().zip(limits).enumerate() {
+        let pair = |all: &[f64]| [all[interval], all[interval + 1]];
+        let (first, second) = (pair(&axis.first), pair(&axis.second));
+        let channel = Channel::between(first, second, axis.third[interval], step, order, limit);
+        sink(Channel {
+            axis: Some(index as u16),
+            ..channel
+        });
+    }
 }
 
 /// Directions so dense that a vector whose component along each is small enough is short enough itself.
@@ -115,16 +159,13 @@ pub(super) fn tip_channels(
     limit: f64,
     sink: &mut dyn FnMut(Channel),
 ) {
+    let step = samples.step(interval);
     for &unit in &directions.units {
         let pair = |all: &[[f64; 3]]| [dot(unit, all[interval]), dot(unit, all[interval + 1])];
-        sink(Channel {
-            first: pair(&samples.tip[0]),
-            second: pair(&samples.tip[1]),
-            third: pair(&samples.tip[2]),
-            order,
-            limit: limit * directions.share,
-            axis: None,
-        });
+        let (first, second) = (pair(&samples.tip[0]), pair(&samples.tip[1]));
+        let third = dot(unit, samples.tip[2][interval]);
+        let limit = limit * directions.share;
+        sink(Channel::between(first, second, third, step, order, limit));
     }
 }
 

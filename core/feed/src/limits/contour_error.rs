@@ -11,6 +11,9 @@ const STEPS: usize = 4096;
 /// The lowest frequency of the table, as a share of the highest.
 const LOWEST: f64 = 1e-6;
 
+/// By how much deviations are rounded up, as a share, for what lies between two frequencies of the table.
+const MARGIN: f64 = 4e-6;
+
 /// A path that is straighter than this has this curvature, 1/mm: an arc of a kilometre.
 const STRAIGHT: f64 = 1e-6;
 
@@ -43,10 +46,11 @@ impl ContourError {
     ) -> Self {
         let mut most: f64 = 0.0;
         let ratio = libm::log(1.0 / LOWEST) / STEPS as f64;
-        let at = |step: usize| highest * LOWEST * libm::exp(ratio * step as f64);
+        // From the top, so that the highest is exact.
+        let at = |step: usize| highest * libm::exp(-ratio * (STEPS - step) as f64);
         let frequencies: Vec<f64> = (0..=STEPS).map(at).collect();
         let largest = |&frequency: &f64| {
-            most = most.max(deviation(axes, frequency));
+            most = most.max(deviation(axes, frequency) * (1.0 + MARGIN));
             most
         };
         let deviations = frequencies.iter().map(largest).collect();
@@ -71,7 +75,7 @@ impl ContourError {
         let Some(&above) = self.deviations.get(after) else {
             return self.frequencies[after - 1];
         };
-        // On the chord between two frequencies, which stays on the safe side of a convex curve.
+        // On the chord between two frequencies.
         let below = self.deviations[after - 1];
         let share = (allowed - below) / (above - below);
         let low = self.frequencies[after - 1];

@@ -21,7 +21,7 @@ pub use axis_velocity::AxisVelocity;
 pub use block_time::BlockTime;
 pub use channel::{Channel, Order};
 pub use chord_error::ChordError;
-pub use contour_error::ContourError;
+pub use contour_error::{ContourError, deviation};
 pub use feed::Feed;
 pub use tip_acceleration::TipAcceleration;
 pub use tip_jerk::TipJerk;

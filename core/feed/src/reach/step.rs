@@ -72,8 +72,8 @@ pub(super) fn highest_before(rows: &[Row], upper: f64, low: f64, high: f64) -> O
             return Some(x);
         }
         let slope = span.high_slope - span.low_slope;
-        // Farther left there is even less; nor can a number be trusted that is none.
-        if !(slope < 0.0) {
+        // Farther left there is even less.
+        if slope >= 0.0 || slope.is_nan() {
             return None;
         }
         x = (x - gap / slope) * (1.0 - INSIDE);
@@ -100,7 +100,7 @@ pub(super) fn lowest_before(rows: &[Row], upper: f64, low: f64, high: f64) -> Op
             break;
         }
         let slope = span.high_slope - span.low_slope;
-        if !(slope > 0.0) {
+        if slope <= 0.0 || slope.is_nan() {
             return None;
         }
         x = (x - gap / slope) * (1.0 + INSIDE);

@@ -3,5 +3,6 @@
 mod agreement;
 mod five_axes;
 mod infeasible;
+mod paper;
 mod streaming;
 mod support;

@@ -85,6 +85,17 @@ pub fn even(first: f64, last: f64, count: usize) -> Vec<f64> {
     (0..count).map(at).collect()
 }
 
+/// The knots of a curve, and so many even steps between each and the next.
+pub fn spans(curve: &Curve<2>, steps: usize) -> Vec<f64> {
+    let breaks: Vec<f64> = curve.breaks().collect();
+    let mut all: Vec<f64> = Vec::new();
+    for pair in breaks.windows(2) {
+        all.pop();
+        all.extend(even(pair[0], pair[1], steps + 1));
+    }
+    all
+}
+
 /// Arc length by Gauss' rule of five points on each of many pieces.
 pub fn length(curve: &Curve<2>, pieces: usize) -> f64 {
     let nodes = [

@@ -34,13 +34,9 @@ fn span(rows: &[Row], x: f64, low: f64, high: f64) -> Span {
         high,
         high_slope: 0.0,
     };
-    for row in rows {
-        if row.next.abs() <= FLAT {
-            continue;
-        }
-        let inverse = 1.0 / row.next;
-        let slope = -row.here * inverse;
-        let (middle, half) = (slope * x, inverse.abs());
+    for &row in rows {
+        let [slope, half] = lines(row);
+        let middle = slope * x;
         if middle + half < span.high {
             span.high = middle + half;
             span.high_slope = slope;
@@ -51,6 +47,18 @@ fn span(rows: &[Row], x: f64, low: f64, high: f64) -> Span {
         }
     }
     span
+}
+
+/// A row leaves `y` between `slope * x - half` and `slope * x + half`. Without branches, so that rows can be done
+/// several at a time.
+#[inline]
+fn lines(row: Row) -> [f64; 2] {
+    let flat = row.next.abs() <= FLAT;
+    let inverse = 1.0 / row.next;
+    [
+        if flat { 0.0 } else { -row.here * inverse },
+        if flat { f64::INFINITY } else { inverse.abs() },
+    ]
 }
 
 /// The largest `x` by the rows that bound it alone.
@@ -115,14 +123,11 @@ pub(super) fn lowest_before(rows: &[Row], upper: f64, low: f64, high: f64) -> Op
 /// The largest `y` of `low..=high` that `x` allows.
 #[inline]
 pub(super) fn highest_after(rows: &[Row], x: f64, low: f64, high: f64) -> f64 {
-    let mut reach = high;
-    for row in rows {
-        if row.next.abs() <= FLAT {
-            continue;
-        }
-        let inverse = 1.0 / row.next;
-        reach = reach.min(inverse.abs() - row.here * inverse * x);
-    }
+    let reach = rows.iter().fold(high, |reach, &row| {
+        let [slope, half] = lines(row);
+        let most = slope * x + half;
+        if most < reach { most } else { reach }
+    });
     // Only rounding can have put it below: `x` was chosen so that some `y` is allowed.
     reach.max(low)
 }
@@ -130,12 +135,9 @@ pub(super) fn highest_after(rows: &[Row], x: f64, low: f64, high: f64) -> f64 {
 /// The smallest `y` that `x` allows, and the row that allows no less.
 pub(super) fn lowest_after(rows: &[Row], x: f64) -> (f64, Option<usize>) {
     let mut least = (0.0, None);
-    for (index, row) in rows.iter().enumerate() {
-        if row.next.abs() <= FLAT {
-            continue;
-        }
-        let inverse = 1.0 / row.next;
-        let low = -row.here * inverse * x - inverse.abs();
+    for (index, &row) in rows.iter().enumerate() {
+        let [slope, half] = lines(row);
+        let low = slope * x - half;
         if low > least.0 {
             least = (low, Some(index));
         }

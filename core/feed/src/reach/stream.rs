@@ -1,4 +1,4 @@
-//! Reachability analysis with bounded look-ahead: a path of any length in the memory of two look-aheads.
+//! Reachability analysis with bounded look-ahead: a path of any length in the memory of four look-aheads.
 //!
 //! A window's controllable sets are found as if the path ended at rest where the window ends. From every such set the
 //! tool can stop within the window, and standing still keeps every row: so the speed that one window hands on lies in
@@ -10,6 +10,10 @@
 use super::{Reach, step};
 use crate::infeasible::Infeasible;
 use crate::problem::{Ends, Problem};
+
+/// Look-aheads that a window is long: all but one of them are handed on at once, so that the sets of few samples are
+/// found twice.
+const WINDOW: usize = 4;
 
 /// Plans a path that comes in batches, and hands on `q` sample by sample as soon as the look-ahead allows.
 ///
@@ -45,8 +49,8 @@ impl Stream {
     pub fn new(stride: usize, lookahead: usize) -> Self {
         let lookahead = lookahead.max(1);
         let mut window = Problem::default();
-        window.upper.reserve(2 * lookahead + 1);
-        window.rows.reserve(2 * lookahead * stride);
+        window.upper.reserve(WINDOW * lookahead + 1);
+        window.rows.reserve(WINDOW * lookahead * stride);
         window.sources.resize(stride, Default::default());
         Self {
             lookahead,
@@ -95,8 +99,8 @@ impl Stream {
             window.causes.push(batch.causes[0]);
         }
         for interval in 0..batch.steps.len() {
-            if self.window.steps.len() >= 2 * self.lookahead {
-                self.advance(self.lookahead, 0.0, sink)?;
+            if self.window.steps.len() >= WINDOW * self.lookahead {
+                self.advance((WINDOW - 1) * self.lookahead, 0.0, sink)?;
             }
             let window = &mut self.window;
             window.steps.push(batch.steps[interval]);

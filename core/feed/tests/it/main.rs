@@ -1,4 +1,8 @@
 //! The crate as its callers see it.
+#![allow(
+    clippy::unwrap_used,
+    reason = "clippy lets test functions unwrap, but not the helpers beside them"
+)]
 
 mod agreement;
 mod five_axes;

@@ -17,7 +17,8 @@ use std::hint::black_box;
 use std::io::Write;
 use std::time::Instant;
 
-use post_feed::limits::Collocation;
+use post_feed::jerk;
+use post_feed::limits::{AxisJerk, Collocation, Limit};
 use post_feed::reach::{Reach, Stream};
 use post_feed::{Ends, Problem, linear_program};
 use random::{Limits, Random};
@@ -53,6 +54,42 @@ fn main() {
                 count *= 10;
             }
         }
+    }
+    say("with jerk limits");
+    say("axes  samples   a second   rounds iterations times as long as without");
+    for axes in [3, 5] {
+        let mut count = 1000;
+        while count <= most.min(100_000) {
+            with_jerk(axes, count);
+            count *= 10;
+        }
+    }
+}
+
+/// Plans with jerk limits: time, rounds and how much longer they take than without.
+fn with_jerk(axes: usize, count: usize) {
+    let mut random = Random::new(7);
+    let samples = random::samples(&mut random, axes, count, 0.1 * count as f64);
+    let limits = Limits::new(&mut random, axes, Collocation::Throughout);
+    let jerk = AxisJerk {
+        limits: vec![20_000.0; axes],
+    };
+    let mut all: Vec<&dyn Limit> = limits.all().to_vec();
+    all.push(&jerk);
+    let Ok(problem) = Problem::new(&samples, &all, Ends::default()) else {
+        say("no problem");
+        return;
+    };
+    let begin = Instant::now();
+    match jerk::solve(&samples, &all, &problem, jerk::Settings::default()) {
+        Ok(plan) => say(&format!(
+            "{axes:>4} {count:>8} {:>10.3e} {:>8} {:>10} {:>8.4}",
+            count as f64 / begin.elapsed().as_secs_f64(),
+            plan.rounds,
+            plan.iterations,
+            plan.seconds / plan.bound
+        )),
+        Err(fault) => say(&format!("{axes} axes, {count} samples: {fault}")),
     }
 }
 

@@ -159,7 +159,7 @@ impl Scaled {
                 if a[0].abs() + a[1].abs() + shift.abs() < 1.0 || size == 0.0 {
                     continue;
                 }
-                let most = |side: f64| (1.0 - side * shift).max(0.0) / size;
+                let most = |side: f64| (1.0 - side * shift) / size;
                 for side in [1.0, -1.0] {
                     program.rows.push(Inequality {
                         a: a.map(|a| side * a / size),

@@ -85,7 +85,10 @@ impl Problem {
         limits: &[&dyn Limit],
         ends: Ends,
     ) -> Result<(), Infeasible> {
-        let count = samples.parameter.len();
+        if !samples.is_whole() {
+            return Err(Infeasible::Shape);
+        }
+        let count = samples.len();
         self.ends = ends;
         self.steps.clear();
         self.steps

@@ -55,6 +55,20 @@ impl Samples {
         self.parameter[interval + 1] - self.parameter[interval]
     }
 
+    /// Whether every array has a value for each sample; the lengths of blocks may be missing.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        let count = self.len();
+        let axes = self
+            .axes
+            .iter()
+            .flat_map(|axis| [&axis.first, &axis.second, &axis.third]);
+        self.tip.iter().all(|all| all.len() == count)
+            && self.curvature.len() == count
+            && axes.into_iter().all(|all| all.len() == count)
+            && (self.blocks.is_empty() || self.blocks.len() == count)
+    }
+
     /// Removes all samples and keeps the memory.
     pub fn clear(&mut self) {
         self.parameter.clear();

@@ -93,12 +93,12 @@ impl Pair {
 
 /// How far a step may go until a slack or a multiplier is 0, and what products would be left.
 #[derive(Clone, Copy)]
-struct Reach {
+struct Room {
     primal: f64,
     dual: f64,
 }
 
-impl Reach {
+impl Room {
     fn meet(&mut self, pair: &Pair) {
         if pair.ds < 0.0 {
             self.primal = self.primal.min(-pair.s / pair.ds);
@@ -295,17 +295,17 @@ impl<'a, const K: usize> State<'a, K> {
         let left = self.products(affine);
         let share = (left / gap).clamp(0.0, 1.0);
         let centre = share * share * share * mean;
-        let mut reach = self.direction(Some(centre));
+        let mut room = self.direction(Some(centre));
         if self.program.cost != Cost::Linear {
             // A curved cost ties both steps together.
-            let both = reach.primal.min(reach.dual);
-            reach = Reach {
+            let both = room.primal.min(room.dual);
+            room = Room {
                 primal: both,
                 dual: both,
             };
         }
-        let primal = (SHORT * reach.primal).min(1.0);
-        let dual = (SHORT * reach.dual).min(1.0);
+        let primal = (SHORT * room.primal).min(1.0);
+        let dual = (SHORT * room.dual).min(1.0);
         for (x, dx) in self.x.iter_mut().zip(&self.dx) {
             *x += primal * dx;
         }
@@ -317,7 +317,7 @@ impl<'a, const K: usize> State<'a, K> {
     }
 
     /// Solves for the steps towards `s * z = 0`, or with the correction of second order towards `centre`.
-    fn direction(&mut self, centre: Option<f64>) -> Reach {
+    fn direction(&mut self, centre: Option<f64>) -> Room {
         let program = self.program;
         let target = |pair: Pair| match centre {
             Some(centre) => pair.correction(centre),
@@ -341,7 +341,7 @@ impl<'a, const K: usize> State<'a, K> {
             }
         }
         self.band.solve(&mut self.dx);
-        let mut reach = Reach {
+        let mut room = Room {
             primal: f64::INFINITY,
             dual: f64::INFINITY,
         };
@@ -353,7 +353,7 @@ impl<'a, const K: usize> State<'a, K> {
             for (pair, slide) in [(&mut self.low[unknown], dx), (&mut self.high[unknown], -dx)] {
                 let goal = target(*pair);
                 pair.turn(slide, goal);
-                reach.meet(pair);
+                room.meet(pair);
             }
         }
         for (first, range) in program.offsets.windows(2).enumerate() {
@@ -362,15 +362,15 @@ impl<'a, const K: usize> State<'a, K> {
                 let goal = target(*pair);
                 let slide = -self.miss[index] - combine(&program.rows[index].a, &self.dx[first..]);
                 pair.turn(slide, goal);
-                reach.meet(pair);
+                room.meet(pair);
             }
         }
-        reach
+        room
     }
 
     /// The sum of products after a step as far as it goes.
-    fn products(&self, reach: Reach) -> f64 {
-        let (primal, dual) = (reach.primal.min(1.0), reach.dual.min(1.0));
+    fn products(&self, room: Room) -> f64 {
+        let (primal, dual) = (room.primal.min(1.0), room.dual.min(1.0));
         let product = |pair: &Pair| (pair.s + primal * pair.ds) * (pair.z + dual * pair.dz);
         let free = (0..self.x.len()).filter(|&unknown| !self.program.fixed(unknown));
         let bounds = free.map(|unknown| product(&self.low[unknown]) + product(&self.high[unknown]));

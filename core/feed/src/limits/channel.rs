@@ -2,6 +2,7 @@
 //! time is limited.
 
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 use crate::samples::{Samples, dot};
 
@@ -76,20 +77,24 @@ pub(super) fn axis_channels(
 }
 
 /// Directions so dense that a vector whose component along each is small enough is short enough itself.
-pub(super) struct Directions {
+struct Directions {
     units: Vec<[f64; 3]>,
     /// Cosine of the largest angle that a vector can have with the nearest of them, or with its opposite.
     share: f64,
 }
 
+static PLANE: LazyLock<Directions> = LazyLock::new(|| Directions::plane(8));
+static SPACE: LazyLock<Directions> = LazyLock::new(Directions::icosahedron);
+
 impl Directions {
-    /// Those that a path needs: eight if it stays in a plane parallel to XY, else the 31 axes of an icosahedron.
-    pub(super) fn of(samples: &Samples) -> Self {
-        let flat = |vectors: &Vec<[f64; 3]>| vectors.iter().all(|vector| vector[2] == 0.0);
+    /// Those that an interval needs: eight if it stays in a plane parallel to XY, else the 31 axes of an icosahedron.
+    fn of(samples: &Samples, interval: usize) -> &'static Self {
+        let ends = [interval, interval + 1];
+        let flat = |vectors: &Vec<[f64; 3]>| ends.iter().all(|&at| vectors[at][2] == 0.0);
         if samples.tip.iter().all(flat) {
-            Self::plane(8)
+            &PLANE
         } else {
-            Self::icosahedron()
+            &SPACE
         }
     }
 
@@ -154,11 +159,11 @@ const ICOSAHEDRON: f64 = 0.946;
 pub(super) fn tip_channels(
     samples: &Samples,
     interval: usize,
-    directions: &Directions,
     order: Order,
     limit: f64,
     sink: &mut dyn FnMut(Channel),
 ) {
+    let directions = Directions::of(samples, interval);
     let step = samples.step(interval);
     for &unit in &directions.units {
         let pair = |all: &[[f64; 3]]| [dot(unit, all[interval]), dot(unit, all[interval + 1])];

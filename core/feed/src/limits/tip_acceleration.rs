@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::axis_acceleration::acceleration;
-use super::channel::{Directions, tip_channels};
+use super::channel::tip_channels;
 use super::{Channel, Collocation, Limit, Order};
 use crate::problem::{Row, Table};
 use crate::samples::{Samples, dot, norm};
@@ -77,15 +77,7 @@ impl Limit for TipAcceleration {
     }
 
     fn channels(&self, samples: &Samples, interval: usize, sink: &mut dyn FnMut(Channel)) {
-        let directions = Directions::of(samples);
-        tip_channels(
-            samples,
-            interval,
-            &directions,
-            Order::Acceleration,
-            self.limit,
-            sink,
-        );
+        tip_channels(samples, interval, Order::Acceleration, self.limit, sink);
     }
 }
 

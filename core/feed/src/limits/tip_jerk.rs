@@ -1,6 +1,6 @@
 //! Jerk of the tip.
 
-use super::channel::{Directions, tip_channels};
+use super::channel::tip_channels;
 use super::{Channel, Limit, Order};
 use crate::problem::Table;
 use crate::samples::Samples;
@@ -24,14 +24,6 @@ impl Limit for TipJerk {
     fn apply(&self, _: &Samples, _: &mut Table<'_>) {}
 
     fn channels(&self, samples: &Samples, interval: usize, sink: &mut dyn FnMut(Channel)) {
-        let directions = Directions::of(samples);
-        tip_channels(
-            samples,
-            interval,
-            &directions,
-            Order::Jerk,
-            self.limit,
-            sink,
-        );
+        tip_channels(samples, interval, Order::Jerk, self.limit, sink);
     }
 }

@@ -29,7 +29,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// Finds the controllable sets of `problem`.
+    /// Finds the controllable sets of `problem`, which has passed [`Problem::check`] as those of [`Problem::new`] have.
     ///
     /// # Errors
     /// Where one is empty, or does not hold the speed that the plan begins with: which limit, and where.
@@ -78,7 +78,7 @@ impl Reach {
         (&self.low, &self.high)
     }
 
-    /// The fastest plan by reachability analysis, put into `plan`.
+    /// The fastest plan by reachability analysis, put into `plan`; for problems as of [`Reach::controllable`].
     ///
     /// Rows are kept up to rounding: 1e-12 of a limit.
     ///

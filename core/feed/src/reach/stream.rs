@@ -75,7 +75,8 @@ impl Stream {
 
     /// Takes the next batch, whose first sample is the last of the batch before (its bound is the lower of the two),
     /// and hands on `q` of each sample that is settled, in order. `ends.start` counts in the first batch alone,
-    /// `ends.end` nowhere: [`Stream::finish`] is told the end.
+    /// `ends.end` nowhere: [`Stream::finish`] is told the end. A batch has passed [`Problem::check`], as those of
+    /// [`Problem::new`] have.
     ///
     /// # Errors
     /// A start that is too fast; sample numbers count from the beginning of the path.

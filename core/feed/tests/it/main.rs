@@ -8,5 +8,6 @@ mod agreement;
 mod five_axes;
 mod infeasible;
 mod paper;
+mod properties;
 mod streaming;
 mod support;

@@ -12,6 +12,8 @@
 //! round is the last, its plan keeps every limit. Between samples too: both sides are cubics over an interval, and the
 //! rows hold their Bernstein coefficients apart (see `forms`), exactly so for an axis that follows a cubic there.
 //!
+//! Samples are best closer together where the path is at rest: [`graded`].
+//!
 //! **The cost** is the time, `Σ weight / sqrt(coefficient)`, which by convexity is never below the true time.
 
 mod forms;
@@ -58,6 +60,34 @@ pub struct Plan {
     pub rounds: usize,
     /// See `rounds`.
     pub iterations: usize,
+}
+
+/// By how much a step is longer than the one nearer to rest.
+const GROWTH: f64 = 1.03;
+
+/// The step beside rest, as a share of the longest.
+const SMALLEST: f64 = 1e-3;
+
+/// Values of a parameter from `first` to `last`, where the path is at rest, in steps of at most about `step` that are
+/// shorter and shorter towards both.
+///
+/// Over an interval `q''` is constant, so the jerk along the path grows with the speed and reaches its limit at one end
+/// alone. Near rest, where the speed grows as the 2/3rd power of the way, that counts: a line of 100 mm takes 0.54 %
+/// longer than its S-curve with a thousand even samples, and 0.24 % with these.
+#[must_use]
+pub fn graded(first: f64, last: f64, step: f64) -> Vec<f64> {
+    let half = 0.5 * (last - first);
+    let mut from_rest = vec![0.0];
+    let (mut at, mut length) = (0.0, SMALLEST * step);
+    while at < half {
+        at += length;
+        from_rest.push(at);
+        length = (length * GROWTH).min(step);
+    }
+    let scale = half / at.max(f64::MIN_POSITIVE);
+    let up = from_rest.iter().map(|at| first + at * scale);
+    let down = from_rest.iter().rev().skip(1).map(|at| last - at * scale);
+    up.chain(down).collect()
 }
 
 /// Plans a path under `limits`, from rest to rest, or with given speeds at its ends and no acceleration there. Where an

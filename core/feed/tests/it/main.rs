@@ -5,6 +5,7 @@
 )]
 
 mod agreement;
+mod closed_forms;
 mod five_axes;
 mod infeasible;
 mod paper;

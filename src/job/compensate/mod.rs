@@ -6,7 +6,7 @@
 //! servo_compensation`, towards the ends of cuts by nothing; rapids, holes and cuts that the control offsets by the
 //! cutter's radius stay as they are. A corner that the servos round by more than the bound stays rounded. What helps is
 //! judged by prediction alone, against the path of the CL file: a run counts if its root mean square is less than the
-//! last's and its largest error no more than that of the program as it was. Where a run makes it worse, points are moved by
+//! last's and no error beside a point that is moved is larger than the largest of the program as it was. Where a run makes it worse, points are moved by
 //! less, and not at all beside an error that is larger than any was; the others go on. Where no run counts, the program is
 //! written as it was.
 //!
@@ -37,6 +37,10 @@ const ENOUGH: f64 = 0.05;
 
 /// A run that lowers it by less than this share is none that helps.
 const WORTH: f64 = 0.01;
+
+/// Where no point is moved, the largest error may come out larger by this share: set-points fall elsewhere, and where the
+/// tool leaves the part at rapid it goes so far between two of them.
+const ELSEWHERE: f64 = 0.1;
 
 /// How far the tool is off the CL path in cuts, the servos in between.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -125,15 +129,11 @@ pub fn compensate(
             break;
         }
         last = found;
-        let worse = left.damp(&errors, before.largest_mm, &mut gains);
-        eprintln!(
-            "run {runs} rms {} largest {} line {}",
-            found.rms_mm * 1e3,
-            found.largest_mm * 1e3,
-            found.nc_line
-        );
-        // Arcs that go as moves may differ by a hair, and that is no help.
-        if found.rms_mm > after.rms_mm * (1.0 - WORTH) || found.largest_mm > before.largest_mm {
+        let most = before.largest_mm;
+        let worse = left.damp(&errors, most, &mut gains);
+        let larger = left.largest_at(&next) > most || found.largest_mm > most * (1.0 + ELSEWHERE);
+        // Less may be chance, and is no help.
+        if larger || found.rms_mm > after.rms_mm * (1.0 - WORTH) {
             if !worse {
                 break;
             }

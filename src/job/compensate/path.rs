@@ -105,6 +105,13 @@ impl Errors {
         (weight > 0.05).then(|| sum.map(|sum| sum / weight))
     }
 
+    /// The largest error beside a point that is moved, mm.
+    pub fn largest_at(&self, moves: &Moves) -> f64 {
+        let beside = self.points.iter().zip(moves);
+        let moved = beside.filter(|(_, by)| **by != [0.0; 3]);
+        moved.fold(0.0, |most, (beside, _)| most.max(f64::from(beside.largest)))
+    }
+
     /// Holds the points back beside which these errors are worse than the `last`, by half; and entirely where one is
     /// larger than `most` mm. Whether there are any that were not held back before.
     pub fn damp(&self, last: &Self, most: f64, gains: &mut [f32]) -> bool {

@@ -183,6 +183,15 @@ pub fn predict<R: Read + Seek>(
         return Err(reading.unread.into());
     }
     let mut findings = reading.tasks.notes();
+    if points.is_none() {
+        let message =
+            "nothing moves in this program: no time, no feed and no error can be predicted";
+        let help =
+            "is it the program of this machine's control? `post read` says what is read of it";
+        let place = Place::new(name, 1, "", 0..0);
+        let finding = Diagnostic::warning("no-motion", message).help(help);
+        findings.push(finding.at(Some(place)));
+    }
     told(name, program.report(), &mut findings);
     found::warn(machine, &mut findings);
     let found = stages.finish(machine, name, program.report().blocks, listen)?;

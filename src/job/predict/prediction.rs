@@ -66,7 +66,7 @@ pub struct LimitTime {
     /// What it limits: `cut`, `rapid` or `wait`.
     pub kind: &'static str,
     /// What limits: `feed`, `axis velocity`, `axis acceleration`, `axis jerk`, `tip acceleration`, `tip jerk`, `corner`,
-    /// `block time`, `wait`.
+    /// `block time`; what is waited for: `dwell`, `tool change`, `spindle`, `standstill`.
     pub limit: &'static str,
     /// The axis, if it is one.
     pub axis: Option<String>,

@@ -104,7 +104,7 @@ impl<'r> Stages<'r> {
         }
         self.ahead.push_back(Ahead {
             kind: match (&planned.task, planned.rapid) {
-                (Task::Wait { .. }, _) => Kind::Wait,
+                (Task::Wait { why, .. }, _) => Kind::Wait(*why),
                 (Task::Move(_), true) => Kind::Rapid,
                 (Task::Move(_), false) => Kind::Cut,
             },

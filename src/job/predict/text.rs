@@ -244,7 +244,7 @@ fn name(row: &LimitTime) -> String {
         other => other.to_owned(),
     };
     match row.kind {
-        "wait" => "waits".to_owned(),
+        "wait" => format!("waiting: {limit}"),
         kind => format!("{kind}s: {limit}"),
     }
 }

@@ -164,6 +164,9 @@ fn axes(text: &mut String, axes: &[AxisFound]) {
         "jerk /s³",
         "of",
         "line",
+        "jump /min",
+        "of",
+        "line",
     ];
     let mut rows = vec![head.map(str::to_owned)];
     for axis in axes {
@@ -196,6 +199,9 @@ fn axes(text: &mut String, axes: &[AxisFound]) {
             number(axis.jerk.value, 0),
             limit(&axis.jerk),
             line(&axis.jerk),
+            number(axis.jump.value, 0),
+            limit(&axis.jump),
+            line(&axis.jump),
         ]);
     }
     text.push('\n');

@@ -30,6 +30,8 @@ pub struct Jump {
     pub time: f64,
     /// Velocities behind it less those before, by place in the chain, mm/s or rad/s.
     pub change: Joints,
+    /// Accelerations behind it less those before, mm/s² or rad/s².
+    pub bend: Joints,
 }
 
 /// Where a set-point stands in the program.

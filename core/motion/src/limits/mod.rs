@@ -103,6 +103,8 @@ pub struct MoveLimits {
     pub third: Joints,
     /// First derivatives where it begins and ends.
     pub ends: [Joints; 2],
+    /// Second derivatives there.
+    pub bends: [Joints; 2],
     /// Bounds of the length of the first, second and third derivative of the tip, mm, part frame.
     pub tip: [f64; 3],
     /// First derivative of the tip where it begins and ends, mm, part frame.

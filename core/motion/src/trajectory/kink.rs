@@ -6,7 +6,7 @@ use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
 
 use super::corner::Side;
 use crate::Move;
-use crate::limits::AxisLimits;
+use crate::limits::{AxisLimits, MoveLimits};
 use crate::path::Way;
 
 /// Changes of the derivatives below this share of them are rounding.
@@ -96,23 +96,37 @@ fn ratio(sides: [Side; 2], rules: &AxisLimits) -> Option<f64> {
     (out > 0.0 && into > 0.0 && ratio.is_finite() && ratio > 0.0).then_some(ratio)
 }
 
-/// How the axes' derivatives over the first of two moves' parameter change where the second one, whose parameter runs
-/// faster by `ratio`, follows it.
+/// How first and second derivatives of the axes, over the first of two moves' parameter, change where the second one, whose
+/// parameter runs faster by `ratio`, follows it.
 ///
 /// # Errors
 /// As [`Way::stance_at`].
-pub(super) fn of_axes([first, next]: [&Move; 2], ratio: f64) -> Result<Joints, Unreachable> {
-    let [out, into] = [slope(first, true)?, slope(next, false)?];
-    Ok(std::array::from_fn(|place| {
-        into[place] * ratio - out[place]
+pub(super) fn of_axes(
+    moves: [&Move; 2],
+    found: [&MoveLimits; 2],
+    rules: &AxisLimits,
+    ratio: f64,
+) -> Result<[Joints; 2], Unreachable> {
+    let [out, into] = match rules.programmed {
+        None => [
+            [found[0].ends[1], found[0].bends[1]],
+            [found[1].ends[0], found[1].bends[0]],
+        ],
+        // What is limited are not the axes.
+        Some(_) => [slopes(moves[0], true)?, slopes(moves[1], false)?],
+    };
+    let scales = [ratio, ratio * ratio];
+    Ok(std::array::from_fn(|order| {
+        std::array::from_fn(|place| into[order][place] * scales[order] - out[order][place])
     }))
 }
 
 /// Step of a difference, of the move's parameter.
-const STEP: f64 = 1e-4;
+const STEP: f64 = 1e-3;
 
-/// How the axes go where a move begins or ends, over its parameter: by a difference of the second order.
-fn slope(task: &Move, ends: bool) -> Result<Joints, Unreachable> {
+/// First and second derivatives of the axes where a move begins or ends, over its parameter: by one-sided differences that are
+/// exact for cubics.
+fn slopes(task: &Move, ends: bool) -> Result<[Joints; 2], Unreachable> {
     let (at, sense) = match ends {
         true => (1.0, -STEP),
         false => (0.0, STEP),
@@ -126,8 +140,18 @@ fn slope(task: &Move, ends: bool) -> Result<Joints, Unreachable> {
             .joints_at(&task.solver, stands, at + steps * sense, &near)?;
         Ok(near)
     };
-    let [here, one, two] = [joints(0.0)?, joints(1.0)?, joints(2.0)?];
-    Ok(std::array::from_fn(|place| {
-        (4.0 * one[place] - 3.0 * here[place] - two[place]) / (2.0 * sense)
-    }))
+    let points = [joints(0.0)?, joints(1.0)?, joints(2.0)?, joints(3.0)?];
+    let weighed = |weights: [f64; 4], by: f64| {
+        std::array::from_fn(|place| {
+            let parts = weights.iter().zip(&points);
+            parts
+                .map(|(weight, joints)| weight * joints[place])
+                .sum::<f64>()
+                / by
+        })
+    };
+    Ok([
+        weighed([-11.0, 18.0, -9.0, 2.0], 6.0 * sense),
+        weighed([2.0, -5.0, 4.0, -1.0], sense * sense),
+    ])
 }

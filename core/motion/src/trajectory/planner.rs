@@ -43,7 +43,7 @@ pub struct Planner {
     /// Waits before anything has moved, s, and what they are.
     early: Vec<(f64, At)>,
     /// How the axes' derivatives change in front of these pieces, over the coordinate of the law.
-    kinks: VecDeque<(u64, Joints)>,
+    kinks: VecDeque<(u64, [Joints; 2])>,
     /// Jumps that no set-point stands behind yet.
     jumps: VecDeque<Jump>,
     tasks: u64,
@@ -71,7 +71,7 @@ struct Entry {
     /// Overlapped by the move before: the change of its rate that it begins with, 1/s², and for how long, s.
     entrance: Option<[f64; 2]>,
     /// Joined to the move before: how the axes' derivatives change over the coordinate of the law.
-    kink: Option<Joints>,
+    kink: Option<[Joints; 2]>,
     at: At,
 }
 
@@ -314,16 +314,15 @@ impl Planner {
     }
 
     /// How the axes' derivatives change between two moves that are joined, over the coordinate of the law.
-    fn kink(&self, [last, next]: [&Entry; 2], ratio: f64) -> Result<Joints, Unreachable> {
-        let moves = [last, next].map(|entry| self.law.task(entry.number));
-        let change = match self.limits.programmed {
-            None => {
-                let [out, into] = [&last.found.ends[1], &next.found.ends[0]];
-                std::array::from_fn(|place| into[place] * ratio - out[place])
-            }
-            Some(_) => kink::of_axes(moves, ratio)?,
-        };
-        Ok(change.map(|change| change / last.scale))
+    fn kink(&self, entries: [&Entry; 2], ratio: f64) -> Result<[Joints; 2], Unreachable> {
+        let moves = entries.map(|entry| self.law.task(entry.number));
+        let found = entries.map(|entry| &entry.found);
+        let [change, bend] = kink::of_axes(moves, found, &self.limits, ratio)?;
+        let scale = entries[0].scale;
+        Ok([
+            change.map(|change| change / scale),
+            bend.map(|bend| bend / (scale * scale)),
+        ])
     }
 
     /// The last move up to its corner, which takes the share `out`.
@@ -450,14 +449,18 @@ impl Planner {
     fn take(&mut self, part: Part) {
         let Part { phase, from, .. } = part;
         let piece = *self.law.piece(part.block);
-        while let Some((number, kink)) = self.kinks.front().filter(|kink| kink.0 <= part.block) {
-            if *number == part.block {
+        let reached = |kink: &mut (u64, [Joints; 2])| kink.0 <= part.block;
+        while let Some((number, [change, bend])) = self.kinks.pop_front_if(reached) {
+            if number == part.block {
+                let (velocity, along) = (phase.velocity, phase.acceleration);
                 self.jumps.push_back(Jump {
                     time: self.clock,
-                    change: kink.map(|change| change * phase.velocity),
+                    change: change.map(|change| change * velocity),
+                    bend: std::array::from_fn(|place| {
+                        bend[place] * velocity * velocity + change[place] * along
+                    }),
                 });
             }
-            self.kinks.pop_front();
         }
         let covered = phase.length(phase.seconds);
         let reason = match part.why {

@@ -212,14 +212,21 @@ impl Path {
         self.among(tool, found, back.min(REACH * first), first)
     }
 
-    /// The place nearest to a tool that was off the path meanwhile: from where it left, and nowhere before.
+    /// The place nearest to a tool that was off the path meanwhile: from where it left on, and before that only where
+    /// what lies ahead is farther (it comes down a hole again, above where it left).
     pub fn seek_anew(&self, tool: &Pose) -> (Foot, Vector3<f64>) {
         let first = (self.point(self.foot) - tool.tip).norm();
         let left = Foot {
             distance: first,
             ..self.foot
         };
-        self.among(tool, left, 0.0, first)
+        let ahead = self.among(tool, left, 0.0, first);
+        let near = self.descend(&tool.tip, self.foot);
+        let back = self.among(tool, near, f64::INFINITY, first);
+        match back.0.distance < ahead.0.distance - TIE {
+            true => back,
+            false => ahead,
+        }
     }
 
     fn among(&self, tool: &Pose, found: Foot, back: f64, first: f64) -> (Foot, Vector3<f64>) {

@@ -4,13 +4,15 @@
 //! The program is made, predicted, and held against the path of the CL file; each point of a cut is moved by minus the
 //! error beside it, and so again until it helps no more. No point moves by more than `[accuracy]
 //! servo_compensation`, towards the ends of cuts by nothing; rapids, holes and cuts that the control offsets by the
-//! cutter's radius stay as they are. A corner that the servos round by more than the bound stays rounded. What helps is
-//! judged by prediction alone, against the path of the CL file: a run counts if its root mean square is less than the
-//! last's and no error beside a point that is moved is larger than the largest of the program as it was. Where a run makes it worse, points are moved by
-//! less, and not at all beside an error that is larger than any was; the others go on. Where no run counts, the program is
-//! written as it was.
+//! cutter's radius stay as they are, and so does every tool axis. A corner that the servos round by more than the bound
+//! stays rounded.
 //!
-//! The points of the file are in memory meanwhile, 150 bytes each, and no text of a program is.
+//! What helps is judged by prediction alone, against the path of the CL file: a run counts if its root mean square is less
+//! than the last's and no error beside a moved point is larger than the largest of the program as it was. Where a run makes
+//! it worse, points are moved by less, and not at all beside an error that is larger than any was; the others go on. Where
+//! no run counts, the program is written as it was.
+//!
+//! The points of the file are in memory meanwhile, about 150 bytes each; programs that are tried are in scratch files.
 
 mod path;
 mod text;

@@ -181,7 +181,7 @@ fn no_point_stands_farther_off_than_the_bound_in_the_printed_program() {
         let key = format!("[accuracy]\nservo_compensation = {bound}\n");
         let folder = mill("fanuc", servo, &key);
         let (_, moved, found) = both(&folder, "circle.cls", &[]);
-        assert!(number(&found, "/before/rms_mm") > 10.0 * bound, "{found}");
+        assert!(number(&found, "/before/rms_mm") > 5.0 * bound, "{found}");
         assert_eq!(found["kept"], true, "{found}");
         let there = off(&moved, &circle_points(), "vmc", "post");
         let farthest = most(there.iter().map(|off| off.0));
@@ -227,7 +227,7 @@ fn a_circle_that_is_too_small_gets_points_outside_and_comes_out_right() {
     assert!(after < 0.5 * before, "{found}");
 }
 
-/// Rapids, holes and everything between them are the same to the letter.
+/// Rapids, holes and everything between them are the same to the letter: only blocks of the cut differ.
 #[test]
 fn rapids_holes_and_commands_are_what_they_were() {
     for dialect in ["fanuc", "siemens", "heidenhain", "linuxcnc"] {
@@ -235,22 +235,30 @@ fn rapids_holes_and_commands_are_what_they_were() {
         let (plain, moved, found) = both(&folder, "circle.cls", &[]);
         assert_eq!(found["kept"], true, "{dialect}: {found}");
         assert_eq!(plain.lines().count(), moved.lines().count(), "{dialect}");
-        let moves = 360;
-        let mut other = 0;
-        for (one, two) in plain.lines().zip(moved.lines()) {
-            // A cut of the circle: X and Y, and nothing but a feed.
-            let cut = one.contains('X') && one.contains('Y') && !one.contains("G0");
-            let cut = cut && !one.contains("FMAX") && !one.contains("Z");
-            let cut =
-                cut || one.contains("X") && two.contains("X") && !one.contains("Z") && one != two;
-            match one == two {
-                true => {}
-                false if cut => other += 1,
-                false if one.to_uppercase().contains("PLAIN") || one.contains("PART") => {}
-                false => panic!("{dialect}: {one} became {two}"),
+        let named = |line: &str| {
+            ["PLAIN", "PART"]
+                .iter()
+                .any(|name| line.to_uppercase().contains(name))
+        };
+        let lines = plain.lines().zip(moved.lines());
+        let other: Vec<_> = lines
+            .filter(|(one, two)| one != two && !named(one))
+            .collect();
+        for (one, two) in &other {
+            for line in [one, two] {
+                let cut = ["G0 ", "FMAX", "G8", "CYC", "M99", "MCALL", "M3"].iter();
+                assert!(
+                    !cut.clone().any(|word| line.contains(word)),
+                    "{dialect}: {one} became {two}"
+                );
             }
         }
-        assert!(other > 300 && other <= moves, "{dialect}: {other}");
+        // The end of the way down is a point of the cut too.
+        assert!(
+            other.len() > 300 && other.len() <= 361,
+            "{dialect}: {}",
+            other.len()
+        );
     }
 }
 

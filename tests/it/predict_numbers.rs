@@ -4,10 +4,11 @@
 use std::fmt::Write as _;
 use std::fs;
 
+use post_testkit::shared;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::{Run, assert_contains, post_in, read_json, with_file};
+use crate::common::{Run, assert_contains, post, post_in, read_json, with_file};
 
 /// The PID servos of Chen, Ren, Sun (2016), Table 1: kp, ki, kd, ka·kt·rg, J, B.
 const PID_X: [f64; 6] = [
@@ -222,7 +223,8 @@ fn on_circle(servos: [[f64; 6]; 2], radius: f64, omega: f64, turns: usize) -> Ve
 }
 
 /// The radius of a circle comes out |G(jω)| times as large (eq. 7 there): up to its peak at 49.66 rad/s and where it falls
-/// through 1 again, at 113.2.
+/// through 1 again, at 113.2. What the servos are given are chords between set-points of a millisecond: they take (ωT)²/12
+/// of it off.
 #[test]
 fn a_circle_is_too_large_by_the_gain_of_the_servo() {
     for (omega, radius, turns, gain) in [
@@ -237,7 +239,8 @@ fn a_circle_is_too_large_by_the_gain_of_the_servo() {
             "{of_formula} at {omega} rad/s"
         );
         for [off, error] in on_circle([PID_X, PID_X], radius, omega, turns) {
-            let wanted = radius * (of_formula - 1.0);
+            let chords = 1.0 - (omega * 0.001).powi(2) / 12.0;
+            let wanted = radius * (of_formula * chords - 1.0);
             assert!(
                 (off - wanted).abs() < 2e-4,
                 "{omega} rad/s: {off} is not {wanted}"
@@ -277,4 +280,50 @@ fn a_program_in_which_nothing_moves_is_warned_of() {
         assert_eq!(found["set_points"], 0);
         assert_contains(&run.err, &["warning[no-motion]", "part.ngc"]);
     }
+}
+
+/// Programs of others are predicted in seconds, and those that cannot be read are refused by their lines.
+#[test]
+fn programs_of_others_end_in_bounded_time() {
+    let began = std::time::Instant::now();
+    for (program, machine, seconds) in [
+        ("linuxcnc_boat-xyzac.ngc", "xyzac-trt", Some(574.0)),
+        (
+            "linuxcnc_xyzac_switchkins_test_3.ngc",
+            "xyzac-trt",
+            Some(3.6),
+        ),
+        ("siemens_ElMoe_keychain.mpf", "ac-trunnion-840d", None),
+        ("nxpost_mori_nmv5000_out.txt", "umc-750", None),
+        ("nxpost_dmu70evo_840d_in.ptp", "ac-trunnion-840d", None),
+    ] {
+        let Some(path) = shared(&format!("data/nc/{program}")) else {
+            return;
+        };
+        let path = path.to_str().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let found = folder.path().join("found.json");
+        let more = [
+            "--tool-length",
+            "100",
+            "-q",
+            "--summary",
+            found.to_str().unwrap(),
+        ];
+        let run = post(&[&["predict", path, "-m", machine], &more[..]].concat());
+        match seconds {
+            Some(seconds) => {
+                assert_eq!(run.code, 0, "{}", run.err);
+                let found = read_json(&found);
+                close(&found, "/time/cycle_s", seconds, 0.05 * seconds);
+                // No axis of that machine has a servo.
+                close(&found, "/contour/parts/0/tip_mm/largest", 0.0, 1e-6);
+            }
+            None => {
+                assert_eq!((run.code, found.exists()), (1, false), "{program}");
+                assert_contains(&run.err, &[&format!("{program}:"), "nothing was written"]);
+            }
+        }
+    }
+    assert!(began.elapsed().as_secs() < 120, "{:?}", began.elapsed());
 }

@@ -239,7 +239,7 @@ fn a_circle_is_too_large_by_the_gain_of_the_servo() {
             "{of_formula} at {omega} rad/s"
         );
         for [off, error] in on_circle([PID_X, PID_X], radius, omega, turns) {
-            let chords = 1.0 - (omega * 0.001).powi(2) / 12.0;
+            let chords = 1.0 - libm::pow(omega * 0.001, 2.0) / 12.0;
             let wanted = radius * (of_formula * chords - 1.0);
             assert!(
                 (off - wanted).abs() < 2e-4,

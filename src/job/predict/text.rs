@@ -86,7 +86,7 @@ fn head(text: &mut String, found: &Prediction) {
     }
     let against = match &found.against {
         Some(file) => format!(", against {file}"),
-        None => String::new(),
+        None => ", against the path that is commanded".to_owned(),
     };
     let contour = &found.contour;
     let tip = Shown {

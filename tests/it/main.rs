@@ -32,6 +32,7 @@ mod order;
 mod place;
 mod plugins;
 mod predict;
+mod predict_measured;
 mod predict_told;
 mod program_text;
 mod readiness;

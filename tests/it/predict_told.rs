@@ -284,9 +284,9 @@ fn pictures_have_axes_with_units_and_nothing_old_stays_beside_them() {
         ),
         (
             "contour-vectors.svg",
-            ["µm of error", "commanded path", "X to the right from"],
+            ["µm of error", "commanded path", ">X, mm<"],
         ),
-        ("path.svg", ["and more", "ring: the largest", "Y up from"]),
+        ("path.svg", ["and more", "ring: the largest", ">Y, mm<"]),
         ("spectrum.svg", ["frequency, Hz", ">Z, µm<", ">A, 0.001°<"]),
     ] {
         let picture = text(&pictures.join(name));

@@ -190,7 +190,7 @@ impl Rooms {
     fn feed(&self, note: &str) -> Panels {
         let series = vec![
             bands(
-                "true, from least to largest",
+                "true, lowest to highest at each time",
                 self.feeds.runs(0, 1.0),
                 "#8c8c8c",
             ),
@@ -202,7 +202,7 @@ impl Rooms {
             x: "time, s".to_owned(),
             logarithmic: false,
             panels: vec![Panel {
-                y: "mm/min".to_owned(),
+                y: "feed, mm/min".to_owned(),
                 logarithmic: false,
                 height: 330.0,
                 series,
@@ -227,11 +227,11 @@ impl Rooms {
             "tip, µm",
             vec![
                 bands(
-                    "from least to largest",
+                    "lowest to highest at each place",
                     self.contour.runs(0, MICRO),
                     "#6b6b6b",
                 ),
-                Series::line("not passed by 95 %", most(tip.p95), DASHED),
+                Series::line("95 % of the set-points stay below", most(tip.p95), DASHED),
                 Series::line("root of the mean square", most(tip.rms), DOTTED),
             ],
         )];

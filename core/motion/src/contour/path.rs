@@ -163,12 +163,13 @@ impl Path {
         let first = (self.point(start) - actual.tip).norm();
         let found = self.descend(&actual.tip, start);
         let mut foot = self.least(&actual.tip, found, Within::all(REACH * first));
-        if self.length(foot) < self.length(self.foot) - TIE
-            && let Some(other) = self.onward(
-                &actual.tip,
-                foot.distance + SAME,
-                self.place_of(commanded.0).knot,
-            )
+        // Back on the way it came, or beyond a turn: it may be on a way ahead meanwhile.
+        let bound = match self.length(foot) < self.length(self.foot) - TIE {
+            true => Some(foot.distance + SAME),
+            false => Some(foot.distance - TIE).filter(|_| self.turns(foot)),
+        };
+        if let Some(bound) = bound.filter(|bound| *bound > 0.0)
+            && let Some(other) = self.onward(&actual.tip, bound, self.place_of(commanded.0).knot)
         {
             foot = other;
         }
@@ -211,14 +212,21 @@ impl Path {
         self.among(tool, found, back.min(REACH * first), first)
     }
 
-    /// The place nearest to a tool that was off the path meanwhile: from where it left, and nowhere before.
+    /// The place nearest to a tool that was off the path meanwhile: from where it left on, and before that only where
+    /// what lies ahead is farther (it comes down a hole again, above where it left).
     pub fn seek_anew(&self, tool: &Pose) -> (Foot, Vector3<f64>) {
         let first = (self.point(self.foot) - tool.tip).norm();
         let left = Foot {
             distance: first,
             ..self.foot
         };
-        self.among(tool, left, 0.0, first)
+        let ahead = self.among(tool, left, 0.0, first);
+        let near = self.descend(&tool.tip, self.foot);
+        let back = self.among(tool, near, f64::INFINITY, first);
+        match back.0.distance < ahead.0.distance - TIE {
+            true => back,
+            false => ahead,
+        }
     }
 
     fn among(&self, tool: &Pose, found: Foot, back: f64, first: f64) -> (Foot, Vector3<f64>) {
@@ -445,6 +453,18 @@ impl Path {
         best
     }
 
+    /// The path turns back at a place, or in the piece that it stands in.
+    fn turns(&self, foot: Foot) -> bool {
+        let behind = foot.knot + usize::from(foot.share > 0.0);
+        let Some(before) = foot.knot.checked_sub(1) else {
+            return false;
+        };
+        self.knots.get(behind + 1).is_some_and(|next| {
+            let [last, here, there] = [before, foot.knot, behind].map(|knot| self.knots[knot].tip);
+            (here - last).dot(&(next.tip - there)) < 0.0
+        })
+    }
+
     /// The piece of a place bends so much that it may come nearer once more.
     fn bends(&self, found: Foot) -> bool {
         self.cubic(found.knot).is_some_and(|cubic| {
@@ -579,6 +599,9 @@ fn lowest(cubic: &Cubic, from: &Vector3<f64>, start: f64) -> f64 {
             true => offset.dot(&bend) * if share < 0.5 { 1.0 } else { -1.0 },
             false => offset.dot(&slope),
         };
+        if offset == Vector3::zeros() {
+            return share;
+        }
         match rise > 0.0 {
             true => high = share,
             false => low = share,

@@ -141,16 +141,19 @@ impl MoveLimits {
         let mut bounds = [[0.0; VALUES]; 3];
         let mut tips = [0.0; 3];
         let mut ends = [[0.0; VALUES]; 2];
+        let mut bends = [[0.0; VALUES]; 2];
         for (k, coefficients) in series.iter().enumerate().skip(1) {
             let steep = steepest(k);
             for (place, coefficient) in coefficients.iter().enumerate() {
                 for (bound, steep) in bounds.iter_mut().zip(steep) {
                     bound[place] += libm::fabs(*coefficient) * steep;
                 }
-                // T_k' is k² at 1 and -k² or k² at -1.
+                // T_k' is k² at 1 and -k² or k² at -1, T_k'' there the other way round.
                 let sign = if k % 2 == 0 { -1.0 } else { 1.0 };
                 ends[0][place] += sign * steep[0] * coefficient;
                 ends[1][place] += steep[0] * coefficient;
+                bends[0][place] -= sign * steep[1] * coefficient;
+                bends[1][place] += steep[1] * coefficient;
             }
             let [x, y, z] = [0, 1, 2].map(|place| coefficients[MAX_AXES + place]);
             let length = (x * x + y * y + z * z).sqrt();
@@ -176,6 +179,9 @@ impl MoveLimits {
                 let own: &mut Joints = &mut self.ends[end];
                 for (own, value) in own.iter_mut().zip(&ends[end]) {
                     *own = value / half;
+                }
+                for (own, value) in self.bends[end].iter_mut().zip(&bends[end]) {
+                    *own = value / (half * half);
                 }
             }
             if tip {

@@ -292,7 +292,7 @@ fn random_shifts_are_found_or_said_to_be_one_of_several() {
         let seconds = between(4.0, 16.0);
         // Every third is periodic, but for a part that is small against the noise or not.
         let drift = match round % 3 {
-            0 => 10f64.powf(between(-4.0, 0.0)),
+            0 => libm::exp10(between(-4.0, 0.0)),
             _ => between(1.0, 20.0),
         };
         let parts: [[f64; 3]; 4] = std::array::from_fn(|part| {
@@ -318,7 +318,7 @@ fn random_shifts_are_found_or_said_to_be_one_of_several() {
         let period = periods[(between(0.0, 3.999)) as usize];
         let shift = between(-1000.0, 1000.0);
         let zeros = [between(-300.0, 300.0), between(-300.0, 300.0)];
-        let noise = 10f64.powf(between(-4.0, -2.0));
+        let noise = libm::exp10(between(-4.0, -2.0));
         let lead = between(0.0, 0.2 * seconds);
         let predicted = track(0.0, 0.001, seconds, motion);
         let mut errors = Noise(round);

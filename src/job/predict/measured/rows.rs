@@ -332,7 +332,7 @@ impl<'a> Rows<'a> {
             .map_or(1.0, |column| column.unit.size);
         let resolution = self
             .decimals
-            .map_or(0.0, |digits| 10f64.powi(-digits) * time_unit);
+            .map_or(0.0, |digits| libm::exp10(-f64::from(digits)) * time_unit);
         let clock = Clock::of(&mut self.times, resolution).map_err(|gap| {
             let [from, to] = [self.times[gap.row - 1], self.times[gap.row]];
             let message = format!(

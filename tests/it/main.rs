@@ -34,6 +34,7 @@ mod place;
 mod plugins;
 mod predict;
 mod predict_numbers;
+mod predict_measured;
 mod predict_told;
 mod program_text;
 mod readiness;

@@ -329,25 +329,30 @@ impl<'r> Contour<'r> {
 impl Contour<'_> {
     /// What lies between the commanded path and what is asked for.
     fn parts(&mut self, told: &mut ContourPoint, mut way: f64) {
-        let mut programmed = told.nearest;
-        if let Some(asked) = self.programmed.follow(&told.nearest, way, &mut || None) {
+        let asked = self.programmed.follow(&told.nearest, way, &mut || None);
+        if let Some(asked) = &asked {
             told.interpolation = asked.distance;
-            (programmed.tip, programmed.axis) = (asked.tip, asked.axis);
             way = asked.way;
         }
         let Some(reference) = &mut self.reference else {
             return;
         };
+        let mut programmed = told.nearest;
+        if let Some(asked) = &asked {
+            let axis = self.programmed.axis(&told.nearest, asked);
+            (programmed.tip, programmed.axis) = (asked.tip, axis);
+        }
         let program = self
             .asked
             .follow(&programmed, way, &mut || reference.next());
         let beside = self.asked.beside(&told.actual);
         if let (Some(program), Some(asked)) = (program, beside) {
+            let axis = self.asked.axis(&told.actual, &asked);
             told.asked = Some(AskedPoint {
                 at: asked.at,
                 error: told.actual.tip - asked.tip,
                 distance: asked.distance,
-                axis: angle(&told.actual.axis, &asked.axis),
+                axis: angle(&told.actual.axis, &axis),
                 program: program.distance,
             });
         }

@@ -104,4 +104,10 @@ impl Cubic {
     pub fn bend(&self, s: f64) -> Vector3<f64> {
         self.second * 2.0 + self.third * (6.0 * s)
     }
+
+    /// Its third derivative.
+    #[inline]
+    pub fn jerk(&self) -> Vector3<f64> {
+        self.third * 6.0
+    }
 }

@@ -201,6 +201,7 @@ impl<'r> Stages<'r> {
             feed: self.feed_tally.finish(&time),
             time,
             axes: found::axes(machine, &contour),
+            corners_with_jump: contour.jumps,
             contour: found::contour(&contour, held),
             measured: None,
             fitted: Vec::new(),

@@ -115,6 +115,8 @@ pub struct ContourReport {
     pub missed: Peak,
     /// The largest values of each axis, in chain order, cuts and rapids.
     pub axes: [AxisPeaks; MAX_AXES],
+    /// How often a move passes into the next with a jump of the velocity.
+    pub jumps: u64,
     /// How many axes there are.
     pub axis_count: usize,
     /// Time of the last set-point, s.
@@ -206,11 +208,16 @@ impl<'r> Contour<'r> {
         let axes = chain.joints().len();
         self.report.axis_count = self.report.axis_count.max(axes);
         self.lead = (LEAD / points.period).clamp(LEADS[0], LEADS[1]) as u64;
+        let mut jumps = points.jumps.as_slice();
+        self.report.jumps += jumps.len() as u64;
         for (place, actual) in actual.iter().enumerate().take(points.len()) {
             let joints = &points.joints[place];
             let (time, at) = (points.time(place), points.at[place]);
+            let jumped = jumps.partition_point(|jump| jump.time <= time);
+            let (now, later) = jumps.split_at(jumped);
+            jumps = later;
             self.axes
-                .take(axes, (time, &at), points.period, [joints, actual]);
+                .take(axes, (time, &at), points.period, [joints, actual], now);
             self.report.seconds = time;
             let commanded = points.poses[place];
             let number = points.first + place as u64;

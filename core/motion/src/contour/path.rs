@@ -166,12 +166,13 @@ impl Path {
         let first = (self.point(start) - actual.tip).norm();
         let found = self.descend(&actual.tip, start);
         let mut foot = self.least(&actual.tip, found, Within::all(REACH * first));
-        if self.length(foot) < self.length(self.foot) - TIE
-            && let Some(other) = self.onward(
-                &actual.tip,
-                foot.distance + SAME,
-                self.place_of(commanded.0).knot,
-            )
+        // Back on the way it came, or beyond a turn: it may be on a way ahead meanwhile.
+        let bound = match self.length(foot) < self.length(self.foot) - TIE {
+            true => Some(foot.distance + SAME),
+            false => Some(foot.distance - TIE).filter(|_| self.turns(foot)),
+        };
+        if let Some(bound) = bound.filter(|bound| *bound > 0.0)
+            && let Some(other) = self.onward(&actual.tip, bound, self.place_of(commanded.0).knot)
         {
             foot = other;
         }
@@ -478,6 +479,18 @@ impl Path {
         best
     }
 
+    /// The path turns back at a place, or in the piece that it stands in.
+    fn turns(&self, foot: Foot) -> bool {
+        let behind = foot.knot + usize::from(foot.share > 0.0);
+        let Some(before) = foot.knot.checked_sub(1) else {
+            return false;
+        };
+        self.knots.get(behind + 1).is_some_and(|next| {
+            let [last, here, there] = [before, foot.knot, behind].map(|knot| self.knots[knot].tip);
+            (here - last).dot(&(next.tip - there)) < 0.0
+        })
+    }
+
     /// The piece of a place bends so much that it may come nearer once more.
     fn bends(&self, found: Foot) -> bool {
         self.cubic(found.knot).is_some_and(|cubic| {
@@ -613,6 +626,9 @@ fn lowest(cubic: &Cubic, from: &Vector3<f64>, start: f64) -> f64 {
             true => offset.dot(&bend) * if share < 0.5 { 1.0 } else { -1.0 },
             false => offset.dot(&slope),
         };
+        if offset == Vector3::zeros() {
+            return share;
+        }
         match rise > 0.0 {
             true => high = share,
             false => low = share,

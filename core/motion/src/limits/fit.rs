@@ -180,19 +180,22 @@ fn series<const N: usize>(samples: &Samples<N>) -> Series<N> {
     series
 }
 
-/// Derivatives of N series where the piece begins and ends; `half`: its half-width.
-fn at_ends<const N: usize>(series: &Series<N>, half: f64) -> [[f64; N]; 2] {
-    let mut ends = [[0.0; N]; 2];
+/// First and second derivatives of N series where the piece begins and ends; `half`: its half-width.
+fn at_ends<const N: usize>(series: &Series<N>, half: f64) -> [[[f64; N]; 2]; 2] {
+    let [mut first, mut second] = [[[0.0; N]; 2]; 2];
     for (k, coefficients) in series.iter().enumerate().skip(1) {
-        // T_k' is k² at 1 and -k² or k² at -1.
-        let steep = STEEPEST[k][0] / half;
+        // T_k' is k² at 1 and -k² or k² at -1, T_k'' there the other way round.
         let sign = if k % 2 == 0 { -1.0 } else { 1.0 };
+        let steep = STEEPEST[k][0] / half;
+        let bend = STEEPEST[k][1] / (half * half);
         for (place, coefficient) in coefficients.iter().enumerate() {
-            ends[0][place] += sign * steep * coefficient;
-            ends[1][place] += steep * coefficient;
+            first[0][place] += sign * steep * coefficient;
+            first[1][place] += steep * coefficient;
+            second[0][place] -= sign * bend * coefficient;
+            second[1][place] += bend * coefficient;
         }
     }
-    ends
+    [first, second]
 }
 
 impl MoveLimits {
@@ -214,9 +217,9 @@ impl MoveLimits {
             }
         }
         if ends != [false; 2] {
-            let found = at_ends(series, half);
+            let [first, second] = at_ends(series, half);
             for end in [0, 1].into_iter().filter(|end| ends[*end]) {
-                self.ends[end] = found[end];
+                (self.ends[end], self.bends[end]) = (first[end], second[end]);
             }
         }
     }
@@ -234,9 +237,9 @@ impl MoveLimits {
         for ((own, bound), scale) in self.tip.iter_mut().zip(bounds).zip(scales) {
             *own = own.max(bound * scale);
         }
-        let found = at_ends(series, half);
+        let [first, _] = at_ends(series, half);
         for end in [0, 1].into_iter().filter(|end| ends[*end]) {
-            self.tip_ends[end] = found[end].into();
+            self.tip_ends[end] = first[end].into();
         }
     }
 }

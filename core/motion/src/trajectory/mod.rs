@@ -5,6 +5,8 @@
 //! | [`Planner`] | takes tasks, cuts their moves into *pieces* of path at the corners and joins these to *runs*, within which the machine does not stand still; fills set-points |
 //! | `bounds` | what limits along a move come to: rate of its parameter, change of the rate, change of that |
 //! | `corner` | what happens between two moves: stop, join, round, overlap |
+//! | `kink` | what jumps where two moves are joined |
+//! | `round` | curves in the place of corners |
 //! | `look_ahead` | velocities over the pieces of a run, some blocks ahead: the envelope of accelerations, backwards and forwards |
 //! | `smooth` | the same with jerk limits: a double S from knot to knot of the envelope, whatever blocks it spans |
 //! | [`profile`] | from one velocity to another over a length: trapezoid and double S in closed form |
@@ -32,10 +34,12 @@
 mod account;
 mod bounds;
 mod corner;
+mod kink;
 mod law;
 mod look_ahead;
 mod planner;
 pub mod profile;
+mod round;
 mod smooth;
 
 pub use planner::Planner;

@@ -2,6 +2,7 @@
 
 mod build;
 mod corners;
+mod jumps;
 mod limits;
 mod linuxcnc;
 mod look_ahead;

@@ -9,7 +9,6 @@ use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place};
 use post_machine::kinematics::{Solver, Unreachable};
-use post_motion::contour::Reference;
 use post_motion::trajectory::{Filled, Planner};
 use post_motion::{SetPoints, Task};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};
@@ -64,8 +63,6 @@ pub enum Against<'a> {
     Nothing,
     /// The path of a CL file.
     Cl(&'a mut ClSource),
-    /// A path, and what it is called.
-    Path(Box<dyn Reference + 'a>, String),
 }
 
 /// What came of it.
@@ -97,7 +94,6 @@ pub fn predict<R: Read + Seek>(
     let mut faults = Vec::new();
     let path = match against {
         Against::Nothing => None,
-        Against::Path(path, name) => Some((path, name)),
         Against::Cl(source) => {
             tools = cl_path::tools(asked, source)?;
             Some(cl_path::open(asked, source, &mut faults)?)

@@ -2,6 +2,7 @@
 
 mod envelope;
 mod measured_arguments;
+mod measured_pictures;
 mod path_pictures;
 mod pictures;
 mod set_points_csv;
@@ -15,10 +16,12 @@ use crate::arguments::JobArguments;
 use crate::arguments::flag_values;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
+use crate::job::predict::measured::MeasuredPoint;
 use crate::job::predict::{self, Against, Predicted, Sample};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::terminal;
 use measured_arguments::MeasuredArguments;
+use measured_pictures::MeasuredRoom;
 use pictures::Rooms;
 use set_points_csv::SetPointsCsv;
 
@@ -76,7 +79,8 @@ pub struct PredictArguments {
     summary: Option<PathArg>,
 
     /// Draws into this folder, as SVG: errors of the axes and feed over time, contour error along the path, magnified on
-    /// it and by its size, and the spectrum of the axes' errors; and writes the summary beside them.
+    /// it and by its size, and the spectrum of the axes' errors; with --measured also the log's errors, those predicted for
+    /// it and their difference; and writes the summary beside them.
     #[arg(long, value_name = "FOLDER", value_parser = PathArg::parser())]
     pictures: Option<PathArg>,
 
@@ -182,11 +186,16 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     };
     let Predicted {
         mut found,
-        findings,
+        mut findings,
         chains,
     } = predicted;
+    let mut measured_picture = None;
     if let Some(overlay) = &overlay {
-        found.measured = Some(overlay.finish(&machine, &chains, &mut |_| {})?);
+        let mut room = MeasuredRoom::new(&machine, overlay.log().clock.period);
+        let mut listen = |point: &MeasuredPoint| room.take(point);
+        let laid = overlay.finish(&machine, &chains, &mut listen, &mut findings)?;
+        measured_picture = room.file(&found, &laid);
+        found.measured = Some(laid);
         found.fitted = arguments.measured.fitted(&machine, overlay.log())?;
     }
     let json = files::json(&found);
@@ -196,6 +205,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     let taken = texts.iter().any(AtomicFile::is_standard);
     if let (Some(folder), Some(rooms)) = (&folder, &rooms) {
         let mut files = rooms.files(&found);
+        files.extend(measured_picture);
         files.push((MARK.0, json));
         folder.add(&files, &mut texts)?;
         AtomicFile::finish(texts)?;

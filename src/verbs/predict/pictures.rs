@@ -5,6 +5,7 @@ use post_machine::axis_words;
 use post_machine::description::Machine;
 
 use super::envelope::Envelope;
+use super::measured_pictures;
 use super::path_pictures;
 use super::spectrum::Spectrum;
 use super::trail::Trail;
@@ -12,17 +13,18 @@ use crate::files::chart::{DASHED, DOTTED, Draw, LOOKS, Panel, Panels, Series};
 use crate::job::predict::{Prediction, Sample};
 
 /// The files that there can be.
-pub const NAMES: [&str; 6] = [
+pub const NAMES: [&str; 7] = [
     "axis-errors.svg",
     "feed.svg",
     "contour.svg",
     "contour-vectors.svg",
     "path.svg",
     "spectrum.svg",
+    measured_pictures::NAME,
 ];
 
 /// Micrometres of a millimetre, thousandths of a degree of a degree.
-const MICRO: f64 = 1e3;
+pub const MICRO: f64 = 1e3;
 
 /// The lowest frequency of the spectrum, Hz: what is below it is the path.
 const LOWEST: f64 = 1.0;

@@ -108,12 +108,15 @@ pub(super) struct Nearest {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Path {
     knots: VecDeque<Knot>,
+    /// The pieces behind all knots but the last; none where there is a gap.
+    pieces: VecDeque<Option<Cubic>>,
     foot: Foot,
 }
 
 impl Path {
     pub fn clear(&mut self) {
         self.knots.clear();
+        self.pieces.clear();
         self.foot = Foot::default();
     }
 
@@ -127,6 +130,7 @@ impl Path {
             }
             last.gap = true;
             knot.length = last.length + (knot.tip - last.tip).norm();
+            self.pieces.push_back(None);
         }
         self.knots.push_back(knot);
     }
@@ -142,6 +146,9 @@ impl Path {
             let legs = [last.tip_ways[1] / 3.0, knot.tip_ways[0] / 3.0];
             let middle = knot.tip - last.tip - legs[0] - legs[1];
             knot.length = last.length + legs[0].norm() + middle.norm() + legs[1].norm();
+            let ends = [&last.tip, &knot.tip];
+            let piece = Cubic::new(ends, &last.tip_ways[1], &knot.tip_ways[0]);
+            self.pieces.push_back(Some(piece));
         }
         self.knots.push_back(knot);
         if self.knots.len() > MOST {
@@ -151,6 +158,7 @@ impl Path {
 
     fn drop_first(&mut self, count: usize) {
         self.knots.drain(..count);
+        self.pieces.drain(..count);
         self.foot.knot = match self.foot.knot.checked_sub(count) {
             Some(knot) => knot,
             None => {
@@ -215,14 +223,21 @@ impl Path {
         self.among(tool, found, back.min(REACH * first), first)
     }
 
-    /// The place nearest to a tool that was off the path meanwhile: from where it left, and nowhere before.
+    /// The place nearest to a tool that was off the path meanwhile: from where it left on, and before that only where
+    /// what lies ahead is farther (it comes down a hole again, above where it left).
     pub fn seek_anew(&self, tool: &Pose) -> Foot {
         let first = (self.point(self.foot) - tool.tip).norm();
         let left = Foot {
             distance: first,
             ..self.foot
         };
-        self.among(tool, left, 0.0, first)
+        let ahead = self.among(tool, left, 0.0, first);
+        let near = self.descend(&tool.tip, self.foot);
+        let back = self.among(tool, near, f64::INFINITY, first);
+        match back.distance < ahead.distance - TIE {
+            true => back,
+            false => ahead,
+        }
     }
 
     fn among(&self, tool: &Pose, found: Foot, back: f64, first: f64) -> Foot {
@@ -332,14 +347,8 @@ impl Path {
 
     /// The piece behind a knot; none behind the last.
     #[inline]
-    fn cubic(&self, knot: usize) -> Option<Cubic> {
-        let next = self.knots.get(knot + 1)?;
-        let last = &self.knots[knot];
-        if last.gap {
-            return None;
-        }
-        let ends = [&last.tip, &next.tip];
-        Some(Cubic::new(ends, &last.tip_ways[1], &next.tip_ways[0]))
+    fn cubic(&self, knot: usize) -> Option<&Cubic> {
+        self.pieces.get(knot)?.as_ref()
     }
 
     /// The tip at a place.
@@ -382,7 +391,7 @@ impl Path {
                 (foot.knot, foot.share, went) = (foot.knot - 1, 1.0, -1);
                 continue;
             };
-            let share = lowest(&cubic, from, foot.share);
+            let share = lowest(cubic, from, foot.share);
             if share >= 1.0 && went >= 0 {
                 (foot.knot, foot.share, went) = (foot.knot + 1, 0.0, 1);
                 continue;
@@ -528,7 +537,7 @@ impl Path {
         let cubic = self.cubic(piece)?;
         let mut best: Option<Foot> = None;
         for start in [along, 0.125, 0.375, 0.625, 0.875] {
-            let share = lowest(&cubic, from, start);
+            let share = lowest(cubic, from, start);
             let foot = Foot {
                 knot: piece,
                 share,

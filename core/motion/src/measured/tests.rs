@@ -176,9 +176,15 @@ fn what_swings_alone_has_rivals() {
 fn what_cannot_be_laid_over_is_refused() {
     let predicted = track(0.0, 0.001, 20.0, path);
     let still = track(0.0, 0.001, 20.0, |_| Joints::default());
-    assert_eq!(align(&predicted, &still, &AXES, &FOUND), Err(Unaligned::Still));
+    assert_eq!(
+        align(&predicted, &still, &AXES, &FOUND),
+        Err(Unaligned::Still)
+    );
     let short = track(0.0, 0.001, 0.003, path);
-    assert_eq!(align(&predicted, &short, &AXES, &FOUND), Err(Unaligned::Short(8)));
+    assert_eq!(
+        align(&predicted, &short, &AXES, &FOUND),
+        Err(Unaligned::Short(8))
+    );
     let other = track(0.0, 0.001, 20.0, |time| {
         let mut joints = Joints::default();
         joints[0] = libm::sin(97.0 * time * time);

@@ -33,6 +33,7 @@ mod order;
 mod place;
 mod plugins;
 mod predict;
+mod predict_measured;
 mod predict_numbers;
 mod predict_told;
 mod program_text;

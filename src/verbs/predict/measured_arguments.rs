@@ -53,6 +53,13 @@ pub struct MeasuredArguments {
 }
 
 impl MeasuredArguments {
+    /// The log is standard input.
+    pub fn is_standard(&self) -> bool {
+        self.measured
+            .as_ref()
+            .is_some_and(|file| file.path().is_none())
+    }
+
     /// The log, to be laid over a prediction every `period` seconds.
     pub fn overlay(&self, machine: &Machine, period: f64) -> Result<Option<Overlay>, Failure> {
         let Some(file) = &self.measured else {
@@ -65,7 +72,7 @@ impl MeasuredArguments {
         };
         let zeros = self.log_zeros.clone().unwrap_or_default();
         let zeros = zeros.by_axis(machine).map_err(|fault| *fault)?;
-        let (name, input) = nc_program::open(file)?;
+        let (name, input) = nc_program::open_as("the log", file)?;
         let log = Log::read(machine, &form, &name, input)?;
         Ok(Some(Overlay::new(log, zeros, period)))
     }

@@ -6,9 +6,10 @@ use post_machine::description::Machine;
 
 use super::envelope::Envelope;
 use super::pictures::{File, MICRO, file_name};
-use crate::files::chart::{Draw, LOOKS, Panel, Panels, Series};
+use crate::files::chart::{DASHED, Draw, GREY, Look, Panel, Panels, Series};
 use crate::job::predict::Prediction;
 use crate::job::predict::measured::{MeasuredFound, MeasuredPoint};
+use crate::terminal::number;
 
 /// Its name in the folder.
 pub const NAME: &str = "measured.svg";
@@ -69,9 +70,9 @@ impl MeasuredRoom {
                 true => ("0.001°", 1f64.to_degrees() * MICRO),
                 false => ("µm", MICRO),
             };
-            panels.extend(self.panel(place, &format!("{}, {unit}", axis.name), scale, 130.0));
+            panels.extend(self.panels(place, &axis.name, unit, scale));
         }
-        panels.extend(self.panel(self.axes.len(), "contour error, µm", MICRO, 190.0));
+        panels.extend(self.panels(self.axes.len(), "contour", "µm", MICRO));
         if panels.is_empty() {
             return None;
         }
@@ -83,7 +84,7 @@ impl MeasuredRoom {
                 file_name(&found.program),
                 found.machine,
                 file_name(&laid.log),
-                crate::terminal::number(1e3 * self.period, 3)
+                number(1e3 * self.period, 3)
             ),
             x: "time from the beginning of the program, s".to_owned(),
             logarithmic: false,
@@ -92,42 +93,43 @@ impl MeasuredRoom {
         Some((NAME, panels.svg()))
     }
 
-    /// Three curves over one another; none where the quantity is not known.
-    fn panel(&self, quantity: usize, y: &str, unit: f64, height: f64) -> Option<Panel> {
-        let runs = |curve: usize| self.errors.runs(CURVES * quantity + curve, unit);
+    /// Both over one another, and below them the difference in a measure of its own; none where they are not known.
+    fn panels(&self, quantity: usize, name: &str, unit: &str, scale: f64) -> Vec<Panel> {
+        let runs = |curve: usize| self.errors.runs(CURVES * quantity + curve, scale);
         let measured = runs(0);
         if measured.is_empty() {
-            return None;
+            return Vec::new();
         }
         // In a narrow share of the time least and largest are close: one line in the middle of them.
-        let predicted: Vec<Vec<[f64; 2]>> = runs(1)
-            .into_iter()
-            .map(|run| {
-                run.iter()
-                    .map(|[at, low, high]| [*at, (low + high) / 2.0])
-                    .collect()
-            })
-            .collect();
-        let mut series = vec![
-            Series {
-                name: "measured, from least to largest".to_owned(),
-                draw: Draw::Bands(measured, "#a8a8a8"),
-            },
-            Series {
-                name: "predicted minus measured".to_owned(),
-                draw: Draw::Bands(runs(2), "#5a5a5a"),
-            },
-        ];
-        series.extend(
-            predicted
-                .into_iter()
-                .map(|run| Series::line("predicted", run, LOOKS[0])),
-        );
-        Some(Panel {
-            y: y.to_owned(),
+        let middle = |run: Vec<[f64; 3]>| {
+            let points = run.iter();
+            points
+                .map(|[at, low, high]| [*at, (low + high) / 2.0])
+                .collect()
+        };
+        let bands = |name: &str, runs: Vec<Vec<[f64; 3]>>, grey: &'static str| Series {
+            name: name.to_owned(),
+            draw: Draw::Bands(runs, grey),
+        };
+        // The grey of what was measured is seen between the dashes of what is predicted.
+        let lines = |curve: usize, name: &str, look: Look| {
+            let lines = runs(curve).into_iter().map(middle);
+            let lines = lines.map(|line| Series::line(name, line, look));
+            lines.collect::<Vec<Series>>()
+        };
+        let mut both = vec![bands("", measured, "#c4c4c4")];
+        both.extend(lines(0, "measured", GREY));
+        both.extend(lines(1, "predicted", DASHED));
+        let difference = bands("predicted minus measured", runs(2), "#5a5a5a");
+        let panel = |y: String, height: f64, series: Vec<Series>| Panel {
+            y,
             logarithmic: false,
             height,
             series,
-        })
+        };
+        vec![
+            panel(format!("{name}, {unit}"), 120.0, both),
+            panel(format!("diff., {unit}"), 70.0, vec![difference]),
+        ]
     }
 }

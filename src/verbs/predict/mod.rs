@@ -10,6 +10,7 @@ mod spectrum;
 mod trail;
 
 use clap::Args;
+use post_machine::diagnostic::Diagnostic;
 use post_readback::interpret::Limits;
 
 use crate::arguments::JobArguments;
@@ -47,6 +48,7 @@ use set_points_csv::SetPointsCsv;
   post predict part.nc -m my-mill.toml --against part.cls --tool-length 120 --pictures prediction
   post predict part.nc -m my-mill.toml --period 0.004 --csv set-points.csv --summary prediction.json
   post predict part.nc -m my-mill.toml --set axis.X.max_accel=2000
+  post predict part.nc -m my-mill.toml --measured log.csv --fit X.kv,Y.kv --pictures prediction
 
 Exit codes: 0 predicted; 1 something could not be read, the messages say what; 2 the command line is wrong."
 )]
@@ -122,6 +124,12 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     let named = arguments.program.as_ref().unwrap_or(&PathArg::Standard);
     let against = arguments.job.input.as_ref();
     nc_program::not_both_standard(named, against)?;
+    let mut others = [Some(named), against].into_iter().flatten();
+    if arguments.measured.is_standard() && others.any(|file| file.path().is_none()) {
+        let message = "the log and another input cannot both be standard input";
+        let help = "name one of them";
+        return Err(Diagnostic::error("input", message).help(help).into());
+    }
     let folder = match &arguments.pictures {
         Some(folder) => {
             let folder = OwnFolder::open(folder, PICTURES, MARK, &pictures::NAMES);
@@ -134,6 +142,8 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         Some(file) => Some(nc_program::offsets(file, &machine)?),
         None => None,
     };
+    let period = arguments.period.unwrap_or(machine.motion.period);
+    let mut overlay = arguments.measured.overlay(&machine, period)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.csv.iter().map(|target| (SET_POINTS, target)));
     targets.extend(arguments.summary.iter().map(|target| (SUMMARY, target)));
@@ -158,8 +168,6 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         Some(source) => Against::Cl(source),
         None => Against::Nothing,
     };
-    let period = asked.period();
-    let mut overlay = arguments.measured.overlay(&machine, period)?;
     let mut rooms = folder.as_ref().map(|_| Rooms::new(&machine, period));
     let predicted = {
         let mut csv = match (&arguments.csv, texts.first_mut()) {

@@ -13,7 +13,6 @@ use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
 
 use crate::Move;
 use crate::path::Way;
-use crate::trajectory::TimeLimit;
 
 /// How fast, and how suddenly, axes and tip may move: of a machine, once.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,11 +89,6 @@ impl AxisLimits {
 /// places: the axes, or the programmed coordinates instead of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MoveLimits {
-    /// The whole move at a constant rate takes no less, s: by the velocities, and by the accelerations and jerks that
-    /// its curves ask for even then.
-    pub least_seconds: f64,
-    /// What asks for that.
-    pub by: TimeLimit,
     /// Bounds of the magnitude of the first derivatives by place in the chain, mm or radians.
     pub first: Joints,
     /// Bounds of the second ones.
@@ -163,7 +157,6 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
         let ways = [arm, normal.cross(&arm)].map(|arm| arm * *sweep);
         found.circle = Some(circle(task, ways, coordinates(task, limits))?);
     }
-    found.time(limits);
     Ok(found)
 }
 
@@ -214,39 +207,6 @@ impl MoveLimits {
             self.ends[0][place] = way;
             self.ends[1][place] = way;
         }
-    }
-
-    /// Sets the time that it takes at least.
-    fn time(&mut self, limits: &AxisLimits) {
-        let mut ask = |seconds: f64, by: TimeLimit| {
-            if seconds > self.least_seconds {
-                self.least_seconds = seconds;
-                self.by = by;
-            }
-        };
-        for place in 0..self.first.len() {
-            let axis = place as u8;
-            let [first, second, third] =
-                [self.first, self.second, self.third].map(|all| all[place]);
-            ask(
-                first / limits.velocity[place],
-                TimeLimit::AxisVelocity(axis),
-            );
-            ask(
-                (second / limits.acceleration[place]).sqrt(),
-                TimeLimit::AxisAcceleration(axis),
-            );
-            ask(
-                libm::cbrt(third / limits.jerk[place]),
-                TimeLimit::AxisJerk(axis),
-            );
-        }
-        let [_, second, third] = self.tip;
-        ask(
-            (second / limits.tip_acceleration).sqrt(),
-            TimeLimit::TipAcceleration,
-        );
-        ask(libm::cbrt(third / limits.tip_jerk), TimeLimit::TipJerk);
     }
 }
 

@@ -3,8 +3,8 @@
 //! The shift τ and the zeros z make the squares of `log(t) - predicted(t - τ) - z` least, each axis in the measure of what is
 //! left of it, without the rows that are far off. There are many such shifts where a path goes to and fro, so all are tried
 //! first, by correlation; the best of them are settled between the samples, and the one that explains most rows is taken.
-//! A zero that is no larger than a few times what is left anyway is taken for none, and the shift found once more without
-//! it: the prediction being early here and late there leaves such means too.
+//! A zero that explains hardly more than none is taken for none, and the shift found without it: the prediction being early
+//! here and late there looks like one too.
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
@@ -36,8 +36,8 @@ const RIVAL: f64 = 2.0;
 /// Less than this of a standard deviation, squared, is nothing.
 const NOTHING: f64 = 0.01;
 
-/// A zero below so many times what is left is none.
-const NO_ZERO: f64 = 3.0;
+/// A row is far off by no less than this share of what the axis moves, standard deviation: early and late is not elsewhere.
+const FAR: f64 = 0.01;
 
 /// How a log lies over a prediction.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,25 +109,16 @@ pub fn align(
         .map(|shift| both.settled(&rows, zeros, began + shift))
         .collect();
     let (best, rival) = both.best(&rows, &tried).ok_or(Unaligned::Still)?;
+    let fixed = both.needed(&rows, zeros, best.shift);
     let rows = Rows::of(log, ROWS_SETTLED);
-    let mut found = both.settled(&rows, zeros, best.shift);
-    let off = settle::off(predicted, &rows, found.shift);
-    let mut fixed = *zeros;
-    for axis in axes {
-        let level = settle::level(&off, *axis, zeros[*axis]);
-        if level.zero.abs() <= NO_ZERO * level.spread {
-            fixed[*axis] = fixed[*axis].or(Some(0.0));
-        }
-    }
-    if fixed != *zeros {
-        found = both.settled(&rows, &fixed, found.shift);
-    }
-    let mut told = told(&found, &both, axes, &fixed, &rows);
+    let found = both.settled(&rows, &fixed, best.shift);
+    let (mut told, alike) = told(&found, &both, axes, &fixed, &rows);
     told.rival = rival;
-    if told.correlation < ALIKE || told.far_off > 1.0 - LEAST_INSIDE {
-        return Err(Unaligned::Unlike(Box::new(told)));
+    let inside = told.correlation >= ALIKE && told.far_off <= 1.0 - LEAST_INSIDE;
+    if inside || alike >= ALIKE {
+        return Ok(told);
     }
-    Ok(told)
+    Err(Unaligned::Unlike(Box::new(told)))
 }
 
 /// One divided by what an axis moves, squared; none if it stands still in one of both.
@@ -158,26 +149,11 @@ impl Both<'_> {
 
     /// The shift that leaves least, and another one that leaves hardly more.
     fn best<'t>(&self, rows: &Rows, tried: &'t [Settled]) -> Option<(&'t Settled, Option<f64>)> {
-        // All are measured by what the closest of them leaves of an axis.
-        let mut spreads = [f64::INFINITY; MAX_AXES];
-        for axis in self.axes {
-            for one in tried {
-                spreads[*axis] = spreads[*axis].min(one.levels[*axis].spread);
-            }
-        }
-        let left = |one: &Settled| {
-            let rows = settle::off(self.predicted, rows, one.shift);
-            let mut sum = 0.0;
-            for axis in self.axes {
-                let level = one.levels[*axis];
-                for row in &rows {
-                    let by = (row.by[*axis] - level.zero) / spreads[*axis];
-                    sum += (by * by).min(MOST_LEFT);
-                }
-            }
-            sum / rows.len().max(1) as f64
-        };
-        let mut all: Vec<(&Settled, f64)> = tried.iter().map(|one| (one, left(one))).collect();
+        let spreads = self.spreads(tried);
+        let all = tried
+            .iter()
+            .map(|one| (one, self.left(rows, one, &spreads)));
+        let mut all: Vec<(&Settled, f64)> = all.collect();
         all.sort_by(|one, other| one.1.total_cmp(&other.1));
         let (best, least) = *all.first()?;
         let apart = 4.0 * self.step;
@@ -187,16 +163,78 @@ impl Both<'_> {
         });
         Some((best, rival.map(|(rival, _)| rival.shift)))
     }
+
+    /// The zeros, with none where one that is found explains hardly more.
+    fn needed(
+        &self,
+        rows: &Rows,
+        zeros: &[Option<f64>; MAX_AXES],
+        shift: f64,
+    ) -> [Option<f64>; MAX_AXES] {
+        let mut needed = *zeros;
+        let free = |zeros: &[Option<f64>; MAX_AXES]| {
+            let axes = self.axes.iter().copied();
+            axes.filter(|axis| zeros[*axis].is_none())
+                .collect::<Vec<usize>>()
+        };
+        // All of them first: a zero of one axis may stand for that of another.
+        let one_by_one = free(zeros).into_iter().map(|axis| vec![axis]);
+        for axes in [free(zeros)].into_iter().chain(one_by_one) {
+            let mut without = needed;
+            for axis in axes {
+                without[axis] = without[axis].or(Some(0.0));
+            }
+            if without == needed {
+                continue;
+            }
+            let both = [&needed, &without].map(|zeros| self.settled(rows, zeros, shift));
+            let off = settle::off(self.predicted, rows, both[0].shift);
+            let mut widths = [f64::INFINITY; MAX_AXES];
+            for axis in self.axes {
+                widths[*axis] = settle::width(&off, *axis, both[0].levels[*axis]);
+            }
+            let [with, without_it] = both.map(|one| self.left(rows, &one, &widths));
+            if without_it < RIVAL * with.max(NOTHING) {
+                needed = without;
+            }
+        }
+        needed
+    }
+
+    /// Of each axis the least that any of them leaves: all are measured by it.
+    fn spreads(&self, settled: &[Settled]) -> Joints {
+        let mut spreads = [f64::INFINITY; MAX_AXES];
+        for axis in self.axes {
+            for one in settled {
+                spreads[*axis] = spreads[*axis].min(one.levels[*axis].spread);
+            }
+        }
+        spreads
+    }
+
+    /// What is left of a row on average, squared, all axes added up.
+    fn left(&self, rows: &Rows, settled: &Settled, spreads: &Joints) -> f64 {
+        let rows = settle::off(self.predicted, rows, settled.shift);
+        let mut sum = 0.0;
+        for axis in self.axes {
+            let level = settled.levels[*axis];
+            for row in &rows {
+                let by = (row.by[*axis] - level.zero) / spreads[*axis];
+                sum += (by * by).min(MOST_LEFT);
+            }
+        }
+        sum / rows.len().max(1) as f64
+    }
 }
 
-/// All that is told of a shift; of the axes that stand still their zeros too.
+/// All that is told of a shift, of the axes that stand still their zeros too; and how alike both are with all rows.
 fn told(
     found: &Settled,
     both: &Both<'_>,
     axes: &[usize],
     zeros: &[Option<f64>; MAX_AXES],
     rows: &Rows,
-) -> Alignment {
+) -> (Alignment, f64) {
     let off = settle::off(both.predicted, rows, found.shift);
     let mut told = Alignment {
         shift: found.shift,
@@ -214,24 +252,28 @@ fn told(
         told.overlap = [from.min(row.time), to.max(row.time)];
     }
     let mut levels = [AxisLevel::default(); MAX_AXES];
-    let mut likeness = 0.0;
+    let [mut inside, mut all] = [0.0; 2];
     for axis in axes {
         let level = settle::level(&off, *axis, zeros[*axis]);
-        levels[*axis] = level;
         told.zeros[*axis] = zeros[*axis].unwrap_or_else(|| settle::zero(&off, *axis, level));
         told.left[*axis] = level.spread;
+        let as_wide = |spread: f64| AxisLevel { spread, ..level };
+        let everywhere = as_wide(f64::INFINITY);
+        let moved = settle::moved(&off, *axis);
+        levels[*axis] = as_wide(level.spread.max(FAR * moved));
         if both.axes.contains(axis) {
-            let [shared, moved] = settle::likeness(&off, *axis, level);
-            let alike = if moved > 0.0 { shared / moved } else { 0.0 };
+            let alike = settle::likeness(&off, *axis, levels[*axis]);
             told.alike[*axis] = Some(alike);
-            likeness += alike;
+            inside += alike;
+            all += settle::likeness(&off, *axis, everywhere);
         }
     }
-    told.correlation = likeness / both.axes.len().max(1) as f64;
+    let count = both.axes.len().max(1) as f64;
+    told.correlation = inside / count;
     let far = |row: &&Off| {
         let mut axes = both.axes.iter();
         axes.any(|axis| !settle::counts(row, *axis, levels[*axis]))
     };
     told.far_off = off.iter().filter(far).count() as f64 / off.len().max(1) as f64;
-    told
+    (told, all / count)
 }

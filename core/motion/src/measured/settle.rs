@@ -5,8 +5,6 @@
 //! power series, meaning polynomials, illustrated on band-spectroscopic data, 1974), each axis measured by the median of
 //! what is left of it while it moves.
 
-use std::cmp::Ordering;
-
 use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::Track;
@@ -16,6 +14,9 @@ const OUTSIDE: f64 = 4.685;
 
 /// The standard deviation of what is normally distributed, over the median of its size.
 const OF_MEDIAN: f64 = 1.4826;
+
+/// Nine of ten of what is normally distributed are within so many standard deviations.
+const OF_NINETY: f64 = 1.645;
 
 /// Nothing is known more closely, mm or radians.
 const FINEST: f64 = 1e-6;
@@ -180,6 +181,13 @@ fn normal(rows: &[Off], axis: usize, level: AxisLevel, free: bool) -> [f64; 2] {
     }
 }
 
+/// The standard deviation of most rows, those that are early or late among them: by the size that nine of ten do not pass.
+pub(super) fn width(rows: &[Off], axis: usize, level: AxisLevel) -> f64 {
+    let by = rows.iter().map(|row| (row.by[axis] - level.zero).abs());
+    let mut by: Vec<f64> = by.collect();
+    (quantile(&mut by, 0.9) / OF_NINETY).max(FINEST)
+}
+
 /// How much a row counts that is off by so many standard deviations.
 fn weight(by: f64) -> f64 {
     let share = by / OUTSIDE;
@@ -203,9 +211,18 @@ pub(super) fn zero(rows: &[Off], axis: usize, level: AxisLevel) -> f64 {
     level.zero + if all > 0.0 { sum / all } else { 0.0 }
 }
 
-/// How alike both are in the rows that count: 1 if nothing is left, 0 if they have nothing in common; numerator and
-/// denominator, so that axes can be added up, each in its own measure.
-pub(super) fn likeness(rows: &[Off], axis: usize, level: AxisLevel) -> [f64; 2] {
+/// What an axis moves in the log, standard deviation.
+pub(super) fn moved(rows: &[Off], axis: usize) -> f64 {
+    let count = rows.len().max(1) as f64;
+    let logged = || rows.iter().map(|row| row.predicted[axis] + row.by[axis]);
+    let mean = logged().sum::<f64>() / count;
+    let squares: f64 = logged().map(|value| (value - mean) * (value - mean)).sum();
+    libm::sqrt(squares / count)
+}
+
+/// How alike both are in the rows that count: 1 if nothing is left, 0 if they have nothing in common, -1 if they count in
+/// opposite senses.
+pub(super) fn likeness(rows: &[Off], axis: usize, level: AxisLevel) -> f64 {
     let inside = || rows.iter().filter(|row| counts(row, axis, level));
     let count = inside().count().max(1) as f64;
     let mean = |value: &dyn Fn(&Off) -> f64| inside().map(value).sum::<f64>() / count;
@@ -215,15 +232,23 @@ pub(super) fn likeness(rows: &[Off], axis: usize, level: AxisLevel) -> [f64; 2] 
     let variance = mean(&|row| (predicted(row) - centre) * (predicted(row) - centre));
     let log_variance = mean(&|row| (logged(row) - log_centre) * (logged(row) - log_centre));
     let covariance = mean(&|row| (predicted(row) - centre) * (logged(row) - log_centre));
-    [2.0 * covariance, variance + log_variance]
+    let variances = variance + log_variance;
+    if variances > 0.0 {
+        2.0 * covariance / variances
+    } else {
+        0.0
+    }
 }
 
-/// 0 of none; the values end in another order.
 fn median(values: &mut [f64]) -> f64 {
+    quantile(values, 0.5)
+}
+
+/// What this share of the values does not pass, 0 of none; they end in another order.
+fn quantile(values: &mut [f64], share: f64) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
-    let middle = values.len() / 2;
-    let compare = |one: &f64, other: &f64| one.partial_cmp(other).unwrap_or(Ordering::Equal);
-    *values.select_nth_unstable_by(middle, compare).1
+    let place = (values.len() as f64 * share) as usize;
+    *values.select_nth_unstable_by(place, f64::total_cmp).1
 }

@@ -22,12 +22,14 @@
 //!   velocity `v₂` that the next one has reached when this one stands are what comes of the longest common time in which
 //!   neither leaves more than half of its way; a tolerance `P` bounds both by `2·√(a·P/cos θ)`, `θ` half the angle between
 //!   the ways: then the deviation in the middle of two like parabolas is `P`. Two moves in which no rotary axis turns are
-//!   rounded instead. A move whose end may be left is accelerated by half even where a standstill comes, and one that must
+//!   rounded instead, straight ones by an arc of a circle, without a tolerance by up to a quarter of the shorter one, at the
+//!   faster one's feed. A move whose end may be left is accelerated by half even where a standstill comes, and one that must
 //!   end where it is programmed with all of it even while it is overlapped, when both together may pass a limit by half of
 //!   it: recorded so of LinuxCNC 2.9. With jerk limits, which that rule knows nothing of, both have half, the next
 //!   move begins when this one is slowed down to half of `v₁`, and is speeded up over twice the time that is left: half of
 //!   either ramp.
 
+use nalgebra::Vector3;
 use post_machine::description::BlendRule;
 
 use super::bounds::Bounds;
@@ -80,12 +82,12 @@ impl Junction {
             Corner::Stop => return Self::Stop,
             Corner::Path if overlaps => return Self::Stop,
             Corner::Path => None,
-            Corner::Blend { .. } if overlaps => return Self::overlap(sides),
+            Corner::Blend { .. } if overlaps => return Self::overlap(sides, rules),
             Corner::Blend { tolerance } => Some(tolerance),
         };
         let Some(kink) = Kink::new(sides, rules) else {
             return match (tolerance, blend) {
-                (Some(_), BlendRule::Overlap) => Self::overlap(sides),
+                (Some(_), BlendRule::Overlap) => Self::overlap(sides, rules),
                 _ => Self::Stop,
             };
         };
@@ -102,10 +104,10 @@ impl Junction {
         };
         // The beginning of an overlapped move is counted on its whole length.
         if sides[0].overlapped {
-            return Self::overlap(sides);
+            return Self::overlap(sides, rules);
         }
         let circle = match blend == BlendRule::Overlap && !jerk {
-            true => Round::circle(sides, rules, tolerance, wanted),
+            true => Round::circle(sides, rules, tolerance),
             false => None,
         };
         let round = circle.or_else(|| Round::smooth(sides, rules, &kink, tolerance, wanted));
@@ -115,7 +117,7 @@ impl Junction {
         }
     }
 
-    fn overlap(sides: [Side; 2]) -> Self {
+    fn overlap(sides: [Side; 2], rules: &AxisLimits) -> Self {
         let tolerance = match sides[0].task.corner {
             Corner::Blend { tolerance } => tolerance,
             Corner::Stop | Corner::Path => None,
@@ -133,14 +135,12 @@ impl Junction {
             most_first.min(seconds * first.acceleration),
             most_next.min(seconds * next.acceleration),
         ];
-        let [out, into] = [sides[0].found.tip_ends[1], sides[1].found.tip_ends[0]];
-        let lengths = [out.norm(), into.norm()];
-        if let Some(tolerance) = tolerance.filter(|_| lengths.iter().all(|length| *length > 0.0)) {
+        let ways = [sides[0].heading(1, rules), sides[1].heading(0, rules)];
+        if let (Some(tolerance), [Some((out, length)), Some((into, next))]) = (tolerance, ways) {
             // cos θ with θ half the angle between the ways: √((1 - cos of the change of direction) / 2).
-            let turned = out.dot(&into) / (lengths[0] * lengths[1]);
-            let cosine = (0.5 * (1.0 - turned)).max(0.0).sqrt();
-            let speed = 2.0 * (first.acceleration * lengths[0] * tolerance / cosine).sqrt();
-            for (rate, length) in rates.iter_mut().zip(lengths) {
+            let cosine = (0.5 * (1.0 - out.dot(&into))).max(0.0).sqrt();
+            let speed = 2.0 * (first.acceleration * length * tolerance / cosine).sqrt();
+            for (rate, length) in rates.iter_mut().zip([length, next]) {
                 *rate = rate.min(speed / length);
             }
         }
@@ -159,5 +159,32 @@ impl Junction {
 impl Side<'_> {
     fn turns(&self) -> bool {
         turns(self.task.solver.chain(), [&self.task.from, &self.task.to])
+    }
+
+    /// The direction of the way where it begins (0) or ends (1), and how long all of it would be at that pace; none where it
+    /// has none.
+    ///
+    /// That of the programmed coordinates where these are limited. A move on which rotary axes alone turn goes along X then,
+    /// its length counted in degrees: recorded so of LinuxCNC 2.9.
+    fn heading(&self, end: usize, rules: &AxisLimits) -> Option<(Vector3<f64>, f64)> {
+        let unit = |way: Vector3<f64>| {
+            let length = way.norm();
+            (length > 0.0).then(|| (way / length, length))
+        };
+        let Some(coordinates) = &rules.programmed else {
+            return unit(self.found.tip_ends[end]);
+        };
+        let mut way = Vector3::zeros();
+        let mut turned = 0.0;
+        let joints = self.task.solver.chain().joints();
+        for (place, joint) in joints.iter().enumerate() {
+            let value = self.found.ends[end][place];
+            match coordinates[place] {
+                Some(coordinate) => way[coordinate] = value,
+                None if joint.rotary => turned += value.to_degrees() * value.to_degrees(),
+                None => {}
+            }
+        }
+        unit(way).or_else(|| (turned > 0.0).then(|| (Vector3::x(), turned.sqrt())))
     }
 }

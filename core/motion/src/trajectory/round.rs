@@ -96,14 +96,9 @@ impl Round {
         })
     }
 
-    /// Between straight ways of the tip: the arc that is run through at the rate `wanted` with [`ARC`] of the least
-    /// acceleration, or a smaller one.
-    pub fn circle(
-        sides: [Side; 2],
-        rules: &AxisLimits,
-        tolerance: Option<f64>,
-        wanted: f64,
-    ) -> Option<Self> {
+    /// Between straight ways of the tip: the arc that is run through as fast as the faster one of them with [`ARC`] of the
+    /// least acceleration, or a smaller one. LinuxCNC 2.9 does so.
+    pub fn circle(sides: [Side; 2], rules: &AxisLimits, tolerance: Option<f64>) -> Option<Self> {
         let curved = |side: &Side| matches!(side.task.way, Way::Arc { .. } | Way::Spline(_));
         if sides.iter().any(curved) {
             return None;
@@ -123,7 +118,8 @@ impl Round {
             }
         }
         let across = ARC * (1.0 - KINK) * acceleration;
-        let speed = wanted * lengths[0];
+        let rates = [sides[0].whole.rate, sides[1].whole.rate];
+        let speed = (rates[0] * lengths[0]).max(rates[1] * lengths[1]);
         let (sine, cosine) = libm::sincos(0.5 * sweep);
         let most = tolerance.unwrap_or(STRAY_OF_LENGTH * shorter) * cosine / (1.0 - cosine);
         let radius = (speed * speed / across)
@@ -140,7 +136,13 @@ impl Round {
             shares,
             curve: Curve::Circle(sweep),
             length,
-            bounds: Bounds::new(&found, rules, length / wanted, 1.0 - KINK, Some(sweep)),
+            bounds: Bounds::new(
+                &found,
+                rules,
+                length * lengths[0] / speed,
+                1.0 - KINK,
+                Some(sweep),
+            ),
         })
     }
 }

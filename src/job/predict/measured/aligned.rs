@@ -1,5 +1,7 @@
 //! How a log lies over a prediction, and what is said where it does not, or hardly.
 
+use std::borrow::Cow;
+
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES};
@@ -7,7 +9,7 @@ use post_motion::measured::{Alignment, Track, Unaligned, align};
 
 use super::columns::{Columns, Content};
 use super::log::Which;
-use super::overlay::Overlay;
+use super::overlay::{MOVES, Overlay};
 use super::units::UNITS;
 use crate::failure::Failure;
 use crate::terminal::number;
@@ -30,7 +32,7 @@ pub(super) fn aligned(overlay: &Overlay, machine: &Machine) -> Result<Alignment,
     let axes = [&commanded[..], &only_actual].concat();
     let predicted = match commanded.is_empty() {
         false => mixed(&overlay.commanded, &overlay.actual, &only_actual),
-        true => overlay.actual.clone(),
+        true => Cow::Borrowed(&overlay.actual),
     };
     let logged = mixed(&log.commanded, &log.actual, &only_actual);
     let zeros = overlay.zeros();
@@ -52,7 +54,7 @@ pub(super) fn aligned(overlay: &Overlay, machine: &Machine) -> Result<Alignment,
         };
         let help = match &why {
             Unaligned::Unlike(best) => {
-                let ranges = [&predicted, &logged].map(ranges);
+                let ranges = [&predicted, &logged].map(|track| ranges(track));
                 units(machine, &log.columns, ranges)
                     .or_else(|| reversed(best, machine))
                     .unwrap_or_else(|| HELP.to_owned())
@@ -158,17 +160,31 @@ fn units(machine: &Machine, columns: &Columns, [wanted, logged]: [Joints; 2]) ->
 }
 
 /// The commanded positions, and of some axes the actual ones.
-fn mixed(commanded: &Track, actual: &Track, only_actual: &[usize]) -> Track {
+fn mixed<'t>(commanded: &'t Track, actual: &'t Track, only_actual: &[usize]) -> Cow<'t, Track> {
+    if only_actual.is_empty() {
+        return Cow::Borrowed(commanded);
+    }
     if commanded.joints.is_empty() {
-        return actual.clone();
+        return Cow::Borrowed(actual);
     }
     let mut mixed = commanded.clone();
-    if !only_actual.is_empty() {
-        for (joints, actual) in mixed.joints.iter_mut().zip(&actual.joints) {
-            for axis in only_actual {
-                joints[*axis] = actual[*axis];
-            }
+    for (joints, actual) in mixed.joints.iter_mut().zip(&actual.joints) {
+        for axis in only_actual {
+            joints[*axis] = actual[*axis];
         }
     }
-    mixed
+    Cow::Owned(mixed)
+}
+
+/// From the first motion of these axes to the last, s; none if they never move, or if a track that is not known to be
+/// `whole` has no rest at its beginning and at its end.
+pub(super) fn moving(track: &Track, axes: &[usize], whole: bool) -> Option<f64> {
+    let moves = |pair: &[Joints]| {
+        let mut axes = axes.iter();
+        axes.any(|axis| (pair[1][*axis] - pair[0][*axis]).abs() > MOVES)
+    };
+    let first = track.joints.windows(2).position(moves)?;
+    let last = track.joints.windows(2).rposition(moves)? + 1;
+    let rests = first > 0 && last + 1 < track.joints.len();
+    (whole || rests).then(|| (last - first) as f64 * track.period)
 }

@@ -13,6 +13,9 @@ const ONE_STEP: f64 = 1.5;
 /// The mean step is the period if it is this close to the usual one, as a share of it.
 const SAME: f64 = 0.1;
 
+/// Rows lie at even distances if they are beside them by no more than this share of the period.
+const EVEN: f64 = 1e-4;
+
 /// What the times of a log say.
 #[derive(Clone, Copy, Debug)]
 pub struct Clock {
@@ -85,7 +88,8 @@ impl Clock {
         let mean = beside.iter().sum::<f64>() / count;
         let squares = beside.iter().map(|one| (one - mean) * (one - mean));
         let jitter = libm::sqrt(squares.sum::<f64>() / count);
-        let rounded = jitter > 0.0 && beside.iter().all(|one| one.abs() <= 1.01 * resolution);
+        let rounded =
+            jitter > EVEN * period && beside.iter().all(|one| one.abs() <= 1.01 * resolution);
         if rounded {
             for (time, place) in times.iter_mut().zip(&places) {
                 *time = first + mean + place * period;
@@ -95,7 +99,7 @@ impl Clock {
             period,
             missing,
             jitter: if rounded { 0.0 } else { jitter },
-            rounded: rounded && resolution > 1e-3 * period,
+            rounded,
         })
     }
 }

@@ -201,10 +201,22 @@ fn told(
             );
             return Err(asks_for_columns(message, machine, head));
         };
-        let named = head.names.iter().position(|name| {
+        let called = |name: &String| {
             let names = [name.trim(), split_unit(name).0];
             names.iter().any(|name| name.eq_ignore_ascii_case(column))
-        });
+        };
+        let named = head.names.iter().position(called);
+        let last = head.names.iter().rposition(called);
+        if let (Some(first), Some(last)) = (named, last)
+            && first != last
+        {
+            let message = format!(
+                "--columns: columns {} and {} are both called {column}; name it by its number",
+                first + 1,
+                last + 1
+            );
+            return Err(asks_for_columns(message, machine, head));
+        }
         let numbered = || {
             let number: usize = column.parse().ok()?;
             (1..=head.count).contains(&number).then(|| number - 1)

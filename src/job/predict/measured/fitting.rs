@@ -178,7 +178,7 @@ pub(super) fn short(deviation: f64) -> String {
 }
 
 /// A number with two digits beyond the first of its deviation, and no more than nine.
-fn rounded(value: f64, deviation: f64) -> String {
+pub(super) fn rounded(value: f64, deviation: f64) -> String {
     let digits = libm::floor(libm::log10(
         value.abs().max(f64::MIN_POSITIVE) / deviation.max(f64::MIN_POSITIVE),
     ));

@@ -15,7 +15,7 @@ use post_motion::measured::Track;
 
 use super::aligned;
 use super::compare::Compared;
-use super::log::Log;
+use super::log::{Log, Which};
 use super::logged_path::MeasuredPoint;
 use super::report::{ColumnRead, MeasuredFound};
 use crate::failure::Failure;
@@ -129,9 +129,17 @@ impl Overlay {
             far_off: alignment.far_off,
             overlap_s: alignment.overlap,
             predicted_s: self.commanded.seconds(),
+            motion_s: self.motion(),
             axes: compared.axes(machine),
             contour: compared.contour(),
         })
+    }
+
+    /// From the first commanded motion to the last: in the log, and as predicted.
+    fn motion(&self) -> Option<[f64; 2]> {
+        let axes = self.log.axes(Which::Commanded);
+        let logged = aligned::moving(&self.log.commanded, &axes, false)?;
+        Some([logged, aligned::moving(&self.commanded, &axes, true)?])
     }
 
     /// The log.

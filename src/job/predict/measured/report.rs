@@ -42,6 +42,9 @@ pub struct MeasuredFound {
     pub overlap_s: [f64; 2],
     /// How long the prediction is.
     pub predicted_s: f64,
+    /// From the first commanded motion of the log's axes to the last: in the log, and as predicted. None of a log without
+    /// commanded positions, or that begins or ends in motion.
+    pub motion_s: Option<[f64; 2]>,
     /// Of the axes what is left.
     pub axes: Vec<AxisLaid>,
     /// Contour error in cuts; none if no following error is known.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::fitting::{AxisFitted, short};
+use super::fitting::{AxisFitted, rounded, short};
 use super::report::{AxisLaid, Left, MeasuredFound};
 use post_machine::diagnostic::Short;
 
@@ -80,13 +80,22 @@ fn head(text: &mut String, found: &MeasuredFound) {
     }
     let [from, to] = found.overlap_s;
     let laid = format!(
-        "the program begins at {} s of the log (± {} ms); both are known for {} of its {}",
-        number(found.shift_s, 5),
-        number(1e3 * found.shift_deviation_s.min(1e3), 4),
+        "the program begins at {} s of the log (± {} µs); both are known for {} of its {}",
+        number(found.shift_s, 6),
+        number(1e6 * found.shift_deviation_s.min(1e3), 1),
         clock(to - from),
         clock(found.predicted_s)
     );
     row("laid over", laid);
+    if let Some([logged, predicted]) = found.motion_s {
+        let text = format!(
+            "{} s from the first motion to the last, predicted {} s ({} %)",
+            number(logged, 3),
+            number(predicted, 3),
+            signed(100.0 * (predicted / logged - 1.0))
+        );
+        row("  moves for", text);
+    }
     let alike = match found.far_off > 0.0 {
         true => format!(
             "{} without {} % of the rows that are far off",
@@ -96,7 +105,7 @@ fn head(text: &mut String, found: &MeasuredFound) {
         false => number(found.correlation, 6),
     };
     row("  alike by", format!("{alike} (1: nothing is left)"));
-    let zeros = found.axes.iter().filter(|axis| axis.zero != 0.0);
+    let zeros = found.axes.iter().filter(|axis| axis.zero.abs() >= 5e-5);
     let zeros = zeros.map(|axis| format!("{} {} {}", axis.name, number(axis.zero, 4), axis.unit));
     let zeros: Vec<String> = zeros.collect();
     row(
@@ -116,6 +125,12 @@ const ALIKE: f64 = 5.0;
 
 /// A time is beside even distances if it is so by more than this share of them.
 const SEEN_JITTER: f64 = 1e-3;
+
+/// With its sign, two decimals.
+fn signed(value: f64) -> String {
+    let sign = if value > 0.0 { "+" } else { "" };
+    format!("{sign}{}", number(value, 2))
+}
 
 /// Where axes are at the same time.
 fn positions(text: &mut String, axes: &[AxisLaid]) {
@@ -249,7 +264,7 @@ pub fn fitted_text(fitted: &[AxisFitted]) -> String {
             rows.push([
                 one.name.to_owned(),
                 Short(one.before).to_string(),
-                Short(one.value).to_string(),
+                rounded(one.value, one.deviation.unwrap_or(f64::INFINITY)),
                 one.deviation.map_or_else(|| "infinite".to_owned(), short),
                 if one.determined { "yes" } else { "no" }.to_owned(),
                 one.correlated

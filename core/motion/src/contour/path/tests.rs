@@ -1,7 +1,7 @@
 use post_testkit::{Rng, randomised};
 
 use super::*;
-use crate::contour::spline::tangents;
+use crate::contour::spline::Five;
 
 /// A path that wanders: it turns gently and at once, slows down, stands, goes back the way it came, and crosses itself.
 fn wandering(rng: &mut Rng, count: usize) -> Vec<Vector3<f64>> {
@@ -33,19 +33,19 @@ fn wandering(rng: &mut Rng, count: usize) -> Vec<Vector3<f64>> {
 }
 
 fn path(points: &[Vector3<f64>]) -> Path {
-    let last = points.len() - 1;
+    let last = points[points.len() - 1];
     let mut path = Path::default();
+    let mut tips = Five::all_at(&points[0]);
+    tips.take(&points[0]);
+    tips.take(&points[1]);
     for (number, tip) in points.iter().enumerate() {
-        let near = |step: isize| {
-            let place = number.checked_add_signed(step).unwrap_or(0);
-            &points[place.min(last)]
-        };
+        let tip_ways = tips.take(points.get(number + 2).unwrap_or(&last));
         path.push(Knot {
             number: number as u64,
             at: At::default(),
             tip: *tip,
             axis: Vector3::z(),
-            tip_ways: tangents([-2, -1, 0, 1, 2].map(near)),
+            tip_ways,
             axis_ways: [Vector3::zeros(); 2],
             length: 0.0,
             gap: false,

@@ -135,6 +135,7 @@ impl Junction {
             most_first.min(seconds * first.acceleration),
             most_next.min(seconds * next.acceleration),
         ];
+        let free = rates;
         let ways = [sides[0].heading(1, rules), sides[1].heading(0, rules)];
         if let (Some(tolerance), [Some((out, length)), Some((into, next))]) = (tolerance, ways) {
             // cos θ with θ half the angle between the ways: √((1 - cos of the change of direction) / 2).
@@ -147,10 +148,10 @@ impl Junction {
         let [rate, next_rate] = rates;
         Self::Overlap {
             rate,
-            // Recorded: without a tolerance it is speeded up as hard as it may be from where the overlap begins.
-            change: match tolerance {
-                None => next.acceleration,
-                Some(_) => (next_rate * first.acceleration / rate).min(next.acceleration),
+            // Recorded: where no tolerance holds it back it is speeded up as hard as it may be from where the overlap begins.
+            change: match rates == free {
+                true => next.acceleration,
+                false => (next_rate * first.acceleration / rate).min(next.acceleration),
             },
         }
     }

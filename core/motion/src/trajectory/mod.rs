@@ -27,6 +27,9 @@
 //! **Monotone.** With larger limits no program of straight axis ways takes longer (stops, joined paths, both blends). It may
 //! with jerk limits, by a percent or so, as the knots then lie elsewhere; and on curves, where a velocity that is allowed
 //! to be higher leaves less acceleration along the way.
+//! To keep the path takes no longer than to stop at each corner. To leave it may take longer than to keep it where a ramp goes
+//! over a corner, as its curve takes some of the accelerations that a kink leaves alone. With jerk limits neither is proven:
+//! a ramp over unlike blocks has the least acceleration and jerk of them, unless splitting it pays.
 //!
 //! **Streaming.** What has been seen far enough ahead is settled and can be filled; how set-points are asked for, and when,
 //! has no influence. Memory is that of the blocks in sight.

@@ -5,7 +5,7 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 use super::bounds::{ARC, Bounds, CURVE, NORMAL};
 use super::corner::Side;
 use super::kink::Kink;
-use crate::limits::{AxisLimits, KINK, MoveLimits};
+use crate::limits::{AxisLimits, MoveLimits};
 use crate::path::Way;
 
 /// The part of the length of a corner by whose product with the change of direction it strays.
@@ -97,7 +97,8 @@ impl Round {
     }
 
     /// Between straight ways of the tip: the arc that is run through as fast as the faster one of them with [`ARC`] of the
-    /// least acceleration, or a smaller one. LinuxCNC 2.9 does so.
+    /// least acceleration, and is so long that half of it would do to get up to that within; or a smaller one. Recorded so of
+    /// LinuxCNC 2.9: an arc that nothing else makes smaller is `2·v²/a` long at turns of up to 99°.
     pub fn circle(sides: [Side; 2], rules: &AxisLimits, tolerance: Option<f64>) -> Option<Self> {
         let curved = |side: &Side| matches!(side.task.way, Way::Arc { .. } | Way::Spline(_));
         if sides.iter().any(curved) {
@@ -117,12 +118,11 @@ impl Round {
                 acceleration = acceleration.min(*limit);
             }
         }
-        let across = ARC * (1.0 - KINK) * acceleration;
         let rates = [sides[0].whole.rate, sides[1].whole.rate];
         let speed = (rates[0] * lengths[0]).max(rates[1] * lengths[1]);
         let (sine, cosine) = libm::sincos(0.5 * sweep);
         let most = tolerance.unwrap_or(STRAY_OF_LENGTH * shorter) * cosine / (1.0 - cosine);
-        let radius = (speed * speed / across)
+        let radius = (speed * speed / acceleration * (1.0 / ARC).max(2.0 / sweep))
             .min(most)
             .min(HALF * shorter * cosine / sine);
         if !(radius > 0.0 && radius.is_finite()) {
@@ -136,13 +136,7 @@ impl Round {
             shares,
             curve: Curve::Circle(sweep),
             length,
-            bounds: Bounds::new(
-                &found,
-                rules,
-                length * lengths[0] / speed,
-                1.0 - KINK,
-                Some(sweep),
-            ),
+            bounds: Bounds::new(&found, rules, length * lengths[0] / speed, 1.0, Some(sweep)),
         })
     }
 }

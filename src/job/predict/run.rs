@@ -1,7 +1,7 @@
 //! The stages of a prediction, one behind the other, in batches: a program becomes tasks, tasks become set-points, servos
 //! follow them, and the tool is held against its path. Memory does not grow with the program.
 
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, FileFault};
 use crate::job::{nc_program, read_back};
-use crate::terminal::number;
+use crate::terminal::{Progress, Watched, number};
 
 /// Set-points of a batch.
 const BATCH: usize = 256;
@@ -83,7 +83,7 @@ pub fn predict<R: Read + Seek>(
     asked: &Asked<'_>,
     against: Against<'_>,
     name: &str,
-    mut input: R,
+    input: R,
     listen: &mut dyn FnMut(&Sample) -> Result<(), Failure>,
 ) -> Result<Predicted, Failure> {
     let period = asked.period();
@@ -109,8 +109,9 @@ pub fn predict<R: Read + Seek>(
         name: name.to_owned(),
         error,
     };
-    input.seek(SeekFrom::Start(0)).map_err(unreadable)?;
-    let input = BufReader::new(&mut input);
+    let (input, length) = Watched::new(input).map_err(unreadable)?;
+    let position = input.position();
+    let input = BufReader::new(input);
     let mut program = Interpreter::new(machine, &lexicon, &offsets, asked.limits, name, input)
         .map_err(|fault| *fault)?;
     let mut reading = Reading {
@@ -125,7 +126,9 @@ pub fn predict<R: Read + Seek>(
     let mut points: Option<SetPoints> = None;
     let mut times = Vec::new();
     let mut chains: Vec<(f64, Arc<Solver>)> = Vec::new();
+    let mut progress = Progress::new(Some(length));
     loop {
+        progress.record(|| position.get());
         let filled = match &mut points {
             None => Filled::Wants,
             Some(points) => {
@@ -178,6 +181,7 @@ pub fn predict<R: Read + Seek>(
             }
         }
     }
+    progress.finish();
     if !reading.unread.is_empty() {
         // What stands behind a block that is not run counts from elsewhere.
         return Err(reading.unread.into());

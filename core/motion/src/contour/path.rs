@@ -224,7 +224,8 @@ impl Path {
     }
 
     /// The place nearest to a tool that was off the path meanwhile: from where it left on, and before that only where
-    /// what lies ahead is farther (it comes down a hole again, above where it left).
+    /// what lies ahead is farther (it comes down a hole again, above where it left), and no further back than other places
+    /// are looked for at all: the end of an earlier cut may be near as well.
     pub fn seek_anew(&self, tool: &Pose) -> Foot {
         let first = (self.point(self.foot) - tool.tip).norm();
         let left = Foot {
@@ -233,7 +234,7 @@ impl Path {
         };
         let ahead = self.among(tool, left, 0.0, first);
         let near = self.descend(&tool.tip, self.foot);
-        let back = self.among(tool, near, f64::INFINITY, first);
+        let back = self.among(tool, near, REACH * ahead.distance, first);
         match back.distance < ahead.distance - TIE {
             true => back,
             false => ahead,

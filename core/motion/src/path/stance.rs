@@ -63,6 +63,7 @@ impl Way {
 }
 
 /// The rotary axes `t` of the way between `ends`, and the linear ones such that the tip stands on `tip`.
+#[inline]
 fn placed(
     solver: &Solver,
     ends: [&Stance; 2],

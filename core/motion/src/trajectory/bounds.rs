@@ -120,7 +120,10 @@ impl Bounds {
             let most = part * share * limited.acceleration / across;
             least(rate, by, most.sqrt(), acceleration);
             let most = share * limited.jerk / (CURVE * third);
-            least(rate, by, libm::cbrt(most), jerk);
+            // A cube root is asked for where it may be less: most are not.
+            if most < *rate * *rate * *rate * (1.0 + 1e-12) {
+                least(rate, by, libm::cbrt(most), jerk);
+            }
         }
         let rate = bounds.rate;
         for limited in all(found, rules) {

@@ -2,6 +2,7 @@
 
 mod build;
 mod corners;
+mod drift;
 mod jumps;
 mod limits;
 mod linuxcnc;

@@ -157,7 +157,7 @@ fn a_model_that_lacks_something_leaves_more_than_noise() {
         ],
     );
     // With friction in the model it is noise.
-    let with = wrong() + "[servo.X.friction]\ncoulomb = 300\nwidth = 0.1\n";
+    let with = wrong() + "[servo.X.friction]\ncoulomb = 300\nwidth = 1\n";
     let shop = Shop::new(&with, &log);
     let (said, found) = shop.found(&[
         "--fit",

@@ -8,6 +8,10 @@ use crate::common::{assert_contains, command, root, run};
 /// What the closed forms and Runge and Kutta leave of the code under test, mm and degrees.
 const EXACT: f64 = 4e-4;
 
+/// The same where rows are 2.5 ms apart: commands are taken for straight between them, which leaves an eighth of
+/// acceleration times their distance squared, 1.6 µm at 2000 mm/s².
+const COARSE: f64 = 2e-3;
+
 /// Axes at the same time, and following errors, as measured and as predicted.
 #[track_caller]
 fn agrees(found: &Value, axes: &[&str], within: f64) {
@@ -186,7 +190,7 @@ fn an_approach_from_elsewhere_moves_neither_clock_nor_zeros() {
         1e-4,
     );
     close(&axis(&found, "Z")["zero"], 500.0, 1e-3);
-    agrees(&found, &["X", "Y", "C"], EXACT);
+    agrees(&found, &["X", "Y", "C"], COARSE);
     assert_contains(
         &run.err,
         &[
@@ -206,7 +210,7 @@ fn rows_of_one_period_without_times_and_rounded_times() {
     let shop = Shop::new(MILL, &without);
     let (_, found) = shop.found(&["--log-period", "0.0025"]);
     close(&found["measured"]["shift_s"], super::plant::REST, 1e-5);
-    agrees(&found, &["X", "Y", "Z", "C"], EXACT);
+    agrees(&found, &["X", "Y", "Z", "C"], COARSE);
     // Milliseconds without decimals: every second row is half a millisecond late.
     let rounded: String = log
         .lines()
@@ -225,7 +229,7 @@ fn rows_of_one_period_without_times_and_rounded_times() {
     let (run, found) = shop.found(&[]);
     assert_eq!(found["measured"]["rounded_times"], true);
     close(&found["measured"]["shift_s"], 3.21, 6e-4);
-    agrees(&found, &["X", "Y", "Z", "C"], EXACT);
+    agrees(&found, &["X", "Y", "Z", "C"], COARSE);
     assert_contains(
         &run.out,
         &["rounded; rows are taken to lie at even distances"],

@@ -17,7 +17,7 @@ pub struct Truth {
     pub kv: f64,
     pub feed_forward: f64,
     pub table_mass: f64,
-    /// Coulomb friction of X's table, N.
+    /// Coulomb friction of X's table, N; below 1 mm/s it grows in proportion to speed.
     pub friction: f64,
 }
 
@@ -105,7 +105,7 @@ fn slope(axis: usize, truth: &Truth, state: &State, command: f64, rate: f64) -> 
             let error = wanted / SCREW - speed;
             let torque = 2.0 * (error + integral / 0.02);
             let force = 150e6 * (SCREW * angle - table) + 6000.0 * (SCREW * speed - velocity);
-            let rubs = truth.friction * (velocity / 1e-4).tanh();
+            let rubs = truth.friction * (velocity / 1e-3).clamp(-1.0, 1.0);
             [
                 speed,
                 (torque - SCREW * force) / 0.006,

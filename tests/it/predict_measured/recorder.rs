@@ -108,6 +108,6 @@ impl Random {
 
     fn normal(&mut self) -> f64 {
         let (one, other) = (self.even(), self.even());
-        (-2.0 * one.ln()).sqrt() * (std::f64::consts::TAU * other).cos()
+        (-2.0 * libm::log(one)).sqrt() * libm::cos(std::f64::consts::TAU * other)
     }
 }

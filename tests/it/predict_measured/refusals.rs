@@ -329,13 +329,11 @@ fn what_may_be_wrong_is_named() {
             fields.join(",") + "\n"
         })
         .collect();
-    let shop = Shop::new(MILL, &other_way);
-    let run = shop.run(&[]);
-    assert_eq!(run.code, 0, "{}", run.err);
-    assert_contains(
-        &run.err,
+    refused(
+        &other_way,
+        &[],
         &[
-            "hardly look alike in some axes: C -",
+            "alike by 0.50 (1 is the same), C -1.00, X 1.00",
             "the log counts C the other way: `reversed` of [axis.C]",
         ],
     );

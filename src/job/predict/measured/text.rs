@@ -278,7 +278,7 @@ pub fn fitted_text(fitted: &[AxisFitted]) -> String {
                 [name] => writeln!(text, "{name} is not determined by this log"),
                 _ => writeln!(
                     text,
-                    "{} are not determined by this log one by one: together they can be changed without it showing",
+                    "{} are not determined by this log one by one: together they can be changed without it showing; leave one of them out",
                     names.join(", ")
                 ),
             };

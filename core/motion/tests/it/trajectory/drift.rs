@@ -90,6 +90,6 @@ fn times_and_positions_do_not_drift() {
     // Clocks are added up: thirty thousand roundings of up to 1e-12 s, and what the feed makes of them.
     assert!(late < 1e-8, "{late} s");
     assert!(worst < 1e-6, "{worst} mm");
-    let end = if MOVES % 2 == 0 { 0.0 } else { WAY };
+    let end = if MOVES.is_multiple_of(2) { 0.0 } else { WAY };
     assert_eq!(last, end);
 }

@@ -71,6 +71,9 @@ pub(super) enum Junction {
     Overlap { rate: f64, change: f64 },
 }
 
+/// Below this cosine of half the angle between two ways they go straight on.
+const STRAIGHT: f64 = 1e-3;
+
 /// Rates this near to each other, as a share, are one.
 const SAME: f64 = 1e-9;
 
@@ -135,11 +138,12 @@ impl Junction {
             most_first.min(seconds * first.acceleration),
             most_next.min(seconds * next.acceleration),
         ];
-        let free = rates;
+        let mut bound = tolerance.is_some();
         let ways = [sides[0].heading(1, rules), sides[1].heading(0, rules)];
         if let (Some(tolerance), [Some((out, length)), Some((into, next))]) = (tolerance, ways) {
             // cos θ with θ half the angle between the ways: √((1 - cos of the change of direction) / 2).
             let cosine = (0.5 * (1.0 - out.dot(&into))).max(0.0).sqrt();
+            bound = cosine > STRAIGHT;
             let speed = 2.0 * (first.acceleration * length * tolerance / cosine).sqrt();
             for (rate, length) in rates.iter_mut().zip([length, next]) {
                 *rate = rate.min(speed / length);
@@ -148,10 +152,11 @@ impl Junction {
         let [rate, next_rate] = rates;
         Self::Overlap {
             rate,
-            // Recorded: where no tolerance holds it back it is speeded up as hard as it may be from where the overlap begins.
-            change: match rates == free {
-                true => next.acceleration,
-                false => (next_rate * first.acceleration / rate).min(next.acceleration),
+            // Recorded: without a tolerance, and straight on, it is speeded up as hard as it may be from where the overlap
+            // begins.
+            change: match bound {
+                true => (next_rate * first.acceleration / rate).min(next.acceleration),
+                false => next.acceleration,
             },
         }
     }

@@ -218,7 +218,7 @@ fn rows_of_one_period_without_times_and_rounded_times() {
         .map(|(place, line)| {
             let (time, rest) = line.split_once(',').unwrap();
             let time = match time.parse::<f64>() {
-                Ok(time) => format!("{:.3}", time),
+                Ok(time) => format!("{time:.3}"),
                 Err(_) => time.to_owned(),
             };
             assert!(place < 2 || time.len() < 8);
@@ -269,7 +269,7 @@ fn the_picture_has_both_and_their_difference() {
         recorder.head = "time,X,Y,C,X_act,Y_act,C_act\n".to_owned();
     });
     let shop = Shop::new(MILL, &log);
-    let (_, _) = shop.found(&["--pictures", "seen", "-q"]);
+    shop.found(&["--pictures", "seen", "-q"]);
     let picture = fs::read_to_string(shop.path("seen/measured.svg")).unwrap();
     assert_contains(
         &picture,

@@ -112,12 +112,10 @@ fn by_axis(alignment: &Alignment, machine: &Machine, below: f64) -> String {
     axes.collect::<Vec<String>>().join(", ")
 }
 
-/// Axes that count the other way.
+/// An axis that counts the other way.
 fn reversed(alignment: &Alignment, machine: &Machine) -> Option<String> {
-    let axes = machine.axes.iter().zip(&alignment.alike);
-    let (axis, _) = axes
-        .into_iter()
-        .find(|(_, alike)| alike.is_some_and(|alike| alike < -DOUBTFUL))?;
+    let mut axes = machine.axes.iter().zip(&alignment.alike);
+    let (axis, _) = axes.find(|(_, alike)| alike.is_some_and(|alike| alike < -DOUBTFUL))?;
     Some(format!(
         "the log counts {0} the other way: `reversed` of [axis.{0}] in the machine file",
         axis.name

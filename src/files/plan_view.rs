@@ -1,24 +1,36 @@
-//! A path as it is seen along one of the axes.
+//! A path as it is seen along one of the axes, in a frame with ticks.
 
-use super::svg::label;
+use std::fmt::Write as _;
 
-/// The plane of two axes in which a path is largest, laid into a rectangle.
+use super::scale::Scale;
+use super::svg::{label, line, upright};
+
+/// Names of the axes of the part.
+const NAMES: [&str; 3] = ["X", "Y", "Z"];
+
+/// From tick to tick, about, px.
+const TICK: f64 = 70.0;
+
+/// The plane of two axes in which a path is largest, laid into a rectangle. Left of it there are to be 62 px for ticks and
+/// what they count, below it 44 px.
 pub struct PlanView {
     plane: [usize; 2],
-    ends: [[f64; 2]; 3],
     scale: f64,
     /// What stands in the middle of the rectangle.
     middle: [f64; 2],
-    /// The middle of the rectangle, px.
-    centre: [f64; 2],
+    /// The upper left corner of the rectangle, and its size, px.
+    corner: [f64; 2],
+    size: [f64; 2],
 }
 
 impl PlanView {
-    /// Of the points, in the rectangle from `corner`, px: X to the right and Y up, unless the path is flat there.
+    /// Of the points, in the rectangle from `corner`, px, with `room` on all sides: X to the right and Y up, unless the path
+    /// is flat there.
     pub fn of<'a>(
         points: impl Iterator<Item = &'a [f64; 3]>,
         corner: [f64; 2],
         size: [f64; 2],
+        room: f64,
     ) -> Self {
         let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         for point in points {
@@ -40,21 +52,23 @@ impl PlanView {
             }
         });
         let [across, up] = plane;
+        let inner = size.map(|size| size - 2.0 * room);
         Self {
             plane,
-            ends,
-            scale: 0.94 * (size[0] / long(across)).min(size[1] / long(up)),
+            scale: (inner[0] / long(across)).min(inner[1] / long(up)),
             middle: plane.map(|axis| 0.5 * (ends[axis][0] + ends[axis][1])),
-            centre: [corner[0] + size[0] / 2.0, corner[1] + size[1] / 2.0],
+            corner,
+            size,
         }
     }
 
     /// Where a point is drawn, px.
     pub fn place(&self, point: &[f64; 3]) -> [f64; 2] {
         let [across, up] = self.plane;
+        let [x, y] = self.centre();
         [
-            self.centre[0] + self.scale * (point[across] - self.middle[0]),
-            self.centre[1] - self.scale * (point[up] - self.middle[1]),
+            x + self.scale * (point[across] - self.middle[0]),
+            y - self.scale * (point[up] - self.middle[1]),
         ]
     }
 
@@ -69,19 +83,54 @@ impl PlanView {
         self.scale
     }
 
-    /// Says above the rectangle what is seen.
-    pub fn title(&self, svg: &mut String, at: [f64; 2]) {
-        let names = ["X", "Y", "Z"];
-        let [across, up] = self.plane;
-        let text = format!(
-            "{} to the right from {:.1} to {:.1} mm, {} up from {:.1} to {:.1} mm",
-            names[across],
-            self.ends[across][0],
-            self.ends[across][1],
-            names[up],
-            self.ends[up][0],
-            self.ends[up][1]
+    /// What follows is seen inside the rectangle alone.
+    pub fn open_clip(&self, svg: &mut String) {
+        let ([x, y], [width, height]) = (self.corner, self.size);
+        let _ = writeln!(
+            svg,
+            "<clipPath id=\"frame\"><rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"/></clipPath>\n<g clip-path=\"url(#frame)\" fill=\"none\">"
         );
-        label(svg, at, "middle", &text);
+    }
+
+    /// What follows is seen everywhere.
+    pub fn close_clip(&self, svg: &mut String) {
+        svg.push_str("</g>\n");
+    }
+
+    /// The rectangle, its ticks and the names of its axes.
+    pub fn frame(&self, svg: &mut String) {
+        let ([left, top], [width, height]) = (self.corner, self.size);
+        let [x, y] = self.centre();
+        let bottom = top + height;
+        let scales = [0, 1].map(|axis| {
+            let half = 0.5 * self.size[axis] / self.scale;
+            let ends = [self.middle[axis] - half, self.middle[axis] + half];
+            Scale::over(ends, self.size[axis] / TICK)
+        });
+        for (value, text) in scales[0].ticks() {
+            let at = left + width * scales[0].share(value);
+            line(svg, [at, bottom], [at, bottom + 5.0], "#000000", 1.0);
+            label(svg, [at, bottom + 19.0], "middle", &text);
+        }
+        for (value, text) in scales[1].ticks() {
+            let at = bottom - height * scales[1].share(value);
+            line(svg, [left - 5.0, at], [left, at], "#000000", 1.0);
+            label(svg, [left - 9.0, at + 4.5], "end", &text);
+        }
+        let _ = writeln!(
+            svg,
+            "<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1\"/>"
+        );
+        let [across, up] = self.plane.map(|axis| format!("{}, mm", NAMES[axis]));
+        label(svg, [x, bottom + 38.0], "middle", &across);
+        upright(svg, [18.0, y], &up);
+    }
+
+    /// The middle of the rectangle, px.
+    fn centre(&self) -> [f64; 2] {
+        [
+            self.corner[0] + self.size[0] / 2.0,
+            self.corner[1] + self.size[1] / 2.0,
+        ]
     }
 }

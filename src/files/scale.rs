@@ -42,6 +42,15 @@ impl Scale {
         }
     }
 
+    /// From one value to a larger one, neither of which need be a tick, about `count` ticks.
+    pub fn over([low, high]: [f64; 2], count: f64) -> Self {
+        Self {
+            low,
+            high,
+            step: Some(step((high - low) / count)),
+        }
+    }
+
     /// A logarithmic axis from a power of ten to another, at most six of them.
     pub fn decades(values: impl Iterator<Item = f64>) -> Self {
         let (least, most) = values

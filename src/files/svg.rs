@@ -36,6 +36,14 @@ pub fn upright(svg: &mut String, [x, y]: [f64; 2], text: &str) {
     );
 }
 
+/// A straight line.
+pub fn line(svg: &mut String, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], grey: &str, width: f64) {
+    let _ = writeln!(
+        svg,
+        "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" stroke=\"{grey}\" stroke-width=\"{width}\"/>"
+    );
+}
+
 /// XML has no form for most control characters: they are written as escapes.
 fn safe(text: &str) -> String {
     escaped(text, &[])

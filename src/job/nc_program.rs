@@ -132,6 +132,11 @@ pub fn not_both_standard(
 
 /// Opens a file that can be gone back in, with its name for messages: standard input and pipes are copied first.
 pub fn open(source: &PathArg) -> Result<(String, File), FileFault> {
+    open_as("the NC program", source)
+}
+
+/// The same of another text, which messages call `what`.
+pub fn open_as(what: &'static str, source: &PathArg) -> Result<(String, File), FileFault> {
     let (Some(path), Some(named)) = (source.absolute(), source.path()) else {
         let name = "standard input".to_owned();
         let copied = copied(&mut io::stdin().lock());
@@ -148,7 +153,7 @@ pub fn open(source: &PathArg) -> Result<(String, File), FileFault> {
     }
     let name = named.display().to_string();
     if metadata.is_file() {
-        read_files::note("the NC program", path);
+        read_files::note(what, path);
         return Ok((name, file));
     }
     Ok((name, copied(&mut file).map_err(fault)?))

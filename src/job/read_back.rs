@@ -22,7 +22,7 @@ use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
 use crate::files::{ClSource, FileFault};
-use crate::terminal::Progress;
+use crate::terminal::{Progress, Watched};
 
 /// What a program is read with.
 pub struct Reading<'a> {
@@ -251,18 +251,18 @@ pub fn hold<C: Course, R: Read + Seek>(
         name: name.to_owned(),
         error,
     };
-    let length = input.seek(SeekFrom::End(0)).map_err(unreadable)?;
-    input.seek(SeekFrom::Start(0)).map_err(unreadable)?;
+    let (watched, length) = Watched::new(&mut input).map_err(unreadable)?;
+    let position = watched.position();
     let mut program = Interpreter::new(
         machine,
         &lexicon,
         &offsets,
         reading.limits,
         name,
-        BufReader::new(&mut input),
+        BufReader::new(watched),
     )
     .map_err(|fault| *fault)?;
-    let progress = Progress::new(Some(length));
+    let mut progress = Progress::new(Some(length));
     let mut done = Vec::new();
     let mut unread = 0;
     loop {
@@ -278,6 +278,7 @@ pub fn hold<C: Course, R: Read + Seek>(
                 }
             }
         }
+        progress.record(|| position.get());
         for done in &done {
             verifier.take(done, listen);
         }

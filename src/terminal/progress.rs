@@ -1,10 +1,12 @@
 //! A bar on a terminal, nothing in a pipe.
 
-use std::io::IsTerminal;
+use std::cell::Cell;
+use std::io::{self, IsTerminal, Read, Seek, SeekFrom};
+use std::rc::Rc;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
-/// Records between two looks at the clock.
+/// Records, blocks or batches between two looks at the clock.
 const EVERY: u64 = 4096;
 
 /// How far reading has come.
@@ -20,6 +22,8 @@ impl Progress {
             Some(bytes) => ProgressBar::new(bytes),
             None => ProgressBar::no_length(),
         };
+        // What cannot be read ends it too.
+        let bar = bar.with_finish(ProgressFinish::AndClear);
         if !std::io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
@@ -42,5 +46,45 @@ impl Progress {
     /// Takes the bar away.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// A file that someone else reads, and how far that has come.
+pub struct Watched<R> {
+    input: R,
+    position: Rc<Cell<u64>>,
+}
+
+impl<R: Read + Seek> Watched<R> {
+    /// From its beginning, whose length is told too.
+    ///
+    /// # Errors
+    /// As those of `input`.
+    pub fn new(mut input: R) -> io::Result<(Self, u64)> {
+        let length = input.seek(SeekFrom::End(0))?;
+        input.seek(SeekFrom::Start(0))?;
+        let position = Rc::default();
+        Ok((Self { input, position }, length))
+    }
+
+    /// The byte that is read next, kept up to date.
+    pub fn position(&self) -> Rc<Cell<u64>> {
+        Rc::clone(&self.position)
+    }
+}
+
+impl<R: Read> Read for Watched<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let count = self.input.read(into)?;
+        self.position.set(self.position.get() + count as u64);
+        Ok(count)
+    }
+}
+
+impl<R: Seek> Seek for Watched<R> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let position = self.input.seek(to)?;
+        self.position.set(position);
+        Ok(position)
     }
 }

@@ -261,6 +261,7 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
                         points = Some(SetPoints::new(Arc::clone(&first.solver), period));
                         servos.settle(&first.from.joints);
                     }
+                    contour.ahead(&planned.task);
                     planner
                         .push(planned.task)
                         .map_err(|fault| format!("{fault:?}"))?;

@@ -171,25 +171,30 @@ impl Begin {
     }
 }
 
-/// Runs a program until `judge` has nothing to say of where its joints went; none where LinuxCNC is not.
+/// Runs something in LinuxCNC until nothing is wrong with it; none where LinuxCNC is not.
 ///
 /// Nothing here runs in real time: beside other work samples are lost and moves wait for the block behind them. What is
 /// wrong with a program is wrong in every run of it.
+fn until_good(mut once: impl FnMut() -> Option<Result<(), String>>) -> Option<()> {
+    for tries in 1.. {
+        let Err(fault) = once()? else { break };
+        assert!(tries < TRIES, "{fault}");
+        eprintln!("LinuxCNC once more: {fault}");
+    }
+    Some(())
+}
+
+/// Runs a program until `judge` has nothing to say of where its joints went; none where LinuxCNC is not.
 fn run_until_good(
     machine: &Machine,
     program: &Path,
     begin: &Begin,
     judge: impl Fn(&[Row]) -> Result<(), String>,
 ) -> Option<()> {
-    for tries in 1.. {
+    until_good(|| {
         let run = joints(machine, program, begin)?;
-        let Err(fault) = run.and_then(|rows| judge(&rows)) else {
-            break;
-        };
-        assert!(tries < TRIES, "{fault}");
-        eprintln!("LinuxCNC once more: {fault}");
-    }
-    Some(())
+        Some(run.and_then(|rows| judge(&rows)))
+    })
 }
 
 /// Runs a program; none where LinuxCNC is not, and what it says where it does not come to the end or the recording is not

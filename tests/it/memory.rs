@@ -2,21 +2,27 @@
 
 use crate::{common, generate};
 
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::BufWriter;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
 
-/// Peak of the resident memory of a run, kB.
-fn peak(folder: &Path, points: u64) -> u64 {
+/// A finishing pass of so many points.
+fn wave(folder: &Path, points: u64) -> PathBuf {
     let path = folder.join("wave.cls");
     let mut file = BufWriter::new(File::create(&path).unwrap());
     generate::write_file(&mut file, points).unwrap();
     file.into_inner().unwrap();
+    path
+}
+
+/// Peak of the resident memory of a run on the machine of the test, kB.
+fn peak(arguments: &[&OsStr]) -> u64 {
     let mut child = common::command()
+        .args(arguments)
         .args(["-q", "-m", "ac-trunnion", "--tcp", "control"])
-        .arg(&path)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -40,11 +46,39 @@ fn peak(folder: &Path, points: u64) -> u64 {
 #[test]
 fn memory_does_not_grow_with_the_file() {
     let folder = tempfile::tempdir().unwrap();
-    let [small, large] = [100_000, 300_000].map(|points| peak(folder.path(), points));
+    let [small, large] =
+        [100_000, 300_000].map(|points| peak(&[wave(folder.path(), points).as_os_str()]));
     assert!(small > 0, "no look at the running command succeeded");
     assert!(
         large < small + small / 10 + 1024,
         "{small} kB for 100,000 points, {large} kB for 300,000"
+    );
+    assert!(large < 64 * 1024, "{large} kB");
+}
+
+/// Sixteen times the blocks, with pictures, percentiles and the CL path: what is drawn and counted has its size.
+#[test]
+fn memory_of_a_prediction_does_not_grow_with_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("wave.nc");
+    let pictures = folder.path().join("pictures");
+    let [small, large] = [10_000, 160_000].map(|points| {
+        let path = wave(folder.path(), points);
+        peak(&["-o".as_ref(), program.as_ref(), path.as_ref()]);
+        peak(&[
+            "predict".as_ref(),
+            program.as_ref(),
+            "--against".as_ref(),
+            path.as_ref(),
+            "--tool-length=0".as_ref(),
+            "--pictures".as_ref(),
+            pictures.as_ref(),
+        ])
+    });
+    assert!(small > 0, "no look at the running command succeeded");
+    assert!(
+        large < small + small / 10 + 1024,
+        "{small} kB for 10,000 points, {large} kB for 160,000"
     );
     assert!(large < 64 * 1024, "{large} kB");
 }

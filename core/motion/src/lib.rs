@@ -10,11 +10,13 @@
 //! | [`servo`] | set-points | where the axes really are |
 //! | [`contour`] | both | how far the tip is off the commanded path, and off the CL path |
 //! | [`measured`] | a recorded log, and a prediction | how they lie over one another, and what is left |
+//! | [`fourier`] | values at even distances | how much of each frequency is in them |
 //!
 //! This crate stands on `post-machine` alone; `post-readback` stands on its [`path`]. There is no input or output here,
 //! no unsafe code and no dialect's name, and memory does not grow with the program.
 
 pub mod contour;
+pub mod fourier;
 pub mod limits;
 pub mod measured;
 pub mod path;
@@ -23,5 +25,5 @@ mod set_points;
 pub mod task;
 pub mod trajectory;
 
-pub use set_points::{At, SetPoints};
+pub use set_points::{At, Jump, SetPoints};
 pub use task::{Corner, Move, Pace, Task, Waiting};

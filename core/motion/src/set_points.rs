@@ -19,6 +19,19 @@ pub struct SetPoints {
     pub poses: Vec<Pose>,
     /// What is being carried out.
     pub at: Vec<At>,
+    /// Jumps of velocity between the set-point before the first of these and the last one.
+    pub jumps: Vec<Jump>,
+}
+
+/// The velocities jump: one move passes into the next in another direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jump {
+    /// When, s from the beginning.
+    pub time: f64,
+    /// Velocities behind it less those before, by place in the chain, mm/s or rad/s.
+    pub change: Joints,
+    /// Accelerations behind it less those before, mm/s² or rad/s².
+    pub bend: Joints,
 }
 
 /// Where a set-point stands in the program.
@@ -42,6 +55,7 @@ impl SetPoints {
             joints: Vec::new(),
             poses: Vec::new(),
             at: Vec::new(),
+            jumps: Vec::new(),
         }
     }
 
@@ -61,6 +75,7 @@ impl SetPoints {
         self.joints.clear();
         self.poses.clear();
         self.at.clear();
+        self.jumps.clear();
     }
 
     /// Time of the set-point at `place` of this batch, s.

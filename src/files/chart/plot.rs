@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::{Draw, Look, Marker, Series};
 use crate::files::scale::Scale;
-use crate::files::svg::label;
+use crate::files::svg::{label, line};
 
 pub(super) const WIDTH: f64 = 760.0;
 pub(super) const LEFT: f64 = 78.0;
@@ -100,13 +100,6 @@ impl Area {
             width()
         );
     }
-}
-
-fn line(svg: &mut String, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], grey: &str, width: f64) {
-    let _ = writeln!(
-        svg,
-        "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" stroke=\"{grey}\" stroke-width=\"{width}\"/>"
-    );
 }
 
 fn draw(svg: &mut String, what: &Draw, index: usize, place: impl Fn([f64; 2]) -> [f64; 2]) {

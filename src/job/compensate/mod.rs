@@ -1,12 +1,18 @@
 //! `--compensate-servo`: points of the path are moved so that the tool, the servos in between, comes nearer to the path of
 //! the CL file.
 //!
-//! The program is made, predicted, and held against the points that it was made of; each point of a cut is moved by minus
-//! the error beside it, and so again until it helps no more. No point moves by more than `[accuracy]
+//! The program is made, predicted, and held against the path of the CL file; each point of a cut is moved by minus the
+//! error beside it, and so again until it helps no more. No point moves by more than `[accuracy]
 //! servo_compensation`, towards the ends of cuts by nothing; rapids, holes and cuts that the control offsets by the
-//! cutter's radius stay as they are. A corner that the servos round by more than the bound stays rounded. What helps is
-//! judged by prediction alone, against the path of the CL file: a run counts if its root mean square is less than the
-//! last's and its largest error no more than that of the program as it was. Where none does, that program is written.
+//! cutter's radius stay as they are, and so does every tool axis. A corner that the servos round by more than the bound
+//! stays rounded.
+//!
+//! What helps is judged by prediction alone, against the path of the CL file: a run counts if its root mean square is less
+//! than the last's and no error beside a moved point is larger than the largest of the program as it was. Where a run makes
+//! it worse, points are moved by less, and not at all beside an error that is larger than any was; the others go on. Where
+//! no run counts, the program is written as it was.
+//!
+//! The points of the file are in memory meanwhile, about 150 bytes each; programs that are tried are in scratch files.
 
 mod path;
 mod text;
@@ -18,7 +24,6 @@ use post_readback::interpret::Limits;
 use serde::Serialize;
 
 use super::one_program::OneProgram;
-use super::read_back;
 use crate::failure::Failure;
 use crate::files::{ClSource, Scratch};
 use crate::job::predict::{self, Against, Asked, Sample};
@@ -35,13 +40,14 @@ const ENOUGH: f64 = 0.05;
 /// A run that lowers it by less than this share is none that helps.
 const WORTH: f64 = 0.01;
 
-/// An error that is moved by less than this share of itself is let be.
-const LEAST_GAIN: f64 = 0.2;
+/// Where no point is moved, the largest error may come out larger by this share: set-points fall elsewhere, and where the
+/// tool leaves the part at rapid it goes so far between two of them.
+const ELSEWHERE: f64 = 0.1;
 
-/// What the contour error of a program is, against the CL path, the servos in between.
+/// How far the tool is off the CL path in cuts, the servos in between.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Stray {
-    /// The largest, mm.
+    /// At most, mm.
     pub largest_mm: f64,
     /// Line of the program.
     pub nc_line: u64,
@@ -49,6 +55,8 @@ pub struct Stray {
     pub cl_line: Option<u64>,
     /// Root mean square, mm.
     pub rms_mm: f64,
+    /// The same of what the servos alone add to it: the tool off the path that is commanded.
+    pub following_rms_mm: f64,
 }
 
 /// What compensation has done.
@@ -108,18 +116,29 @@ pub fn compensate(
     let mut errors = Errors::of(&path);
     let before = tried.predict(text, &path, &mut errors)?;
     let mut moves: Moves = vec![[0.0; 3]; path.len()];
-    let (mut after, mut kept) = (before, false);
-    let (mut gain, mut runs) = (1.0, 0);
-    while runs < RUNS && gain >= LEAST_GAIN {
+    let (mut after, mut last, mut kept) = (before, before, false);
+    let mut gains = vec![1.0; path.len()];
+    let mut runs = 0;
+    while runs < RUNS {
         runs += 1;
         let mut next = moves.clone();
-        path.step(&mut next, &errors, gain, bound);
+        path.step(&mut next, &errors, &gains, bound);
         let text = tried.post(&machine, Some(&mut Moved::new(&next)))?;
         let mut left = Errors::of(&path);
         let found = tried.predict(text, &path, &mut left)?;
-        // Arcs that go as moves may differ by a hair, and that is no help.
-        if found.rms_mm > after.rms_mm * (1.0 - WORTH) || found.largest_mm > before.largest_mm {
-            gain *= 0.5;
+        if found.rms_mm == last.rms_mm {
+            // The moves are less than the last digit of a word: the program is the same.
+            break;
+        }
+        last = found;
+        let most = before.largest_mm;
+        let worse = left.damp(&errors, most, &mut gains);
+        let larger = left.largest_at(&next) > most || found.largest_mm > most * (1.0 + ELSEWHERE);
+        // Less may be chance, and is no help.
+        if larger || found.rms_mm > after.rms_mm * (1.0 - WORTH) {
+            if !worse {
+                break;
+            }
             continue;
         }
         let enough = found.rms_mm > after.rms_mm * (1.0 - ENOUGH);
@@ -205,7 +224,7 @@ impl Tried<'_, '_> {
             lines,
             ..
         } = self.program;
-        let mut asked = Asked {
+        let asked = Asked {
             arguments,
             machine,
             finder,
@@ -214,31 +233,31 @@ impl Tried<'_, '_> {
             period: None,
             lines: lines.clone(),
         };
-        let tools = predict::cl_tools(&asked, self.source)?;
-        asked.offsets = Some(read_back::offsets(arguments, machine, &tools));
-        let legs = path.legs(machine.control_point.along);
-        let against = Against::Path(Box::new(legs), "the points of the path".to_owned());
+        let off = 2.0 * machine.accuracy.tolerance;
         let mut listen = |sample: &Sample| {
             if let Some(asked) = &sample.point.asked {
                 let place = sample.point.actual.tip - asked.error;
-                errors.take(path, asked.at.task, &place, &asked.error);
+                errors.take(path, &place, off, &asked.error);
             }
             Ok(())
         };
         let text = text.reread()?;
         let found = predict::predict(
             &asked,
-            against,
+            Against::Cl(self.source),
             "a program that is tried",
             text,
             &mut listen,
         )?;
-        let tip = found.found.contour.tip_mm;
+        let contour = found.found.contour;
+        let tip = contour.tip_mm;
+        let following = contour.parts.iter().find(|part| part.part == "following");
         Ok(Stray {
             largest_mm: tip.largest,
             nc_line: tip.nc_line,
             cl_line: tip.cl_line,
             rms_mm: tip.rms,
+            following_rms_mm: following.map_or(0.0, |part| part.tip_mm.rms),
         })
     }
 }

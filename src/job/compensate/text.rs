@@ -42,9 +42,11 @@ fn stray(stray: &Stray) -> String {
         None => String::new(),
     };
     format!(
-        "tip at most {} mm off the CL path with the servos in between (line {}{cl_line}), RMS {} mm",
+        "tip at most {} mm off the CL path with the servos in between (line {}{cl_line}), RMS {} mm; the servos \
+         themselves {} mm",
         number(stray.largest_mm, 6),
         stray.nc_line,
-        number(stray.rms_mm, 6)
+        number(stray.rms_mm, 6),
+        number(stray.following_rms_mm, 6)
     )
 }

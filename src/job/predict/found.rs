@@ -4,11 +4,13 @@ use post_machine::axis_words;
 use post_machine::description::{Axis, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_motion::contour::{self, ContourReport, Peak};
+use post_motion::limits::AxisLimits;
 
 use super::prediction::{AxisFound, ContourFound, Extreme, Part, Spread};
 
 /// Of each axis the largest values.
 pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
+    let limits = AxisLimits::new(machine);
     let places = axis_words::order(machine).into_iter();
     let axes = places.map(|place| {
         let (axis, peaks) = (&machine.axes[place], &report.axes[place]);
@@ -26,6 +28,7 @@ pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
             velocity: extreme(&peaks.velocity, 60.0, axis.max_feed),
             acceleration: extreme(&peaks.acceleration, 1.0, axis.max_accel),
             jerk: extreme(&peaks.jerk, 1.0, axis.max_jerk),
+            jump: extreme(&peaks.jump, 60.0, limits.jump[place] * 60.0),
         }
     });
     axes.collect()

@@ -11,7 +11,6 @@ mod stages;
 mod text;
 mod times;
 
-pub use cl_path::tools as cl_tools;
 pub use prediction::Prediction;
 pub use run::{Against, Asked, Predicted, predict};
 pub use sample::Sample;

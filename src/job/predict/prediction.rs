@@ -29,6 +29,8 @@ pub struct Prediction {
     pub feed: Feeds,
     /// Of each axis what it does and how far it lags.
     pub axes: Vec<AxisFound>,
+    /// How often a block passes into the next with a jump of the velocity.
+    pub corners_with_jump: u64,
     /// How far the tool is off its path in cuts.
     pub contour: ContourFound,
     /// What is left between it and a recorded log.
@@ -66,7 +68,7 @@ pub struct LimitTime {
     /// What it limits: `cut`, `rapid` or `wait`.
     pub kind: &'static str,
     /// What limits: `feed`, `axis velocity`, `axis acceleration`, `axis jerk`, `tip acceleration`, `tip jerk`, `corner`,
-    /// `block time`, `wait`.
+    /// `block time`; what is waited for: `dwell`, `tool change`, `spindle`, `standstill`.
     pub limit: &'static str,
     /// The axis, if it is one.
     pub axis: Option<String>,
@@ -125,10 +127,12 @@ pub struct AxisFound {
     pub following: Extreme,
     /// Largest commanded velocity, units a minute.
     pub velocity: Extreme,
-    /// Largest commanded acceleration, units/s².
+    /// Largest commanded acceleration, jumps of the velocity left out, units/s².
     pub acceleration: Extreme,
-    /// Largest commanded jerk, from set-point to set-point, units/s³.
+    /// Largest commanded jerk, from set-point to set-point, jumps of the velocity left out, units/s³.
     pub jerk: Extreme,
+    /// Largest jump of the commanded velocity where one block passes into the next, units a minute.
+    pub jump: Extreme,
 }
 
 /// The largest of something.

@@ -1,7 +1,7 @@
 //! The stages of a prediction, one behind the other, in batches: a program becomes tasks, tasks become set-points, servos
 //! follow them, and the tool is held against its path. Memory does not grow with the program.
 
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -9,7 +9,6 @@ use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place};
 use post_machine::kinematics::{Solver, Unreachable};
-use post_motion::contour::Reference;
 use post_motion::trajectory::{Filled, Planner};
 use post_motion::{SetPoints, Task};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};
@@ -25,7 +24,7 @@ use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, FileFault};
 use crate::job::{nc_program, read_back};
-use crate::terminal::number;
+use crate::terminal::{Progress, Watched, number};
 
 /// Set-points of a batch.
 const BATCH: usize = 256;
@@ -64,8 +63,6 @@ pub enum Against<'a> {
     Nothing,
     /// The path of a CL file.
     Cl(&'a mut ClSource),
-    /// A path, and what it is called.
-    Path(Box<dyn Reference + 'a>, String),
 }
 
 /// What came of it.
@@ -86,7 +83,7 @@ pub fn predict<R: Read + Seek>(
     asked: &Asked<'_>,
     against: Against<'_>,
     name: &str,
-    mut input: R,
+    input: R,
     listen: &mut dyn FnMut(&Sample) -> Result<(), Failure>,
 ) -> Result<Predicted, Failure> {
     let period = asked.period();
@@ -97,7 +94,6 @@ pub fn predict<R: Read + Seek>(
     let mut faults = Vec::new();
     let path = match against {
         Against::Nothing => None,
-        Against::Path(path, name) => Some((path, name)),
         Against::Cl(source) => {
             tools = cl_path::tools(asked, source)?;
             Some(cl_path::open(asked, source, &mut faults)?)
@@ -113,8 +109,9 @@ pub fn predict<R: Read + Seek>(
         name: name.to_owned(),
         error,
     };
-    input.seek(SeekFrom::Start(0)).map_err(unreadable)?;
-    let input = BufReader::new(&mut input);
+    let (input, length) = Watched::new(input).map_err(unreadable)?;
+    let position = input.position();
+    let input = BufReader::new(input);
     let mut program = Interpreter::new(machine, &lexicon, &offsets, asked.limits, name, input)
         .map_err(|fault| *fault)?;
     let mut reading = Reading {
@@ -129,7 +126,9 @@ pub fn predict<R: Read + Seek>(
     let mut points: Option<SetPoints> = None;
     let mut times = Vec::new();
     let mut chains: Vec<(f64, Arc<Solver>)> = Vec::new();
+    let mut progress = Progress::new(Some(length));
     loop {
+        progress.record(|| position.get());
         let filled = match &mut points {
             None => Filled::Wants,
             Some(points) => {
@@ -182,11 +181,21 @@ pub fn predict<R: Read + Seek>(
             }
         }
     }
+    progress.finish();
     if !reading.unread.is_empty() {
         // What stands behind a block that is not run counts from elsewhere.
         return Err(reading.unread.into());
     }
     let mut findings = reading.tasks.notes();
+    if points.is_none() {
+        let message =
+            "nothing moves in this program: no time, no feed and no error can be predicted";
+        let help =
+            "is it the program of this machine's control? `post read` says what is read of it";
+        let place = Place::new(name, 1, "", 0..0);
+        let finding = Diagnostic::warning("no-motion", message).help(help);
+        findings.push(finding.at(Some(place)));
+    }
     told(name, program.report(), &mut findings);
     found::warn(machine, &mut findings);
     let found = stages.finish(machine, name, program.report().blocks, listen)?;

@@ -104,7 +104,7 @@ impl<'r> Stages<'r> {
         }
         self.ahead.push_back(Ahead {
             kind: match (&planned.task, planned.rapid) {
-                (Task::Wait { .. }, _) => Kind::Wait,
+                (Task::Wait { why, .. }, _) => Kind::Wait(*why),
                 (Task::Move(_), true) => Kind::Rapid,
                 (Task::Move(_), false) => Kind::Cut,
             },
@@ -201,6 +201,7 @@ impl<'r> Stages<'r> {
             feed: self.feed_tally.finish(&time),
             time,
             axes: found::axes(machine, &contour),
+            corners_with_jump: contour.jumps,
             contour: found::contour(&contour, held),
             measured: None,
             fitted: Vec::new(),

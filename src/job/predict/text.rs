@@ -14,6 +14,7 @@ pub fn text(found: &Prediction) -> String {
     let mut text = String::new();
     head(&mut text, found);
     axes(&mut text, &found.axes);
+    jumps(&mut text, found.corners_with_jump);
     limits(&mut text, found);
     operations(&mut text, found);
     if let Some(measured) = &found.measured {
@@ -85,7 +86,7 @@ fn head(text: &mut String, found: &Prediction) {
     }
     let against = match &found.against {
         Some(file) => format!(", against {file}"),
-        None => String::new(),
+        None => ", against the path that is commanded".to_owned(),
     };
     let contour = &found.contour;
     let tip = Shown {
@@ -164,6 +165,9 @@ fn axes(text: &mut String, axes: &[AxisFound]) {
         "jerk /s³",
         "of",
         "line",
+        "jump /min",
+        "of",
+        "line",
     ];
     let mut rows = vec![head.map(str::to_owned)];
     for axis in axes {
@@ -196,10 +200,26 @@ fn axes(text: &mut String, axes: &[AxisFound]) {
             number(axis.jerk.value, 0),
             limit(&axis.jerk),
             line(&axis.jerk),
+            number(axis.jump.value, 0),
+            limit(&axis.jump),
+            line(&axis.jump),
         ]);
     }
     text.push('\n');
     text.push_str(&table(&rows, 1));
+}
+
+fn jumps(text: &mut String, corners: u64) {
+    if corners > 0 {
+        let times = match corners {
+            1 => "once".to_owned(),
+            _ => format!("{corners} times"),
+        };
+        let _ = writeln!(
+            text,
+            "A block passes into the next with a jump of velocity {times}; accelerations and jerks are without these."
+        );
+    }
 }
 
 fn limits(text: &mut String, found: &Prediction) {
@@ -244,7 +264,7 @@ fn name(row: &LimitTime) -> String {
         other => other.to_owned(),
     };
     match row.kind {
-        "wait" => "waits".to_owned(),
+        "wait" => format!("waiting: {limit}"),
         kind => format!("{kind}s: {limit}"),
     }
 }

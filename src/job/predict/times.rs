@@ -1,6 +1,7 @@
 //! Where the time goes: by what limits it, by tool and operation.
 
 use post_machine::description::Machine;
+use post_motion::Waiting;
 use post_motion::trajectory::{TaskTime, TimeLimit};
 
 use super::prediction::{LimitTime, OperationTime, Times};
@@ -9,15 +10,20 @@ use super::prediction::{LimitTime, OperationTime, Times};
 const MOST_OPERATIONS: usize = 1000;
 
 /// Kinds of tasks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A move at feed.
     Cut,
     /// A rapid.
     Rapid,
     /// The machine waits.
-    #[default]
-    Wait,
+    Wait(Waiting),
+}
+
+impl Default for Kind {
+    fn default() -> Self {
+        Self::Wait(Waiting::Dwell)
+    }
 }
 
 impl Kind {
@@ -25,7 +31,7 @@ impl Kind {
         match self {
             Self::Cut => "cut",
             Self::Rapid => "rapid",
-            Self::Wait => "wait",
+            Self::Wait(_) => "wait",
         }
     }
 }
@@ -68,7 +74,7 @@ impl TimeTally {
                 times.cutting_at_feed_s += time.asked;
             }
             Kind::Rapid => times.rapid_s += time.seconds,
-            Kind::Wait => times.waiting_s += time.seconds,
+            Kind::Wait(_) => times.waiting_s += time.seconds,
         }
         if let Some(row) = times.operations.get_mut(operation) {
             row.seconds += time.seconds;
@@ -77,7 +83,7 @@ impl TimeTally {
             }
         }
         let now = match kind {
-            Kind::Wait => TimeLimit::Wait,
+            Kind::Wait(_) => TimeLimit::Wait,
             _ => time.limit,
         };
         let known = self
@@ -85,7 +91,10 @@ impl TimeTally {
             .iter()
             .position(|(known, limit, _)| (*known, *limit) == (kind, now));
         let place = known.unwrap_or_else(|| {
-            let (called, axis) = name(machine, now);
+            let (called, axis) = match kind {
+                Kind::Wait(why) => (reason(why), None),
+                _ => name(machine, now),
+            };
             let row = LimitTime {
                 kind: kind.name(),
                 limit: called,
@@ -118,6 +127,16 @@ impl TimeTally {
     }
 }
 
+/// What is waited for.
+fn reason(why: Waiting) -> &'static str {
+    match why {
+        Waiting::Dwell => "dwell",
+        Waiting::ToolChange => "tool change",
+        Waiting::Spindle => "spindle",
+        Waiting::Word => "standstill",
+    }
+}
+
 /// What a limit is called, and its axis.
 fn name(machine: &Machine, limit: TimeLimit) -> (&'static str, Option<String>) {
     let axis = |place: u8| {
@@ -133,6 +152,6 @@ fn name(machine: &Machine, limit: TimeLimit) -> (&'static str, Option<String>) {
         TimeLimit::TipJerk => ("tip jerk", None),
         TimeLimit::Corner => ("corner", None),
         TimeLimit::BlockTime => ("block time", None),
-        TimeLimit::Wait => ("wait", None),
+        TimeLimit::Wait => ("standstill", None),
     }
 }

@@ -10,10 +10,14 @@ use crate::files::chart::{Chart, DASHED, GREY, LOOKS, Series};
 use crate::files::svg::{self, label};
 
 const WIDTH: f64 = 760.0;
-const TOP: f64 = 84.0;
+const TOP: f64 = 64.0;
 /// Of the paths, px.
-const SIZE: [f64; 2] = [700.0, 460.0];
-const LEFT: f64 = 30.0;
+const SIZE: [f64; 2] = [660.0, 460.0];
+const LEFT: f64 = 72.0;
+/// Left free about the path, px.
+const ROOM: f64 = 14.0;
+/// Radius of a ring, px.
+const RING: f64 = 8.0;
 
 /// The picture.
 pub fn draw(names: [&str; 2], found: &Difference, along: &Along) -> String {
@@ -23,7 +27,7 @@ pub fn draw(names: [&str; 2], found: &Difference, along: &Along) -> String {
         .map(|chart| (chart.height(), chart.svg()))
         .collect();
     let below: f64 = charts.iter().map(|(height, _)| height).sum();
-    let start = TOP + SIZE[1] + 30.0;
+    let start = TOP + SIZE[1] + 60.0;
     let mut picture = svg::open(WIDTH, start + below);
     let [old, new] = names;
     let titles = [
@@ -56,13 +60,9 @@ fn paths(picture: &mut String, found: &Difference, along: &Along) {
     let points = pieces
         .filter(|(cut, _)| *cut)
         .flat_map(|(_, points)| points);
-    let view = PlanView::of(points, [LEFT, TOP], SIZE);
+    let view = PlanView::of(points, [LEFT, TOP], SIZE, ROOM);
     let place = |point: &[f64; 3]| view.place(point);
-    let _ = writeln!(
-        picture,
-        "<clipPath id=\"paths\"><rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\"/></clipPath>\n<g clip-path=\"url(#paths)\" fill=\"none\">",
-        SIZE[0], SIZE[1]
-    );
+    view.open_clip(picture);
     let looks = [("#bdbdbd", 4.0, 1.6), ("#000000", 0.9, 0.5)];
     for (path, (grey, cut_width, rapid_width)) in along.paths.iter().zip(looks) {
         for (cut, points) in &path.pieces {
@@ -81,23 +81,31 @@ fn paths(picture: &mut String, found: &Difference, along: &Along) {
             );
         }
     }
-    picture.push_str("</g>\n");
-    for operation in found.operations.iter().filter(|operation| !operation.same) {
-        for (ring, at) in marks(operation) {
-            let [x, y] = place(&at);
-            let _ = writeln!(
-                picture,
-                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"8\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1.4\"/>"
-            );
-            label(picture, [x + 11.0, y - 6.0], "start", &ring);
+    view.close_clip(picture);
+    // Names of rings that lie on one another stand side by side.
+    let mut rings: Vec<(String, [f64; 2])> = Vec::new();
+    let operations = found.operations.iter();
+    for (name, at) in operations
+        .filter(|operation| !operation.same)
+        .flat_map(marks)
+    {
+        let at = place(&at);
+        let close = |ring: &&mut (String, [f64; 2])| {
+            libm::hypot(ring.1[0] - at[0], ring.1[1] - at[1]) < RING
+        };
+        match rings.iter_mut().find(close) {
+            Some((names, _)) => *names = format!("{names}, {name}"),
+            None => rings.push((name, at)),
         }
     }
-    let _ = writeln!(
-        picture,
-        "<rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1\"/>",
-        SIZE[0], SIZE[1]
-    );
-    view.title(picture, [WIDTH / 2.0, TOP - 10.0]);
+    for (names, [x, y]) in rings {
+        let _ = writeln!(
+            picture,
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{RING}\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1.4\"/>"
+        );
+        label(picture, [x + 11.0, y - 6.0], "start", &names);
+    }
+    view.frame(picture);
 }
 
 /// Where an operation differs most, and in what.

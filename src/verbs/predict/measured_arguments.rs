@@ -7,7 +7,8 @@ use crate::failure::Failure;
 use crate::files::PathArg;
 use crate::job::nc_program;
 use crate::job::predict::measured::{
-    self, AxisFitted, ColumnNames, Log, LogForm, LogUnits, Overlay, column_names, log_units,
+    self, AxisFitted, ColumnNames, Log, LogForm, LogUnits, LogZeros, Overlay, column_names,
+    log_units, log_zeros,
 };
 use post_machine::description::Machine;
 
@@ -26,13 +27,19 @@ pub struct MeasuredArguments {
     #[arg(long, value_name = "LIST", value_parser = column_names, requires = "measured")]
     columns: Option<ColumnNames>,
 
-    /// Units of the log, where they are not s, mm, deg: s, ms or us; mm, um, m or inch; deg or rad.
+    /// Units of the log, where its head does not say them (`X [mm]`, `t_ms`, or a line of units below the names) and they are not
+    /// s, mm, deg: s, ms or us; mm, um, m or inch; deg or rad.
     #[arg(long, value_name = "LIST", value_parser = log_units, requires = "measured")]
     log_units: Option<LogUnits>,
 
-    /// Time from row to row of a log without times, seconds.
+    /// Time from row to row, seconds, of a log without times, or whose times are not to be read.
     #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "measured")]
     log_period: Option<f64>,
+
+    /// What the log counts more than the program, axis by axis in mm and degrees: "X=250,C=-90", or "none" where it counts as
+    /// the machine file does. Of axes that are not named it is found, told and taken off.
+    #[arg(long, value_name = "LIST", value_parser = log_zeros, requires = "measured")]
+    log_zeros: Option<LogZeros>,
 
     /// Adjusts these numbers of the servos (X.kv,X.velocity_gain) to the log by least squares, axis by axis, and says how
     /// well each is determined; the machine file is not changed.
@@ -46,6 +53,13 @@ pub struct MeasuredArguments {
 }
 
 impl MeasuredArguments {
+    /// The log is standard input.
+    pub fn is_standard(&self) -> bool {
+        self.measured
+            .as_ref()
+            .is_some_and(|file| file.path().is_none())
+    }
+
     /// The log, to be laid over a prediction every `period` seconds.
     pub fn overlay(&self, machine: &Machine, period: f64) -> Result<Option<Overlay>, Failure> {
         let Some(file) = &self.measured else {
@@ -56,9 +70,11 @@ impl MeasuredArguments {
             units: self.log_units.unwrap_or_default(),
             period: self.log_period,
         };
-        let (name, input) = nc_program::open(file)?;
+        let zeros = self.log_zeros.clone().unwrap_or_default();
+        let zeros = zeros.by_axis(machine).map_err(|fault| *fault)?;
+        let (name, input) = nc_program::open_as("the log", file)?;
         let log = Log::read(machine, &form, &name, input)?;
-        Ok(Some(Overlay::new(log, period)))
+        Ok(Some(Overlay::new(log, zeros, period)))
     }
 
     /// Servos adjusted to the log, if any are to be.

@@ -2,6 +2,7 @@
 
 mod envelope;
 mod measured_arguments;
+mod measured_pictures;
 mod path_pictures;
 mod pictures;
 mod set_points_csv;
@@ -9,16 +10,19 @@ mod spectrum;
 mod trail;
 
 use clap::Args;
+use post_machine::diagnostic::Diagnostic;
 use post_readback::interpret::Limits;
 
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
+use crate::job::predict::measured::MeasuredPoint;
 use crate::job::predict::{self, Against, Predicted, Sample};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::terminal;
 use measured_arguments::MeasuredArguments;
+use measured_pictures::MeasuredRoom;
 use pictures::Rooms;
 use set_points_csv::SetPointsCsv;
 
@@ -44,6 +48,7 @@ use set_points_csv::SetPointsCsv;
   post predict part.nc -m my-mill.toml --against part.cls --tool-length 120 --pictures prediction
   post predict part.nc -m my-mill.toml --period 0.004 --csv set-points.csv --summary prediction.json
   post predict part.nc -m my-mill.toml --set axis.X.max_accel=2000
+  post predict part.nc -m my-mill.toml --measured log.csv --fit X.kv,Y.kv --pictures prediction
 
 Exit codes: 0 predicted; 1 something could not be read, the messages say what; 2 the command line is wrong."
 )]
@@ -76,7 +81,8 @@ pub struct PredictArguments {
     summary: Option<PathArg>,
 
     /// Draws into this folder, as SVG: errors of the axes and feed over time, contour error along the path, magnified on
-    /// it and by its size, and the spectrum of the axes' errors; and writes the summary beside them.
+    /// it and by its size, and the spectrum of the axes' errors; with --measured also the log's errors, those predicted for
+    /// it and their difference; and writes the summary beside them.
     #[arg(long, value_name = "FOLDER", value_parser = PathArg::parser())]
     pictures: Option<PathArg>,
 
@@ -118,6 +124,12 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     let named = arguments.program.as_ref().unwrap_or(&PathArg::Standard);
     let against = arguments.job.input.as_ref();
     nc_program::not_both_standard(named, against)?;
+    let mut others = [Some(named), against].into_iter().flatten();
+    if arguments.measured.is_standard() && others.any(|file| file.path().is_none()) {
+        let message = "the log and another input cannot both be standard input";
+        let help = "name one of them";
+        return Err(Diagnostic::error("input", message).help(help).into());
+    }
     let folder = match &arguments.pictures {
         Some(folder) => {
             let folder = OwnFolder::open(folder, PICTURES, MARK, &pictures::NAMES);
@@ -130,6 +142,8 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         Some(file) => Some(nc_program::offsets(file, &machine)?),
         None => None,
     };
+    let period = arguments.period.unwrap_or(machine.motion.period);
+    let mut overlay = arguments.measured.overlay(&machine, period)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.csv.iter().map(|target| (SET_POINTS, target)));
     targets.extend(arguments.summary.iter().map(|target| (SUMMARY, target)));
@@ -154,8 +168,6 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         Some(source) => Against::Cl(source),
         None => Against::Nothing,
     };
-    let period = asked.period();
-    let mut overlay = arguments.measured.overlay(&machine, period)?;
     let mut rooms = folder.as_ref().map(|_| Rooms::new(&machine, period));
     let predicted = {
         let mut csv = match (&arguments.csv, texts.first_mut()) {
@@ -182,11 +194,16 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     };
     let Predicted {
         mut found,
-        findings,
+        mut findings,
         chains,
     } = predicted;
+    let mut measured_picture = None;
     if let Some(overlay) = &overlay {
-        found.measured = Some(overlay.finish(&machine, &chains, &mut |_| {})?);
+        let mut room = MeasuredRoom::new(&machine, overlay.log().clock.period);
+        let mut listen = |point: &MeasuredPoint| room.take(point);
+        let laid = overlay.finish(&machine, &chains, &mut listen, &mut findings)?;
+        measured_picture = room.file(&found, &laid);
+        found.measured = Some(laid);
         found.fitted = arguments.measured.fitted(&machine, overlay.log())?;
     }
     let json = files::json(&found);
@@ -196,6 +213,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     let taken = texts.iter().any(AtomicFile::is_standard);
     if let (Some(folder), Some(rooms)) = (&folder, &rooms) {
         let mut files = rooms.files(&found);
+        files.extend(measured_picture);
         files.push((MARK.0, json));
         folder.add(&files, &mut texts)?;
         AtomicFile::finish(texts)?;

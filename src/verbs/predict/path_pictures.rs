@@ -9,12 +9,16 @@ use crate::job::predict::Prediction;
 use crate::terminal::number;
 
 const WIDTH: f64 = 760.0;
-const LEFT: f64 = 30.0;
+const LEFT: f64 = 72.0;
 const TOP: f64 = 84.0;
 /// Of the path, px.
-const SIZE: [f64; 2] = [700.0, 520.0];
+const SIZE: [f64; 2] = [660.0, 520.0];
 /// Of what stands below it, px.
-const FOOT: f64 = 76.0;
+const FOOT: f64 = 116.0;
+/// Of the numbers of the ticks and what they count, px.
+const TICKS: f64 = 64.0;
+/// About the path where nothing stands beside it, px.
+const ROOM: f64 = 16.0;
 /// The largest error is drawn about so long, px.
 const LONGEST: f64 = 60.0;
 /// Steps of the error that are told apart.
@@ -32,7 +36,12 @@ const STEPS: [(&str, f64); LEVELS] = [
 
 /// The error vectors, magnified and drawn outward from the path (Zhang, Chen 2025, fig. 12).
 pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
-    let mut picture = Picture::new("Contour error, magnified, drawn from the path", note, cuts);
+    let mut picture = Picture::new(
+        "Contour error, magnified, drawn from the path",
+        note,
+        cuts,
+        ROOM + LONGEST,
+    );
     let seen = cuts
         .iter()
         .flatten()
@@ -58,7 +67,7 @@ pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
             from[0], from[1], to[0], to[1]
         );
     }
-    picture.open_clip();
+    picture.view.open_clip(&mut picture.svg);
     let _ = writeln!(
         picture.svg,
         "<path d=\"{whiskers}\" stroke=\"#b8b8b8\" stroke-width=\"0.6\"/>"
@@ -75,11 +84,11 @@ pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
             .collect();
         picture.line(&path, "#000000", 1.3);
     }
-    picture.close_clip();
+    picture.view.close_clip(&mut picture.svg);
     picture.ring(found, cuts);
     let bar = round_step(0.4 * largest);
     let long = bar * times * picture.view.scale();
-    let foot = TOP + SIZE[1] + 28.0;
+    let foot = TOP + SIZE[1] + TICKS;
     picture.line(&[[LEFT, foot], [LEFT + 38.0, foot]], "#777777", 1.0);
     picture.text([LEFT + 46.0, foot + 4.5], "commanded path");
     picture.line(
@@ -101,7 +110,7 @@ pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
 
 /// The path, darker and wider where the error is larger.
 pub fn path(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
-    let mut picture = Picture::new("Contour error on the path", note, cuts);
+    let mut picture = Picture::new("Contour error on the path", note, cuts, ROOM);
     let largest = found.contour.tip_mm.largest.max(1e-9);
     // A few places that are far off would leave all others in the first step.
     let step = round_step(found.contour.tip_mm.p99.max(1e-9) / (LEVELS - 1) as f64);
@@ -120,18 +129,18 @@ pub fn path(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
             open = Some(level);
         }
     }
-    picture.open_clip();
+    picture.view.open_clip(&mut picture.svg);
     for (pieces, (grey, width)) in pieces.iter().zip(STEPS) {
         for piece in pieces {
             picture.line(piece, grey, width);
         }
     }
-    picture.close_clip();
+    picture.view.close_clip(&mut picture.svg);
     picture.ring(found, cuts);
     let used = level(largest) + 1;
     for (place, (grey, width)) in STEPS.iter().enumerate().take(used) {
         let left = LEFT + 238.0 * (place % 3) as f64;
-        let foot = TOP + SIZE[1] + 28.0 + 26.0 * (place / 3) as f64;
+        let foot = TOP + SIZE[1] + TICKS + 26.0 * (place / 3) as f64;
         picture.line(&[[left, foot], [left + 38.0, foot]], grey, *width);
         let [from, to] = [place, place + 1].map(|place| micrometres(place as f64 * step));
         let text = match place + 1 < LEVELS {
@@ -158,34 +167,14 @@ struct Picture {
 }
 
 impl Picture {
-    fn new(title: &str, note: &str, cuts: &[Vec<Spot>]) -> Self {
+    fn new(title: &str, note: &str, cuts: &[Vec<Spot>], room: f64) -> Self {
         let mut svg = svg::open(WIDTH, TOP + SIZE[1] + FOOT);
         label(&mut svg, [WIDTH / 2.0, 24.0], "middle", title);
         label(&mut svg, [WIDTH / 2.0, 44.0], "middle", note);
         let tips = cuts.iter().flatten().map(|spot| &spot.tip);
-        // Room for the errors about it.
-        let inner = [SIZE[0] - 2.0 * LONGEST, SIZE[1] - 2.0 * LONGEST];
-        let view = PlanView::of(tips, [LEFT + LONGEST, TOP + LONGEST], inner);
-        view.title(&mut svg, [WIDTH / 2.0, TOP - 10.0]);
-        let _ = writeln!(
-            svg,
-            "<rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1\"/>",
-            SIZE[0], SIZE[1]
-        );
+        let view = PlanView::of(tips, [LEFT, TOP], SIZE, room);
+        view.frame(&mut svg);
         Self { svg, view }
-    }
-
-    /// What follows is seen inside the frame alone.
-    fn open_clip(&mut self) {
-        let _ = writeln!(
-            self.svg,
-            "<clipPath id=\"frame\"><rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\"/></clipPath>\n<g clip-path=\"url(#frame)\" fill=\"none\">",
-            SIZE[0], SIZE[1]
-        );
-    }
-
-    fn close_clip(&mut self) {
-        self.svg.push_str("</g>\n");
     }
 
     fn line(&mut self, points: &[[f64; 2]], grey: &str, width: f64) {
@@ -204,7 +193,7 @@ impl Picture {
         label(&mut self.svg, at, "start", text);
     }
 
-    /// A ring about the largest error, and what it is.
+    /// A ring about the largest error, and above the frame what it is.
     fn ring(&mut self, found: &Prediction, cuts: &[Vec<Spot>]) {
         let spots = cuts.iter().flatten();
         let Some(worst) = spots.max_by(|a, b| a.size.total_cmp(&b.size)) else {
@@ -220,7 +209,7 @@ impl Picture {
             number(found.contour.tip_mm.largest * 1e3, 2),
             found.contour.tip_mm.nc_line
         );
-        let corner = [LEFT + SIZE[0] - 8.0, TOP + SIZE[1] - 10.0];
+        let corner = [LEFT + SIZE[0], TOP - 9.0];
         label(&mut self.svg, corner, "end", &text);
     }
 

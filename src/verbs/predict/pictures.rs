@@ -5,6 +5,7 @@ use post_machine::axis_words;
 use post_machine::description::Machine;
 
 use super::envelope::Envelope;
+use super::measured_pictures;
 use super::path_pictures;
 use super::spectrum::Spectrum;
 use super::trail::Trail;
@@ -12,17 +13,18 @@ use crate::files::chart::{DASHED, DOTTED, Draw, LOOKS, Panel, Panels, Series};
 use crate::job::predict::{Prediction, Sample};
 
 /// The files that there can be.
-pub const NAMES: [&str; 6] = [
+pub const NAMES: [&str; 7] = [
     "axis-errors.svg",
     "feed.svg",
     "contour.svg",
     "contour-vectors.svg",
     "path.svg",
     "spectrum.svg",
+    measured_pictures::NAME,
 ];
 
 /// Micrometres of a millimetre, thousandths of a degree of a degree.
-const MICRO: f64 = 1e3;
+pub const MICRO: f64 = 1e3;
 
 /// The lowest frequency of the spectrum, Hz: what is below it is the path.
 const LOWEST: f64 = 1.0;
@@ -188,7 +190,7 @@ impl Rooms {
     fn feed(&self, note: &str) -> Panels {
         let series = vec![
             bands(
-                "true, from least to largest",
+                "true, lowest to highest at each time",
                 self.feeds.runs(0, 1.0),
                 "#8c8c8c",
             ),
@@ -200,7 +202,7 @@ impl Rooms {
             x: "time, s".to_owned(),
             logarithmic: false,
             panels: vec![Panel {
-                y: "mm/min".to_owned(),
+                y: "feed, mm/min".to_owned(),
                 logarithmic: false,
                 height: 330.0,
                 series,
@@ -225,11 +227,11 @@ impl Rooms {
             "tip, µm",
             vec![
                 bands(
-                    "from least to largest",
+                    "lowest to highest at each place",
                     self.contour.runs(0, MICRO),
                     "#6b6b6b",
                 ),
-                Series::line("not passed by 95 %", most(tip.p95), DASHED),
+                Series::line("95 % of the set-points stay below", most(tip.p95), DASHED),
                 Series::line("root of the mean square", most(tip.rms), DOTTED),
             ],
         )];

@@ -3,6 +3,8 @@
 
 use std::f64::consts::TAU;
 
+use post_motion::fourier;
+
 /// A window is about so long, s: frequencies are told apart by half a hertz.
 const SECONDS: f64 = 2.0;
 
@@ -43,9 +45,7 @@ impl Spectrum {
                 hann: (0..window)
                     .map(|place| 0.5 - 0.5 * libm::cos(angle(place)))
                     .collect(),
-                turns: (0..window / 2)
-                    .map(|place| [libm::cos(angle(place)), -libm::sin(angle(place))])
-                    .collect(),
+                turns: fourier::turns(window),
             },
         }
     }
@@ -69,7 +69,7 @@ impl Spectrum {
             .zip(&self.tables.hann)
             .map(|(value, weight)| [(value - mean) * weight, 0.0]);
         let mut values: Vec<[f64; 2]> = values.collect();
-        transform(&mut values, &self.tables.turns);
+        fourier::transform(&mut values, &self.tables.turns);
         // The mean of Hann's window is a half, and each frequency stands twice in the transform.
         let scale = 4.0 / self.waiting.len() as f64;
         for (square, [re, im]) in self.squares.iter_mut().zip(&values) {
@@ -94,64 +94,9 @@ impl Spectrum {
     }
 }
 
-/// The discrete Fourier transform in place, by halves (J. W. Cooley, J. W. Tukey, 1965).
-fn transform(values: &mut [[f64; 2]], turns: &[[f64; 2]]) {
-    let count = values.len();
-    let bits = count.trailing_zeros();
-    for place in 0..count {
-        let other = place.reverse_bits() >> (usize::BITS - bits);
-        if other > place {
-            values.swap(place, other);
-        }
-    }
-    let mut half = 1;
-    while half < count {
-        for first in (0..count).step_by(2 * half) {
-            for step in 0..half {
-                let [cos, sin] = turns[step * (count / (2 * half))];
-                let [low, high] = [first + step, first + step + half];
-                let [re, im] = values[high];
-                let turned = [re * cos - im * sin, re * sin + im * cos];
-                let [a, b] = values[low];
-                values[low] = [a + turned[0], b + turned[1]];
-                values[high] = [a - turned[0], b - turned[1]];
-            }
-        }
-        half *= 2;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_transform_is_the_sum_that_defines_it() {
-        let count = 16;
-        let angle = |place: usize| TAU * place as f64 / count as f64;
-        let turns: Vec<[f64; 2]> = (0..count / 2)
-            .map(|place| [libm::cos(angle(place)), -libm::sin(angle(place))])
-            .collect();
-        let signal: Vec<[f64; 2]> = (0..count)
-            .map(|place| {
-                [
-                    libm::sin(0.7 * place as f64 * place as f64),
-                    0.1 * place as f64,
-                ]
-            })
-            .collect();
-        let mut fast = signal.clone();
-        transform(&mut fast, &turns);
-        for (frequency, [re, im]) in fast.iter().enumerate() {
-            let mut sum = [0.0, 0.0];
-            for (place, [a, b]) in signal.iter().enumerate() {
-                let turn = angle(frequency * place % count);
-                let [cos, sin] = [libm::cos(turn), -libm::sin(turn)];
-                sum = [sum[0] + a * cos - b * sin, sum[1] + a * sin + b * cos];
-            }
-            assert!((re - sum[0]).abs() < 1e-12 && (im - sum[1]).abs() < 1e-12);
-        }
-    }
 
     #[test]
     fn a_sine_is_seen_at_its_frequency_with_its_amplitude() {

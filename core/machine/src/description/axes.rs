@@ -270,6 +270,10 @@ impl Builder<'_> {
         }
         let max_accel = rate(self, "max_accel", &axis.max_accel);
         let max_jerk = rate(self, "max_jerk", &axis.max_jerk);
+        let max_jump = axis
+            .max_jump
+            .as_ref()
+            .map(|_| rate(self, "max_jump", &axis.max_jump));
         let indexed = self.indexed(name, spanned, zero, unit, travel);
         let clamp = self.clamp(name, spanned);
         let range = self.range(name, spanned, unit);
@@ -292,6 +296,7 @@ impl Builder<'_> {
             feed_diameter,
             max_accel,
             max_jerk,
+            max_jump,
             servo: None,
         })
     }

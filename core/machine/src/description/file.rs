@@ -218,6 +218,10 @@ pub(crate) struct AxisFile {
     /// Largest jerk, mm/s³ or degrees/s³.
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub max_jerk: Option<Quantity>,
+    /// Largest jump of its velocity where one block passes into the next without a curve between them, mm/min or degrees a
+    /// minute; if not said what max_accel makes of it in one period of [motion].
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub max_jump: Option<Quantity>,
 }
 
 /// Which of several solutions is taken.

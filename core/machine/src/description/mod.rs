@@ -163,6 +163,8 @@ pub struct Axis {
     pub max_accel: f64,
     /// Largest jerk, mm/s³ or rad/s³; infinite if the file does not say.
     pub max_jerk: f64,
+    /// Largest jump of its velocity where one block passes into the next, mm/min or rad/min; none if the file does not say.
+    pub max_jump: Option<f64>,
     /// How far it is from its set-points; none: it follows them exactly.
     pub servo: Option<Box<Servo>>,
 }

@@ -20,6 +20,9 @@ pub struct MotionRules {
     pub tip_accel: f64,
     /// Largest jerk of the tip against the part, mm/s³; infinite if the file does not say.
     pub tip_jerk: f64,
+    /// Largest jump of the velocity of the tip against the part where one block passes into the next, mm/min; none if the
+    /// file does not say.
+    pub tip_jump: Option<f64>,
     /// How it passes from one cut to the next before the program says anything of it.
     pub corner: CornerRule,
     /// By how much it may leave the path at a corner where the program names no tolerance, mm; none: as far as its rule
@@ -86,6 +89,7 @@ impl Builder<'_> {
         };
         let tip_accel = positive("tip_accel", &file.tip_accel);
         let tip_jerk = positive("tip_jerk", &file.tip_jerk);
+        let tip_jump = positive("tip_jump", &file.tip_jump);
         let corner_tolerance = positive("corner_tolerance", &file.corner_tolerance);
         let mut seconds = |name: &str, said: &Option<Quantity>| {
             said.as_ref()
@@ -98,6 +102,7 @@ impl Builder<'_> {
             limits: file.limits,
             tip_accel: tip_accel.unwrap_or(f64::INFINITY),
             tip_jerk: tip_jerk.unwrap_or(f64::INFINITY),
+            tip_jump,
             corner: file.corner,
             corner_tolerance,
             blend: file.blend,

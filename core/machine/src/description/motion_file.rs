@@ -29,6 +29,10 @@ pub(crate) struct MotionFile {
     /// Largest jerk of the tip against the part, mm/s³; none if not said.
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub tip_jerk: Option<Quantity>,
+    /// Largest jump of the velocity of the tip against the part where one block passes into the next without a curve
+    /// between them, mm/min; if not said what tip_accel makes of it in one period.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    pub tip_jump: Option<Quantity>,
     /// How the control passes from one cut to the next before the program says anything of it; blend if not said.
     #[serde(default)]
     pub corner: CornerRule,

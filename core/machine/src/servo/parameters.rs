@@ -5,19 +5,24 @@ use super::{Drive, Servo, ServoModel};
 /// A number of a servo.
 #[derive(Debug)]
 pub struct Parameter<'a> {
+    /// The table below `[servo.X]` that it stands in, `loops.screw`; empty for `[servo.X]` itself.
+    pub table: &'static str,
     /// Its key in the machine file.
     pub name: &'static str,
     /// Its value, in the file's unit.
     pub value: &'a mut f64,
 }
 
+/// Numbers by their keys, those that the file says.
+type Named<'a> = Vec<(&'static str, Option<&'a mut f64>)>;
+
 impl Servo {
     /// The numbers of the servo that the file says, by their keys; those of a transfer function have none.
     pub fn parameters(&mut self) -> Vec<Parameter<'_>> {
-        let mut found: Vec<(&'static str, Option<&mut f64>)> = Vec::new();
+        let mut found: Vec<Parameter<'_>> = Vec::new();
         match &mut self.model {
             ServoModel::Loops(loops) => {
-                found.extend([
+                let numbers = vec![
                     ("kv", Some(&mut loops.kv)),
                     (
                         "velocity_feed_forward",
@@ -31,43 +36,44 @@ impl Servo {
                     ("velocity_time", loops.velocity_time.as_mut()),
                     ("motor_inertia", Some(&mut loops.motor_inertia)),
                     ("motor_damping", Some(&mut loops.motor_damping)),
-                ]);
+                ];
+                found.extend(said("loops", numbers));
                 if let Some(current) = &mut loops.current {
-                    found.extend([
+                    let numbers = vec![
                         ("current_gain", Some(&mut current.gain)),
                         ("current_time", current.time.as_mut()),
                         ("resistance", Some(&mut current.resistance)),
                         ("inductance", Some(&mut current.inductance)),
                         ("torque_constant", Some(&mut current.torque_constant)),
                         ("back_emf", Some(&mut current.back_emf)),
-                    ]);
+                    ];
+                    found.extend(said("loops", numbers));
                 }
-                found.extend(of_drive(&mut loops.drive));
+                let (table, numbers) = of_drive(&mut loops.drive);
+                found.extend(said(table, numbers));
             }
-            ServoModel::Pid(pid) => found.extend([
-                ("kp", Some(&mut pid.kp)),
-                ("ki", Some(&mut pid.ki)),
-                ("kd", Some(&mut pid.kd)),
-                ("gain", Some(&mut pid.gain)),
-                ("inertia", Some(&mut pid.inertia)),
-                ("damping", Some(&mut pid.damping)),
-            ]),
+            ServoModel::Pid(pid) => {
+                let numbers = vec![
+                    ("kp", Some(&mut pid.kp)),
+                    ("ki", Some(&mut pid.ki)),
+                    ("kd", Some(&mut pid.kd)),
+                    ("gain", Some(&mut pid.gain)),
+                    ("inertia", Some(&mut pid.inertia)),
+                    ("damping", Some(&mut pid.damping)),
+                ];
+                found.extend(said("pid", numbers));
+            }
             ServoModel::Transfer(_) => {}
         }
         if let Some(friction) = &mut self.friction {
-            found.extend([
+            let numbers = vec![
                 ("coulomb", Some(&mut friction.coulomb)),
                 ("width", Some(&mut friction.width)),
-            ]);
+            ];
+            found.extend(said("friction", numbers));
         }
-        found.push(("backlash", Some(&mut self.backlash)));
-        let said = |(name, value): (&'static str, Option<_>)| {
-            Some(Parameter {
-                name,
-                value: value?,
-            })
-        };
-        found.into_iter().filter_map(said).collect()
+        found.extend(said("", vec![("backlash", Some(&mut self.backlash))]));
+        found
     }
 
     /// The number of that key.
@@ -78,7 +84,14 @@ impl Servo {
     }
 }
 
-fn of_drive(drive: &mut Drive) -> Vec<(&'static str, Option<&mut f64>)> {
+fn said<'a>(table: &'static str, numbers: Named<'a>) -> impl Iterator<Item = Parameter<'a>> {
+    numbers.into_iter().filter_map(move |(name, value)| {
+        let value = value?;
+        Some(Parameter { table, name, value })
+    })
+}
+
+fn of_drive(drive: &mut Drive) -> (&'static str, Named<'_>) {
     match drive {
         Drive::Screw {
             lead,
@@ -88,30 +101,37 @@ fn of_drive(drive: &mut Drive) -> Vec<(&'static str, Option<&mut f64>)> {
             axial_damping,
             table_mass,
             table_damping,
-        } => vec![
-            ("lead", Some(lead)),
-            ("screw_damping", Some(screw_damping)),
-            ("axial_stiffness", axial_stiffness.as_mut()),
-            ("torsional_stiffness", torsional_stiffness.as_mut()),
-            ("axial_damping", Some(axial_damping)),
-            ("table_mass", Some(table_mass)),
-            ("table_damping", Some(table_damping)),
-        ],
+        } => (
+            "loops.screw",
+            vec![
+                ("lead", Some(lead)),
+                ("screw_damping", Some(screw_damping)),
+                ("axial_stiffness", axial_stiffness.as_mut()),
+                ("torsional_stiffness", torsional_stiffness.as_mut()),
+                ("axial_damping", Some(axial_damping)),
+                ("table_mass", Some(table_mass)),
+                ("table_damping", Some(table_damping)),
+            ],
+        ),
         Drive::Gear {
             ratio,
             gear_stiffness,
             gear_damping,
             table_inertia,
             table_damping,
-        } => vec![
-            ("ratio", Some(ratio)),
-            ("gear_stiffness", gear_stiffness.as_mut()),
-            ("gear_damping", Some(gear_damping)),
-            ("table_inertia", Some(table_inertia)),
-            ("table_damping", Some(table_damping)),
-        ],
+        } => (
+            "loops.gear",
+            vec![
+                ("ratio", Some(ratio)),
+                ("gear_stiffness", gear_stiffness.as_mut()),
+                ("gear_damping", Some(gear_damping)),
+                ("table_inertia", Some(table_inertia)),
+                ("table_damping", Some(table_damping)),
+            ],
+        ),
         Drive::Direct { load, load_damping } => {
-            vec![("load", Some(load)), ("load_damping", Some(load_damping))]
+            let numbers = vec![("load", Some(load)), ("load_damping", Some(load_damping))];
+            ("loops.direct", numbers)
         }
     }
 }

@@ -623,6 +623,34 @@ fn how_a_control_makes_motion_is_merged_key_by_key() {
 }
 
 #[test]
+fn jumps_of_velocity_are_those_of_the_file_that_says_them_last() {
+    let of = |text: &str, settings: &[&str]| {
+        let machine = try_load(text, settings).unwrap();
+        let axis = |name: &str| {
+            let found = machine.axes.iter().find(|axis| axis.name == name);
+            found.unwrap().max_jump
+        };
+        (axis("X"), axis("A"), machine.motion.tip_jump)
+    };
+    assert_eq!(of(GOOD, &[]), (None, None, None));
+    let own = "extends = \"good\"\n[axis.X]\nmax_jump = \"Zc * 4\"\n[axis.A]\nmax_jump = 180\n[motion]\ntip_jump = 300\n";
+    let turn = Some(std::f64::consts::PI);
+    assert_eq!(of(own, &[]), (Some(202.0), turn, Some(300.0)));
+    assert_eq!(
+        of(own, &["axis.X.max_jump=60"]),
+        (Some(60.0), turn, Some(300.0))
+    );
+    for (own, shown) in [
+        ("extends = \"good\"\n[axis.X]\nmax_jump = 0\n", "3 0"),
+        ("extends = \"good\"\n[motion]\ntip_jump = -5\n", "3 -5"),
+    ] {
+        let found = try_load(own, &[]).unwrap_err();
+        assert_eq!(underlined(&found[0]), shown, "{found:?}");
+        assert!(found[0].message.contains("above zero"), "{found:?}");
+    }
+}
+
+#[test]
 fn a_part_sits_turned_whatever_head_is_in() {
     let machine = try_load(GOOD, &["workpiece.turn=\"30 + half / 25.25\""]).unwrap();
     assert!((machine.turn - 31f64.to_radians()).abs() < 1e-15);

@@ -19,12 +19,12 @@ const AHEAD: usize = 20_000;
 const LEAST: f64 = 1.0;
 
 /// The nearest point of a path that is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Asked {
     pub at: At,
     pub tip: Vector3<f64>,
-    pub axis: Vector3<f64>,
     pub distance: f64,
+    foot: Foot,
     /// How far the place has gone on along the path, mm.
     pub way: f64,
 }
@@ -66,27 +66,32 @@ impl Course {
         if self.path.is_empty() {
             self.push(&next_cut(more)?);
         }
-        let start = self.path.after(self.path.foot(), way.unwrap_or(0.0));
+        let mut start = self.path.after(self.path.foot(), way.unwrap_or(0.0));
         let first = (self.path.point(start) - tool.tip).norm();
         let wanted = LEAST.max(way.unwrap_or(0.0) + REACH * first);
+        let mut known = true;
         while let (knots, length) = self.path.ahead()
             && knots < AHEAD
             && length < wanted
             && let Some(leg) = next_cut(more)
         {
             self.push(&leg);
+            known = false;
         }
-        let (foot, axis) = match way {
+        let foot = match way {
             None => self.path.seek_anew(tool),
             Some(way) => {
-                let start = self.path.after(self.path.foot(), way);
+                if !known {
+                    start = self.path.after(self.path.foot(), way);
+                }
                 self.path.seek(tool, start, way)
             }
         };
         let last = self.path.length(self.path.foot());
-        let mut asked = self.asked(foot, axis, tool);
+        let mut asked = self.asked(foot, tool);
         asked.way = (self.path.length(foot) - last).max(0.0);
         self.path.stand(foot);
+        asked.foot = self.path.foot();
         Some(asked)
     }
 
@@ -100,17 +105,22 @@ impl Course {
         if self.path.is_empty() {
             return None;
         }
-        let (foot, axis) = self.path.seek(tool, self.path.foot(), f64::INFINITY);
-        Some(self.asked(foot, axis, tool))
+        let foot = self.path.seek(tool, self.path.foot(), f64::INFINITY);
+        Some(self.asked(foot, tool))
     }
 
-    fn asked(&self, foot: Foot, axis: Vector3<f64>, tool: &Pose) -> Asked {
+    /// The tool axis that is asked for where the tool was found to be nearest.
+    pub fn axis(&self, tool: &Pose, asked: &Asked) -> Vector3<f64> {
+        self.path.axis_beside(tool, asked.foot)
+    }
+
+    fn asked(&self, foot: Foot, tool: &Pose) -> Asked {
         let tip = self.path.point(foot);
         Asked {
             at: self.path.at(foot),
             tip,
-            axis,
             distance: (tip - tool.tip).norm(),
+            foot,
             way: 0.0,
         }
     }

@@ -5,7 +5,7 @@ use post_machine::kinematics::Pose;
 
 use super::path::Knot;
 use crate::At;
-use crate::path::{Way, between, on_arc};
+use crate::path::{GreatCircle, Way, on_arc};
 
 /// A knot stands at least after such a turn, radians: the cubic between leaves an arc by less than a radius times the
 /// fourth power of this over 1944, 3 nm of a metre.
@@ -41,11 +41,13 @@ pub trait Reference {
 impl Leg {
     /// Tip and tool axis at `t` from 0 to 1.
     pub fn at(&self, t: f64) -> Pose {
+        self.on(&GreatCircle::new(self.from.axis, self.to.axis), t)
+    }
+
+    /// The same where the way of the tool axis is known.
+    fn on(&self, turn: &GreatCircle, t: f64) -> Pose {
         let (from, to) = (&self.from, &self.to);
-        let axis = match from.axis == to.axis {
-            true => from.axis,
-            false => between(from.axis, to.axis, t),
-        };
+        let axis = turn.at(t);
         let tip = match &self.way {
             Way::Axes | Way::Tip | Way::TipAndAxis => {
                 let [start, end] = [from, to].map(|pose| pose.tip + pose.axis * self.along);
@@ -64,10 +66,7 @@ impl Leg {
 
     /// Hands out its knots, that of its beginning first.
     pub(super) fn knots(&self, take: &mut dyn FnMut(Knot)) {
-        let turn = libm::atan2(
-            self.from.axis.cross(&self.to.axis).norm(),
-            self.from.axis.dot(&self.to.axis),
-        );
+        let circle = GreatCircle::new(self.from.axis, self.to.axis);
         let sweep = match &self.way {
             Way::Arc { sweep, .. } => sweep.abs(),
             _ => 0.0,
@@ -76,17 +75,18 @@ impl Leg {
             Way::Spline(way) => SPANS * way.spans().count(),
             _ => 1,
         };
-        let pieces = libm::ceil(turn.max(sweep) / TURN).max(spans as f64);
+        let pieces = libm::ceil(circle.angle.max(sweep) / TURN).max(spans as f64);
         let pieces = pieces.clamp(1.0, MOST) as usize;
         let step = 1.0 / pieces as f64;
-        let mut last = self.at(0.0);
+        let at = |t: f64| self.on(&circle, t);
+        let mut last = at(0.0);
         let mut reached = [Vector3::zeros(); 2];
         for piece in 0..pieces {
             let start = piece as f64 * step;
-            let inner = [1.0, 2.0].map(|third| self.at(start + step * third / 3.0));
+            let inner = [1.0, 2.0].map(|third| at(start + step * third / 3.0));
             let end = match piece + 1 == pieces {
-                true => self.at(1.0),
-                false => self.at(start + step),
+                true => at(1.0),
+                false => at(start + step),
             };
             let points = [&last, &inner[0], &inner[1], &end];
             let tip = through(points.map(|pose| &pose.tip));

@@ -39,6 +39,7 @@ pub use axes::AxisPeaks;
 use course::Course;
 pub use leg::{Leg, Reference};
 use path::{Knot, Path};
+use spline::Five;
 pub use spread::{Peak, Spread};
 
 /// The commanded path is known so far ahead of the actual position, s: feed forward may lead, but not by more.
@@ -115,6 +116,8 @@ pub struct ContourReport {
     pub missed: Peak,
     /// The largest values of each axis, in chain order, cuts and rapids.
     pub axes: [AxisPeaks; MAX_AXES],
+    /// How often a move passes into the next with a jump of the velocity.
+    pub jumps: u64,
     /// How many axes there are.
     pub axis_count: usize,
     /// Time of the last set-point, s.
@@ -142,8 +145,11 @@ pub struct Contour<'r> {
     asked: Course,
     solver: Option<Arc<Solver>>,
     path: Path,
-    /// Five set-points, of which the middle one becomes the next knot, and how many of them are real.
-    window: [(u64, At, Vector3<f64>, Vector3<f64>); 5],
+    /// The last three set-points, of which the first becomes the next knot, and how many of them are real.
+    window: [(u64, At, Vector3<f64>, Vector3<f64>); 3],
+    /// The differences of tips and tool axes by which the path passes it.
+    tips: Five,
+    tool_axes: Five,
     filled: usize,
     pending: VecDeque<Pending>,
     /// Set-points that the path is ahead.
@@ -206,11 +212,16 @@ impl<'r> Contour<'r> {
         let axes = chain.joints().len();
         self.report.axis_count = self.report.axis_count.max(axes);
         self.lead = (LEAD / points.period).clamp(LEADS[0], LEADS[1]) as u64;
+        let mut jumps = points.jumps.as_slice();
+        self.report.jumps += jumps.len() as u64;
         for (place, actual) in actual.iter().enumerate().take(points.len()) {
             let joints = &points.joints[place];
             let (time, at) = (points.time(place), points.at[place]);
+            let jumped = jumps.partition_point(|jump| jump.time <= time);
+            let (now, later) = jumps.split_at(jumped);
+            jumps = later;
             self.axes
-                .take(axes, (time, &at), points.period, [joints, actual]);
+                .take(axes, (time, &at), points.period, [joints, actual], now);
             self.report.seconds = time;
             let commanded = points.poses[place];
             let number = points.first + place as u64;
@@ -237,7 +248,7 @@ impl<'r> Contour<'r> {
     fn settle(&mut self, listen: &mut dyn FnMut(&ContourPoint)) {
         if self.filled > 0 {
             for _ in 0..2 {
-                self.knot(self.window[4]);
+                self.knot(self.window[2]);
             }
         }
         self.settled(0, listen);
@@ -249,22 +260,23 @@ impl<'r> Contour<'r> {
     /// Takes the next set-point of the path: the one two before it becomes a knot.
     fn knot(&mut self, point: (u64, At, Vector3<f64>, Vector3<f64>)) {
         if self.filled == 0 {
-            self.window = [point; 5];
+            self.window = [point; 3];
+            (self.tips, self.tool_axes) = (Five::all_at(&point.2), Five::all_at(&point.3));
         }
-        self.window.rotate_left(1);
-        self.window[4] = point;
+        self.window = [self.window[1], self.window[2], point];
+        let ways = [self.tips.take(&point.2), self.tool_axes.take(&point.3)];
         self.filled = (self.filled + 1).min(3);
         if self.filled < 3 {
             return;
         }
-        let [a, b, c, d, e] = &self.window;
+        let (number, at, tip, axis) = self.window[0];
         self.path.push(Knot {
-            number: c.0,
-            at: c.1,
-            tip: c.2,
-            axis: c.3,
-            tip_ways: spline::tangents([&a.2, &b.2, &c.2, &d.2, &e.2]),
-            axis_ways: spline::tangents([&a.3, &b.3, &c.3, &d.3, &e.3]),
+            number,
+            at,
+            tip,
+            axis,
+            tip_ways: ways[0],
+            axis_ways: ways[1],
             length: 0.0,
             gap: false,
         });
@@ -329,25 +341,30 @@ impl<'r> Contour<'r> {
 impl Contour<'_> {
     /// What lies between the commanded path and what is asked for.
     fn parts(&mut self, told: &mut ContourPoint, mut way: f64) {
-        let mut programmed = told.nearest;
-        if let Some(asked) = self.programmed.follow(&told.nearest, way, &mut || None) {
+        let asked = self.programmed.follow(&told.nearest, way, &mut || None);
+        if let Some(asked) = &asked {
             told.interpolation = asked.distance;
-            (programmed.tip, programmed.axis) = (asked.tip, asked.axis);
             way = asked.way;
         }
         let Some(reference) = &mut self.reference else {
             return;
         };
+        let mut programmed = told.nearest;
+        if let Some(asked) = &asked {
+            let axis = self.programmed.axis(&told.nearest, asked);
+            (programmed.tip, programmed.axis) = (asked.tip, axis);
+        }
         let program = self
             .asked
             .follow(&programmed, way, &mut || reference.next());
         let beside = self.asked.beside(&told.actual);
         if let (Some(program), Some(asked)) = (program, beside) {
+            let axis = self.asked.axis(&told.actual, &asked);
             told.asked = Some(AskedPoint {
                 at: asked.at,
                 error: told.actual.tip - asked.tip,
                 distance: asked.distance,
-                axis: angle(&told.actual.axis, &asked.axis),
+                axis: angle(&told.actual.axis, &axis),
                 program: program.distance,
             });
         }

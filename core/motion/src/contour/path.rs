@@ -29,8 +29,11 @@ const MOST: usize = 1 << 18;
 /// Newton steps in a piece; they are bisections where Newton leaves its bracket.
 const STEPS: usize = 60;
 
-/// After a Newton step of this share of a piece the next one would be no way: its length falls with the square.
-const SMALL: f64 = 1e-7;
+/// A Newton step that would go no further than this, mm, is none.
+const SMALL: f64 = 1e-13;
+
+/// How far the next one would go is told by the square of one that is no longer than this share of a piece.
+const SHORT: f64 = 1e-3;
 
 /// A share of a piece that is none.
 const NONE: f64 = 1e-13;
@@ -105,12 +108,15 @@ pub(super) struct Nearest {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Path {
     knots: VecDeque<Knot>,
+    /// The pieces behind all knots but the last; none where there is a gap.
+    pieces: VecDeque<Option<Cubic>>,
     foot: Foot,
 }
 
 impl Path {
     pub fn clear(&mut self) {
         self.knots.clear();
+        self.pieces.clear();
         self.foot = Foot::default();
     }
 
@@ -124,6 +130,7 @@ impl Path {
             }
             last.gap = true;
             knot.length = last.length + (knot.tip - last.tip).norm();
+            self.pieces.push_back(None);
         }
         self.knots.push_back(knot);
     }
@@ -139,6 +146,9 @@ impl Path {
             let legs = [last.tip_ways[1] / 3.0, knot.tip_ways[0] / 3.0];
             let middle = knot.tip - last.tip - legs[0] - legs[1];
             knot.length = last.length + legs[0].norm() + middle.norm() + legs[1].norm();
+            let ends = [&last.tip, &knot.tip];
+            let piece = Cubic::new(ends, &last.tip_ways[1], &knot.tip_ways[0]);
+            self.pieces.push_back(Some(piece));
         }
         self.knots.push_back(knot);
         if self.knots.len() > MOST {
@@ -148,6 +158,7 @@ impl Path {
 
     fn drop_first(&mut self, count: usize) {
         self.knots.drain(..count);
+        self.pieces.drain(..count);
         self.foot.knot = match self.foot.knot.checked_sub(count) {
             Some(knot) => knot,
             None => {
@@ -163,12 +174,13 @@ impl Path {
         let first = (self.point(start) - actual.tip).norm();
         let found = self.descend(&actual.tip, start);
         let mut foot = self.least(&actual.tip, found, Within::all(REACH * first));
-        if self.length(foot) < self.length(self.foot) - TIE
-            && let Some(other) = self.onward(
-                &actual.tip,
-                foot.distance + SAME,
-                self.place_of(commanded.0).knot,
-            )
+        // Back on the way it came, or beyond a turn: it may be on a way ahead meanwhile.
+        let bound = match self.length(foot) < self.length(self.foot) - TIE {
+            true => Some(foot.distance + SAME),
+            false => Some(foot.distance - TIE).filter(|_| self.turns(foot)),
+        };
+        if let Some(bound) = bound.filter(|bound| *bound > 0.0)
+            && let Some(other) = self.onward(&actual.tip, bound, self.place_of(commanded.0).knot)
         {
             foot = other;
         }
@@ -198,8 +210,8 @@ impl Path {
     }
 
     /// The place nearest to a tool, from `start` on downhill, and further back than `back` mm along the path no other
-    /// one; and the tool axis that is asked for there: of places that are equally near the one whose axis is nearest.
-    pub fn seek(&self, tool: &Pose, start: Foot, back: f64) -> (Foot, Vector3<f64>) {
+    /// one.
+    pub fn seek(&self, tool: &Pose, start: Foot, back: f64) -> Foot {
         let mut found = self.descend(&tool.tip, start);
         let first = (self.point(start) - tool.tip).norm();
         if self.length(found) < self.length(self.foot) - TIE {
@@ -211,25 +223,36 @@ impl Path {
         self.among(tool, found, back.min(REACH * first), first)
     }
 
-    /// The place nearest to a tool that was off the path meanwhile: from where it left, and nowhere before.
-    pub fn seek_anew(&self, tool: &Pose) -> (Foot, Vector3<f64>) {
+    /// The place nearest to a tool that was off the path meanwhile: from where it left on, and before that only where
+    /// what lies ahead is farther (it comes down a hole again, above where it left), and no further back than other places
+    /// are looked for at all: the end of an earlier cut may be near as well.
+    pub fn seek_anew(&self, tool: &Pose) -> Foot {
         let first = (self.point(self.foot) - tool.tip).norm();
         let left = Foot {
             distance: first,
             ..self.foot
         };
-        self.among(tool, left, 0.0, first)
+        let ahead = self.among(tool, left, 0.0, first);
+        let near = self.descend(&tool.tip, self.foot);
+        let back = self.among(tool, near, REACH * ahead.distance, first);
+        match back.distance < ahead.distance - TIE {
+            true => back,
+            false => ahead,
+        }
     }
 
-    fn among(&self, tool: &Pose, found: Foot, back: f64, first: f64) -> (Foot, Vector3<f64>) {
+    fn among(&self, tool: &Pose, found: Foot, back: f64, first: f64) -> Foot {
         let within = Within {
             ahead: REACH * first,
             back,
             gain: TIE,
         };
-        let foot = self.least(&tool.tip, found, within);
-        let (_, axis) = self.tied(tool, foot);
-        (foot, axis)
+        self.least(&tool.tip, found, within)
+    }
+
+    /// The tool axis that is asked for at a place: of places that are equally near, the one that is nearest to the tool's.
+    pub fn axis_beside(&self, tool: &Pose, foot: Foot) -> Vector3<f64> {
+        self.tied(tool, foot).1
     }
 
     /// The tool has come to a place: what lies far behind it is forgotten.
@@ -325,20 +348,16 @@ impl Path {
 
     /// The piece behind a knot; none behind the last.
     #[inline]
-    fn cubic(&self, knot: usize) -> Option<Cubic> {
-        let next = self.knots.get(knot + 1)?;
-        let last = &self.knots[knot];
-        if last.gap {
-            return None;
-        }
-        let ends = [&last.tip, &next.tip];
-        Some(Cubic::new(ends, &last.tip_ways[1], &next.tip_ways[0]))
+    fn cubic(&self, knot: usize) -> Option<&Cubic> {
+        self.pieces.get(knot)?.as_ref()
     }
 
     /// The tip at a place.
     pub fn point(&self, foot: Foot) -> Vector3<f64> {
-        self.cubic(foot.knot)
-            .map_or(self.knots[foot.knot].tip, |cubic| cubic.at(foot.share))
+        match self.cubic(foot.knot) {
+            Some(cubic) if foot.share > 0.0 => cubic.at(foot.share),
+            _ => self.knots[foot.knot].tip,
+        }
     }
 
     /// The tool axis at a place, unit vector.
@@ -373,7 +392,7 @@ impl Path {
                 (foot.knot, foot.share, went) = (foot.knot - 1, 1.0, -1);
                 continue;
             };
-            let share = lowest(&cubic, from, foot.share);
+            let share = lowest(cubic, from, foot.share);
             if share >= 1.0 && went >= 0 {
                 (foot.knot, foot.share, went) = (foot.knot + 1, 0.0, 1);
                 continue;
@@ -383,6 +402,10 @@ impl Path {
                 continue;
             }
             foot.share = share;
+            if share < 1.0 {
+                foot.distance = (cubic.at(share) - from).norm();
+                return foot;
+            }
             break;
         }
         if foot.share >= 1.0 {
@@ -405,6 +428,9 @@ impl Path {
 
     /// A place that is nearer than the one found, within a reach of it along the path both ways.
     fn others(&self, from: &Vector3<f64>, found: Foot, within: Within) -> Foot {
+        if found.distance <= within.gain {
+            return found;
+        }
         let length = self.length(found);
         let mut best = found;
         let mut look = |piece: usize| {
@@ -418,31 +444,61 @@ impl Path {
         if self.bends(found) {
             nearest = look(found.knot);
         }
+        // A piece lies where the ways from its two knots add up to no more than its length.
+        let away = |knot: usize| (self.knots[knot].tip - from).norm();
         let mut knot = (found.knot + 1).min(last);
+        let mut off = away(knot);
         while knot < last && self.knots[knot].length - length < within.ahead {
-            let free = (self.knots[knot].tip - from).norm() - nearest;
-            let passed = self.knots[knot].length + free;
-            if self.knots[knot + 1].length > passed {
-                nearest = look(knot);
-            }
+            let passed = self.knots[knot].length + off - nearest;
+            let next = self.knots[knot + 1].length;
             knot += 1;
+            if next > passed {
+                let begins = off;
+                off = away(knot);
+                let way = next - self.knots[knot - 1].length;
+                if begins + off - way < 2.0 * nearest {
+                    nearest = look(knot - 1);
+                }
+                continue;
+            }
             while knot < last && self.knots[knot + 1].length <= passed {
                 knot += 1;
             }
+            off = away(knot);
         }
         let mut knot = found.knot;
+        let mut off = away(knot);
         while knot > 0 && length - self.knots[knot].length < within.back {
-            let free = (self.knots[knot].tip - from).norm() - nearest;
-            let passed = self.knots[knot].length - free;
-            if self.knots[knot - 1].length < passed {
-                nearest = look(knot - 1);
-            }
+            let passed = self.knots[knot].length - off + nearest;
+            let last = self.knots[knot - 1].length;
             knot -= 1;
+            if last < passed {
+                let begins = off;
+                off = away(knot);
+                let way = self.knots[knot + 1].length - last;
+                if begins + off - way < 2.0 * nearest {
+                    nearest = look(knot);
+                }
+                continue;
+            }
             while knot > 0 && self.knots[knot - 1].length >= passed {
                 knot -= 1;
             }
+            off = away(knot);
         }
         best
+    }
+
+    /// The path turns back at a place, or in the piece that it stands in.
+    fn turns(&self, foot: Foot) -> bool {
+        let behind = foot.knot + usize::from(foot.share > 0.0);
+        let Some(before) = foot.knot.checked_sub(1) else {
+            return false;
+        };
+        self.knots.get(behind + 1).is_some_and(|next| {
+            let [last, here, there] = [before, foot.knot, behind].map(|knot| self.knots[knot].tip);
+            (here - last).dot(&(next.tip - there)) < 0.0
+        })
     }
 
     /// The piece of a place bends so much that it may come nearer once more.
@@ -482,7 +538,7 @@ impl Path {
         let cubic = self.cubic(piece)?;
         let mut best: Option<Foot> = None;
         for start in [along, 0.125, 0.375, 0.625, 0.875] {
-            let share = lowest(&cubic, from, start);
+            let share = lowest(cubic, from, start);
             let foot = Foot {
                 knot: piece,
                 share,
@@ -574,11 +630,15 @@ fn lowest(cubic: &Cubic, from: &Vector3<f64>, start: f64) -> f64 {
         let offset = cubic.at(share) - from;
         let slope = cubic.slope(share);
         let bend = cubic.bend(share);
-        let rise = match slope == Vector3::zeros() {
+        let square = slope.norm_squared();
+        let rise = match square == 0.0 {
             // Where the machine stands: as just inside the piece.
             true => offset.dot(&bend) * if share < 0.5 { 1.0 } else { -1.0 },
             false => offset.dot(&slope),
         };
+        if offset == Vector3::zeros() {
+            return share;
+        }
         match rise > 0.0 {
             true => high = share,
             false => low = share,
@@ -586,7 +646,11 @@ fn lowest(cubic: &Cubic, from: &Vector3<f64>, start: f64) -> f64 {
         if low >= high {
             return share;
         }
-        let curve = slope.norm_squared() + offset.dot(&bend);
+        let curve = square + offset.dot(&bend);
+        if rise == 0.0 && curve > 0.0 && square > 0.0 {
+            // Here it is, and the bracket closes upon nothing.
+            break;
+        }
         let next = share - rise / curve;
         // Newton; or downhill as far as the bracket goes, which is an end of the piece if none was passed before.
         let newton = curve > 0.0 && next > low && next < high;
@@ -597,7 +661,14 @@ fn lowest(cubic: &Cubic, from: &Vector3<f64>, start: f64) -> f64 {
             false => 0.5 * (low + high),
         };
         let done = match newton {
-            true => (next - share).abs() < SMALL,
+            // The next step would be the square of this one times half the change of the curve over the curve.
+            true => {
+                let step = next - share;
+                let change = 3.0 * slope.dot(&bend) + offset.dot(&cubic.jerk());
+                let left = step * step * change;
+                libm::fabs(step) < SHORT
+                    && left * left * square < 4.0 * curve * curve * (SMALL * SMALL)
+            }
             false => high - low < NONE,
         };
         share = next;

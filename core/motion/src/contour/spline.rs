@@ -18,23 +18,46 @@ const PEAK: f64 = 4.0;
 /// How a knot is reached and left, a period as unit of time.
 pub(super) type Tangents = [Vector3<f64>; 2];
 
-/// The tangents at the middle one of five set-points.
-#[inline]
-pub(super) fn tangents(at: [&Vector3<f64>; 5]) -> Tangents {
-    let chords: [Vector3<f64>; 4] = std::array::from_fn(|place| at[place + 1] - at[place]);
-    let [before, second, behind] = [0, 1, 2].map(|place| chords[place + 1] - chords[place]);
-    let (third, next) = (second - before, behind - second);
-    let neighbours = before.norm_squared().max(behind.norm_squared());
-    let half = clipped(second, neighbours) * 0.5;
-    let [third, next] = [
-        clipped(third, next.norm_squared()),
-        clipped(next, third.norm_squared()),
-    ];
-    let bend = (third + next) * (1.0 / 12.0);
-    [
-        held(chords[1] + half - bend, &chords[1]),
-        held(chords[2] - half - bend, &chords[2]),
-    ]
+/// Five set-points that move on one by one: their differences, each taken once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Five {
+    last: Vector3<f64>,
+    /// The last three chords; the last three second differences with their squares; the last two third ones likewise.
+    chords: [Vector3<f64>; 3],
+    seconds: [(Vector3<f64>, f64); 3],
+    thirds: [(Vector3<f64>, f64); 2],
+}
+
+impl Five {
+    /// All of them stand here.
+    pub fn all_at(point: &Vector3<f64>) -> Self {
+        Self {
+            last: *point,
+            ..Self::default()
+        }
+    }
+
+    /// Takes the next one, and says the tangents at the middle one of the five that there are now.
+    #[inline]
+    pub fn take(&mut self, point: &Vector3<f64>) -> Tangents {
+        let with_square = |vector: Vector3<f64>| (vector, vector.norm_squared());
+        let chord = point - self.last;
+        let second = with_square(chord - self.chords[2]);
+        let third = with_square(second.0 - self.seconds[2].0);
+        self.last = *point;
+        self.chords = [self.chords[1], self.chords[2], chord];
+        self.seconds = [self.seconds[1], self.seconds[2], second];
+        self.thirds = [self.thirds[1], third];
+        let [before, (second, _), behind] = self.seconds;
+        let half = clipped(second, before.1.max(behind.1)) * 0.5;
+        let [(third, square), (next, next_square)] = self.thirds;
+        let bend = (clipped(third, next_square) + clipped(next, square)) * (1.0 / 12.0);
+        let [before, behind, _] = self.chords;
+        [
+            held(before + half - bend, &before),
+            held(behind - half - bend, &behind),
+        ]
+    }
 }
 
 /// A vector no longer than [`PEAK`] times the one whose square is given.
@@ -103,5 +126,11 @@ impl Cubic {
     #[inline]
     pub fn bend(&self, s: f64) -> Vector3<f64> {
         self.second * 2.0 + self.third * (6.0 * s)
+    }
+
+    /// Its third derivative.
+    #[inline]
+    pub fn jerk(&self) -> Vector3<f64> {
+        self.third * 6.0
     }
 }

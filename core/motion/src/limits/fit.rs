@@ -5,6 +5,7 @@
 //! of V. A. Markov the most that they are) the sums of `|c_k|` times these over `h`, `h²`, `h³` bound its derivatives. The
 //! coefficients are those of the polynomial through the values at the extremes of `T_6`.
 
+use nalgebra::Vector3;
 use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
 
 use super::MoveLimits;
@@ -28,11 +29,52 @@ const COSINES: [f64; 12] = {
     ]
 };
 
-/// Values that are followed: one a place of the chain, and the tip's three.
-const VALUES: usize = MAX_AXES + 3;
+/// How much the value at each of the first four places has of each coefficient; those behind the middle have as much, of
+/// the odd ones with the other sign.
+const WEIGHTS: [[f64; DEGREE / 2 + 1]; DEGREE + 1] = {
+    let mut weights = [[0.0; DEGREE / 2 + 1]; DEGREE + 1];
+    let mut k = 0;
+    while k <= DEGREE {
+        let mut place = 0;
+        while place <= DEGREE / 2 {
+            // The place stands at -cos(place·30°); ends count half, and so does the last coefficient.
+            let end = if place == 0 { 0.5 } else { 1.0 };
+            let last = if k == DEGREE { 0.5 } else { 1.0 };
+            weights[k][place] =
+                COSINES[(k * (DEGREE - place)) % 12] * end * last * 2.0 / DEGREE as f64;
+            place += 1;
+        }
+        k += 1;
+    }
+    weights
+};
 
-/// Their values at the places of a piece, from its beginning to its end.
-type Samples = [[f64; VALUES]; DEGREE + 1];
+/// The largest magnitudes of the first three derivatives of each `T_k` from -1 to 1: those at its ends.
+const STEEPEST: [[f64; 3]; DEGREE + 1] = {
+    let mut steepest = [[0.0; 3]; DEGREE + 1];
+    let mut k = 1;
+    while k <= DEGREE {
+        let square = (k * k) as f64;
+        let second = square * (square - 1.0) / 3.0;
+        steepest[k] = [
+            square,
+            second,
+            if k > 2 {
+                second * (square - 4.0) / 5.0
+            } else {
+                0.0
+            },
+        ];
+        k += 1;
+    }
+    steepest
+};
+
+/// N values at the places of a piece, from its beginning to its end.
+type Samples<const N: usize> = [[f64; N]; DEGREE + 1];
+
+/// Coefficients of N Chebyshev series, from that of `T_0` on.
+type Series<const N: usize> = [[f64; N]; DEGREE + 1];
 
 /// Bounds along `task` where it is no straight one: of its axes or the coordinates that stand for them, of its tip, as
 /// `wanted` says.
@@ -43,23 +85,22 @@ pub(super) fn over(
     found: &mut MoveLimits,
 ) -> Result<(), Unreachable> {
     let chain = task.solver.chain();
+    let ends = [&task.from, &task.to];
     let mut near = task.from.joints;
-    let mut sample = |t: f64| -> Result<[f64; VALUES], Unreachable> {
-        let Stance { joints, pose } =
-            task.way
-                .stance_at(&task.solver, [&task.from, &task.to], t, &near)?;
+    let mut sample = |t: f64| -> Result<(Joints, [f64; 3]), Unreachable> {
+        if coordinates.is_none() && !wanted[1] {
+            near = task.way.joints_at(&task.solver, ends, t, &near)?;
+            return Ok((near, [0.0; 3]));
+        }
+        let Stance { joints, pose } = task.way.stance_at(&task.solver, ends, t, &near)?;
         near = joints;
-        let mut values = [0.0; VALUES];
-        values[..MAX_AXES].copy_from_slice(&joints);
-        if let Some(coordinates) = coordinates {
-            for (value, coordinate) in values.iter_mut().zip(coordinates) {
-                if let Some(coordinate) = coordinate {
-                    *value = pose.tip[*coordinate];
-                }
+        let mut values = joints;
+        for (value, coordinate) in values.iter_mut().zip(coordinates.into_iter().flatten()) {
+            if let Some(coordinate) = coordinate {
+                *value = pose.tip[*coordinate];
             }
         }
-        values[MAX_AXES..].copy_from_slice(pose.tip.as_slice());
-        Ok(values)
+        Ok((values, pose.tip.into()))
     };
     let turned: f64 = chain
         .joints()
@@ -75,12 +116,18 @@ pub(super) fn over(
     let mut last = sample(0.0)?;
     let mut run = |from: f64, to: f64, ends: [bool; 2]| -> Result<(), Unreachable> {
         let half = 0.5 * (to - from);
-        let mut samples: Samples = [last; DEGREE + 1];
-        for (place, values) in samples.iter_mut().enumerate().skip(1) {
-            *values = sample(from + half * (1.0 - COSINES[place]))?;
+        let (mut axes, mut tips): (Samples<MAX_AXES>, Samples<3>) = Default::default();
+        (axes[0], tips[0]) = last;
+        for place in 1..=DEGREE {
+            (axes[place], tips[place]) = sample(from + half * (1.0 - COSINES[place]))?;
         }
-        last = samples[DEGREE];
-        found.take(&series(&samples), half, wanted, ends);
+        last = (axes[DEGREE], tips[DEGREE]);
+        if wanted[0] {
+            found.take_axes(&series(&axes), half, ends);
+        }
+        if wanted[1] {
+            found.take_tip(&series(&tips), half, ends);
+        }
         Ok(())
     };
     let split = |from: f64, to: f64, run: &mut dyn FnMut(f64, f64) -> Result<(), Unreachable>| {
@@ -109,16 +156,23 @@ pub(super) fn over(
     Ok(())
 }
 
-/// Coefficients of the Chebyshev series through `samples`, from `T_0` on.
-fn series(samples: &Samples) -> Samples {
-    let mut series = [[0.0; VALUES]; DEGREE + 1];
-    for (k, sums) in series.iter_mut().enumerate() {
-        for (place, values) in samples.iter().enumerate() {
-            // The place stands at -cos(place·30°); ends count half, and so do the first and last coefficient.
-            let half = |at: usize| if at == 0 || at == DEGREE { 0.5 } else { 1.0 };
-            let cosine = COSINES[(k * (DEGREE - place)) % 12];
-            let weight = cosine * half(place) * half(k) * 2.0 / DEGREE as f64;
-            for (sum, value) in sums.iter_mut().zip(values) {
+/// Coefficients of the Chebyshev series through `samples`; that of `T_0`, which has no derivative, is left out.
+fn series<const N: usize>(samples: &Samples<N>) -> Series<N> {
+    const MIDDLE: usize = DEGREE / 2;
+    let mut series = [[0.0; N]; DEGREE + 1];
+    for place in 0..=MIDDLE {
+        let (first, last) = (&samples[place], &samples[DEGREE - place]);
+        let mut halves = [[0.0; N]; 2];
+        for value in 0..N {
+            halves[1][value] = first[value] - last[value];
+            halves[0][value] = match place {
+                MIDDLE => first[value],
+                _ => first[value] + last[value],
+            };
+        }
+        for (k, sums) in series.iter_mut().enumerate().skip(1) {
+            let weight = WEIGHTS[k][place];
+            for (sum, value) in sums.iter_mut().zip(&halves[k % 2]) {
                 *sum += weight * value;
             }
         }
@@ -126,63 +180,66 @@ fn series(samples: &Samples) -> Samples {
     series
 }
 
-/// The largest magnitudes of the first three derivatives of `T_k` from -1 to 1: those at its ends.
-fn steepest(k: usize) -> [f64; 3] {
-    let square = (k * k) as f64;
-    let second = square * (square - 1.0) / 3.0;
-    [square, second, second * (square - 4.0).max(0.0) / 5.0]
+/// First and second derivatives of N series where the piece begins and ends; `half`: its half-width.
+fn at_ends<const N: usize>(series: &Series<N>, half: f64) -> [[[f64; N]; 2]; 2] {
+    let [mut first, mut second] = [[[0.0; N]; 2]; 2];
+    for (k, coefficients) in series.iter().enumerate().skip(1) {
+        // T_k' is k² at 1 and -k² or k² at -1, T_k'' there the other way round.
+        let sign = if k % 2 == 0 { -1.0 } else { 1.0 };
+        let steep = STEEPEST[k][0] / half;
+        let bend = STEEPEST[k][1] / (half * half);
+        for (place, coefficient) in coefficients.iter().enumerate() {
+            first[0][place] += sign * steep * coefficient;
+            first[1][place] += steep * coefficient;
+            second[0][place] -= sign * bend * coefficient;
+            second[1][place] += bend * coefficient;
+        }
+    }
+    [first, second]
 }
 
 impl MoveLimits {
-    /// Takes a piece of half-width `half`; `at_ends`: it is the first, the last.
-    fn take(&mut self, series: &Samples, half: f64, wanted: [bool; 2], at_ends: [bool; 2]) {
-        let [axes, tip] = wanted;
-        let scales = [half, half * half, half * half * half];
-        let mut bounds = [[0.0; VALUES]; 3];
-        let mut tips = [0.0; 3];
-        let mut ends = [[0.0; VALUES]; 2];
-        for (k, coefficients) in series.iter().enumerate().skip(1) {
-            let steep = steepest(k);
-            for (place, coefficient) in coefficients.iter().enumerate() {
-                for (bound, steep) in bounds.iter_mut().zip(steep) {
-                    bound[place] += libm::fabs(*coefficient) * steep;
-                }
-                // T_k' is k² at 1 and -k² or k² at -1.
-                let sign = if k % 2 == 0 { -1.0 } else { 1.0 };
-                ends[0][place] += sign * steep[0] * coefficient;
-                ends[1][place] += steep[0] * coefficient;
-            }
-            let [x, y, z] = [0, 1, 2].map(|place| coefficients[MAX_AXES + place]);
-            let length = (x * x + y * y + z * z).sqrt();
-            for (tip, steep) in tips.iter_mut().zip(steep) {
-                *tip += length * steep;
-            }
-        }
-        if axes {
-            let own = [&mut self.first, &mut self.second, &mut self.third];
-            for ((own, bound), scale) in own.into_iter().zip(&bounds).zip(scales) {
-                for (own, bound) in own.iter_mut().zip(bound) {
-                    *own = own.max(bound / scale);
+    /// Takes what the axes do on a piece of half-width `half`; `ends`: it is the first, the last.
+    fn take_axes(&mut self, series: &Series<MAX_AXES>, half: f64, ends: [bool; 2]) {
+        let mut bounds = [[0.0; MAX_AXES]; 3];
+        for (coefficients, steepest) in series.iter().zip(&STEEPEST).skip(1) {
+            for (bounds, steep) in bounds.iter_mut().zip(steepest) {
+                for (bound, coefficient) in bounds.iter_mut().zip(coefficients) {
+                    *bound += libm::fabs(*coefficient) * steep;
                 }
             }
         }
-        if tip {
-            for ((own, bound), scale) in self.tip.iter_mut().zip(tips).zip(scales) {
-                *own = own.max(bound / scale);
+        let scales = [half, half * half, half * half * half].map(f64::recip);
+        let own = [&mut self.first, &mut self.second, &mut self.third];
+        for ((own, bounds), scale) in own.into_iter().zip(&bounds).zip(scales) {
+            for (own, bound) in own.iter_mut().zip(bounds) {
+                *own = own.max(bound * scale);
             }
         }
-        for end in [0, 1].into_iter().filter(|end| at_ends[*end]) {
-            if axes {
-                let own: &mut Joints = &mut self.ends[end];
-                for (own, value) in own.iter_mut().zip(&ends[end]) {
-                    *own = value / half;
-                }
+        if ends != [false; 2] {
+            let [first, second] = at_ends(series, half);
+            for end in [0, 1].into_iter().filter(|end| ends[*end]) {
+                (self.ends[end], self.bends[end]) = (first[end], second[end]);
             }
-            if tip {
-                for place in 0..3 {
-                    self.tip_ends[end][place] = ends[end][MAX_AXES + place] / half;
-                }
+        }
+    }
+
+    /// Likewise, what the tip does.
+    fn take_tip(&mut self, series: &Series<3>, half: f64, ends: [bool; 2]) {
+        let mut bounds = [0.0; 3];
+        for (coefficients, steepest) in series.iter().zip(&STEEPEST).skip(1) {
+            let length = Vector3::from(*coefficients).norm();
+            for (bound, steep) in bounds.iter_mut().zip(steepest) {
+                *bound += length * steep;
             }
+        }
+        let scales = [half, half * half, half * half * half].map(f64::recip);
+        for ((own, bound), scale) in self.tip.iter_mut().zip(bounds).zip(scales) {
+            *own = own.max(bound * scale);
+        }
+        let [first, _] = at_ends(series, half);
+        for end in [0, 1].into_iter().filter(|end| ends[*end]) {
+            self.tip_ends[end] = first[end].into();
         }
     }
 }

@@ -8,12 +8,11 @@
 mod fit;
 
 use nalgebra::Vector3;
-use post_machine::description::{LimitsActOn, Machine};
+use post_machine::description::{BlendRule, LimitsActOn, Machine};
 use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
 
 use crate::Move;
 use crate::path::Way;
-use crate::trajectory::TimeLimit;
 
 /// How fast, and how suddenly, axes and tip may move: of a machine, once.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,24 +23,44 @@ pub struct AxisLimits {
     pub acceleration: Joints,
     /// Largest jerks, mm/s³ or rad/s³; infinite where the machine file names none.
     pub jerk: Joints,
+    /// Largest jumps of the velocity where one move passes into the next, mm/s or rad/s: what the machine file says, else
+    /// what the acceleration makes of it in one period of the control.
+    pub jump: Joints,
     /// Largest acceleration of the tip, mm/s²; infinite if none is named.
     pub tip_acceleration: f64,
     /// Largest jerk of the tip, mm/s³; infinite if none is named.
     pub tip_jerk: f64,
+    /// Largest jump of the tip's velocity where one move passes into the next, mm/s.
+    pub tip_jump: f64,
     /// Where the control keeps the tip they hold for the programmed coordinates: the coordinate of the tip, X, Y or Z,
     /// that stands for each place; none for an axis that is programmed itself.
     pub programmed: Option<[Option<usize>; MAX_AXES]>,
 }
 
+/// The share of an acceleration that a jump of the velocity may take where moves overlap by rule and the machine file says
+/// nothing of it: LinuxCNC's kink ratio. Joined moves have the rest.
+pub(crate) const KINK: f64 = 0.1;
+
 impl AxisLimits {
     /// Those of a machine.
     pub fn new(machine: &Machine) -> Self {
+        let rules = &machine.motion;
+        let instant = rules.period
+            * match rules.blend {
+                BlendRule::Overlap => KINK,
+                BlendRule::Round => 1.0,
+            };
+        let jump = |said: Option<f64>, acceleration: f64| {
+            said.map_or(acceleration * instant, |jump| jump / 60.0)
+        };
         let mut limits = Self {
             velocity: [f64::INFINITY; MAX_AXES],
             acceleration: [f64::INFINITY; MAX_AXES],
             jerk: [f64::INFINITY; MAX_AXES],
-            tip_acceleration: machine.motion.tip_accel,
-            tip_jerk: machine.motion.tip_jerk,
+            jump: [f64::INFINITY; MAX_AXES],
+            tip_acceleration: rules.tip_accel,
+            tip_jerk: rules.tip_jerk,
+            tip_jump: jump(rules.tip_jump, rules.tip_accel),
             programmed: None,
         };
         let mut coordinates = [None; MAX_AXES];
@@ -49,14 +68,20 @@ impl AxisLimits {
             limits.velocity[place] = axis.max_feed / 60.0;
             limits.acceleration[place] = axis.max_accel;
             limits.jerk[place] = axis.max_jerk;
+            limits.jump[place] = jump(axis.max_jump, axis.max_accel);
             if !axis.joint.rotary {
                 coordinates[place] = ["X", "Y", "Z"].iter().position(|name| *name == axis.name);
             }
         }
-        if machine.motion.limits == LimitsActOn::Programmed {
+        if rules.limits == LimitsActOn::Programmed {
             limits.programmed = Some(coordinates);
         }
         limits
+    }
+
+    /// Some jerk is limited.
+    pub fn limits_jerk(&self) -> bool {
+        self.tip_jerk.is_finite() || self.jerk.iter().any(|jerk| jerk.is_finite())
     }
 }
 
@@ -64,11 +89,6 @@ impl AxisLimits {
 /// places: the axes, or the programmed coordinates instead of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MoveLimits {
-    /// The whole move at a constant rate takes no less, s: by the velocities, and by the accelerations and jerks that
-    /// its curves ask for even then.
-    pub least_seconds: f64,
-    /// What asks for that.
-    pub by: TimeLimit,
     /// Bounds of the magnitude of the first derivatives by place in the chain, mm or radians.
     pub first: Joints,
     /// Bounds of the second ones.
@@ -77,6 +97,8 @@ pub struct MoveLimits {
     pub third: Joints,
     /// First derivatives where it begins and ends.
     pub ends: [Joints; 2],
+    /// Second derivatives there.
+    pub bends: [Joints; 2],
     /// Bounds of the length of the first, second and third derivative of the tip, mm, part frame.
     pub tip: [f64; 3],
     /// First derivative of the tip where it begins and ends, mm, part frame.
@@ -135,7 +157,6 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
         let ways = [arm, normal.cross(&arm)].map(|arm| arm * *sweep);
         found.circle = Some(circle(task, ways, coordinates(task, limits))?);
     }
-    found.time(limits);
     Ok(found)
 }
 
@@ -186,39 +207,6 @@ impl MoveLimits {
             self.ends[0][place] = way;
             self.ends[1][place] = way;
         }
-    }
-
-    /// Sets the time that it takes at least.
-    fn time(&mut self, limits: &AxisLimits) {
-        let mut ask = |seconds: f64, by: TimeLimit| {
-            if seconds > self.least_seconds {
-                self.least_seconds = seconds;
-                self.by = by;
-            }
-        };
-        for place in 0..self.first.len() {
-            let axis = place as u8;
-            let [first, second, third] =
-                [self.first, self.second, self.third].map(|all| all[place]);
-            ask(
-                first / limits.velocity[place],
-                TimeLimit::AxisVelocity(axis),
-            );
-            ask(
-                (second / limits.acceleration[place]).sqrt(),
-                TimeLimit::AxisAcceleration(axis),
-            );
-            ask(
-                libm::cbrt(third / limits.jerk[place]),
-                TimeLimit::AxisJerk(axis),
-            );
-        }
-        let [_, second, third] = self.tip;
-        ask(
-            (second / limits.tip_acceleration).sqrt(),
-            TimeLimit::TipAcceleration,
-        );
-        ask(libm::cbrt(third / limits.tip_jerk), TimeLimit::TipJerk);
     }
 }
 

@@ -7,9 +7,8 @@ use post_machine::description::{LimitsActOn, Machine, Source, load};
 use post_machine::kinematics::{Joints, MAX_AXES};
 use post_testkit::repository;
 
-use super::{AxisLimits, MoveLimits, of};
+use super::{AxisLimits, of};
 use crate::path::{SplineWay, Stance, Way};
-use crate::trajectory::TimeLimit;
 use crate::{Corner, Move, Pace};
 
 /// Values of the dense samples: axes, then the tip.
@@ -235,58 +234,4 @@ fn bounds_hold_along_every_way() {
         [[20.0, -30.0], [60.0, -40.0]],
     );
     check("vectors", &machine, &vectors);
-}
-
-#[test]
-fn the_least_time_is_that_of_the_slowest() {
-    let machine = machine("ac-trunnion");
-    let limits = AxisLimits::new(&machine);
-    let place = |name: &str| {
-        machine
-            .axes
-            .iter()
-            .position(|axis| axis.name == name)
-            .unwrap()
-    };
-    // 60 mm of X at 30 m/min, and 90° of A at 5400°/min.
-    let by = |found: MoveLimits| (found.least_seconds, found.by);
-    let tips = [[0.0; 3], [60.0, 0.0, 0.0]];
-    let along = task(&machine, Way::Tip, tips, [[0.0; 2]; 2]);
-    let (seconds, limit) = by(of(&along, &limits).unwrap());
-    assert!((seconds - 0.12).abs() < 1e-12, "{seconds}");
-    assert_eq!(limit, TimeLimit::AxisVelocity(place("X") as u8));
-    let turned = task(
-        &machine,
-        Way::Axes,
-        [[0.0; 3]; 2],
-        [[0.0, 0.0], [0.0, -90.0]],
-    );
-    let found = of(
-        &turned,
-        &AxisLimits {
-            tip_acceleration: 1e4,
-            ..limits.clone()
-        },
-    )
-    .unwrap();
-    assert!(found.least_seconds >= 1.0 - 1e-12);
-    // A circle of 20 mm in the plane of X and Y, at 4000 mm/s² at most, and without jerk limits: ω² = a/r.
-    let circle = Way::Arc {
-        centre: Vector3::new(20.0, 0.0, 0.0),
-        normal: Vector3::z(),
-        sweep: std::f64::consts::TAU,
-    };
-    let circle = task(&machine, circle, [[0.0; 3]; 2], [[0.0; 2]; 2]);
-    let soft = AxisLimits {
-        velocity: [f64::INFINITY; MAX_AXES],
-        jerk: [f64::INFINITY; MAX_AXES],
-        ..limits
-    };
-    let (seconds, limit) = by(of(&circle, &soft).unwrap());
-    let wanted = std::f64::consts::TAU * (20.0f64 / 4000.0).sqrt();
-    assert!(
-        (seconds / wanted - 1.0).abs() < 0.1 && seconds >= wanted,
-        "{seconds} {wanted}"
-    );
-    assert!(matches!(limit, TimeLimit::AxisAcceleration(_)));
 }

@@ -7,6 +7,8 @@
 
 mod align;
 mod difference;
+mod settle;
+mod shifts;
 mod track;
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::kinematics::{Chain, Joints, Pose};
 
-pub use round::{arm_and_height, between, on_arc};
+pub use round::{GreatCircle, arm_and_height, between, on_arc};
 
 /// Where the machine stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -40,20 +40,51 @@ pub fn on_arc(
 
 /// The unit vector at `t` on the great circle from one to the other; of opposite ones about any direction across.
 pub fn between(from: Vector3<f64>, to: Vector3<f64>, t: f64) -> Vector3<f64> {
-    if from == to {
-        return from;
-    }
-    let across = from.cross(&to);
-    let sine = across.norm();
-    let angle = libm::atan2(sine, from.dot(&to));
-    if sine < SAME {
-        let straight = from + (to - from) * t;
-        return match angle < 1.0 {
-            true => straight.normalize(),
-            false => turned_about(from, any_across(from), angle * t),
+    GreatCircle::new(from, to).at(t)
+}
+
+/// The shorter way from one unit vector to another; between opposite ones about any direction across.
+#[derive(Clone, Copy, Debug)]
+pub struct GreatCircle {
+    from: Vector3<f64>,
+    to: Vector3<f64>,
+    /// What it turns about, unit vector; none where it goes as good as nowhere.
+    about: Option<Vector3<f64>>,
+    /// The whole turn, radians.
+    pub angle: f64,
+}
+
+impl GreatCircle {
+    /// From one to the other.
+    pub fn new(from: Vector3<f64>, to: Vector3<f64>) -> Self {
+        let mut circle = Self {
+            from,
+            to,
+            about: None,
+            angle: 0.0,
         };
+        if from == to {
+            return circle;
+        }
+        let across = from.cross(&to);
+        let sine = across.norm();
+        circle.angle = libm::atan2(sine, from.dot(&to));
+        circle.about = match sine < SAME {
+            true if circle.angle < 1.0 => None,
+            true => Some(any_across(from)),
+            false => Some(across / sine),
+        };
+        circle
     }
-    turned_about(from, across / sine, angle * t)
+
+    /// The unit vector at `t` from 0 to 1 of it.
+    pub fn at(&self, t: f64) -> Vector3<f64> {
+        match self.about {
+            Some(about) => turned_about(self.from, about, self.angle * t),
+            None if self.from == self.to => self.from,
+            None => (self.from + (self.to - self.from) * t).normalize(),
+        }
+    }
 }
 
 /// A vector turned about the unit vector `k`, right-handed, radians.

@@ -1,6 +1,7 @@
 //! Where the axes stand on the way, as well as the tool.
 
-use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
+use nalgebra::Vector3;
+use post_machine::kinematics::{Joints, Pose, Solver, Turns, Unreachable};
 
 use super::{Stance, Way, joints_between, on_great_circle};
 
@@ -20,8 +21,13 @@ impl Way {
         t: f64,
         near: &Joints,
     ) -> Result<Joints, Unreachable> {
-        self.stance_at(solver, ends, t, near)
-            .map(|stance| stance.joints)
+        let Some(tip) = self.tip(ends, t) else {
+            return Ok(joints_between(ends, t));
+        };
+        if *self == Self::TipAndAxis {
+            return nearest(solver, &on_great_circle(ends, tip, t), near);
+        }
+        placed(solver, ends, tip, t).map(|(joints, _)| joints)
     }
 
     /// Axis values, tip and tool axis at `t` from 0 to 1 of the way's own parameter.
@@ -50,12 +56,24 @@ impl Way {
             let joints = nearest(solver, &pose, near)?;
             return Ok(Stance { joints, pose });
         }
-        let mut joints = joints_between(ends, t);
-        let turns = chain.turns(&joints);
-        solver.place(tip, &mut joints, &turns)?;
+        let (joints, turns) = placed(solver, ends, tip, t)?;
         let pose = chain.pose(&joints, &turns);
         Ok(Stance { joints, pose })
     }
+}
+
+/// The rotary axes `t` of the way between `ends`, and the linear ones such that the tip stands on `tip`.
+#[inline]
+fn placed(
+    solver: &Solver,
+    ends: [&Stance; 2],
+    tip: Vector3<f64>,
+    t: f64,
+) -> Result<(Joints, Turns), Unreachable> {
+    let mut joints = joints_between(ends, t);
+    let turns = solver.chain().turns(&joints);
+    solver.place(tip, &mut joints, &turns)?;
+    Ok((joints, turns))
 }
 
 /// The solution nearest to `near`, travel not regarded: that of the ends was found good.

@@ -21,13 +21,13 @@ pub(super) const NORMAL: f64 = 0.75;
 pub(super) const CURVE: f64 = 3.0;
 
 /// The share of it on an arc, cos 30°, which leaves a half across.
-const ARC: f64 = 0.866_025_403_784_438_6;
+pub(super) const ARC: f64 = 0.866_025_403_784_438_6;
 
 /// No move is run through in less than this, s, and no velocity reached in less, however little is limited.
 const INSTANT: f64 = 1e-6;
 
 /// Bounds over a move, its parameter running from 0 to 1.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
     /// Largest rate, 1/s.
     pub rate: f64,
@@ -120,7 +120,10 @@ impl Bounds {
             let most = part * share * limited.acceleration / across;
             least(rate, by, most.sqrt(), acceleration);
             let most = share * limited.jerk / (CURVE * third);
-            least(rate, by, libm::cbrt(most), jerk);
+            // A cube root is asked for where it may be less: most are not.
+            if most < *rate * *rate * *rate * (1.0 + 1e-12) {
+                least(rate, by, libm::cbrt(most), jerk);
+            }
         }
         let rate = bounds.rate;
         for limited in all(found, rules) {

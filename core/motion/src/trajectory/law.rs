@@ -7,6 +7,7 @@ use post_machine::kinematics::{Joints, Solver, Unreachable};
 
 use super::TimeLimit;
 use super::profile::Phase;
+use super::round::Curve;
 use crate::path::{Stance, Way};
 use crate::{At, Move};
 
@@ -33,7 +34,7 @@ pub(super) enum Span {
     /// From one place of its parameter to another.
     Along { from: f64, to: f64 },
     /// These shares of the move and of the next one, added.
-    Corner { shares: [f64; 2] },
+    Corner { shares: [f64; 2], curve: Curve },
 }
 
 /// Constant jerk on one piece.
@@ -188,9 +189,9 @@ impl Law {
         };
         match piece.span {
             Span::Along { from, to } => stand(task, from + (to - from) * share, near),
-            Span::Corner { shares } => {
+            Span::Corner { shares, curve } => {
                 let next = self.task(piece.entry + 1);
-                let [out, into] = corner_places(share);
+                let [out, into] = curve.places(share);
                 let first = stand(task, 1.0 - shares[0] * (1.0 - out), near)?;
                 let second = stand(next, shares[1] * into, &less(near, &first, &task.to))?;
                 let tip_led = self.adds_tips([task, next]);
@@ -203,14 +204,6 @@ impl Law {
 /// The axis values without what the first of two ways that meet at `corner` has yet to go.
 fn less(joints: &Joints, first: &Stance, corner: &Stance) -> Joints {
     std::array::from_fn(|place| joints[place] - (first.joints[place] - corner.joints[place]))
-}
-
-/// How much of its part of the first move and of the second one is behind at `share` of a corner: the integrals of 1 - h and
-/// of h, which is the smooth step, each over its whole.
-fn corner_places(share: f64) -> [f64; 2] {
-    let cube = share * share * share;
-    let fourth = cube * share;
-    [2.0 * share - 2.0 * cube + fourth, 2.0 * cube - fourth]
 }
 
 /// Where two ways lead together that meet at `corner`: what is limited is added, the tip and the rotary axes (`tip_led`) or

@@ -6,8 +6,8 @@
 //! *envelope*. Without jerk limits it is the solution.
 //!
 //! The control sees `depth` blocks, the one in progress among them, and plans such that it could stand still at the end of
-//! the last: so that what it has begun is always sound. A plan is made once so many and a quarter more wait, and what stands
-//! before the last `depth` of them is carried out.
+//! the last: so that what it has begun is always sound. A plan is made once a quarter more than so many wait, and carried out
+//! until a quarter less are left: `depth` on average, and each block is planned two and a half times, not `depth` times.
 
 use std::collections::VecDeque;
 
@@ -113,12 +113,13 @@ impl LookAhead {
     /// Hands over what is settled: all if the run has `ended`.
     pub fn settle(&mut self, ended: bool, take: &mut dyn FnMut(Part)) {
         let count = self.blocks.len();
-        if count == 0 || !ended && count < self.depth + self.depth / 4 {
+        let margin = self.depth / 4;
+        if count == 0 || !ended && count < self.depth + margin {
             return;
         }
         let done = match ended {
             true => count,
-            false => count + 1 - self.depth,
+            false => count + 1 - (self.depth - margin),
         };
         if let Some(mut smooth) = self.smooth.take() {
             smooth.settle(self, done, take);

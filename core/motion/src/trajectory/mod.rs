@@ -5,6 +5,8 @@
 //! | [`Planner`] | takes tasks, cuts their moves into *pieces* of path at the corners and joins these to *runs*, within which the machine does not stand still; fills set-points |
 //! | `bounds` | what limits along a move come to: rate of its parameter, change of the rate, change of that |
 //! | `corner` | what happens between two moves: stop, join, round, overlap |
+//! | `kink` | what jumps where two moves are joined |
+//! | `round` | curves in the place of corners |
 //! | `look_ahead` | velocities over the pieces of a run, some blocks ahead: the envelope of accelerations, backwards and forwards |
 //! | `smooth` | the same with jerk limits: a double S from knot to knot of the envelope, whatever blocks it spans |
 //! | [`profile`] | from one velocity to another over a length: trapezoid and double S in closed form |
@@ -25,6 +27,9 @@
 //! **Monotone.** With larger limits no program of straight axis ways takes longer (stops, joined paths, both blends). It may
 //! with jerk limits, by a percent or so, as the knots then lie elsewhere; and on curves, where a velocity that is allowed
 //! to be higher leaves less acceleration along the way.
+//! To keep the path takes no longer than to stop at each corner. To leave it may take longer than to keep it where a ramp goes
+//! over a corner, as its curve takes some of the accelerations that a kink leaves alone. With jerk limits neither is proven:
+//! a ramp over unlike blocks has the least acceleration and jerk of them, unless splitting it pays.
 //!
 //! **Streaming.** What has been seen far enough ahead is settled and can be filled; how set-points are asked for, and when,
 //! has no influence. Memory is that of the blocks in sight.
@@ -32,10 +37,12 @@
 mod account;
 mod bounds;
 mod corner;
+mod kink;
 mod law;
 mod look_ahead;
 mod planner;
 pub mod profile;
+mod round;
 mod smooth;
 
 pub use planner::Planner;

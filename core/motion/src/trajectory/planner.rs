@@ -1,5 +1,6 @@
 //! Tasks become runs of pieces, and these a time law.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use post_machine::description::{BlendRule, Machine};
@@ -7,14 +8,16 @@ use post_machine::kinematics::{Joints, Unreachable};
 
 use super::account::Accounts;
 use super::bounds::Bounds;
-use super::corner::{self, Junction, KINK, Side};
+use super::corner::{Junction, Side};
+use super::kink;
 use super::law::{Law, Piece, Section, Span};
 use super::look_ahead::{Block, LookAhead, Part, Why};
 use super::profile::Phase;
+use super::round::Round;
 use super::{Filled, TaskTime, TimeLimit};
-use crate::limits::{self, AxisLimits, MoveLimits};
+use crate::limits::{self, AxisLimits, KINK, MoveLimits};
 use crate::path::{Way, turns};
-use crate::{At, Corner, Move, Pace, SetPoints, Task};
+use crate::{At, Corner, Jump, Move, Pace, SetPoints, Task};
 
 /// Makes set-points of tasks, some tasks behind.
 #[derive(Debug)]
@@ -23,7 +26,6 @@ pub struct Planner {
     /// Some jerk is limited.
     jerk: bool,
     blend: BlendRule,
-    period: f64,
     block_time: f64,
     law: Law,
     ahead: LookAhead,
@@ -40,6 +42,10 @@ pub struct Planner {
     before: f64,
     /// Waits before anything has moved, s, and what they are.
     early: Vec<(f64, At)>,
+    /// How the axes' derivatives change in front of these pieces, over the coordinate of the law.
+    kinks: VecDeque<(u64, [Joints; 2])>,
+    /// Jumps that no set-point stands behind yet.
+    jumps: VecDeque<Jump>,
     tasks: u64,
     ended: bool,
     /// The last set-point is made.
@@ -64,6 +70,8 @@ struct Entry {
     begins: bool,
     /// Overlapped by the move before: the change of its rate that it begins with, 1/s², and for how long, s.
     entrance: Option<[f64; 2]>,
+    /// Joined to the move before: how the axes' derivatives change over the coordinate of the law.
+    kink: Option<[Joints; 2]>,
     at: At,
 }
 
@@ -72,13 +80,12 @@ impl Planner {
     pub fn new(machine: &Machine) -> Self {
         let rules = &machine.motion;
         let limits = AxisLimits::new(machine);
-        let jerk = limits.tip_jerk.is_finite() || limits.jerk.iter().any(|jerk| jerk.is_finite());
+        let jerk = limits.limits_jerk();
         Self {
             law: Law::new(limits.programmed.is_some()),
             limits,
             jerk,
             blend: rules.blend,
-            period: rules.period,
             block_time: rules.block_time,
             ahead: LookAhead::new(rules.look_ahead, jerk),
             accounts: Accounts::default(),
@@ -88,6 +95,8 @@ impl Planner {
             clock: 0.0,
             before: 0.0,
             early: Vec::new(),
+            kinks: VecDeque::new(),
+            jumps: VecDeque::new(),
             tasks: 0,
             ended: false,
             finished: false,
@@ -192,7 +201,6 @@ impl Planner {
                     [last.side(first), entry.side(&task)],
                     &self.limits,
                     self.blend,
-                    self.period,
                 ),
             }
         });
@@ -204,7 +212,7 @@ impl Planner {
             self.wait(entry.number, 0.0, seconds, at);
         }
         match self.last.take() {
-            Some(last) => self.pass(last, junction, &mut entry),
+            Some(last) => self.pass(last, junction, &mut entry)?,
             None => self.accounts.skip(self.clock),
         }
         self.last = Some(entry);
@@ -237,6 +245,7 @@ impl Planner {
             taken: 0.0,
             begins: true,
             entrance: None,
+            kink: None,
             at,
         }
     }
@@ -251,9 +260,14 @@ impl Planner {
     }
 
     /// From the last move into the next one.
-    fn pass(&mut self, last: Entry, junction: Junction, next: &mut Entry) {
-        let [out, into] = match junction {
-            Junction::Round { shares, .. } => shares,
+    fn pass(
+        &mut self,
+        last: Entry,
+        junction: Junction,
+        next: &mut Entry,
+    ) -> Result<(), Unreachable> {
+        let [out, into] = match &junction {
+            Junction::Round(round) => round.shares,
             _ => [0.0, 0.0],
         };
         self.along(&last, out, junction);
@@ -280,16 +294,35 @@ impl Planner {
                 next.entrance = Some([change, ends - self.clock]);
                 self.accounts.border(0.5 * (self.clock + ends));
             }
-            Junction::Join { ratio, .. } | Junction::Round { ratio, .. } => {
+            Junction::Join { ratio, jumps, .. } => {
                 next.begins = false;
                 next.scale = last.scale / ratio;
-                if let Junction::Round { shares, .. } = junction {
-                    next.taken = into;
-                    self.corner(&last, next, shares);
+                if jumps {
+                    next.kink = Some(self.kink([&last, next], ratio)?);
                 }
                 self.settle(false);
             }
+            Junction::Round(round) => {
+                next.begins = false;
+                next.scale = last.scale / round.ratio;
+                next.taken = into;
+                self.corner(&last, next, &round);
+                self.settle(false);
+            }
         }
+        Ok(())
+    }
+
+    /// How the axes' derivatives change between two moves that are joined, over the coordinate of the law.
+    fn kink(&self, entries: [&Entry; 2], ratio: f64) -> Result<[Joints; 2], Unreachable> {
+        let moves = entries.map(|entry| self.law.task(entry.number));
+        let found = entries.map(|entry| &entry.found);
+        let [change, bend] = kink::of_axes(moves, found, &self.limits, ratio)?;
+        let scale = entries[0].scale;
+        Ok([
+            change.map(|change| change / scale),
+            bend.map(|bend| bend / (scale * scale)),
+        ])
     }
 
     /// The last move up to its corner, which takes the share `out`.
@@ -305,8 +338,7 @@ impl Planner {
             true => &last.half,
             false => &last.whole,
         };
-        let joined =
-            !last.begins || matches!(junction, Junction::Join { .. } | Junction::Round { .. });
+        let joined = !last.begins || matches!(junction, Junction::Join { .. } | Junction::Round(_));
         let share = match joined && self.blend == BlendRule::Overlap {
             true => 1.0 - KINK,
             false => 1.0,
@@ -314,7 +346,7 @@ impl Planner {
         let scale = last.scale;
         let exit = match junction {
             Junction::Join { rate, .. } => rate * scale,
-            Junction::Round { .. } => f64::INFINITY,
+            Junction::Round(_) => f64::INFINITY,
             Junction::Stop | Junction::Overlap { .. } => 0.0,
         };
         let mut block = Block {
@@ -338,6 +370,9 @@ impl Planner {
             border: joined.then_some(0.0),
         };
         let number = self.law.push_piece(piece);
+        if let Some(kink) = last.kink.filter(|_| joined) {
+            self.kinks.push_back((number, kink));
+        }
         if last.begins {
             self.run += 1;
             let mut begun = [0.0; 2];
@@ -367,12 +402,11 @@ impl Planner {
     }
 
     /// The curve that takes shares of two moves.
-    fn corner(&mut self, last: &Entry, next: &Entry, shares: [f64; 2]) {
-        let found = corner::found([&last.found, &next.found], shares);
-        let length = 2.0 * shares[0] * last.scale;
+    fn corner(&mut self, last: &Entry, next: &Entry, round: &Round) {
+        let mut bounds = round.bounds;
+        let length = round.length * last.scale;
         let velocities = [last, next].map(|entry| entry.whole.rate * entry.scale);
         let slower = usize::from(velocities[1] < velocities[0]);
-        let mut bounds = Bounds::new(&found, &self.limits, length / velocities[slower], 1.0, None);
         if bounds.by[0] == TimeLimit::Feed {
             bounds.by[0] = [last, next][slower].whole.by[0];
         } else {
@@ -380,7 +414,10 @@ impl Planner {
         }
         self.law.push_piece(Piece {
             entry: last.number,
-            span: Span::Corner { shares },
+            span: Span::Corner {
+                shares: round.shares,
+                curve: round.curve,
+            },
             length,
             at: last.at,
             second: next.at.task,
@@ -412,6 +449,19 @@ impl Planner {
     fn take(&mut self, part: Part) {
         let Part { phase, from, .. } = part;
         let piece = *self.law.piece(part.block);
+        let reached = |kink: &mut (u64, [Joints; 2])| kink.0 <= part.block;
+        while let Some((number, [change, bend])) = self.kinks.pop_front_if(reached) {
+            if number == part.block {
+                let (velocity, along) = (phase.velocity, phase.acceleration);
+                self.jumps.push_back(Jump {
+                    time: self.clock,
+                    change: change.map(|change| change * velocity),
+                    bend: std::array::from_fn(|place| {
+                        bend[place] * velocity * velocity + change[place] * along
+                    }),
+                });
+            }
+        }
         let covered = phase.length(phase.seconds);
         let reason = match part.why {
             Why::Velocity => piece.by[0],
@@ -424,7 +474,7 @@ impl Planner {
         let share = covered / piece.length;
         let (task, whole) = match piece.span {
             Span::Along { from, to } => (piece.at.task, to - from),
-            Span::Corner { shares } => match from + 0.5 * covered < 0.5 * piece.length {
+            Span::Corner { shares, .. } => match from + 0.5 * covered < 0.5 * piece.length {
                 true => (piece.at.task, 2.0 * shares[0]),
                 false => (piece.second, 2.0 * shares[1]),
             },
@@ -507,6 +557,9 @@ impl Planner {
             out.joints.push(stance.joints);
             out.poses.push(stance.pose);
             out.at.push(at);
+            while let Some(jump) = self.jumps.pop_front_if(|jump| jump.time <= time) {
+                out.jumps.push(jump);
+            }
             self.finished = self.ended && time >= self.clock;
         }
     }

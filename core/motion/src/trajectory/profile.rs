@@ -342,7 +342,9 @@ fn peak(length: f64, ends: [f64; 2], most: f64, up: Ramp, down: Ramp) -> f64 {
         if high - low <= 1e-14 * high {
             break;
         }
-        let next = peak - off / (up.growth(from, peak) + down.growth(to, peak));
+        // A little beyond where Newton leads: from there the bracket closes from the other side.
+        let beyond = libm::copysign(5e-15 * peak, off);
+        let next = peak - off / (up.growth(from, peak) + down.growth(to, peak)) - beyond;
         peak = match next > low && next < high {
             true => next,
             false => 0.5 * (low + high),

@@ -6,7 +6,8 @@
 //! holds, and goes down: a *hill*, over which a double S is laid, whatever blocks it spans. A ramp up that begins as early
 //! as it can, with no more than the least acceleration under it, stays below the envelope, which goes up with the largest
 //! one; so does a ramp down that ends as late as it can. Where a hill is too short to get from one knot's velocity to the
-//! other's, the higher one is lowered: backwards, then forwards.
+//! other's, the higher one is lowered: backwards, then forwards. Where blocks are very unlike, the least acceleration and
+//! jerk of them all are too little for most: such a hill is split where that makes it shorter in time.
 //!
 //! Knots closer together than an acceleration takes to rise (`a/j`, or `√(v/j)` where that is less) are worth little, as
 //! what lies between could hardly be used: if their velocities are alike it is run through at the least of them.
@@ -25,6 +26,9 @@ const SAME: f64 = 1e-9;
 /// hold up what is near it.
 const ALIKE: f64 = 0.5;
 
+/// Blocks are unlike from this ratio of their accelerations or jerks on.
+const UNLIKE: f64 = 2.0;
+
 /// A place of the envelope where a bound is met, and what follows on it.
 #[derive(Clone, Copy, Debug)]
 struct Knot {
@@ -37,6 +41,35 @@ struct Knot {
     top: f64,
     /// A corner or a standstill is the reason for it.
     corner: bool,
+}
+
+impl Default for Knot {
+    fn default() -> Self {
+        Self {
+            place: 0,
+            velocity: 0.0,
+            length: 0.0,
+            ramp: Ramp {
+                acceleration: f64::INFINITY,
+                jerk: f64::INFINITY,
+            },
+            top: 0.0,
+            corner: false,
+        }
+    }
+}
+
+impl Knot {
+    /// The hill from it to the next knot, which is passed at `velocity`.
+    fn profile(&self, velocity: f64) -> Profile {
+        let ends = [self.velocity, velocity];
+        Profile::new(self.length, ends, self.top, self.ramp, self.ramp)
+    }
+
+    /// The next knot's velocity can be come to, up or down.
+    fn covers(&self, velocity: f64) -> bool {
+        self.ramp.length(self.velocity, velocity) <= self.length
+    }
 }
 
 /// Constant jerk, however many blocks it spans.
@@ -138,7 +171,7 @@ impl Work {
                 .velocity
                 .min(last.ramp.reach(last.velocity, last.length));
         }
-        self.lay_hills();
+        self.lay_hills(ahead);
         true
     }
 
@@ -207,61 +240,110 @@ impl Work {
             self.knots.push(Knot {
                 place,
                 velocity: ahead.squares[place].sqrt(),
-                length: 0.0,
-                ramp: Ramp {
-                    acceleration: f64::INFINITY,
-                    jerk: f64::INFINITY,
-                },
-                top: 0.0,
                 corner: at_corner(ahead, place),
+                ..Knot::default()
             });
         }
         let knots = self.knots.len();
         for index in 0..knots - 1 {
             let next = self.knots[index + 1].place;
-            let knot = &mut self.knots[index];
-            for place in knot.place..next {
-                let block = &ahead.blocks[place];
-                let length = ahead.left(place);
-                knot.length += length;
-                knot.ramp.acceleration = knot.ramp.acceleration.min(block.acceleration);
-                knot.ramp.jerk = knot.ramp.jerk.min(block.jerk);
-                let mean = 0.5 * (ahead.squares[place] + ahead.squares[place + 1]);
-                let peak = (mean + block.acceleration * length).sqrt();
-                knot.top = knot.top.max(peak.min(self.velocities[place]));
-            }
+            self.knots[index] = self.up_to(ahead, self.knots[index], next);
         }
     }
 
-    fn lay_hills(&mut self) {
-        self.steps.clear();
-        for pair in self.knots.windows(2) {
-            let [knot, next] = [&pair[0], &pair[1]];
-            let ends = [knot.velocity, next.velocity];
-            let profile = Profile::new(knot.length, ends, knot.top, knot.ramp, knot.ramp);
-            let why = |corner: bool| match corner {
-                true => Why::Corner,
-                false => Why::Change,
-            };
-            let [up, cruise, _] = profile.counts();
-            let phases = profile.phases();
-            for (place, phase) in phases.iter().enumerate() {
-                let reached = phase.velocity >= knot.top * (1.0 - 1e-6);
-                let why = match place {
-                    _ if place < up => why(knot.corner),
-                    _ if place >= up + cruise => why(next.corner),
-                    _ if reached => Why::Velocity,
-                    _ => why(knot.corner || next.corner),
-                };
-                let last = place + 1 == phases.len();
-                self.steps.push(Step {
-                    phase: *phase,
-                    why,
-                    rests: last || place + 1 == up || place + 1 == up + cruise,
-                    ends: last.then_some(next.place),
-                });
-            }
+    /// A knot with what follows on it up to the block at `next`.
+    fn up_to(&self, ahead: &LookAhead, knot: Knot, next: usize) -> Knot {
+        let mut knot = Knot {
+            place: knot.place,
+            velocity: knot.velocity,
+            corner: knot.corner,
+            ..Knot::default()
+        };
+        for place in knot.place..next {
+            let block = &ahead.blocks[place];
+            let length = ahead.left(place);
+            knot.length += length;
+            knot.ramp.acceleration = knot.ramp.acceleration.min(block.acceleration);
+            knot.ramp.jerk = knot.ramp.jerk.min(block.jerk);
+            let mean = 0.5 * (ahead.squares[place] + ahead.squares[place + 1]);
+            let peak = (mean + block.acceleration * length).sqrt();
+            knot.top = knot.top.max(peak.min(self.velocities[place]));
         }
+        knot
+    }
+
+    fn lay_hills(&mut self, ahead: &LookAhead) {
+        self.steps.clear();
+        for index in 0..self.knots.len() - 1 {
+            self.lay(ahead, self.knots[index], self.knots[index + 1]);
+        }
+    }
+
+    /// One hill, or several where these are gone over sooner.
+    fn lay(&mut self, ahead: &LookAhead, knot: Knot, next: Knot) {
+        let profile = knot.profile(next.velocity);
+        if let Some((knot, middle)) = self.split(ahead, &knot, &next, profile.seconds()) {
+            self.lay(ahead, knot, middle);
+            return self.lay(ahead, middle, next);
+        }
+        let why = |corner: bool| match corner {
+            true => Why::Corner,
+            false => Why::Change,
+        };
+        let [up, cruise, _] = profile.counts();
+        let phases = profile.phases();
+        for (place, phase) in phases.iter().enumerate() {
+            let reached = phase.velocity >= knot.top * (1.0 - 1e-6);
+            let why = match place {
+                _ if place < up => why(knot.corner),
+                _ if place >= up + cruise => why(next.corner),
+                _ if reached => Why::Velocity,
+                _ => why(knot.corner || next.corner),
+            };
+            let last = place + 1 == phases.len();
+            self.steps.push(Step {
+                phase: *phase,
+                why,
+                rests: last || place + 1 == up || place + 1 == up + cruise,
+                ends: last.then_some(next.place),
+            });
+        }
+    }
+
+    /// A hill in two where its blocks are least alike, if that takes less than `seconds`.
+    fn split(
+        &self,
+        ahead: &LookAhead,
+        knot: &Knot,
+        next: &Knot,
+        seconds: f64,
+    ) -> Option<(Knot, Knot)> {
+        let unlike = |place: usize| {
+            let [last, next] = [&ahead.blocks[place - 1], &ahead.blocks[place]];
+            let ratio = |one: f64, other: f64| (one / other).max(other / one);
+            ratio(last.acceleration, next.acceleration).max(ratio(last.jerk, next.jerk))
+        };
+        let places = (knot.place + 1..next.place).map(|place| (place, unlike(place)));
+        let (place, unlike) = places.max_by(|one, other| one.1.total_cmp(&other.1))?;
+        if unlike < UNLIKE {
+            return None;
+        }
+        let first = self.up_to(ahead, *knot, place);
+        let middle = Knot {
+            place,
+            velocity: ahead.squares[place].sqrt(),
+            ..Knot::default()
+        };
+        let mut middle = self.up_to(ahead, middle, next.place);
+        let reached = [
+            first.ramp.reach(first.velocity, first.length),
+            middle.ramp.reach(next.velocity, middle.length),
+        ];
+        middle.velocity = middle.velocity.min(reached[0]).min(reached[1]);
+        let possible = first.covers(middle.velocity) && middle.covers(next.velocity);
+        let both =
+            || first.profile(middle.velocity).seconds() + middle.profile(next.velocity).seconds();
+        (possible && both() < seconds * (1.0 - SAME)).then_some((first, middle))
     }
 
     /// How many steps are carried out where the control has seen enough of the first `done` blocks: to the last place in

@@ -1,70 +1,12 @@
-//! Which column of a log holds what, and in which units: `--columns` and `--log-units`, else the names in its head.
-
-use std::f64::consts::PI;
+//! Which column of a log holds what, and in which unit: `--columns` and `--log-units`, else the names in its head.
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
-/// How a log is written.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LogUnits {
-    /// A unit of time, s; none: as the column's name ends (`_ms`), else seconds.
-    pub time: Option<f64>,
-    /// A unit of length, mm.
-    pub length: f64,
-    /// A unit of angle, radians.
-    pub angle: f64,
-}
+use super::units::{self, Kind, LogUnits, Unit};
 
-impl Default for LogUnits {
-    fn default() -> Self {
-        Self {
-            time: None,
-            length: 1.0,
-            angle: PI / 180.0,
-        }
-    }
-}
-
-/// What a time column's name may end with.
-const TIMES: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6)];
-
-/// `ms,um,deg`: any of them, in any order.
-pub fn log_units(text: &str) -> Result<LogUnits, String> {
-    let mut units = LogUnits::default();
-    let mut told = [false; 3];
-    for word in text.split(',').map(str::trim) {
-        let time = TIMES.iter().find(|(name, _)| *name == word);
-        let which = match (time, word) {
-            (Some((_, seconds)), _) => {
-                units.time = Some(*seconds);
-                0
-            }
-            (None, "mm" | "um" | "m" | "inch") => {
-                units.length = match word {
-                    "mm" => 1.0,
-                    "um" => 1e-3,
-                    "m" => 1e3,
-                    _ => 25.4,
-                };
-                1
-            }
-            (None, "deg" | "rad") => {
-                units.angle = if word == "rad" { 1.0 } else { PI / 180.0 };
-                2
-            }
-            _ => {
-                return Err(format!(
-                    "`{word}` is no unit of a log: s, ms, us; mm, um, m, inch; deg, rad"
-                ));
-            }
-        };
-        if std::mem::replace(&mut told[which], true) {
-            return Err(format!("`{word}` is a second unit of its kind"));
-        }
-    }
-    Ok(units)
-}
+/// So many columns are told by name.
+const MOST_TOLD: usize = 40;
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,6 +19,30 @@ pub enum Content {
     Actual(usize),
 }
 
+impl Content {
+    /// What its unit is of.
+    fn kind(self, machine: &Machine) -> Kind {
+        match self {
+            Self::Time => Kind::Time,
+            Self::Commanded(place) | Self::Actual(place) => {
+                match machine.axes[place].joint.rotary {
+                    true => Kind::Angle,
+                    false => Kind::Length,
+                }
+            }
+        }
+    }
+
+    /// As messages name it.
+    pub fn spoken(self, machine: &Machine) -> String {
+        match self {
+            Self::Time => "time".to_owned(),
+            Self::Commanded(place) => format!("{} commanded", machine.axes[place].name),
+            Self::Actual(place) => format!("{} actual", machine.axes[place].name),
+        }
+    }
+}
+
 /// `t=time,X=cmd_x,X'=act_x`: contents and the columns that hold them, by name or by number from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ColumnNames(Vec<(String, String)>);
@@ -85,80 +51,136 @@ pub struct ColumnNames(Vec<(String, String)>);
 pub fn column_names(text: &str) -> Result<ColumnNames, String> {
     let mut names = Vec::new();
     for part in text.split(',') {
-        let Some((content, column)) = part.split_once('=') else {
-            return Err(format!(
-                "`{}` is not of the form CONTENT=COLUMN",
-                part.trim()
-            ));
-        };
-        let [content, column] = [content, column].map(|text| text.trim().to_owned());
-        if content.is_empty() || column.is_empty() {
-            return Err(format!(
-                "`{}` is not of the form CONTENT=COLUMN",
-                part.trim()
-            ));
+        let told = part.split_once('=');
+        let told = told.map(|(content, column)| (content.trim(), column.trim()));
+        match told {
+            Some((content, column)) if !content.is_empty() && !column.is_empty() => {
+                names.push((content.to_owned(), column.to_owned()));
+            }
+            _ => {
+                return Err(format!(
+                    "`{}` is not of the form CONTENT=COLUMN",
+                    part.trim()
+                ));
+            }
         }
-        names.push((content, column));
     }
     Ok(ColumnNames(names))
 }
 
-/// Which columns are read, and what the time column counts in.
+/// A column that is read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its place, counted from 0.
+    pub place: usize,
+    /// Its name in the head, else its number from 1.
+    pub name: String,
+    /// What it holds.
+    pub content: Content,
+    /// What it counts in.
+    pub unit: Unit,
+}
+
+/// The columns of a log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
-    /// Contents by column, counted from 0.
-    pub contents: Vec<(usize, Content)>,
-    /// A unit of the time column, s.
-    pub time_unit: f64,
+    /// Those that are read.
+    pub read: Vec<Column>,
+    /// Names of those that are not, where they have names.
+    pub unread: Vec<String>,
+}
+
+/// What is known of a log's columns.
+#[derive(Clone, Copy, Debug)]
+pub struct Head<'a> {
+    /// Their names, as many as there are columns; empty if they have none.
+    pub names: &'a [String],
+    /// A row of units below the names; empty if there is none.
+    pub units: &'a [String],
+    /// How many there are.
+    pub count: usize,
+}
+
+impl Head<'_> {
+    fn name(&self, place: usize) -> String {
+        let number = || (place + 1).to_string();
+        self.names.get(place).cloned().unwrap_or_else(number)
+    }
 }
 
 impl Columns {
-    /// Of a log whose columns are called `head`, if it has names, and are `count` many.
+    /// Of a log with such a head. With `even` rows have no times.
     ///
     /// # Errors
-    /// A column that is not there or told twice, a content that the machine does not have, and a log without an axis.
+    /// A column that is not there or told twice, a content that the machine does not have, a unit that is none of its
+    /// content, and a log without an axis or without a time.
     pub fn find(
         machine: &Machine,
         names: Option<&ColumnNames>,
         units: LogUnits,
-        head: Option<&[String]>,
-        count: usize,
+        head: Head<'_>,
+        even: bool,
     ) -> Result<Self, Box<Diagnostic>> {
-        let contents = match names {
-            Some(names) => told(machine, names, head, count)?,
-            None => match head {
-                Some(head) => known(machine, head),
-                None => {
-                    let message = "the columns of the log have no names";
-                    return Err(asks_for_columns(message.to_owned(), machine, None));
-                }
-            },
+        let asks = |message: String| asks_for_columns(message, machine, head);
+        let mut contents = match names {
+            Some(names) => told(machine, names, head)?,
+            None if head.names.is_empty() => {
+                return Err(asks("the columns of the log have no names".to_owned()));
+            }
+            None => known(machine, head.names),
         };
-        for (place, (_, content)) in contents.iter().enumerate() {
-            if contents[..place].iter().any(|(_, other)| other == content) {
-                let message = format!(
-                    "two columns of the log hold {}",
-                    spoken_content(machine, *content)
-                );
-                return Err(asks_for_columns(message, machine, head));
+        if even {
+            if names.is_some()
+                && contents
+                    .iter()
+                    .any(|(_, content)| *content == Content::Time)
+            {
+                let message = "--columns names the time, and --log-period says that rows lie at even distances in time";
+                let help = "keep one of both";
+                return Err(Diagnostic::error("log-columns", message).help(help).boxed());
+            }
+            contents.retain(|(_, content)| *content != Content::Time);
+        }
+        for (index, (place, content)) in contents.iter().enumerate() {
+            let mut others = contents[..index].iter();
+            if let Some((other, _)) = others.find(|(_, other)| other == content) {
+                return Err(asks(format!(
+                    "two columns of the log, {} and {}, hold {}",
+                    head.name(*other),
+                    head.name(*place),
+                    content.spoken(machine)
+                )));
             }
         }
-        if !contents
-            .iter()
-            .any(|(_, content)| *content != Content::Time)
-        {
-            let message = "no column of the log holds an axis of the machine";
-            return Err(asks_for_columns(message.to_owned(), machine, head));
+        let is_time = |(_, content): &(usize, Content)| *content == Content::Time;
+        if contents.iter().all(is_time) {
+            return Err(asks(
+                "no column of the log is known to hold an axis of the machine".to_owned(),
+            ));
         }
-        let time = contents
-            .iter()
-            .find(|(_, content)| *content == Content::Time);
-        let by_name = time
-            .and_then(|(column, _)| head?.get(*column))
-            .and_then(|name| unit_of_time(name));
+        if !even && !contents.iter().any(is_time) {
+            let message = "no column of the log is known to hold the time";
+            let mut asks = asks(message.to_owned());
+            let help = asks.help.unwrap_or_default();
+            asks.help = Some(format!(
+                "--log-period SECONDS where rows lie at even distances in time, or {help}"
+            ));
+            return Err(asks);
+        }
+        let read = contents.iter().map(|(place, content)| {
+            Ok(Column {
+                place: *place,
+                name: head.name(*place),
+                content: *content,
+                unit: unit(machine, *content, *place, units, head)?,
+            })
+        });
+        let read: Vec<Column> = read.collect::<Result<_, Box<Diagnostic>>>()?;
+        let names = head.names.iter().enumerate();
+        let unread = names.filter(|(place, _)| read.iter().all(|column| column.place != *place));
         Ok(Self {
-            contents,
-            time_unit: units.time.or(by_name).unwrap_or(1.0),
+            unread: unread.map(|(_, name)| name.clone()).collect(),
+            read,
         })
     }
 }
@@ -167,26 +189,43 @@ impl Columns {
 fn told(
     machine: &Machine,
     names: &ColumnNames,
-    head: Option<&[String]>,
-    count: usize,
+    head: Head<'_>,
 ) -> Result<Vec<(usize, Content)>, Box<Diagnostic>> {
     let mut contents = Vec::new();
     for (what, column) in &names.0 {
         let Some(content) = content(machine, what) else {
-            let message =
-                format!("--columns: `{what}` is neither the time nor an axis of the machine");
+            let axes: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+            let message = format!(
+                "--columns: `{what}` is neither the time nor an axis of the machine, which has {}",
+                axes.join(", ")
+            );
             return Err(asks_for_columns(message, machine, head));
         };
-        let named = head.and_then(|head| {
-            head.iter()
-                .position(|name| name.trim().eq_ignore_ascii_case(column))
-        });
+        let called = |name: &String| {
+            let names = [name.trim(), split_unit(name).0];
+            names.iter().any(|name| name.eq_ignore_ascii_case(column))
+        };
+        let named = head.names.iter().position(called);
+        let last = head.names.iter().rposition(called);
+        if let (Some(first), Some(last)) = (named, last)
+            && first != last
+        {
+            let message = format!(
+                "--columns: columns {} and {} are both called {column}; name it by its number",
+                first + 1,
+                last + 1
+            );
+            return Err(asks_for_columns(message, machine, head));
+        }
         let numbered = || {
             let number: usize = column.parse().ok()?;
-            (1..=count).contains(&number).then(|| number - 1)
+            (1..=head.count).contains(&number).then(|| number - 1)
         };
         let Some(place) = named.or_else(numbered) else {
-            let message = format!("--columns: the log has no column `{column}`");
+            let message = format!(
+                "--columns: the log has no column `{column}`; it has {}",
+                head.count
+            );
             return Err(asks_for_columns(message, machine, head));
         };
         contents.push((place, content));
@@ -209,15 +248,16 @@ fn content(machine: &Machine, what: &str) -> Option<Content> {
     }
 }
 
-/// Of the names in a log's head those that are known: `time`, `t_ms`, `X`, `x_cmd`, `commanded_X`, `X'`, `X_actual`. A
-/// unit in brackets behind them is not read.
-fn known(machine: &Machine, head: &[String]) -> Vec<(usize, Content)> {
+/// Of the names in a log's head those that are known: `time`, `t_ms`, `X`, `x_cmd`, `commanded_X`, `X'`, `X_actual`, with
+/// or without a unit in brackets behind them.
+fn known(machine: &Machine, names: &[String]) -> Vec<(usize, Content)> {
     const COMMANDED: [&str; 5] = ["cmd", "command", "commanded", "set", "setpoint"];
     const ACTUAL: [&str; 4] = ["act", "actual", "fb", "feedback"];
     let mut contents = Vec::new();
-    for (column, name) in head.iter().enumerate() {
-        let name = bare(name);
-        if unit_of_time(&name).is_some() || matches!(name.as_str(), "t" | "time" | "timestamp") {
+    for (column, name) in names.iter().enumerate() {
+        let (name, _) = split_unit(name);
+        let name = name.to_ascii_lowercase();
+        if matches!(name.as_str(), "t" | "time" | "timestamp") || unit_of_time(&name).is_some() {
             contents.push((column, Content::Time));
             continue;
         }
@@ -244,43 +284,65 @@ fn known(machine: &Machine, head: &[String]) -> Vec<(usize, Content)> {
     contents
 }
 
-/// In small letters, without what stands in brackets.
-fn bare(name: &str) -> String {
-    let name = name.split(['[', '(']).next().unwrap_or_default();
-    name.trim().to_ascii_lowercase()
-}
-
-/// Of `t_ms`, `time_s`: what the name says that it counts in, s.
-fn unit_of_time(name: &str) -> Option<f64> {
-    let name = bare(name);
-    let (time, unit) = name.split_once('_')?;
-    let unit = TIMES.iter().find(|(known, _)| *known == unit);
-    matches!(time, "t" | "time")
-        .then(|| unit.map(|(_, seconds)| *seconds))
-        .flatten()
-}
-
-fn spoken_content(machine: &Machine, content: Content) -> String {
-    match content {
-        Content::Time => "the time".to_owned(),
-        Content::Commanded(place) => format!("where {} is commanded", machine.axes[place].name),
-        Content::Actual(place) => format!("where {} is", machine.axes[place].name),
+/// A name, and what stands in brackets behind it.
+fn split_unit(name: &str) -> (&str, Option<&str>) {
+    match name.split_once(['[', '(']) {
+        Some((name, unit)) => (name.trim(), Some(unit.trim_end_matches([']', ')', ' ']))),
+        None => (name.trim(), None),
     }
 }
 
-fn asks_for_columns(
-    message: String,
+/// Of `t_ms`, `time_s`: what the name says that it counts in.
+fn unit_of_time(name: &str) -> Option<Unit> {
+    let (time, unit) = name.split_once('_')?;
+    let unit = units::named(unit).filter(|unit| unit.kind == Kind::Time);
+    unit.filter(|_| matches!(time, "t" | "time"))
+}
+
+/// What a column counts in: as the command line says, else as the head does.
+fn unit(
     machine: &Machine,
-    head: Option<&[String]>,
-) -> Box<Diagnostic> {
+    content: Content,
+    place: usize,
+    units: LogUnits,
+    head: Head<'_>,
+) -> Result<Unit, Box<Diagnostic>> {
+    let kind = content.kind(machine);
+    if let Some(unit) = units.of(kind) {
+        return Ok(unit);
+    }
+    let name = head.names.get(place).map_or("", String::as_str);
+    let (bare, bracketed) = split_unit(name);
+    let below = head.units.get(place).map(String::as_str);
+    let said = bracketed.or(below).filter(|unit| !unit.is_empty());
+    let Some(said) = said else {
+        let of_name = unit_of_time(&bare.to_ascii_lowercase()).filter(|unit| unit.kind == kind);
+        return Ok(of_name.unwrap_or(kind.usual()));
+    };
+    let known = units::named(said).filter(|unit| unit.kind == kind);
+    known.ok_or_else(|| {
+        let message = format!(
+            "column {name} holds {}, and `{said}` is not {}",
+            content.spoken(machine),
+            kind.spoken()
+        );
+        let help = "--log-units says what the log counts in, such as --log-units ms,um,rad";
+        Diagnostic::error("log-columns", message).help(help).boxed()
+    })
+}
+
+fn asks_for_columns(message: String, machine: &Machine, head: Head<'_>) -> Box<Diagnostic> {
     let axis = machine.axes.first().map_or("X", |axis| axis.name.as_str());
     let mut help = format!(
         "--columns \"t=COLUMN,{axis}=COLUMN,{axis}'=COLUMN\": time, {axis} commanded and {axis} actual, by name or by number from 1"
     );
-    if let Some(head) = head {
+    if !head.names.is_empty() {
         help.push_str("; the log has ");
-        let names: Vec<&str> = head.iter().map(|name| name.trim()).take(40).collect();
-        help.push_str(&names.join(", "));
+        let names: Vec<&str> = head.names.iter().map(|name| name.trim()).collect();
+        help.push_str(&names[..names.len().min(MOST_TOLD)].join(", "));
+        if names.len() > MOST_TOLD {
+            help.push_str(", …");
+        }
     }
     Diagnostic::error("log-columns", message).help(help).boxed()
 }

@@ -1,8 +1,10 @@
 //! Numbers of servos adjusted to a log: `--fit`.
 
+use std::fmt::Write as _;
+
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
-use post_motion::servo::fit;
+use post_machine::diagnostic::{Diagnostic, Short};
+use post_motion::servo::fit::{self, Fitted};
 use serde::Serialize;
 
 use super::log::Log;
@@ -20,6 +22,11 @@ pub struct AxisFitted {
     pub before: f64,
     /// The same with the new ones.
     pub after: f64,
+    /// So many rows that follow one another say no more than one that is independent: 1 for noise, much more where the
+    /// model of the servo lacks something.
+    pub rows_alike: f64,
+    /// What to write into the machine file: the numbers that are determined, each in its table.
+    pub machine_file: String,
     /// The search came to an end; else the numbers are the best that were met.
     pub converged: bool,
     /// Its numbers.
@@ -38,7 +45,7 @@ pub struct NumberFitted {
     pub before: f64,
     /// As it is now.
     pub value: f64,
-    /// Its standard deviation; none if the log says nothing of it.
+    /// Its standard deviation (standard error), in the unit of the machine file; none if the log says nothing of it.
     pub deviation: Option<f64>,
     /// The log determines it.
     pub determined: bool,
@@ -114,8 +121,70 @@ fn axis(machine: &Machine, log: &Log, place: usize, keys: &[&str]) -> Result<Axi
         unit: if axis.joint.rotary { "deg" } else { "mm" },
         before: found.before / axis.unit(),
         after: found.after / axis.unit(),
+        rows_alike: found.hanging_together,
+        machine_file: lines(&axis.name, &found.fitted),
         converged: found.converged,
         numbers: numbers.collect(),
         undetermined: undetermined.map(|one| one.shares.clone()).collect(),
     })
+}
+
+/// `[servo.X.loops]` and its numbers, as many digits of each as it is known to; those that are not determined as remarks.
+fn lines(axis: &str, fitted: &[Fitted]) -> String {
+    let mut text = String::new();
+    let mut tables: Vec<&str> = Vec::new();
+    for number in fitted {
+        if !tables.contains(&number.table) {
+            tables.push(number.table);
+        }
+    }
+    // A table ends where the next begins: what stands in none comes first.
+    tables.sort_unstable();
+    for table in tables {
+        let dot = if table.is_empty() { "" } else { "." };
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "[servo.{axis}{dot}{table}]");
+        for number in fitted.iter().filter(|number| number.table == table) {
+            let Fitted {
+                name,
+                value,
+                before,
+                ..
+            } = number;
+            let _ = match number.determined {
+                true => writeln!(
+                    text,
+                    "{name} = {}  # ± {}, was {}",
+                    rounded(*value, number.deviation),
+                    short(number.deviation),
+                    Short(*before)
+                ),
+                false => writeln!(
+                    text,
+                    "# {name} = {}  # not determined by this log",
+                    Short(*before)
+                ),
+            };
+        }
+    }
+    text
+}
+
+/// A deviation, three digits of it.
+pub(super) fn short(deviation: f64) -> String {
+    let text = format!("{deviation:.2e}");
+    text.parse::<f64>()
+        .map_or(text, |value| Short(value).to_string())
+}
+
+/// A number with two digits beyond the first of its deviation, and no more than nine.
+pub(super) fn rounded(value: f64, deviation: f64) -> String {
+    let digits = libm::floor(libm::log10(
+        value.abs().max(f64::MIN_POSITIVE) / deviation.max(f64::MIN_POSITIVE),
+    ));
+    let digits = (digits + 2.0).clamp(3.0, 9.0) as usize;
+    let text = format!("{value:.*e}", digits - 1);
+    // Written as TOML has it, without an exponent where that is short.
+    text.parse::<f64>()
+        .map_or(text, |value| Short(value).to_string())
 }

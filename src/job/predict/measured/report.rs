@@ -12,10 +12,20 @@ pub struct MeasuredFound {
     pub log: String,
     /// Rows that it has.
     pub rows: usize,
-    /// Time from one to the next.
+    /// Columns that are read.
+    pub columns: Vec<ColumnRead>,
+    /// Names of those that are not.
+    pub unread: Vec<String>,
+    /// Time from one row to the next.
     pub period_s: f64,
     /// How long it is.
     pub seconds: f64,
+    /// Rows that are missing between others; positions are interpolated there.
+    pub missing_rows: usize,
+    /// Root of the mean square of how far rows lie beside even distances in time.
+    pub jitter_s: f64,
+    /// Times are rounded; rows are taken to lie at even distances.
+    pub rounded_times: bool,
     /// Jumps of a rotary axis by a full turn that are taken for its count starting again.
     pub turns: u64,
     /// Its clock minus that of the prediction.
@@ -24,14 +34,32 @@ pub struct MeasuredFound {
     pub shift_deviation_s: f64,
     /// Another shift that leaves hardly more.
     pub rival_shift_s: Option<f64>,
-    /// How well both are alike then: 1 if nothing is left.
+    /// How well both are alike then, in the rows that are not far off: 1 if nothing is left.
     pub correlation: f64,
+    /// Share of the rows, 0 to 1, in which an axis is so far off that the row says nothing of clock and zeros.
+    pub far_off: f64,
     /// From when to when both are known.
     pub overlap_s: [f64; 2],
+    /// How long the prediction is.
+    pub predicted_s: f64,
+    /// From the first commanded motion of the log's axes to the last: in the log, and as predicted. None of a log without
+    /// commanded positions, or that begins or ends in motion.
+    pub motion_s: Option<[f64; 2]>,
     /// Of the axes what is left.
     pub axes: Vec<AxisLaid>,
-    /// Contour error in cuts; none if the log does not have commanded and actual positions of an axis.
+    /// Contour error in cuts; none if no following error is known.
     pub contour: Option<ContourLaid>,
+}
+
+/// A column that is read.
+#[derive(Clone, Debug, Serialize)]
+pub struct ColumnRead {
+    /// Its name, else its number from 1.
+    pub column: String,
+    /// `time`, `X commanded`, `X actual`.
+    pub holds: String,
+    /// What it counts in.
+    pub unit: &'static str,
 }
 
 /// What is left of an axis.
@@ -41,13 +69,16 @@ pub struct AxisLaid {
     pub name: String,
     /// `mm` or `deg`.
     pub unit: &'static str,
+    /// 1 if nothing is left, 0 if log and prediction have nothing in common, -1 if the log counts the other way; none of
+    /// an axis that stands still.
+    pub alike: Option<f64>,
     /// What the log counts more than the prediction; it is taken off.
     pub zero: f64,
     /// Commanded position: predicted minus logged, at the same time.
     pub commanded: Option<Left>,
     /// Actual position: predicted minus logged, at the same time.
     pub actual: Option<Left>,
-    /// Actual minus commanded position, as logged.
+    /// Commanded minus actual position, as logged; of a log without commanded positions those of the prediction are taken.
     pub following_measured: Option<Left>,
     /// The same, as the servo of the machine file follows the commanded positions of the log.
     pub following_predicted: Option<Left>,
@@ -55,7 +86,8 @@ pub struct AxisLaid {
     pub following: Option<Left>,
 }
 
-/// The contour error of the log, in cuts, and what the servos make of its commanded positions.
+/// The contour error of the log, in cuts, and what the servos make of its commanded positions (of a log without, of the
+/// predicted ones).
 #[derive(Clone, Debug, Serialize)]
 pub struct ContourLaid {
     /// As measured.

@@ -1,7 +1,7 @@
 use post_testkit::{Rng, randomised};
 
 use super::*;
-use crate::contour::spline::tangents;
+use crate::contour::spline::Five;
 
 /// A path that wanders: it turns gently and at once, slows down, stands, goes back the way it came, and crosses itself.
 fn wandering(rng: &mut Rng, count: usize) -> Vec<Vector3<f64>> {
@@ -33,19 +33,19 @@ fn wandering(rng: &mut Rng, count: usize) -> Vec<Vector3<f64>> {
 }
 
 fn path(points: &[Vector3<f64>]) -> Path {
-    let last = points.len() - 1;
+    let last = points[points.len() - 1];
     let mut path = Path::default();
+    let mut tips = Five::all_at(&points[0]);
+    tips.take(&points[0]);
+    tips.take(&points[1]);
     for (number, tip) in points.iter().enumerate() {
-        let near = |step: isize| {
-            let place = number.checked_add_signed(step).unwrap_or(0);
-            &points[place.min(last)]
-        };
+        let tip_ways = tips.take(points.get(number + 2).unwrap_or(&last));
         path.push(Knot {
             number: number as u64,
             at: At::default(),
             tip: *tip,
             axis: Vector3::z(),
-            tip_ways: tangents([-2, -1, 0, 1, 2].map(near)),
+            tip_ways,
             axis_ways: [Vector3::zeros(); 2],
             length: 0.0,
             gap: false,
@@ -135,6 +135,61 @@ fn the_spline_overshoots_nothing() {
                 assert!(along > last - 1e-9 && along < 1.0 + 1e-9, "{along}");
                 last = along;
             }
+        }
+    }
+}
+
+/// Chips are broken, and a tool that lags by more than the way back never turns where it should: it is on its line all the
+/// time, and so has no contour error.
+#[test]
+fn a_tool_that_goes_on_beyond_a_turn_is_on_a_way_ahead() {
+    for late in [20.0, 60.0, 200.0] {
+        let mut depth: f64 = 0.0;
+        let mut points = vec![Vector3::zeros(); 5];
+        for _ in 0..12 {
+            for (steps, way) in [(50, -0.01), (20, 0.01)] {
+                for _ in 0..steps {
+                    depth += way;
+                    points.push(Vector3::new(0.0, 0.0, depth));
+                }
+            }
+        }
+        let mut path = path(&points);
+        let mut tool = Pose {
+            axis: Vector3::z(),
+            ..Pose::default()
+        };
+        let mut went = 0.0;
+        for (number, point) in points.iter().enumerate() {
+            let last = tool.tip;
+            tool.tip += (point - tool.tip) / late;
+            went += (tool.tip - last).norm();
+            let found = path.nearest(&tool, (number as u64, point));
+            assert!(
+                found.distance < 1e-9,
+                "{late}, {number}: {}",
+                found.distance
+            );
+        }
+        assert!(went > 1.0, "{went}");
+    }
+}
+
+/// Where the axes are where they are commanded there is no error, however the path turns.
+#[test]
+fn a_tool_that_is_where_it_is_commanded_has_no_error() {
+    let (turns, mut rng) = randomised(30u64, 7);
+    for _ in turns {
+        let points = wandering(&mut rng, 400);
+        let mut path = path(&points);
+        for (number, point) in points.iter().enumerate() {
+            let tool = Pose {
+                tip: *point,
+                axis: Vector3::z(),
+                ..Pose::default()
+            };
+            let found = path.nearest(&tool, (number as u64, point));
+            assert!(found.distance < 1e-12, "{number}: {}", found.distance);
         }
     }
 }

@@ -13,8 +13,9 @@ const ENDLESS: f64 = 1e9;
 const SMALL_SHARE: f64 = 0.1;
 
 impl Search<'_> {
-    /// What has been found, with errors of the log of the standard deviation `spread`, whose squares were `before`.
-    pub(super) fn told(&self, found: &Found, spread: f64, before: f64) -> Fit {
+    /// What has been found, with errors of the log of the standard deviation `spread` that hang together so
+    /// much, whose squares were `before`.
+    pub(super) fn told(&self, found: &Found, [spread, together]: [f64; 2], before: f64) -> Fit {
         let count = self.names.len();
         let samples = (self.log.commanded.len() - self.log.lead) as f64;
         let derivatives = found.triangle.view((0, 0), (count, count)).into_owned();
@@ -58,6 +59,7 @@ impl Search<'_> {
                     .max_by(|one, other| libm::fabs(one.1).total_cmp(&libm::fabs(other.1)));
                 let value = self.value(&found.place, index);
                 Fitted {
+                    table: self.tables[index],
                     name: self.names[index],
                     before: self.value(&self.start, index),
                     value,
@@ -83,6 +85,7 @@ impl Search<'_> {
             undetermined,
             before: libm::sqrt(before / samples),
             after: found.triangle.column(count).norm() / libm::sqrt(samples),
+            hanging_together: together,
             converged: found.converged,
         }
     }

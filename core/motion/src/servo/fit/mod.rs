@@ -47,6 +47,9 @@ pub struct Fit {
     pub before: f64,
     /// The same with the new ones.
     pub after: f64,
+    /// So many errors that follow one another say no more than one that is independent: 1 for noise; much more where the
+    /// model lacks something that comes back in every move.
+    pub hanging_together: f64,
     /// The search came to an end; else it was given up, and the numbers are the best that were met.
     pub converged: bool,
 }
@@ -54,6 +57,8 @@ pub struct Fit {
 /// A number that was adjusted, in the unit of the machine file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
+    /// The table below `[servo.X]` that it stands in, `loops.screw`; empty for `[servo.X]` itself.
+    pub table: &'static str,
     /// Its key in the machine file.
     pub name: &'static str,
     /// As it was.
@@ -99,7 +104,7 @@ pub fn fit(servo: &Servo, names: &[&str], log: Log<'_>) -> Result<Fit, Box<Diagn
     let mut spread = libm::sqrt(before / compared);
     let mut found = search.run(&search.start, spread / KNOWN)?;
     for _ in 0..MOST_ROUNDS {
-        let left = search.spread(&found)?;
+        let [left, _] = search.spread(&found)?;
         let settled = left > 0.5 * spread;
         spread = left;
         found = search.run(&found.place, spread / KNOWN)?;

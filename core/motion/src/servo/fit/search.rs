@@ -29,6 +29,7 @@ pub(super) struct Search<'a> {
     servo: &'a Servo,
     pub(super) log: Log<'a>,
     pub(super) names: Vec<&'static str>,
+    pub(super) tables: Vec<&'static str>,
     /// Searched for by its logarithm.
     pub(super) by_factor: Vec<bool>,
     pub(super) start: DVector<f64>,
@@ -80,6 +81,7 @@ impl<'a> Search<'a> {
             servo,
             log,
             names: Vec::new(),
+            tables: Vec::new(),
             by_factor: Vec::new(),
             start: DVector::zeros(names.len()),
         };
@@ -107,6 +109,7 @@ impl<'a> Search<'a> {
                 *number.value
             };
             search.names.push(number.name);
+            search.tables.push(number.table);
             search.by_factor.push(by_factor);
         }
         Ok(search)
@@ -227,13 +230,15 @@ impl<'a> Search<'a> {
         Ok(Some(triangle))
     }
 
-    /// Standard deviation of the log's errors, mm or radians: that which independent errors would have that say as little.
-    pub(super) fn spread(&self, found: &Found) -> Result<f64, Box<Diagnostic>> {
+    /// Standard deviation of the log's errors, mm or radians, that which independent errors would have that say as little;
+    /// and how many of them say no more than one that is independent.
+    pub(super) fn spread(&self, found: &Found) -> Result<[f64; 2], Box<Diagnostic>> {
         let count = self.names.len();
         let errors = self.errors(&found.place)?;
         let squares: f64 = errors.iter().map(|error| error * error).sum();
         let spread = libm::sqrt(squares / (errors.len() - count) as f64);
-        Ok((spread * libm::sqrt(hanging_together(&errors))).max(FINEST))
+        let together = hanging_together(&errors);
+        Ok([(spread * libm::sqrt(together)).max(FINEST), together])
     }
 
     /// Searches from `from`. Each number is drawn back to where it was at first with the strength `draw`.

@@ -4,7 +4,9 @@ use nalgebra::DVector;
 use post_machine::servo::{Feedback, Servo, StateSpace};
 use post_motion::servo::Follower;
 
-use super::{direct_loops, feedrate_paper, of_loops, screw_loops};
+use super::{
+    direct_loops, feedrate_paper, gear_loops, of_loops, screw_loops, transfer, with_friction,
+};
 
 const COUNT: u64 = 10_000_000;
 
@@ -88,4 +90,96 @@ fn an_endless_axis_does_not_creep() {
             "{thousand}: {velocity}"
         );
     }
+}
+
+/// How far an axis stays behind a ramp of 1 mm/s or rad/s while `force` holds its table back, by the equations of its
+/// steady motion alone: `w = p·t + q` with `a·p = -value` and `a·q = p - rate - push·force`.
+fn lag(space: &StateSpace, force: f64) -> f64 {
+    let solve = |right: DVector<f64>| space.a.clone().full_piv_lu().solve(&right).unwrap();
+    let steady = solve(-&space.value);
+    let states = solve(steady - &space.rate - &space.push * force);
+    -(&space.position * states)[0]
+}
+
+/// A transfer function of second order, 2ζ/ω behind a ramp.
+#[test]
+fn a_transfer_function_does_not_creep() {
+    let servo = transfer(&[1600.0], &[1.0, 60.0, 1600.0]);
+    let (position, velocity) = to_and_fro(&servo, 200.0, 1250, 60.0 / 1600.0);
+    assert!(position < 1e-10 && velocity < 1e-8, "{position} {velocity}");
+}
+
+/// A worm gear, measured on the motor and on the table, its torque without delay and its damping held by no integral part.
+#[test]
+fn a_gear_does_not_creep() {
+    for feedback in [Feedback::Motor, Feedback::Scale] {
+        let servo = of_loops(gear_loops(feedback, [0.0, 0.0]));
+        let lag = lag(&StateSpace::of(&servo), 0.0);
+        assert!(lag > 1.0 / 35.0);
+        let (position, velocity) = to_and_fro(&servo, 1.5, 2500, lag);
+        assert!(
+            position < 1e-12 && velocity < 1e-10,
+            "{position} {velocity}"
+        );
+    }
+}
+
+/// Play behind the loops: the table is half of it short of where it is without, on either side.
+#[test]
+fn play_behind_the_loops_does_not_creep() {
+    let mut servo = transfer(&[1600.0], &[1.0, 60.0, 1600.0]);
+    let (speed, play) = (200.0, 0.02);
+    servo.backlash = play;
+    assert!(!servo.play_inside());
+    let behind = 60.0 / 1600.0 + 0.5 * play / speed;
+    let (position, velocity) = to_and_fro(&servo, speed, 1250, behind);
+    assert!(position < 1e-10 && velocity < 1e-8, "{position} {velocity}");
+}
+
+/// To and fro at `speed` and a period of 0.1 ms, the table held back by `force` at that speed; the worst distance at the
+/// turns from `lag` behind.
+fn stepped_to_and_fro(servo: &Servo, speed: f64, lag: f64) -> f64 {
+    let (period, half) = (1e-4, 10_000);
+    let mut follower = Follower::new(servo, period).unwrap();
+    follower.settle(0.0);
+    let length = f64::from(half) * period * speed;
+    let mut worst = 0.0_f64;
+    for turn in 0..COUNT / half as u64 {
+        let up = turn % 2 == 0;
+        let mut last = [0.0; 2];
+        follower.run(
+            half as usize,
+            |k| {
+                let way = (k + 1) as f64 / f64::from(half) * length;
+                if up { way } else { length - way }
+            },
+            |_, value| last = [last[1], value],
+        );
+        let (end, rate) = if up { (length, speed) } else { (0.0, -speed) };
+        worst = worst.max((last[1] - (end - lag * rate)).abs());
+        // Its velocity, over the last period.
+        worst = worst.max((last[1] - last[0] - rate * period).abs());
+    }
+    worst
+}
+
+/// Friction that is all there at this speed: as a constant force the equations take it exactly.
+#[test]
+fn an_axis_with_friction_does_not_creep() {
+    let plain = of_loops(gear_loops(Feedback::Scale, [0.0, 0.0]));
+    let (coulomb, speed) = (40.0, 1.5);
+    let behind = lag(&StateSpace::of(&plain), coulomb / speed);
+    assert!(behind > 1.0001 * lag(&StateSpace::of(&plain), 0.0));
+    let worst = stepped_to_and_fro(&with_friction(plain, coulomb, 1e-3), speed, behind);
+    assert!(worst < 1e-12, "{worst}");
+}
+
+/// Play inside the loops, whose integral part takes it out: v/Kv behind.
+#[test]
+fn play_inside_the_loops_does_not_creep() {
+    let mut servo = of_loops(screw_loops(Feedback::Scale, [0.0, 0.0]));
+    servo.backlash = 0.01;
+    assert!(servo.play_inside());
+    let worst = stepped_to_and_fro(&servo, 200.0, 1.0 / 50.0);
+    assert!(worst < 1e-10, "{worst}");
 }

@@ -110,6 +110,7 @@ pub fn run(machine: &Machine, tasks: &[Task], solver: &Arc<Solver>, chunk: usize
         all.joints.extend(&batch.joints);
         all.poses.extend(&batch.poses);
         all.at.extend(&batch.at);
+        all.jumps.extend(&batch.jumps);
         batch.clear();
         if filled != Filled::Full {
             return filled;

@@ -2,6 +2,8 @@
 
 mod build;
 mod corners;
+mod drift;
+mod jumps;
 mod limits;
 mod linuxcnc;
 mod look_ahead;

@@ -80,20 +80,22 @@ fn whatever_is_asked_for_nothing_jumps_and_all_of_it_is_done() {
         let mut axis = || {
             let speed = format!("max_feed = {:?},", 60.0 * rng.order(1.0, 3.0));
             let others = [
-                limit(&mut rng, "max_accel", 2.0, 5.0),
-                limit(&mut rng, "max_jerk", 3.5, 7.0),
+                limit(&mut rng, "max_accel", -1.0, 5.0),
+                limit(&mut rng, "max_jerk", -1.0, 7.0),
+                limit(&mut rng, "max_jump", -3.0, 4.0),
             ];
-            format!("{speed} {} {}", others[0], others[1])
+            format!("{speed} {}", others.concat())
         };
         let [linear, rotary] = [axis(), axis()];
         let motion = format!(
-            "period = 0.002\nblend = {:?}\nlimits = {:?}\nlook_ahead = {}\nblock_time = {:?}\n{}\n{}",
+            "period = 0.002\nblend = {:?}\nlimits = {:?}\nlook_ahead = {}\nblock_time = {:?}\n{}\n{}\n{}",
             ["overlap", "round"][rng.pick(2)],
             ["axes", "programmed"][rng.pick(2)],
             [1, 2, 5, 40][rng.pick(4)],
             [0.0, 0.004][rng.pick(2)],
-            limit(&mut rng, "tip_accel", 2.0, 4.0).trim_end_matches(','),
-            limit(&mut rng, "tip_jerk", 3.5, 6.0).trim_end_matches(','),
+            limit(&mut rng, "tip_accel", -1.0, 4.0).trim_end_matches(','),
+            limit(&mut rng, "tip_jerk", -1.0, 6.0).trim_end_matches(','),
+            limit(&mut rng, "tip_jump", -3.0, 4.0).trim_end_matches(','),
         );
         let machine = trunnion(&linear, &rotary, &motion);
         let mut program = Program::new(&machine, [100.0, 0.0, 0.0]);

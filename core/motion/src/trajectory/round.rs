@@ -1,0 +1,220 @@
+//! Curves in the place of corners.
+
+use post_machine::kinematics::{Joints, MAX_AXES};
+
+use super::bounds::{ARC, Bounds, CURVE, NORMAL};
+use super::corner::Side;
+use super::kink::Kink;
+use crate::limits::{AxisLimits, MoveLimits};
+use crate::path::Way;
+
+/// The part of the length of a corner by whose product with the change of direction it strays.
+const STRAY: f64 = 3.0 / 32.0;
+
+/// The steepest slope of the smooth step.
+const STEEPEST: f64 = 1.5;
+
+/// The steepest change of that slope.
+const SHARPEST: f64 = 6.0;
+
+/// No move gives more of itself to a corner.
+const HALF: f64 = 0.5;
+
+/// A length is longer by so much than what is just long enough.
+const AMPLE: f64 = 1.0 + 1e-9;
+
+/// Ways that turn by less, or by nearly half a turn, have no arc between them, radians.
+const LEAST_SWEEP: f64 = 1e-3;
+
+/// Without a tolerance an arc strays by no more than this share of the shorter way.
+const STRAY_OF_LENGTH: f64 = 0.25;
+
+/// What a corner is rounded by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Curve {
+    /// The one way runs out by the smooth step while the other one runs in.
+    Smooth,
+    /// An arc of a circle that turns by so much, radians.
+    Circle(f64),
+}
+
+/// A curve in the place of a corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Round {
+    /// How much faster the parameter of the second move runs.
+    pub ratio: f64,
+    /// What it takes of the one move and of the other.
+    pub shares: [f64; 2],
+    pub curve: Curve,
+    /// Its length over the first move's parameter.
+    pub length: f64,
+    /// What limits it, over its own parameter from 0 to 1.
+    pub bounds: Bounds,
+}
+
+impl Round {
+    /// The rate of the first move's parameter with which it is passed, 1/s.
+    pub fn passes(&self) -> f64 {
+        self.bounds.rate * self.length
+    }
+
+    /// By the smooth step, as long as it takes to be passed at the rate `wanted`, or as long as it may be.
+    pub fn smooth(
+        sides: [Side; 2],
+        rules: &AxisLimits,
+        kink: &Kink,
+        tolerance: Option<f64>,
+        wanted: f64,
+    ) -> Option<Self> {
+        // The unit of length is that of the first move's parameter.
+        let sharpest = |limits: &Joints, of_tip: f64| {
+            let axes = kink.change.iter().zip(limits);
+            let axes = axes.map(|(change, limit)| libm::fabs(*change) / limit);
+            axes.fold(kink.tip.norm() / of_tip, f64::max)
+        };
+        // x'' = 1.5·Δ/l and x''' = 6·Δ/l²: so long that the curve's share of accelerations and jerks does at the velocity
+        // that is wanted.
+        let bent = sharpest(&rules.acceleration, rules.tip_acceleration) * STEEPEST / NORMAL;
+        let jerked = sharpest(&rules.jerk, rules.tip_jerk) * SHARPEST * CURVE;
+        let cube = wanted * wanted * wanted;
+        let mut length = AMPLE * (bent * wanted * wanted).max((jerked * cube).sqrt());
+        length = length.min(2.0 * HALF).min(2.0 * HALF / kink.ratio);
+        if let Some(tolerance) = tolerance {
+            length = length.min(tolerance / (STRAY * kink.tip.norm()));
+        }
+        if length <= 0.0 {
+            return None;
+        }
+        let shares = [0.5 * length, 0.5 * length * kink.ratio];
+        let found = on_smooth([sides[0].found, sides[1].found], shares);
+        Some(Self {
+            ratio: kink.ratio,
+            shares,
+            curve: Curve::Smooth,
+            length,
+            bounds: Bounds::new(&found, rules, length / wanted, 1.0, None),
+        })
+    }
+
+    /// Between straight ways of the tip: the arc that is run through as fast as the faster one of them with [`ARC`] of the
+    /// least acceleration, and is so long that half of it would do to get up to that within; or a smaller one. Recorded so of
+    /// LinuxCNC 2.9: an arc that nothing else makes smaller is `2·v²/a` long at turns of up to 99°.
+    pub fn circle(sides: [Side; 2], rules: &AxisLimits, tolerance: Option<f64>) -> Option<Self> {
+        let curved = |side: &Side| matches!(side.task.way, Way::Arc { .. } | Way::Spline(_));
+        if sides.iter().any(curved) {
+            return None;
+        }
+        let [out, into] = [sides[0].found.tip_ends[1], sides[1].found.tip_ends[0]];
+        let lengths = [out.norm(), into.norm()];
+        let shorter = lengths[0].min(lengths[1]);
+        let sweep = out.angle(&into);
+        if shorter == 0.0 || !(LEAST_SWEEP..std::f64::consts::PI - LEAST_SWEEP).contains(&sweep) {
+            return None;
+        }
+        let mut acceleration = rules.tip_acceleration;
+        let ends = [&sides[0].found.ends[1], &sides[1].found.ends[0]];
+        for (place, limit) in rules.acceleration.iter().enumerate() {
+            if ends.iter().any(|ends| ends[place] != 0.0) {
+                acceleration = acceleration.min(*limit);
+            }
+        }
+        let rates = [sides[0].whole.rate, sides[1].whole.rate];
+        let speed = (rates[0] * lengths[0]).max(rates[1] * lengths[1]);
+        let (sine, cosine) = libm::sincos(0.5 * sweep);
+        let most = tolerance.unwrap_or(STRAY_OF_LENGTH * shorter) * cosine / (1.0 - cosine);
+        let radius = (speed * speed / acceleration * (1.0 / ARC).max(2.0 / sweep))
+            .min(most)
+            .min(HALF * shorter * cosine / sine);
+        if !(radius > 0.0 && radius.is_finite()) {
+            return None;
+        }
+        let shares = lengths.map(|length| radius * sine / cosine / length);
+        let length = shares[0] * longer(sweep);
+        let found = on_circle([sides[0].found, sides[1].found], shares, sweep);
+        Some(Self {
+            ratio: lengths[0] / lengths[1],
+            shares,
+            curve: Curve::Circle(sweep),
+            length,
+            bounds: Bounds::new(&found, rules, length * lengths[0] / speed, 1.0, Some(sweep)),
+        })
+    }
+}
+
+impl Curve {
+    /// How much of its part of the first move and of the second one is behind at `share` of the curve.
+    ///
+    /// By the smooth step `h` the integrals of 1 - h and of h, each over its whole. On an arc of radius 1 that turns by φ the
+    /// place at the angle α lies `sin α - (1 - cos α)/tan φ` along the first way and `(1 - cos α)/sin φ` along the second, of
+    /// `tan(φ/2)` each.
+    pub fn places(self, share: f64) -> [f64; 2] {
+        match self {
+            Self::Smooth => {
+                let cube = share * share * share;
+                let fourth = cube * share;
+                [2.0 * share - 2.0 * cube + fourth, 2.0 * cube - fourth]
+            }
+            Self::Circle(sweep) => {
+                let (sine, cosine) = libm::sincos(sweep * share);
+                let (whole_sine, whole_cosine) = libm::sincos(sweep);
+                let into = (1.0 - cosine) / whole_sine;
+                let whole = (1.0 - whole_cosine) / whole_sine;
+                [(sine - into * whole_cosine) / whole, into / whole]
+            }
+        }
+    }
+}
+
+/// By how much an arc is longer than what it takes of each way: R·φ over R·tan(φ/2).
+fn longer(sweep: f64) -> f64 {
+    sweep / libm::tan(0.5 * sweep)
+}
+
+/// How axes and tip go along a corner that takes these shares of two moves, over its own parameter from 0 to 1.
+///
+/// With `w = 2·share` for each, `t' = w·(1 - h)` or `w·h`, of which one grows as the other falls; `q'` differs over the
+/// share from what it is at the corner by at most `q''·w/2`.
+fn on_smooth([first, next]: [&MoveLimits; 2], shares: [f64; 2]) -> MoveLimits {
+    let [a, b] = shares.map(|share| 2.0 * share);
+    let bounds = |change: f64, first: [f64; 3], next: [f64; 3]| {
+        let bent = a * a * first[1] + b * b * next[1];
+        [
+            (a * first[0]).max(b * next[0]),
+            STEEPEST * (change + 0.5 * bent) + bent,
+            SHARPEST * (change + 0.5 * bent)
+                + 3.0 * STEEPEST * bent
+                + a * a * a * first[2]
+                + b * b * b * next[2],
+        ]
+    };
+    let mut found = MoveLimits::default();
+    for place in 0..MAX_AXES {
+        let change = libm::fabs(b * next.ends[0][place] - a * first.ends[1][place]);
+        let of = |found: &MoveLimits| [found.first[place], found.second[place], found.third[place]];
+        let [one, two, three] = bounds(change, of(first), of(next));
+        (found.first[place], found.second[place], found.third[place]) = (one, two, three);
+    }
+    let change = (next.tip_ends[0] * b - first.tip_ends[1] * a).norm();
+    found.tip = bounds(change, first.tip, next.tip);
+    found
+}
+
+/// The same along an arc of a circle that turns by `sweep` between two straight ways.
+fn on_circle([first, next]: [&MoveLimits; 2], shares: [f64; 2], sweep: f64) -> MoveLimits {
+    let (sine, cosine) = libm::sincos(sweep);
+    let [out, into] = shares.map(|share| share * longer(sweep));
+    let mut found = MoveLimits::default();
+    let mut circle = [0.0; MAX_AXES];
+    for (place, circle) in circle.iter_mut().enumerate() {
+        let along = first.ends[1][place] * out;
+        let across = (next.ends[0][place] * into - along * cosine) / sine;
+        *circle = (along * along + across * across).sqrt();
+        found.first[place] = *circle;
+        found.second[place] = *circle * sweep;
+        found.third[place] = *circle * sweep * sweep;
+    }
+    found.circle = Some(circle);
+    let length = first.tip_ends[1].norm() * out;
+    found.tip = [length, length * sweep, length * sweep * sweep];
+    found
+}

@@ -120,7 +120,7 @@ fn compare(axes: usize, collocation: Collocation, count: usize, ask_oracle: bool
     });
     let batches: Vec<Problem> = (0..count - 1)
         .step_by(BATCH)
-        .map(|first| part(&problem, first, (first + BATCH).min(count - 1)))
+        .map(|first| problem.part(first, (first + BATCH).min(count - 1)))
         .collect();
     let mut stream = Stream::new(problem.stride(), LOOKAHEAD);
     let mut streamed = Vec::with_capacity(count);
@@ -187,17 +187,6 @@ fn seconds(count: usize, mut run: impl FnMut()) -> f64 {
         .collect();
     times.sort_by(f64::total_cmp);
     times[2]
-}
-
-fn part(problem: &Problem, first: usize, last: usize) -> Problem {
-    let stride = problem.stride();
-    Problem {
-        steps: problem.steps[first..last].to_vec(),
-        upper: problem.upper[first..=last].to_vec(),
-        causes: problem.causes[first..=last].to_vec(),
-        rows: problem.rows[first * stride..last * stride].to_vec(),
-        ..problem.clone()
-    }
 }
 
 fn say(line: &str) {

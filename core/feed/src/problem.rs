@@ -152,6 +152,21 @@ impl Problem {
         }
     }
 
+    /// The part from sample `first` to sample `last`, with the ends of the whole: a batch for a stream.
+    #[must_use]
+    pub fn part(&self, first: usize, last: usize) -> Self {
+        let stride = self.stride();
+        Self {
+            names: self.names.clone(),
+            steps: self.steps[first..last].to_vec(),
+            upper: self.upper[first..=last].to_vec(),
+            causes: self.causes[first..=last].to_vec(),
+            sources: self.sources.clone(),
+            rows: self.rows[first * stride..last * stride].to_vec(),
+            ends: self.ends,
+        }
+    }
+
     /// Number of rows of each interval.
     #[must_use]
     pub fn stride(&self) -> usize {

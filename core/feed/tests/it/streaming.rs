@@ -7,18 +7,6 @@ use post_feed::{Infeasible, Problem};
 
 use crate::support::random::{self, Random};
 
-/// A part of a problem, from one sample to another.
-fn part(problem: &Problem, first: usize, last: usize) -> Problem {
-    let stride = problem.stride();
-    Problem {
-        steps: problem.steps[first..last].to_vec(),
-        upper: problem.upper[first..=last].to_vec(),
-        causes: problem.causes[first..=last].to_vec(),
-        rows: problem.rows[first * stride..last * stride].to_vec(),
-        ..problem.clone()
-    }
-}
-
 /// The plan in batches of random length, and how many samples depended on what lies behind the look-ahead.
 fn streamed(
     problem: &Problem,
@@ -32,7 +20,7 @@ fn streamed(
     let mut first = 0;
     while first < last {
         let next = (first + random.of(1.0, 300.0) as usize).min(last);
-        stream.push(&part(problem, first, next), &mut |q| plan.push(q))?;
+        stream.push(&problem.part(first, next), &mut |q| plan.push(q))?;
         first = next;
     }
     stream.finish(problem.ends.end, &mut |q| plan.push(q))?;

@@ -17,7 +17,7 @@
 //! points that are rounded, put in and left out). Each by itself; the whole is no more than their sum.
 //!
 //! # The nearest point
-//! It is carried on from set-point to set-point; `path.rs` states which one is meant where the path crosses itself, where
+//! It is carried on from set-point to set-point; `path/nearest.rs` states which one is meant where the path crosses itself, where
 //! the tool cuts a corner, and where it stands.
 
 mod axes;

@@ -7,11 +7,12 @@ use post_machine::description::{BlendRule, Machine};
 use post_machine::kinematics::{Joints, Unreachable};
 
 use super::account::Accounts;
+use super::block::{Block, Part, Why};
 use super::bounds::Bounds;
 use super::corner::{Junction, Side};
 use super::kink;
 use super::law::{Law, Piece, Section, Span};
-use super::look_ahead::{Block, LookAhead, Part, Why};
+use super::look_ahead::LookAhead;
 use super::profile::Phase;
 use super::round::Round;
 use super::{Filled, TaskTime, TimeLimit};

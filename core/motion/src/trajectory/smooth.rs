@@ -16,7 +16,8 @@
 //! standstill at its end, is kept and carried out in its turn where a new plan, which sees more, cannot go on from there
 //! (its knots lie elsewhere).
 
-use super::look_ahead::{LookAhead, Part, Why, at_corner};
+use super::block::{Part, Why};
+use super::envelope::Envelope;
 use super::profile::{Phase, Profile, Ramp};
 
 /// Velocities this near to each other, as a share, are one.
@@ -112,7 +113,7 @@ impl Work {
     }
 
     /// Hands over the parts of the first `done` blocks, or of about as many: of all of them if these are all.
-    pub fn settle(&mut self, ahead: &mut LookAhead, done: usize, take: &mut dyn FnMut(Part)) {
+    pub fn settle(&mut self, ahead: &mut Envelope, done: usize, take: &mut dyn FnMut(Part)) {
         let all = done == ahead.blocks.len();
         loop {
             let planned = self.plan(ahead, Mode::Thinned)
@@ -143,14 +144,14 @@ impl Work {
     }
 
     /// Plans all blocks; false where the run is too fast for what lies ahead, planned like that.
-    fn plan(&mut self, ahead: &mut LookAhead, mode: Mode) -> bool {
+    fn plan(&mut self, ahead: &mut Envelope, mode: Mode) -> bool {
         self.velocities.clear();
         let own = ahead.blocks.iter().map(|block| block.velocity);
         self.velocities.extend(own);
         ahead.set_caps();
-        ahead.envelope();
+        ahead.raise();
         if mode == Mode::Thinned && self.thin(ahead) {
-            ahead.envelope();
+            ahead.raise();
         }
         self.find_knots(ahead);
         let count = self.knots.len();
@@ -176,7 +177,7 @@ impl Work {
     }
 
     /// The velocity in front of the block at `place` is at a bound, and not amid blocks that go at the same.
-    fn is_knot(&self, ahead: &LookAhead, place: usize) -> bool {
+    fn is_knot(&self, ahead: &Envelope, place: usize) -> bool {
         let cap = ahead.caps[place];
         let met = ahead.squares[place] >= cap * cap * (1.0 - SAME);
         let level = |velocity: f64| velocity <= cap * (1.0 + SAME);
@@ -184,7 +185,7 @@ impl Work {
     }
 
     /// Brings knots that are closer than an acceleration takes to rise to the least of their velocities; true if any.
-    fn thin(&mut self, ahead: &mut LookAhead) -> bool {
+    fn thin(&mut self, ahead: &mut Envelope) -> bool {
         let count = ahead.blocks.len();
         let mut lowered = false;
         let mut place = 1;
@@ -230,7 +231,7 @@ impl Work {
         lowered
     }
 
-    fn find_knots(&mut self, ahead: &LookAhead) {
+    fn find_knots(&mut self, ahead: &Envelope) {
         let count = ahead.blocks.len();
         self.knots.clear();
         for place in 0..=count {
@@ -240,7 +241,7 @@ impl Work {
             self.knots.push(Knot {
                 place,
                 velocity: ahead.squares[place].sqrt(),
-                corner: at_corner(ahead, place),
+                corner: ahead.at_corner(place),
                 ..Knot::default()
             });
         }
@@ -252,7 +253,7 @@ impl Work {
     }
 
     /// A knot with what follows on it up to the block at `next`.
-    fn up_to(&self, ahead: &LookAhead, knot: Knot, next: usize) -> Knot {
+    fn up_to(&self, ahead: &Envelope, knot: Knot, next: usize) -> Knot {
         let mut knot = Knot {
             place: knot.place,
             velocity: knot.velocity,
@@ -272,7 +273,7 @@ impl Work {
         knot
     }
 
-    fn lay_hills(&mut self, ahead: &LookAhead) {
+    fn lay_hills(&mut self, ahead: &Envelope) {
         self.steps.clear();
         for index in 0..self.knots.len() - 1 {
             self.lay(ahead, self.knots[index], self.knots[index + 1]);
@@ -280,7 +281,7 @@ impl Work {
     }
 
     /// One hill, or several where these are gone over sooner.
-    fn lay(&mut self, ahead: &LookAhead, knot: Knot, next: Knot) {
+    fn lay(&mut self, ahead: &Envelope, knot: Knot, next: Knot) {
         let profile = knot.profile(next.velocity);
         if let Some((knot, middle)) = self.split(ahead, &knot, &next, profile.seconds()) {
             self.lay(ahead, knot, middle);
@@ -313,7 +314,7 @@ impl Work {
     /// A hill in two where its blocks are least alike, if that takes less than `seconds`.
     fn split(
         &self,
-        ahead: &LookAhead,
+        ahead: &Envelope,
         knot: &Knot,
         next: &Knot,
         seconds: f64,
@@ -348,7 +349,7 @@ impl Work {
 
     /// How many steps are carried out where the control has seen enough of the first `done` blocks: to the last place in
     /// them where the plan can be left, else to the next.
-    fn leave(&mut self, ahead: &LookAhead, done: usize) -> usize {
+    fn leave(&mut self, ahead: &Envelope, done: usize) -> usize {
         let wanted: f64 = (0..done).map(|place| ahead.left(place)).sum();
         let mut covered = 0.0;
         let mut best = 0;
@@ -388,7 +389,7 @@ impl Work {
     /// Hands over the first `count` steps block by block; how many blocks are behind.
     fn carry_out(
         &mut self,
-        ahead: &mut LookAhead,
+        ahead: &mut Envelope,
         count: usize,
         take: &mut dyn FnMut(Part),
     ) -> usize {

@@ -94,7 +94,7 @@ impl Planner {
     /// Takes the next task.
     ///
     /// # Errors
-    /// The axes cannot follow the move's way: see [`Way::stance_at`].
+    /// The axes cannot follow the move's way: see [`Way::stance_at`](crate::path::Way::stance_at).
     pub fn push(&mut self, task: Task) -> Result<(), Unreachable> {
         let number = self.tasks;
         self.tasks += 1;

@@ -28,11 +28,6 @@ use crate::job::{self, plugin_finder};
 use crate::terminal;
 use parts::Split;
 
-const SUMMARY: Role = Role {
-    what: "summary",
-    remedy: "name another file with --summary",
-};
-
 const SETUP_SHEET: Role = Role {
     what: "setup sheet",
     remedy: "name another file with --setup-sheet",
@@ -135,7 +130,12 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         .iter()
         .map(|part| (Role::PROGRAM, &part.target))
         .collect();
-    targets.extend(arguments.summary.iter().map(|summary| (SUMMARY, summary)));
+    targets.extend(
+        arguments
+            .summary
+            .iter()
+            .map(|summary| (Role::SUMMARY, summary)),
+    );
     targets.extend(
         arguments
             .setup_sheet

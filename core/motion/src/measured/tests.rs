@@ -235,6 +235,40 @@ fn a_track_is_a_cubic_between_its_samples() {
     assert!(track.at(2.0).is_some());
 }
 
+/// Trapezoids of velocity whose corners lie anywhere between samples: the cubic is about as far off as is told, and closer
+/// than straight lines.
+#[test]
+fn what_lies_between_samples_is_told() {
+    let (period, acceleration) = (0.01, 2000.0);
+    let trapezoid = |time: f64| {
+        let [rises, falls, stands] =
+            [0.1003, 0.4007, 0.501].map(|begins: f64| (time - begins).max(0.0));
+        let mut joints = Joints::default();
+        joints[0] = acceleration / 2.0 * (time.max(0.0) * time.max(0.0) - rises * rises);
+        joints[0] -= acceleration / 2.0 * (falls * falls - stands * stands);
+        joints
+    };
+    let track = track(-0.2, period, 1.0, trapezoid);
+    let [mut cubic, mut straight] = [0.0_f64; 2];
+    for place in 1..track.joints.len() {
+        assert_eq!(track.towards(place, 8).count(), 8);
+        for (step, joints) in track.towards(place, 8).enumerate() {
+            let share = (step + 1) as f64 / 8.0;
+            let exact = trapezoid(track.time(place - 1) + share * period)[0];
+            cubic = cubic.max((joints[0] - exact).abs());
+            let [left, right] = [place - 1, place].map(|place| track.joints[place][0]);
+            straight = straight.max((left + share * (right - left) - exact).abs());
+        }
+    }
+    assert!(track.towards(0, 3).all(|joints| joints == track.joints[0]));
+    let told = track.between()[0].most.abs();
+    let unit = acceleration * period * period;
+    assert!((0.124..0.126).contains(&(straight / unit)), "{straight}");
+    assert!((0.035..0.042).contains(&(cubic / unit)), "{cubic}");
+    assert!((0.8..1.4).contains(&(cubic / told)), "{cubic} {told}");
+    assert_eq!(track.between()[1].most, 0.0);
+}
+
 #[test]
 fn differences_are_summed_up() {
     let mut difference = Difference::default();

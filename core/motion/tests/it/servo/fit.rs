@@ -80,6 +80,7 @@ fn fitted(
     let names: Vec<&str> = wrong.iter().map(|(name, _)| *name).collect();
     let log = Log {
         period: PERIOD,
+        steps: 1,
         commanded,
         measured,
         lead,
@@ -261,6 +262,7 @@ fn what_cannot_be_fitted_is_refused() {
     let commanded = lively();
     let log = Log {
         period: PERIOD,
+        steps: 1,
         commanded: &commanded,
         measured: &commanded,
         lead: 0,

@@ -55,6 +55,12 @@ pub fn contour(report: &ContourReport, against_a_path: bool) -> ContourFound {
         tip_mm: spread(tip, 1.0),
         axis_deg: spread(axis, 1f64.to_degrees()),
         parts,
+        left_out_mm: Extreme {
+            value: report.missed.value,
+            limit: None,
+            nc_line: report.missed.line,
+            time_s: report.missed.time,
+        },
     }
 }
 

@@ -41,7 +41,8 @@ pub struct MotionRules {
 /// Time between set-points where the file does not say, s.
 const PERIOD: f64 = 0.001;
 
-/// Longer periods are slips, s.
+/// Shorter and longer periods are slips, s.
+const SHORTEST: f64 = 1e-5;
 const LONGEST: f64 = 1.0;
 
 /// Blocks that are looked ahead where the file does not say, and the most.
@@ -55,13 +56,13 @@ impl Builder<'_> {
         let period = match &file.period {
             None => PERIOD,
             Some(period) => {
-                let value = self.above_zero_of("period", period).unwrap_or(PERIOD);
-                if value > LONGEST {
+                let value = self.number(period);
+                if !(SHORTEST..=LONGEST).contains(&value) {
                     self.fault(
                         "machine-motion",
                         period.span(),
                         format!(
-                            "[motion] period is {} s; at most {LONGEST} s is possible",
+                            "[motion] period is {} s; from {SHORTEST} to {LONGEST} s is possible",
                             Short(value)
                         ),
                         "periods of controls are 0.0005 to 0.02 s: the unit is seconds",

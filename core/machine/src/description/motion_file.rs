@@ -10,8 +10,8 @@ use super::quantity::{Number, Quantity};
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MotionFile {
-    /// Time from one set-point of the axes to the next (interpolation cycle, IPO), s; 0.001 if not said.
-    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    /// Time from one set-point of the axes to the next (interpolation cycle, IPO), s, 0.00001 to 1; 0.001 if not said.
+    #[schemars(with = "Option<Number>", extend("minimum" = 0.00001, "maximum" = 1))]
     pub period: Option<Quantity>,
     /// The control prepares no more than one block in this time, s; 0 if not said.
     #[schemars(with = "Option<Number>", extend("minimum" = 0))]

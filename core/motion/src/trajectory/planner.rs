@@ -34,6 +34,8 @@ pub struct Planner {
     /// Some jerk is limited.
     jerk: bool,
     blend: BlendRule,
+    /// The control looks beyond the block in progress; else it stands still at the end of each.
+    sees_on: bool,
     block_time: f64,
     law: Law,
     ahead: LookAhead,
@@ -74,6 +76,7 @@ impl Planner {
             jerk,
             blend: rules.blend,
             block_time: rules.block_time,
+            sees_on: rules.look_ahead > 1,
             ahead: LookAhead::new(rules.look_ahead, jerk),
             accounts: Accounts::default(),
             last: None,
@@ -182,7 +185,7 @@ impl Planner {
         let mut entry = self.entry(&task, found, asked, at);
         let junction = self.last.as_ref().map_or(Junction::Stop, |last| {
             let first = self.law.task(last.number);
-            match Arc::ptr_eq(&first.solver, &task.solver) {
+            match self.sees_on && Arc::ptr_eq(&first.solver, &task.solver) {
                 false => Junction::Stop,
                 true => Junction::between(
                     [last.side(first), entry.side(&task)],

@@ -90,6 +90,13 @@ pub fn assumed(machine: &Machine) -> Vec<String> {
             if without.len() == 1 { "s" } else { "" }
         ));
     }
+    let lags = without.len() < machine.axes.len();
+    if lags && machine.motion.in_position == 0.0 {
+        assumed.push(
+            "an exact stop is over when the commanded position stands: [motion] in_position"
+                .to_owned(),
+        );
+    }
     assumed
 }
 

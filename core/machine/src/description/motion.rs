@@ -32,6 +32,8 @@ pub struct MotionRules {
     pub blend: BlendRule,
     /// How it passes into and out of rapids.
     pub rapids: RapidRule,
+    /// It waits so long wherever it stands still between two moves, until its axes are in position, s.
+    pub in_position: f64,
     /// A tool change takes so long, s.
     pub tool_change: f64,
     /// The program waits so long where the spindle starts, stops or changes its sense, s.
@@ -108,6 +110,7 @@ impl Builder<'_> {
             corner_tolerance,
             blend: file.blend,
             rapids: file.rapids,
+            in_position: seconds("in_position", &file.in_position),
             tool_change: seconds("tool_change", &file.tool_change),
             spindle: seconds("spindle", &file.spindle),
         }

@@ -46,6 +46,10 @@ pub(crate) struct MotionFile {
     /// Whether it passes into and out of rapids without standing still; stop if not said.
     #[serde(default)]
     pub rapids: RapidRule,
+    /// It waits so long wherever it stands still between two moves, until its axes are in position (exact stop), s; 0 if
+    /// not said: it goes on as soon as the commanded position stands.
+    #[schemars(with = "Option<Number>", extend("minimum" = 0))]
+    pub in_position: Option<Quantity>,
     /// A tool change takes so long, s; 0 if not said.
     #[schemars(with = "Option<Number>", extend("minimum" = 0))]
     pub tool_change: Option<Quantity>,

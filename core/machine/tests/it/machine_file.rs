@@ -403,7 +403,7 @@ const SLIPS: &[Slip] = &[
         "tolerance = 0.005",
         "tolerance = 0.005\n\n[motion]\nperiod = 0",
         "52 0",
-        "period is 0; it must be above zero",
+        "period is 0 s; from 0.00001 to 1 s is possible",
         true,
     ),
     (

@@ -36,6 +36,8 @@ pub struct Planner {
     blend: BlendRule,
     /// The control looks beyond the block in progress; else it stands still at the end of each.
     sees_on: bool,
+    /// How long it waits where it stands still between moves, s.
+    in_position: f64,
     block_time: f64,
     law: Law,
     ahead: LookAhead,
@@ -77,6 +79,7 @@ impl Planner {
             blend: rules.blend,
             block_time: rules.block_time,
             sees_on: rules.look_ahead > 1,
+            in_position: rules.in_position,
             ahead: LookAhead::new(rules.look_ahead, jerk),
             accounts: Accounts::default(),
             last: None,
@@ -132,13 +135,19 @@ impl Planner {
     /// Stands at an end of a move.
     fn wait(&mut self, entry: u64, end: f64, seconds: f64, at: At) {
         self.accounts.skip(self.clock);
+        self.rest(entry, end, seconds, at, TimeLimit::Wait);
+        self.accounts.border(self.clock);
+    }
+
+    /// The machine stands at a place of a move.
+    fn rest(&mut self, entry: u64, end: f64, seconds: f64, at: At, why: TimeLimit) {
         let piece = self.law.push_piece(Piece {
             entry,
             span: Span::Along { from: end, to: end },
             length: 1.0,
             at,
             second: at.task,
-            by: [TimeLimit::Wait; 3],
+            by: [why; 3],
             border: None,
         });
         let phase = Phase {
@@ -155,8 +164,7 @@ impl Planner {
         });
         self.clock += seconds;
         self.before = self.clock;
-        self.accounts.spend(at.task, seconds, 0.0, TimeLimit::Wait);
-        self.accounts.border(self.clock);
+        self.accounts.spend(at.task, seconds, 0.0, why);
     }
 
     fn push_move(&mut self, task: Move, number: u64) -> Result<(), Unreachable> {

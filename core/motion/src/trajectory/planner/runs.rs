@@ -21,9 +21,18 @@ impl Planner {
     pub(super) fn stop(&mut self) {
         if let Some(last) = self.last.take() {
             self.along(&last, 0.0, Junction::Stop);
-            self.finish();
-            self.accounts.border(self.clock);
+            self.stand(&last);
         }
+    }
+
+    /// At an exact stop the control waits until its axes are in position.
+    fn stand(&mut self, last: &Entry) {
+        self.finish();
+        if self.in_position > 0.0 {
+            let seconds = self.in_position;
+            self.rest(last.number, 1.0, seconds, last.at, TimeLimit::Corner);
+        }
+        self.accounts.border(self.clock);
     }
 
     /// From the last move into the next one.
@@ -39,10 +48,7 @@ impl Planner {
         };
         self.along(&last, out, junction);
         match junction {
-            Junction::Stop => {
-                self.finish();
-                self.accounts.border(self.clock);
-            }
+            Junction::Stop => self.stand(&last),
             Junction::Overlap { rate, change } => {
                 let earliest = self.clock.max(self.before);
                 self.finish();

@@ -39,7 +39,7 @@ use axes::AxesPeaks;
 pub use axes::AxisPeaks;
 use course::Course;
 pub use leg::{Leg, Reference};
-use path::{Knot, Path};
+use path::{Knot, Passed, Path};
 pub use report::{AskedPoint, ContourPoint, ContourReport};
 use spline::Five;
 pub use spread::{Peak, Spread};
@@ -265,34 +265,77 @@ impl<'r> Contour<'r> {
 }
 
 impl Contour<'_> {
-    /// What lies between the commanded path and what is asked for.
-    fn parts(&mut self, told: &mut ContourPoint, mut way: f64) {
-        let asked = self.programmed.follow(&told.nearest, way, &mut || None);
-        if let Some(asked) = &asked {
-            told.interpolation = asked.distance;
-            way = asked.way;
+    /// What lies between the commanded path and what is asked for: where the tool is nearest to it, and on the way there
+    /// since the last set-point, which a tool that lags cuts off at a corner.
+    fn parts(&mut self, told: &mut ContourPoint, way: f64) {
+        let mut left = way;
+        let mut most = Apart::default();
+        for place in 0..self.path.passed.len() {
+            let Passed { tip, axis, way } = self.path.passed[place];
+            let pose = Pose {
+                tip,
+                axis,
+                edge: Vector3::zeros(),
+            };
+            left -= way;
+            most = most.or(self.apart(&pose, way));
         }
-        let Some(reference) = &mut self.reference else {
+        most = most.or(self.apart(&told.nearest, left.max(0.0)));
+        told.interpolation = most.interpolation;
+        if self.reference.is_none() {
             return;
-        };
-        let mut programmed = told.nearest;
-        if let Some(asked) = &asked {
-            let axis = self.programmed.axis(&told.nearest, asked);
-            (programmed.tip, programmed.axis) = (asked.tip, axis);
         }
-        let program = self
-            .asked
-            .follow(&programmed, way, &mut || reference.next());
         let beside = self.asked.beside(&told.actual);
-        if let (Some(program), Some(asked)) = (program, beside) {
+        if let (Some(program), Some(asked)) = (most.program, beside) {
             let axis = self.asked.axis(&told.actual, &asked);
             told.asked = Some(AskedPoint {
                 at: asked.at,
                 error: told.actual.tip - asked.tip,
                 distance: asked.distance,
                 axis: angle(&told.actual.axis, &axis),
-                program: program.distance,
+                program,
             });
+        }
+    }
+
+    /// How far a place of the commanded path, `way` mm along it from the last one, is off what is asked for.
+    fn apart(&mut self, commanded: &Pose, mut way: f64) -> Apart {
+        let mut programmed = *commanded;
+        let mut apart = Apart::default();
+        if let Some(asked) = self.programmed.follow(commanded, way, &mut || None) {
+            apart.interpolation = asked.distance;
+            way = asked.way;
+            let axis = self.programmed.axis(commanded, &asked);
+            (programmed.tip, programmed.axis) = (asked.tip, axis);
+        }
+        if let Some(reference) = &mut self.reference {
+            let program = self
+                .asked
+                .follow(&programmed, way, &mut || reference.next());
+            apart.program = program.map(|program| program.distance);
+        }
+        apart
+    }
+}
+
+/// Distances between paths, mm.
+#[derive(Clone, Copy, Debug, Default)]
+struct Apart {
+    /// Of the commanded path from that of the program.
+    interpolation: f64,
+    /// Of that from the CL path; none where it is not known.
+    program: Option<f64>,
+}
+
+impl Apart {
+    /// The larger ones.
+    fn or(self, other: Self) -> Self {
+        Self {
+            interpolation: self.interpolation.max(other.interpolation),
+            program: match (self.program, other.program) {
+                (Some(one), Some(other)) => Some(one.max(other)),
+                (one, other) => one.or(other),
+            },
         }
     }
 }

@@ -51,6 +51,15 @@ pub(super) struct Foot {
     pub distance: f64,
 }
 
+/// A set-point that the place has passed without standing on it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passed {
+    pub tip: Vector3<f64>,
+    pub axis: Vector3<f64>,
+    /// Along the path from the place or the set-point before, mm.
+    pub way: f64,
+}
+
 /// The path.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Path {
@@ -58,6 +67,8 @@ pub(super) struct Path {
     /// The pieces behind all knots but the last; none where there is a gap.
     pieces: VecDeque<Option<Cubic>>,
     foot: Foot,
+    /// Knots in cuts that the tool has passed since it was looked for the last time.
+    pub passed: Vec<Passed>,
 }
 
 impl Path {
@@ -120,6 +131,23 @@ impl Path {
         self.foot = foot;
         if foot.knot > 2 * BEHIND {
             self.drop_first(BEHIND);
+        }
+    }
+
+    /// Keeps what lies between where the tool was and where it has come to.
+    fn pass(&mut self, next: Foot) {
+        self.passed.clear();
+        let mut length = self.length(self.foot);
+        for knot in self.foot.knot + 1..next.knot {
+            let knot = &self.knots[knot];
+            if knot.at.cuts {
+                self.passed.push(Passed {
+                    tip: knot.tip,
+                    axis: knot.axis,
+                    way: (knot.length - length).max(0.0),
+                });
+                length = knot.length;
+            }
         }
     }
 

@@ -87,6 +87,7 @@ impl Path {
         let (tied, axis) = self.tied(actual, foot);
         let at = self.at(tied);
         let way = (self.length(tied) - self.length(self.foot)).max(0.0);
+        self.pass(tied);
         self.stand(tied);
         Nearest {
             way,

@@ -182,3 +182,35 @@ fn a_stop_takes_as_long_as_axes_need_to_be_in_position() {
     assert!((longer - plain - 0.75).abs() < 1e-9, "{plain} {longer}");
     assert_eq!(limit, TimeLimit::Corner);
 }
+
+/// The motion that stands still at corners keeps every tolerance: no larger one may take longer, but for what is lost by
+/// trying some lengths of a curve and not all.
+#[test]
+fn more_tolerance_is_never_slower_with_jerk_limits() {
+    let (rounds, mut rng) = randomised(40u16, 37);
+    for round in rounds {
+        let limits = format!(
+            "max_feed = 30000, max_accel = {}, max_jerk = {}",
+            rng.order(2.5, 4.0),
+            rng.order(4.0, 5.5)
+        );
+        let machine = trunnion(&limits, &limits, "period = 0.001");
+        let (turn, feed) = (rng.range(0.2, 3.0), rng.order(2.5, 4.3));
+        let seconds = |corner: Corner| {
+            let (program, _) = square(&machine, turn, corner, feed);
+            let run = run(&machine, &program.tasks, &program.solver, 1000);
+            let last = run.times.last().expect("moves");
+            last.begins + last.seconds
+        };
+        let mut least = seconds(Corner::Stop).min(seconds(Corner::Path));
+        for tolerance in [0.001, 0.01, 0.05, 0.2, 1.0, 5.0] {
+            let tolerance = Some(tolerance);
+            let now = seconds(Corner::Blend { tolerance });
+            assert!(
+                now <= least * 1.05,
+                "{round} {turn} {feed} {limits} {tolerance:?}: {now}, {least} with less"
+            );
+            least = least.min(now);
+        }
+    }
+}

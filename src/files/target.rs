@@ -22,6 +22,30 @@ impl Role {
         what: "program",
         remedy: "name another file with -o",
     };
+
+    /// A CL file that is written.
+    pub const CL: Self = Self {
+        what: "CL file",
+        remedy: "name another file with --cl",
+    };
+
+    /// What was found, as JSON beside an NC program.
+    pub const SUMMARY: Self = Self {
+        what: "summary",
+        remedy: "name another file with --summary",
+    };
+
+    /// What is printed, as JSON.
+    pub const JSON: Self = Self {
+        what: "JSON",
+        remedy: "name another file with --json",
+    };
+
+    /// A picture, as SVG.
+    pub const PICTURE: Self = Self {
+        what: "picture",
+        remedy: "name another file with --svg",
+    };
 }
 
 /// What a text becomes at the end.

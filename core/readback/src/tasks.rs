@@ -109,7 +109,7 @@ impl Tasks {
             ),
         ];
         let told = told.into_iter().filter_map(|(line, says)| {
-            let message = format!("line {}: {says}", line?);
+            let message = format!("line {} of the program: {says}", line?);
             Some(Diagnostic::warning("motion-assumed", message))
         });
         told.collect()

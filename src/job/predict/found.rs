@@ -1,7 +1,7 @@
 //! What the stages have found, in the units of the control, and what was taken for granted.
 
 use post_machine::axis_words;
-use post_machine::description::{Axis, Machine};
+use post_machine::description::{Axis, CornerRule, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_motion::contour::{self, ContourReport, Peak};
 use post_motion::limits::AxisLimits;
@@ -55,6 +55,12 @@ pub fn contour(report: &ContourReport, against_a_path: bool) -> ContourFound {
         tip_mm: spread(tip, 1.0),
         axis_deg: spread(axis, 1f64.to_degrees()),
         parts,
+        left_out_mm: Extreme {
+            value: report.missed.value,
+            limit: None,
+            nc_line: report.missed.line,
+            time_s: report.missed.time,
+        },
     }
 }
 
@@ -83,6 +89,19 @@ pub fn assumed(machine: &Machine) -> Vec<String> {
             "without a [servo] {names} stand{} where they are commanded",
             if without.len() == 1 { "s" } else { "" }
         ));
+    }
+    let motion = &machine.motion;
+    if motion.corner == CornerRule::Blend && motion.corner_tolerance.is_none() {
+        assumed.push(
+            "where the program names no tolerance corners are left as far as the control's rule leads: [motion] corner_tolerance".to_owned(),
+        );
+    }
+    let lags = without.len() < machine.axes.len();
+    if lags && machine.motion.in_position == 0.0 {
+        assumed.push(
+            "an exact stop is over when the commanded position stands: [motion] in_position"
+                .to_owned(),
+        );
     }
     assumed
 }

@@ -158,6 +158,9 @@ pub struct ContourFound {
     pub axis_deg: Spread,
     /// What the tip's error is made of, mm.
     pub parts: Vec<Part>,
+    /// How far a place of the commanded path is left beside the way where the tool goes from one leg of a corner to the
+    /// other, mm: from the path to the tool this is the distance, the contour error is that from the tool to the path.
+    pub left_out_mm: Extreme,
 }
 
 /// One part of the contour error.

@@ -32,6 +32,9 @@ const BATCH: usize = 256;
 /// So many blocks that cannot be read are told.
 const MOST_UNREAD: usize = 50;
 
+/// A tool that strays by more from a CL file, mm, hardly cuts its part.
+const OTHER_PART: f64 = 1.0;
+
 /// What a program is predicted with.
 pub struct Asked<'a> {
     /// The command line of the job.
@@ -199,6 +202,18 @@ pub fn predict<R: Read + Seek>(
     told(name, program.report(), &mut findings);
     found::warn(machine, &mut findings);
     let found = stages.finish(machine, name, program.report().blocks, listen)?;
+    if let Some(file) = &found.against
+        && found.contour.tip_mm.largest > OTHER_PART
+    {
+        let message = format!(
+            "the tool strays by {:.3} mm from the path of {file}",
+            found.contour.tip_mm.largest
+        );
+        let help = "is it the CL file that the program was made from, with the same tool length, mount and units? `post verify` says where they part";
+        let place = Place::new(name, found.contour.tip_mm.nc_line, "", 0..0);
+        let finding = Diagnostic::warning("contour-far", message).help(help);
+        findings.push(finding.at(Some(place)));
+    }
     Ok(Predicted {
         found,
         findings,

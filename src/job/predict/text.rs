@@ -86,7 +86,10 @@ fn head(text: &mut String, found: &Prediction) {
     }
     let against = match &found.against {
         Some(file) => format!(", against {file}"),
-        None => ", against the path that is commanded".to_owned(),
+        None => {
+            ", against the path that is commanded; how far that is off the program: interpolation"
+                .to_owned()
+        }
     };
     let contour = &found.contour;
     let tip = Shown {
@@ -104,6 +107,15 @@ fn head(text: &mut String, found: &Prediction) {
     tip.spread(&mut row, &contour.tip_mm);
     for part in &contour.parts {
         row(&format!("  {}", part.part), tip.largest(&part.tip_mm));
+    }
+    let out = &contour.left_out_mm;
+    if out.value > contour.tip_mm.largest {
+        let text = format!(
+            "a corner of the path is passed {} µm beside it, in line {} of the program",
+            tip.number(out.value),
+            out.nc_line
+        );
+        row("", text);
     }
     row("tool axis", axis.largest(&contour.axis_deg));
     axis.spread(&mut row, &contour.axis_deg);

@@ -17,16 +17,6 @@ use crate::files::{self, PathArg, Role};
 use crate::job::{self, machine_files, other_dialect, plugin_finder, unused_options};
 use crate::terminal::{self, print};
 
-const PICTURE: Role = Role {
-    what: "picture",
-    remedy: "name another file with --svg",
-};
-
-const JSON: Role = Role {
-    what: "JSON",
-    remedy: "name another file with --json",
-};
-
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
 ///
 /// What posting would refuse of the file is refused here too: its plugins are opened and given their options.
@@ -212,8 +202,8 @@ fn write(
             .map(|(target, text)| (role, target, text))
     };
     let texts = [
-        of(PICTURE, &arguments.svg, picture),
-        of(JSON, &arguments.json, json),
+        of(Role::PICTURE, &arguments.svg, picture),
+        of(Role::JSON, &arguments.json, json),
     ];
     let texts = texts.iter().flatten();
     let texts: Vec<_> = texts

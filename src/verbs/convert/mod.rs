@@ -132,11 +132,6 @@ pub struct ConvertArguments {
     plugins: Vec<PathBuf>,
 }
 
-const CL: Role = Role {
-    what: "CL file",
-    remedy: "name another file with --cl",
-};
-
 /// Of the tolerance so much is left for the CL file's chords: the rest is what posting may use.
 const CHORDS: f64 = 0.1;
 
@@ -176,7 +171,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
     job::say_what_is_left(&job, &machine, &finder);
 
     let mut targets = vec![(Role::PROGRAM, &arguments.output)];
-    targets.extend(arguments.cl.iter().map(|cl| (CL, cl)));
+    targets.extend(arguments.cl.iter().map(|cl| (Role::CL, cl)));
     let mut files = AtomicFile::create(&targets)?;
     let (program, cl_file) = files.split_at_mut(1);
     let program = &mut program[0];

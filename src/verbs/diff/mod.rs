@@ -90,16 +90,6 @@ pub struct DiffArguments {
     svg: Option<PathArg>,
 }
 
-const JSON: Role = Role {
-    what: "JSON",
-    remedy: "name another file with --json",
-};
-
-const PICTURE: Role = Role {
-    what: "picture",
-    remedy: "name another file with --svg",
-};
-
 /// One of the programs, ready to be read as often as it takes.
 struct Side {
     name: String,
@@ -154,10 +144,10 @@ pub fn run(arguments: &DiffArguments) -> Result<(), Failure> {
     let json = files::json(&found);
     let mut texts = Vec::new();
     if let Some(target) = &arguments.json {
-        texts.push((JSON, target, json.as_str()));
+        texts.push((Role::JSON, target, json.as_str()));
     }
     if let Some(target) = &arguments.svg {
-        texts.push((PICTURE, target, picture.as_str()));
+        texts.push((Role::PICTURE, target, picture.as_str()));
     }
     let taken = files::write(&texts)?;
     warn(&found.unknown);

@@ -56,11 +56,6 @@ pub struct PlaceArguments {
     svg: Option<PathArg>,
 }
 
-const PICTURE: Role = Role {
-    what: "picture",
-    remedy: "name another file with --svg",
-};
-
 /// What is to be small.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Least {
@@ -84,7 +79,7 @@ pub fn run(arguments: &PlaceArguments) -> Result<(), Failure> {
     let found = Search::new(arguments, &mut trials)?.run()?;
     let mut taken = false;
     if let Some(target) = &arguments.svg {
-        taken = files::write(&[(PICTURE, target, &travel_picture::draw(&found))])?;
+        taken = files::write(&[(Role::PICTURE, target, &travel_picture::draw(&found))])?;
     }
     terminal::findings(&found.best.findings);
     let text = place_text::text(arguments, &found);

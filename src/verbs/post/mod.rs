@@ -28,11 +28,6 @@ use crate::job::{self, plugin_finder};
 use crate::terminal;
 use parts::Split;
 
-const SUMMARY: Role = Role {
-    what: "summary",
-    remedy: "name another file with --summary",
-};
-
 const SETUP_SHEET: Role = Role {
     what: "setup sheet",
     remedy: "name another file with --setup-sheet",
@@ -135,7 +130,12 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         .iter()
         .map(|part| (Role::PROGRAM, &part.target))
         .collect();
-    targets.extend(arguments.summary.iter().map(|summary| (SUMMARY, summary)));
+    targets.extend(
+        arguments
+            .summary
+            .iter()
+            .map(|summary| (Role::SUMMARY, summary)),
+    );
     targets.extend(
         arguments
             .setup_sheet
@@ -175,7 +175,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             &mut source,
             file,
         )?;
-        compensations.extend(compensated.map(|compensated| compensated.found));
+        compensations.extend(compensated.as_ref().map(|found| found.found.clone()));
         // What is wrong with the file is found again in each of its parts.
         for finding in found {
             if !findings.contains(&finding) {
@@ -187,7 +187,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             None => return Err(findings.into()),
         }
         if arguments.verify {
-            let held = read_back(arguments, part, &finder, &mut source, file)?;
+            let moved = compensated.is_some_and(|found| found.moves.is_some());
+            let held = read_back((arguments, moved), part, &finder, &mut source, file)?;
             if held.is_wrong() {
                 findings.extend(held.findings);
                 return Err(findings.into());
@@ -351,7 +352,7 @@ fn the_parts(
 
 /// Reads a program back from the disk and holds it against the CL file.
 fn read_back(
-    arguments: &PostArguments,
+    (arguments, moved): (&PostArguments, bool),
     part: &Part,
     finder: &Finder,
     source: &mut ClSource,
@@ -359,8 +360,7 @@ fn read_back(
 ) -> Result<Held, Failure> {
     // What was moved on purpose is off the CL file by that.
     let accuracy = &part.machine.accuracy;
-    let bound = accuracy.servo_compensation;
-    let bound = bound.filter(|_| arguments.compensate_servo);
+    let bound = accuracy.servo_compensation.filter(|_| moved);
     let moved = bound.map(|bound| accuracy.tolerance + bound);
     let reading = Reading {
         arguments: &arguments.job,

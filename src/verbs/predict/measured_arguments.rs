@@ -27,8 +27,8 @@ pub struct MeasuredArguments {
     #[arg(long, value_name = "LIST", value_parser = column_names, requires = "measured")]
     columns: Option<ColumnNames>,
 
-    /// Units of the log, where its head does not say them (`X [mm]`, `t_ms`, or a line of units below the names) and they are not
-    /// s, mm, deg: s, ms or us; mm, um, m or inch; deg or rad.
+    /// Units of the log, where its head does not say them, as X (mm), t_ms or a line of units below the names do, and they
+    /// are not s, mm, deg: s, ms or us; mm, um, m or inch; deg or rad.
     #[arg(long, value_name = "LIST", value_parser = log_units, requires = "measured")]
     log_units: Option<LogUnits>,
 

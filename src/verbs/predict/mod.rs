@@ -103,11 +103,6 @@ const SET_POINTS: Role = Role {
     remedy: "name another file with --csv",
 };
 
-const SUMMARY: Role = Role {
-    what: "summary",
-    remedy: "name another file with --summary",
-};
-
 const PICTURES: Role = Role {
     what: "prediction",
     remedy: "name another folder with --pictures",
@@ -146,7 +141,12 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     let mut overlay = arguments.measured.overlay(&machine, period)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.csv.iter().map(|target| (SET_POINTS, target)));
-    targets.extend(arguments.summary.iter().map(|target| (SUMMARY, target)));
+    targets.extend(
+        arguments
+            .summary
+            .iter()
+            .map(|target| (Role::SUMMARY, target)),
+    );
     let mut texts = AtomicFile::create(&targets)?;
     let asked = predict::Asked {
         arguments: &arguments.job,

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::pictures::file_name;
 use super::trail::Spot;
 use crate::files::svg::{self, label};
 use crate::files::{PlanView, round_step};
@@ -90,7 +91,7 @@ pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
     let long = bar * times * picture.view.scale();
     let foot = TOP + SIZE[1] + TICKS;
     picture.line(&[[LEFT, foot], [LEFT + 38.0, foot]], "#777777", 1.0);
-    picture.text([LEFT + 46.0, foot + 4.5], "commanded path");
+    picture.text([LEFT + 46.0, foot + 4.5], &path_of(found));
     picture.line(
         &[[LEFT + 190.0, foot], [LEFT + 228.0, foot]],
         "#000000",
@@ -150,6 +151,14 @@ pub fn path(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
         picture.text([left + 46.0, foot + 4.5], &text);
     }
     picture.end()
+}
+
+/// Which path the error is held against.
+fn path_of(found: &Prediction) -> String {
+    match &found.against {
+        Some(file) => format!("path of {}", file_name(file)),
+        None => "commanded path".to_owned(),
+    }
 }
 
 /// A length in micrometres, with as many decimals as it needs.

@@ -107,7 +107,10 @@ impl Rooms {
             });
         self.lags.take(sample.point.time, lags);
         for (axis, spectrum) in self.axes.iter().zip(&mut self.spectra) {
-            spectrum.take(lag(axis));
+            match sample.at.cuts {
+                true => spectrum.take(lag(axis)),
+                false => spectrum.pause(),
+            }
         }
         let feeds = match sample.feed > 0.0 {
             true => [sample.feed, sample.programmed],
@@ -274,7 +277,7 @@ impl Rooms {
             return None;
         }
         Some(Panels {
-            title: "Spectrum of the axis errors: amplitude by frequency".to_owned(),
+            title: "Spectrum of the axis errors in cuts: amplitude by frequency".to_owned(),
             note: note.to_owned(),
             x: "frequency, Hz".to_owned(),
             logarithmic: true,

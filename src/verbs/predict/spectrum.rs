@@ -1,12 +1,13 @@
 //! Which frequencies the errors of the axes have: amplitudes by Welch's method, averaged over windows that overlap by
-//! half (P. D. Welch, The use of fast Fourier transform for the estimation of power spectra, 1967), Hann's window.
+//! half (P. D. Welch, The use of fast Fourier transform for the estimation of power spectra, 1967), Hann's window. What the
+//! axes do between cuts does not count: a window lies in one run of cuts.
 
 use std::f64::consts::TAU;
 
 use post_motion::fourier;
 
-/// A window is about so long, s: frequencies are told apart by half a hertz.
-const SECONDS: f64 = 2.0;
+/// A window is about so long, s: frequencies are told apart by a hertz or two.
+const SECONDS: f64 = 1.0;
 
 /// Set-points in a window, as powers of two.
 const POWERS: [i32; 2] = [7, 13];
@@ -60,6 +61,11 @@ impl Spectrum {
         }
     }
 
+    /// A run of values ends.
+    pub fn pause(&mut self) {
+        self.waiting.clear();
+    }
+
     fn window(&mut self) {
         // A constant error would hide the lowest frequencies behind it.
         let mean = self.waiting.iter().sum::<f64>() / self.waiting.len() as f64;
@@ -103,7 +109,7 @@ mod tests {
         let period = 1e-3;
         let mut spectrum = Spectrum::new(period);
         // In the middle of a frequency of the transform.
-        let frequency = 100.0 / (2048.0 * period);
+        let frequency = 100.0 / (1024.0 * period);
         for step in 0..20_000_u32 {
             let time = f64::from(step) * period;
             spectrum.take(0.5 + 0.003 * libm::sin(TAU * frequency * time + 0.4));

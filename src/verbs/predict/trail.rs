@@ -10,7 +10,7 @@ const MOST_SPOTS: usize = 4000;
 pub struct Spot {
     /// Which cut it belongs to: between two of them the tool goes at rapid.
     pub cut: u64,
-    /// Where the tip is meant to be, mm, part frame.
+    /// The place of the path that the tool is nearest to, mm, part frame.
     pub tip: [f64; 3],
     /// How far it is off, mm, part frame.
     pub error: [f64; 3],
@@ -67,10 +67,11 @@ impl Trail {
         if self.shares.len() <= place {
             self.shares.resize(place + 1, None);
         }
+        let (actual, error) = (sample.point.actual.tip, sample.error());
         let spot = Spot {
             cut: self.cut,
-            tip,
-            error: sample.error(),
+            tip: std::array::from_fn(|axis| actual[axis] - error[axis]),
+            error,
             size: sample.size(),
         };
         self.shares[place] = worse(self.shares[place], Some(spot));

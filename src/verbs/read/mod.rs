@@ -74,11 +74,6 @@ pub struct ReadArguments {
     cl: Option<PathArg>,
 }
 
-const CL: Role = Role {
-    what: "CL file",
-    remedy: "name another file with --cl",
-};
-
 /// Of the machine's tolerance so much is used by chords of curves that no record of a CL file has.
 const CHORDS: f64 = 0.1;
 
@@ -94,7 +89,7 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
     let mut program = control.run(&name, nc_program::again(&name, &input)?)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.csv.iter().map(|target| (MOTIONS, target)));
-    targets.extend(arguments.cl.iter().map(|target| (CL, target)));
+    targets.extend(arguments.cl.iter().map(|target| (Role::CL, target)));
     let mut files = AtomicFile::create(&targets)?;
     let (tables, cl_files) = files.split_at_mut(usize::from(arguments.csv.is_some()));
     let mut csv = tables

@@ -77,11 +77,6 @@ const MAP: Role = Role {
     remedy: "name another file with --map",
 };
 
-const SUMMARY: Role = Role {
-    what: "summary",
-    remedy: "name another file with --summary",
-};
-
 /// Verifies as the arguments say.
 pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let machine = job::machine(&arguments.job, &[])?;
@@ -97,7 +92,12 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let mut source = ClSource::new(arguments.job.input(), true)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.map.iter().map(|map| (MAP, map)));
-    targets.extend(arguments.summary.iter().map(|summary| (SUMMARY, summary)));
+    targets.extend(
+        arguments
+            .summary
+            .iter()
+            .map(|summary| (Role::SUMMARY, summary)),
+    );
     let mut texts = AtomicFile::create(&targets)?;
     let reading = Reading {
         arguments: &arguments.job,

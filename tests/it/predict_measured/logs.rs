@@ -8,10 +8,6 @@ use crate::common::{assert_contains, command, root, run};
 /// What the closed forms and Runge and Kutta leave of the code under test, mm and degrees.
 const EXACT: f64 = 4e-4;
 
-/// The same where rows are 2.5 ms apart: commands are taken for straight between them, which leaves an eighth of
-/// acceleration times their distance squared, 1.6 µm at 2000 mm/s².
-const COARSE: f64 = 2e-3;
-
 /// Axes at the same time, and following errors, as measured and as predicted.
 #[track_caller]
 fn agrees(found: &Value, axes: &[&str], within: f64) {
@@ -190,7 +186,7 @@ fn an_approach_from_elsewhere_moves_neither_clock_nor_zeros() {
         1e-4,
     );
     close(&axis(&found, "Z")["zero"], 500.0, 1e-3);
-    agrees(&found, &["X", "Y", "C"], COARSE);
+    agrees(&found, &["X", "Y", "C"], EXACT);
     assert_contains(
         &run.err,
         &[
@@ -210,7 +206,7 @@ fn rows_of_one_period_without_times_and_rounded_times() {
     let shop = Shop::new(MILL, &without);
     let (_, found) = shop.found(&["--log-period", "0.0025"]);
     close(&found["measured"]["shift_s"], super::plant::REST, 1e-5);
-    agrees(&found, &["X", "Y", "Z", "C"], COARSE);
+    agrees(&found, &["X", "Y", "Z", "C"], EXACT);
     // Milliseconds without decimals: every second row is half a millisecond late.
     let rounded: String = log
         .lines()
@@ -229,7 +225,7 @@ fn rows_of_one_period_without_times_and_rounded_times() {
     let (run, found) = shop.found(&[]);
     assert_eq!(found["measured"]["rounded_times"], true);
     close(&found["measured"]["shift_s"], 3.21, 6e-4);
-    agrees(&found, &["X", "Y", "Z", "C"], COARSE);
+    agrees(&found, &["X", "Y", "Z", "C"], EXACT);
     assert_contains(
         &run.out,
         &["rounded; rows are taken to lie at even distances"],
@@ -386,4 +382,29 @@ fn a_log_of_linuxcnc_lies_over_its_prediction() {
             "was tool centre point control on",
         ],
     );
+}
+
+#[test]
+fn what_rows_that_are_far_apart_leave_open_is_said() {
+    let (_, log) = recorded(|recorder| recorder.period = 0.01);
+    let shop = Shop::new(MILL, &log);
+    let (run, found) = shop.found(&[]);
+    assert_contains(
+        &run.err,
+        &[
+            "rows of log.csv are 10.00 ms apart, set-points of the control 1.00 ms",
+            "is beside them by up to about X 0.0",
+        ],
+    );
+    // Acceleration jumps by up to 4000 mm/s² from block to block; a ramp of 25 ms is short between such rows, so that
+    // what two jumps leave comes together: up to twice 0.035 of it times the square of the rows' distance.
+    let told = number(&axis(&found, "X")["between_rows"]["most"]).abs();
+    assert!((0.007..0.028).contains(&told), "{told}");
+    // It is what is left, but for what the servo smooths.
+    let left = number(&axis(&found, "X")["following"]["most"]).abs();
+    assert!((0.05 * told..1.5 * told).contains(&left), "{left} {told}");
+    // Between set-points nothing is open.
+    let (_, log) = recorded(|_| {});
+    let (_, found) = Shop::new(MILL, &log).found(&[]);
+    assert!(axis(&found, "X")["between_rows"].is_null());
 }

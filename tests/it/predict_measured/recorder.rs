@@ -1,5 +1,7 @@
 //! Logs as recorders write them.
 
+use post_testkit::seeded;
+
 use super::course::AXES;
 use super::plant::{REST, Run};
 
@@ -58,13 +60,13 @@ impl Recorder {
     }
 
     pub fn log(&self, run: &Run) -> String {
-        let mut random = Random(self.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+        let mut random = seeded(self.seed);
         let mut text = self.head.clone();
         let rows = ((self.window[1] - self.window[0]) / self.period) as u64;
         for row in 0..=rows {
-            let late = self.jitter * (2.0 * random.even() - 1.0);
+            let late = random.range(-self.jitter, self.jitter);
             let time = self.window[0] + row as f64 * self.period + late;
-            if random.even() * 1000.0 < self.missing as f64 {
+            if random.range(0.0, 1000.0) < self.missing as f64 {
                 continue;
             }
             let mut numbers = vec![format!("{:.7}", (time + self.shift) * self.units[0])];
@@ -92,22 +94,5 @@ impl Recorder {
             text.push('\n');
         }
         text
-    }
-}
-
-/// Xorshift (G. Marsaglia 2003), and Box and Muller's normal distribution.
-struct Random(u64);
-
-impl Random {
-    fn even(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        let (one, other) = (self.even(), self.even());
-        (-2.0 * libm::log(one)).sqrt() * libm::cos(std::f64::consts::TAU * other)
     }
 }

@@ -58,6 +58,13 @@ impl Rng {
         from + (to - from) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
+    /// Of the standard normal distribution (Box, Muller 1958).
+    pub fn normal(&mut self) -> f64 {
+        // Above 0, whose logarithm is none.
+        let share = 1.0 - self.range(0.0, 1.0);
+        libm::sqrt(-2.0 * libm::log(share)) * libm::cos(self.range(-PI, PI))
+    }
+
     /// Below `count`.
     pub fn pick(&mut self, count: usize) -> usize {
         (self.next() % count as u64) as usize

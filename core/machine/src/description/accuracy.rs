@@ -57,6 +57,9 @@ pub struct ControlPoint {
 /// More points than this in one move are a slip.
 const MOST_POINTS: i64 = 999;
 
+/// No point is moved by more to make up for servos, mm: more is a slip of the unit.
+const MOST_COMPENSATION: f64 = 1.0;
+
 impl Builder<'_> {
     pub(super) fn accuracy(
         &mut self,
@@ -94,10 +97,21 @@ impl Builder<'_> {
             }
             count.clamp(1, MOST_POINTS) as u32
         });
-        let servo_compensation = file
-            .servo_compensation
-            .as_ref()
-            .map(|_| self.tolerance("servo_compensation", &file.servo_compensation, 0.0));
+        let servo_compensation = file.servo_compensation.as_ref().map(|said| {
+            let bound = self.tolerance("servo_compensation", &file.servo_compensation, 0.0);
+            if bound > MOST_COMPENSATION {
+                self.fault(
+                    "machine-accuracy",
+                    said.span(),
+                    format!(
+                        "servo_compensation is {} mm; at most {MOST_COMPENSATION} mm is possible",
+                        Short(bound)
+                    ),
+                    "the unit is mm: 3 µm are 0.003",
+                );
+            }
+            bound
+        });
         Accuracy {
             servo_compensation,
             options: options.remove(&model).unwrap_or_default(),

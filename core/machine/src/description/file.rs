@@ -674,7 +674,7 @@ pub(crate) struct AccuracyFile {
     #[schemars(with = "Option<Number>", extend("minimum" = 0, "maximum" = 180))]
     pub corner: Option<Quantity>,
     /// Contour errors that the servos leave may be compensated (`post --compensate-servo`), no point being moved by more
-    /// than this, mm; if not said, they may not.
-    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    /// than this, mm, at most 1; if not said, they may not.
+    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0, "maximum" = 1))]
     pub servo_compensation: Option<Quantity>,
 }

@@ -32,6 +32,8 @@ pub struct MotionRules {
     pub blend: BlendRule,
     /// How it passes into and out of rapids.
     pub rapids: RapidRule,
+    /// It waits so long wherever it stands still between two moves, until its axes are in position, s.
+    pub in_position: f64,
     /// A tool change takes so long, s.
     pub tool_change: f64,
     /// The program waits so long where the spindle starts, stops or changes its sense, s.
@@ -41,7 +43,8 @@ pub struct MotionRules {
 /// Time between set-points where the file does not say, s.
 const PERIOD: f64 = 0.001;
 
-/// Longer periods are slips, s.
+/// Shorter and longer periods are slips, s.
+const SHORTEST: f64 = 1e-5;
 const LONGEST: f64 = 1.0;
 
 /// Blocks that are looked ahead where the file does not say, and the most.
@@ -55,13 +58,13 @@ impl Builder<'_> {
         let period = match &file.period {
             None => PERIOD,
             Some(period) => {
-                let value = self.above_zero_of("period", period).unwrap_or(PERIOD);
-                if value > LONGEST {
+                let value = self.number(period);
+                if !(SHORTEST..=LONGEST).contains(&value) {
                     self.fault(
                         "machine-motion",
                         period.span(),
                         format!(
-                            "[motion] period is {} s; at most {LONGEST} s is possible",
+                            "[motion] period is {} s; from {SHORTEST} to {LONGEST} s is possible",
                             Short(value)
                         ),
                         "periods of controls are 0.0005 to 0.02 s: the unit is seconds",
@@ -107,6 +110,7 @@ impl Builder<'_> {
             corner_tolerance,
             blend: file.blend,
             rapids: file.rapids,
+            in_position: seconds("in_position", &file.in_position),
             tool_change: seconds("tool_change", &file.tool_change),
             spindle: seconds("spindle", &file.spindle),
         }

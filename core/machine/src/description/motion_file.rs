@@ -10,8 +10,8 @@ use super::quantity::{Number, Quantity};
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MotionFile {
-    /// Time from one set-point of the axes to the next (interpolation cycle, IPO), s; 0.001 if not said.
-    #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
+    /// Time from one set-point of the axes to the next (interpolation cycle, IPO), s, 0.00001 to 1; 0.001 if not said.
+    #[schemars(with = "Option<Number>", extend("minimum" = 0.00001, "maximum" = 1))]
     pub period: Option<Quantity>,
     /// The control prepares no more than one block in this time, s; 0 if not said.
     #[schemars(with = "Option<Number>", extend("minimum" = 0))]
@@ -46,6 +46,10 @@ pub(crate) struct MotionFile {
     /// Whether it passes into and out of rapids without standing still; stop if not said.
     #[serde(default)]
     pub rapids: RapidRule,
+    /// It waits so long wherever it stands still between two moves, until its axes are in position (exact stop), s; 0 if
+    /// not said: it goes on as soon as the commanded position stands.
+    #[schemars(with = "Option<Number>", extend("minimum" = 0))]
+    pub in_position: Option<Quantity>,
     /// A tool change takes so long, s; 0 if not said.
     #[schemars(with = "Option<Number>", extend("minimum" = 0))]
     pub tool_change: Option<Quantity>,

@@ -4,10 +4,12 @@
 use std::fs;
 
 use post_machine::description::{
-    BlendRule, CornerRule, LimitsActOn, Machine, RapidRule, Setting, Source, Tcp, load,
+    BlendRule, CornerRule, LimitsActOn, Machine, RapidRule, Setting, Tcp, load,
 };
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_testkit::repository;
+
+use crate::source;
 
 /// A good machine; every refusal changes some of its text.
 const GOOD: &str = r#"name = "trunnion"
@@ -60,13 +62,6 @@ program = 7
 [accuracy]
 tolerance = 0.005
 "#;
-
-fn source(name: &str, text: &str) -> Source {
-    Source {
-        name: name.to_owned(),
-        text: text.to_owned(),
-    }
-}
 
 /// Loads `text` with `settings`; the machine `good` can be extended, and `circle` extends itself.
 fn try_load(text: &str, settings: &[&str]) -> Result<Machine, Vec<Diagnostic>> {
@@ -408,7 +403,7 @@ const SLIPS: &[Slip] = &[
         "tolerance = 0.005",
         "tolerance = 0.005\n\n[motion]\nperiod = 0",
         "52 0",
-        "period is 0; it must be above zero",
+        "period is 0 s; from 0.00001 to 1 s is possible",
         true,
     ),
     (

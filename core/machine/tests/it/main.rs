@@ -15,3 +15,13 @@ mod machine_file;
 mod place;
 mod servo;
 mod tilted_plane;
+
+use post_machine::description::Source;
+
+/// A machine file that is nowhere but here.
+fn source(name: &str, text: &str) -> Source {
+    Source {
+        name: name.to_owned(),
+        text: text.to_owned(),
+    }
+}

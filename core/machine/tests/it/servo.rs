@@ -1,8 +1,10 @@
 //! `[servo.X]`: what it may say, what is refused and where, and that the equations are those of the papers.
 
-use post_machine::description::{Machine, Source, load};
+use post_machine::description::{Machine, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::servo::{Drive, Feedback, ServoModel, StateSpace};
+
+use crate::source;
 
 /// A machine without servos.
 const BARE: &str = r#"name = "two axes"
@@ -70,13 +72,6 @@ gear_damping = 1500
 table_inertia = 12
 "#;
 
-fn source(name: &str, text: String) -> Source {
-    Source {
-        name: name.to_owned(),
-        text,
-    }
-}
-
 /// The bare machine with `servos`; it can extend "parent", which has those of [`LOOPS`].
 fn try_load(servos: &str) -> Result<Machine, Vec<Diagnostic>> {
     let text = format!("{BARE}{servos}");
@@ -84,9 +79,9 @@ fn try_load(servos: &str) -> Result<Machine, Vec<Diagnostic>> {
 }
 
 fn load_text(text: String) -> Result<Machine, Vec<Diagnostic>> {
-    load(source("m.toml", text), &[], &mut |name| {
+    load(source("m.toml", &text), &[], &mut |name| {
         assert_eq!(name, "parent");
-        Ok(source("parent.toml", format!("{BARE}{LOOPS}")))
+        Ok(source("parent.toml", &format!("{BARE}{LOOPS}")))
     })
 }
 
@@ -181,8 +176,8 @@ fn a_parameter_takes_no_other_away() {
     let parent =
         format!("{BARE}{LOOPS}").replace("heavy = 450", "heavy = 450\ndirect = 2\nplane = 1");
     let text = "extends = \"parent\"\n[parameters]\ngear = 3\ndistance = 4\n[servo.X.loops.screw]\ntable_mass = \"direct * plane + gear + distance\"\n";
-    let machine = load(source("m.toml", text.to_owned()), &[], &mut |_| {
-        Ok(source("parent.toml", parent.clone()))
+    let machine = load(source("m.toml", text), &[], &mut |_| {
+        Ok(source("parent.toml", &parent))
     })
     .unwrap();
     let mut servo = axis(&machine, "X").servo.clone().unwrap();

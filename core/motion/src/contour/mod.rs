@@ -17,13 +17,14 @@
 //! points that are rounded, put in and left out). Each by itself; the whole is no more than their sum.
 //!
 //! # The nearest point
-//! It is carried on from set-point to set-point; `path.rs` states which one is meant where the path crosses itself, where
+//! It is carried on from set-point to set-point; `path/nearest.rs` states which one is meant where the path crosses itself, where
 //! the tool cuts a corner, and where it stands.
 
 mod axes;
 mod course;
 mod leg;
 mod path;
+mod report;
 mod spline;
 mod spread;
 
@@ -31,14 +32,15 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_machine::kinematics::{Joints, MAX_AXES, Pose, Solver};
+use post_machine::kinematics::{Joints, Pose, Solver};
 
 use crate::{At, Pace, SetPoints, Task};
 use axes::AxesPeaks;
 pub use axes::AxisPeaks;
 use course::Course;
 pub use leg::{Leg, Reference};
-use path::{Knot, Path};
+use path::{Knot, Passed, Path};
+pub use report::{AskedPoint, ContourPoint, ContourReport};
 use spline::Five;
 pub use spread::{Peak, Spread};
 
@@ -47,82 +49,6 @@ const LEAD: f64 = 0.05;
 
 /// The same as set-points, at least and at most.
 const LEADS: [f64; 2] = [4.0, 64.0];
-
-/// Where the tool was, and where on the commanded path that is nearest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContourPoint {
-    /// When, s from the beginning.
-    pub time: f64,
-    /// What was being carried out at the nearest point, not what is commanded meanwhile.
-    pub at: At,
-    /// Axis values that are commanded, mm and radians.
-    pub commanded_joints: Joints,
-    /// Axis values as they are.
-    pub actual_joints: Joints,
-    /// Tip and tool axis that are commanded, part frame.
-    pub commanded: Pose,
-    /// Tip and tool axis as they are.
-    pub actual: Pose,
-    /// Tip and tool axis at the nearest point of the commanded path.
-    pub nearest: Pose,
-    /// Actual minus nearest tip, mm, part frame.
-    pub error: Vector3<f64>,
-    /// Its length: the contour error, mm.
-    pub distance: f64,
-    /// Angle between the tool axis and the one at the nearest point, radians.
-    pub axis: f64,
-    /// Distance of that nearest point from the path that the program asks for, mm; zero where no task has been told.
-    pub interpolation: f64,
-    /// How the tool stands to the CL path; none at rapid, and where there is none.
-    pub asked: Option<AskedPoint>,
-}
-
-/// How the tool stands to the CL path.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct AskedPoint {
-    /// What asks for the nearest point: the line of the CL file, and the number that the leg was handed out with.
-    pub at: At,
-    /// Actual tip minus that point, mm, part frame.
-    pub error: Vector3<f64>,
-    /// Its length, mm.
-    pub distance: f64,
-    /// Angle between the tool axis and the one that is asked for there, radians.
-    pub axis: f64,
-    /// Distance of the program's path from the CL path, mm.
-    pub program: f64,
-}
-
-/// What has been found about a program, or what was so far.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ContourReport {
-    /// Contour error in cuts, mm.
-    pub cuts: Spread,
-    /// Contour error of the tool axis in cuts, radians.
-    pub axis: Spread,
-    /// Contour error at rapid, mm.
-    pub rapids: Spread,
-    /// Distance of the commanded path from the path that the program asks for, in cuts, mm.
-    pub interpolation: Spread,
-    /// Distance of the program's path from the CL path, in cuts, mm; none without one.
-    pub program: Spread,
-    /// Distance of the tip from the CL path, in cuts, mm; none without one.
-    pub asked: Spread,
-    /// Angle of the tool axis against that of the CL path, in cuts, radians.
-    pub asked_axis: Spread,
-    /// Distance of the tip from where it is commanded at the same time, in cuts, mm.
-    pub following: Spread,
-    /// How far the tool stays off a corner of its path in a cut, mm: it passes from one leg to the other, and so the
-    /// contour error says less than this.
-    pub missed: Peak,
-    /// The largest values of each axis, in chain order, cuts and rapids.
-    pub axes: [AxisPeaks; MAX_AXES],
-    /// How often a move passes into the next with a jump of the velocity.
-    pub jumps: u64,
-    /// How many axes there are.
-    pub axis_count: usize,
-    /// Time of the last set-point, s.
-    pub seconds: f64,
-}
 
 /// A set-point that waits for what follows it.
 #[derive(Clone, Copy, Debug)]
@@ -339,62 +265,78 @@ impl<'r> Contour<'r> {
 }
 
 impl Contour<'_> {
-    /// What lies between the commanded path and what is asked for.
-    fn parts(&mut self, told: &mut ContourPoint, mut way: f64) {
-        let asked = self.programmed.follow(&told.nearest, way, &mut || None);
-        if let Some(asked) = &asked {
-            told.interpolation = asked.distance;
-            way = asked.way;
+    /// What lies between the commanded path and what is asked for: where the tool is nearest to it, and on the way there
+    /// since the last set-point, which a tool that lags cuts off at a corner.
+    fn parts(&mut self, told: &mut ContourPoint, way: f64) {
+        let mut left = way;
+        let mut most = Apart::default();
+        for place in 0..self.path.passed.len() {
+            let Passed { tip, axis, way } = self.path.passed[place];
+            let pose = Pose {
+                tip,
+                axis,
+                edge: Vector3::zeros(),
+            };
+            left -= way;
+            most = most.or(self.apart(&pose, way));
         }
-        let Some(reference) = &mut self.reference else {
+        most = most.or(self.apart(&told.nearest, left.max(0.0)));
+        told.interpolation = most.interpolation;
+        if self.reference.is_none() {
             return;
-        };
-        let mut programmed = told.nearest;
-        if let Some(asked) = &asked {
-            let axis = self.programmed.axis(&told.nearest, asked);
-            (programmed.tip, programmed.axis) = (asked.tip, axis);
         }
-        let program = self
-            .asked
-            .follow(&programmed, way, &mut || reference.next());
         let beside = self.asked.beside(&told.actual);
-        if let (Some(program), Some(asked)) = (program, beside) {
+        if let (Some(program), Some(asked)) = (most.program, beside) {
             let axis = self.asked.axis(&told.actual, &asked);
             told.asked = Some(AskedPoint {
                 at: asked.at,
                 error: told.actual.tip - asked.tip,
                 distance: asked.distance,
                 axis: angle(&told.actual.axis, &axis),
-                program: program.distance,
+                program,
             });
         }
     }
+
+    /// How far a place of the commanded path, `way` mm along it from the last one, is off what is asked for.
+    fn apart(&mut self, commanded: &Pose, mut way: f64) -> Apart {
+        let mut programmed = *commanded;
+        let mut apart = Apart::default();
+        if let Some(asked) = self.programmed.follow(commanded, way, &mut || None) {
+            apart.interpolation = asked.distance;
+            way = asked.way;
+            let axis = self.programmed.axis(commanded, &asked);
+            (programmed.tip, programmed.axis) = (asked.tip, axis);
+        }
+        if let Some(reference) = &mut self.reference {
+            let program = self
+                .asked
+                .follow(&programmed, way, &mut || reference.next());
+            apart.program = program.map(|program| program.distance);
+        }
+        apart
+    }
 }
 
-impl ContourReport {
-    fn take(&mut self, point: &ContourPoint, missed: f64) {
-        let peak = |value| Peak {
-            value,
-            time: point.time,
-            line: point.at.line,
-            cl_line: point.asked.map(|asked| asked.at.line),
-            tip: point.nearest.tip,
-        };
-        if !point.at.cuts {
-            self.rapids.take(peak(point.distance));
-            return;
+/// Distances between paths, mm.
+#[derive(Clone, Copy, Debug, Default)]
+struct Apart {
+    /// Of the commanded path from that of the program.
+    interpolation: f64,
+    /// Of that from the CL path; none where it is not known.
+    program: Option<f64>,
+}
+
+impl Apart {
+    /// The larger ones.
+    fn or(self, other: Self) -> Self {
+        Self {
+            interpolation: self.interpolation.max(other.interpolation),
+            program: match (self.program, other.program) {
+                (Some(one), Some(other)) => Some(one.max(other)),
+                (one, other) => one.or(other),
+            },
         }
-        self.cuts.take(peak(point.distance));
-        self.axis.take(peak(point.axis));
-        self.missed.take(peak(missed));
-        self.interpolation.take(peak(point.interpolation));
-        if let Some(asked) = &point.asked {
-            self.asked.take(peak(asked.distance));
-            self.asked_axis.take(peak(asked.axis));
-            self.program.take(peak(asked.program));
-        }
-        let following = (point.commanded.tip - point.actual.tip).norm();
-        self.following.take(peak(following));
     }
 }
 

@@ -3,7 +3,7 @@
 //!
 //! A control's log begins when somebody starts it, its clock runs from its own zero, its samples lie 1 to 15 ms apart, and
 //! its axes count from the machine's reference points. None of that is an error of the prediction, so it is found
-//! ([`align`]) and told before anything is compared.
+//! ([`align()`]) and told before anything is compared.
 
 mod align;
 mod difference;

@@ -34,6 +34,7 @@ use post_machine::description::BlendRule;
 
 use super::bounds::Bounds;
 use super::kink::Kink;
+use super::profile::Ramp;
 use super::round::Round;
 use crate::limits::{AxisLimits, MoveLimits};
 use crate::path::turns;
@@ -74,6 +75,12 @@ pub(super) enum Junction {
 /// Below this cosine of half the angle between two ways they go straight on.
 const STRAIGHT: f64 = 1e-3;
 
+/// A curve that is passed at this share of the feed or faster is taken as it is.
+const AT_SPEED: f64 = 0.9;
+
+/// Else shorter ones are tried: shares of the longest.
+const SHORTER: [f64; 4] = [0.5, 0.25, 0.1, 0.03];
+
 /// Rates this near to each other, as a share, are one.
 const SAME: f64 = 1e-9;
 
@@ -109,15 +116,34 @@ impl Junction {
         if sides[0].overlapped {
             return Self::overlap(sides, rules);
         }
-        let circle = match blend == BlendRule::Overlap && !jerk {
-            true => Round::circle(sides, rules, tolerance),
-            false => None,
-        };
-        let round = circle.or_else(|| Round::smooth(sides, rules, &kink, tolerance, wanted));
-        match round.filter(|round| round.passes() > rate.min(wanted) * (1.0 - SAME)) {
-            Some(round) => Self::Round(round),
-            None => join,
+        let smooth = |share: f64| Round::smooth(sides, rules, &kink, tolerance, [wanted, share]);
+        let faster = |round: &Round| round.passes() > rate.min(wanted) * (1.0 - SAME);
+        if !jerk {
+            let circle = match blend {
+                BlendRule::Overlap => Round::circle(sides, rules, tolerance),
+                BlendRule::Round => None,
+            };
+            let round = circle.or_else(|| smooth(1.0)).filter(faster);
+            return round.map_or(join, Self::Round);
         }
+        let whole = smooth(1.0).filter(faster);
+        if let Some(round) = whole.filter(|round| round.passes() >= AT_SPEED * wanted) {
+            return Self::Round(round);
+        }
+        // A long curve that is passed slowly takes longer than a short one, or the kink: what counts is the time.
+        let seconds = |round: &Round| {
+            let (ratio, rate) = (kink.ratio, round.passes());
+            1.0 / round.bounds.rate + around(sides, ratio, rate, 0.5 * round.length)
+        };
+        let shorter = SHORTER.iter().filter_map(|share| smooth(*share));
+        let rounds = whole.into_iter().chain(shorter.filter(faster));
+        let timed = rounds.map(|round| (seconds(&round), Self::Round(round)));
+        let joined = (around(sides, kink.ratio, rate.min(wanted), 0.0), join);
+        let least = |least: (f64, Self), one: (f64, Self)| match one.0 < least.0 {
+            true => one,
+            false => least,
+        };
+        timed.fold(joined, least).1
     }
 
     fn overlap(sides: [Side; 2], rules: &AxisLimits) -> Self {
@@ -193,4 +219,23 @@ impl Side<'_> {
         }
         unit(way).or_else(|| (turned > 0.0).then(|| (Vector3::x(), turned.sqrt())))
     }
+}
+
+/// How long the halves of two moves next to each other take, s, less what a corner takes of either, that is passed at
+/// `rate`. Rates and lengths are those of the first move's parameter.
+fn around(sides: [Side; 2], ratio: f64, rate: f64, taken: f64) -> f64 {
+    let half = |side: &Side, ratio: f64| {
+        let ramp = Ramp {
+            acceleration: side.whole.acceleration / ratio,
+            jerk: side.whole.jerk / ratio,
+        };
+        let length = (0.5 / ratio - taken).max(0.0);
+        let top = ramp
+            .reach(rate, length)
+            .min(side.whole.rate / ratio)
+            .max(rate);
+        let level = (length - ramp.length(rate, top)).max(0.0);
+        ramp.seconds(top - rate) + if top > 0.0 { level / top } else { 0.0 }
+    };
+    half(&sides[0], 1.0) + half(&sides[1], ratio)
 }

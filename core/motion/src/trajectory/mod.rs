@@ -7,7 +7,9 @@
 //! | `corner` | what happens between two moves: stop, join, round, overlap |
 //! | `kink` | what jumps where two moves are joined |
 //! | `round` | curves in the place of corners |
-//! | `look_ahead` | velocities over the pieces of a run, some blocks ahead: the envelope of accelerations, backwards and forwards |
+//! | `block` | pieces of a run as the look-ahead takes them, and the parts that it hands over |
+//! | `envelope` | the blocks in sight, and what accelerations allow over them, backwards and forwards |
+//! | `look_ahead` | velocities over the pieces of a run, some blocks ahead: along the envelope |
 //! | `smooth` | the same with jerk limits: a double S from knot to knot of the envelope, whatever blocks it spans |
 //! | [`profile`] | from one velocity to another over a length: trapezoid and double S in closed form |
 //! | `law` | sections of constant jerk, and where the machine stands by them at any time |
@@ -35,8 +37,10 @@
 //! has no influence. Memory is that of the blocks in sight.
 
 mod account;
+mod block;
 mod bounds;
 mod corner;
+mod envelope;
 mod kink;
 mod law;
 mod look_ahead;

@@ -58,13 +58,14 @@ impl Round {
         self.bounds.rate * self.length
     }
 
-    /// By the smooth step, as long as it takes to be passed at the rate `wanted`, or as long as it may be.
+    /// By the smooth step, as long as it takes to be passed at the rate `wanted`, or as long as it may be, or by this share
+    /// of that.
     pub fn smooth(
         sides: [Side; 2],
         rules: &AxisLimits,
         kink: &Kink,
         tolerance: Option<f64>,
-        wanted: f64,
+        [wanted, share]: [f64; 2],
     ) -> Option<Self> {
         // The unit of length is that of the first move's parameter.
         let sharpest = |limits: &Joints, of_tip: f64| {
@@ -82,6 +83,7 @@ impl Round {
         if let Some(tolerance) = tolerance {
             length = length.min(tolerance / (STRAY * kink.tip.norm()));
         }
+        length *= share;
         if length <= 0.0 {
             return None;
         }

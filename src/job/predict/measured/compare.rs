@@ -7,6 +7,7 @@ use post_machine::kinematics::{Joints, MAX_AXES, Solver};
 use post_motion::measured::{Alignment, Difference};
 use post_motion::servo::Servos;
 
+use super::coarse;
 use super::logged_path::{BATCH, LoggedPath, MeasuredPoint};
 use super::overlay::{MOVES, Overlay, UNKNOWN};
 use super::report::{AxisLaid, ContourLaid, Left};
@@ -17,6 +18,8 @@ pub(super) struct Compared<'a> {
     overlay: &'a Overlay,
     alignment: &'a Alignment,
     servos: Servos,
+    /// Set-points from row to row.
+    steps: usize,
     /// Of the log.
     pub period: f64,
     pub count: usize,
@@ -42,7 +45,9 @@ impl<'a> Compared<'a> {
             false => (&log.commanded, log.both()),
             true => (&log.actual, log.axes(super::log::Which::Actual)),
         };
-        let mut servos = Servos::new(machine, track.period).map_err(|fault| *fault)?;
+        let steps = coarse::steps(machine, log);
+        let period = track.period / steps as f64;
+        let mut servos = Servos::new(machine, period).map_err(|fault| *fault)?;
         let mut known_from = track.begins;
         if let [first, second, ..] = log.commanded.joints[..] {
             servos.settle(&first);
@@ -53,6 +58,7 @@ impl<'a> Compared<'a> {
             overlay,
             alignment,
             servos,
+            steps,
             period: track.period,
             count: track.joints.len(),
             known_from,
@@ -69,15 +75,19 @@ impl<'a> Compared<'a> {
             return;
         }
         let mut path = LoggedPath::new(self.period, chains);
-        let mut followed = Vec::new();
+        let (mut set_points, mut followed) = (Vec::new(), Vec::new());
         let mut run = 0;
         for from in (0..self.count).step_by(BATCH) {
             let to = (from + BATCH).min(self.count);
-            if let Some(commanded) = self.overlay.log.commanded.joints.get(from..to) {
-                self.servos.follow(commanded, &mut followed);
+            let commanded = &self.overlay.log.commanded;
+            if !commanded.joints.is_empty() {
+                set_points.clear();
+                set_points.extend((from..to).flat_map(|row| commanded.towards(row, self.steps)));
+                self.servos.follow(&set_points, &mut followed);
             }
             for place in from..to {
-                let followed = followed.get(place - from).copied();
+                let last = (place - from) * self.steps + self.steps - 1;
+                let followed = followed.get(last).copied();
                 self.row(place, followed, &mut run, &mut path);
             }
             self.errors(&mut path, listen);
@@ -185,6 +195,7 @@ impl<'a> Compared<'a> {
     /// What is left of each axis of the log.
     pub fn axes(&self, machine: &Machine) -> Vec<AxisLaid> {
         let logged = |place: &usize| (0..2).any(|which| self.overlay.log.has[which][*place]);
+        let between = coarse::between(machine, &self.overlay.log);
         let axes = post_machine::axis_words::order(machine).into_iter();
         axes.filter(logged)
             .map(|place| {
@@ -201,6 +212,9 @@ impl<'a> Compared<'a> {
                     following_measured: measured,
                     following_predicted: predicted,
                     following,
+                    between_rows: between
+                        .as_ref()
+                        .and_then(|between| Left::of(&between[place], axis.unit())),
                 }
             })
             .collect()

@@ -7,6 +7,7 @@ use post_machine::diagnostic::{Diagnostic, Short};
 use post_motion::servo::fit::{self, Fitted};
 use serde::Serialize;
 
+use super::coarse;
 use super::log::Log;
 use super::overlay::{MOVES, UNKNOWN};
 use crate::failure::Failure;
@@ -86,11 +87,13 @@ fn axis(machine: &Machine, log: &Log, place: usize, keys: &[&str]) -> Result<Axi
         let help = "--columns says which columns they are";
         return Err(Diagnostic::error("fit", message).help(help).into());
     }
-    let [commanded, measured] = [&log.commanded, &log.actual].map(|track| {
-        let values = track.joints.iter().map(|joints| joints[place]);
-        values.collect::<Vec<f64>>()
-    });
-    let moves = (commanded[1] - commanded[0]).abs() > MOVES;
+    let steps = coarse::steps(machine, log);
+    let rows = 0..log.commanded.joints.len();
+    let commanded = rows.flat_map(|row| log.commanded.towards(row, steps));
+    let commanded: Vec<f64> = commanded.map(|joints| joints[place]).collect();
+    let measured = log.actual.joints.iter().map(|joints| joints[place]);
+    let measured: Vec<f64> = measured.collect();
+    let moves = (log.commanded.joints[1][place] - log.commanded.joints[0][place]).abs() > MOVES;
     let lead = if moves {
         UNKNOWN / log.commanded.period
     } else {
@@ -101,6 +104,7 @@ fn axis(machine: &Machine, log: &Log, place: usize, keys: &[&str]) -> Result<Axi
         keys,
         fit::Log {
             period: log.commanded.period,
+            steps,
             commanded: &commanded,
             measured: &measured,
             lead: lead as usize,

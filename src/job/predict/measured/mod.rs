@@ -2,6 +2,7 @@
 
 mod aligned;
 mod clock;
+mod coarse;
 mod columns;
 mod compare;
 mod fitting;

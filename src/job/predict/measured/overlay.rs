@@ -14,6 +14,7 @@ use post_motion::At;
 use post_motion::measured::Track;
 
 use super::aligned;
+use super::coarse;
 use super::compare::Compared;
 use super::log::{Log, Which};
 use super::logged_path::MeasuredPoint;
@@ -104,6 +105,7 @@ impl Overlay {
         let log = &self.log;
         let alignment = aligned::aligned(self, machine)?;
         aligned::doubts(&alignment, machine, findings);
+        coarse::doubt(machine, log, findings);
         let mut compared = Compared::new(self, machine, &alignment)?;
         compared.run(chains, listen);
         let columns = log.columns.read.iter().map(|column| ColumnRead {

@@ -84,6 +84,9 @@ pub struct AxisLaid {
     pub following_predicted: Option<Left>,
     /// The latter minus the former: what the servo's description is wrong by, whatever was commanded.
     pub following: Option<Left>,
+    /// Commanded position between rows that are further apart than set-points of the control: about how far the cubic lies
+    /// beside it that is put there. None if the rows are no further apart.
+    pub between_rows: Option<Left>,
 }
 
 /// The contour error of the log, in cuts, and what the servos make of its commanded positions (of a log without, of the

@@ -1,5 +1,7 @@
+use post_machine::kinematics::Pose;
 use post_testkit::{Rng, randomised};
 
+use super::tied::TIE;
 use super::*;
 use crate::contour::spline::Five;
 

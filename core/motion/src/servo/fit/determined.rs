@@ -17,7 +17,7 @@ impl Search<'_> {
     /// much, whose squares were `before`.
     pub(super) fn told(&self, found: &Found, [spread, together]: [f64; 2], before: f64) -> Fit {
         let count = self.names.len();
-        let samples = (self.log.commanded.len() - self.log.lead) as f64;
+        let samples = (self.log.measured.len() - self.log.lead) as f64;
         let derivatives = found.triangle.view((0, 0), (count, count)).into_owned();
         let decomposed = derivatives.svd(false, true);
         let largest = decomposed.singular_values.amax();

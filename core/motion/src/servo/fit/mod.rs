@@ -24,11 +24,15 @@ use search::Search;
 /// What a control has recorded of one axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Log<'a> {
-    /// Time from one sample to the next, s.
+    /// Time from one measured position to the next, s.
     pub period: f64,
-    /// Commanded positions, mm or radians. The axis is taken to stand still at the first of them before the log begins.
+    /// So many commanded positions stand for each measured one: where a control makes more set-points than are recorded,
+    /// its commands are no straight line between two of them.
+    pub steps: usize,
+    /// Commanded positions, mm or radians, the last of each `steps` at the time of the measured one. The axis is taken to
+    /// stand still at the first of them before the log begins.
     pub commanded: &'a [f64],
-    /// Measured ones at the same times, as many.
+    /// Measured ones.
     pub measured: &'a [f64],
     /// So many at the beginning are run through, but not compared: what the axis did before the log has died away by then.
     pub lead: usize,
@@ -100,7 +104,7 @@ pub fn fit(servo: &Servo, names: &[&str], log: Log<'_>) -> Result<Fit, Box<Diagn
     let search = Search::new(servo, names, log)?;
     let before = search.squares(&search.start)?;
     // The more of the errors is explained, the less the numbers are drawn back to where they were.
-    let compared = (log.commanded.len() - log.lead) as f64;
+    let compared = (log.measured.len() - log.lead) as f64;
     let mut spread = libm::sqrt(before / compared);
     let mut found = search.run(&search.start, spread / KNOWN)?;
     for _ in 0..MOST_ROUNDS {

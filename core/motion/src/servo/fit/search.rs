@@ -55,8 +55,9 @@ impl<'a> Search<'a> {
                 .help(help)
                 .boxed())
         };
-        let compared = log.commanded.len().saturating_sub(log.lead);
-        if log.commanded.len() != log.measured.len() || compared < LEAST_SAMPLES * (names.len() + 1)
+        let compared = log.measured.len().saturating_sub(log.lead);
+        if log.commanded.len() != log.steps * log.measured.len()
+            || compared < LEAST_SAMPLES * (names.len() + 1)
         {
             return fault(
                 format!(
@@ -65,7 +66,7 @@ impl<'a> Search<'a> {
                     log.measured.len(),
                     names.len()
                 ),
-                "both have the same length, and at least four samples are compared for each number"
+                "each measured position has its commanded ones, and at least four are compared for each number"
                     .to_owned(),
             );
         }
@@ -136,7 +137,11 @@ impl<'a> Search<'a> {
 
     fn follower(&self, place: &DVector<f64>) -> Result<Follower, Box<Diagnostic>> {
         let servo = self.servo_at(place);
-        let mut follower = Follower::with(&servo, self.log.period, Output::Measured)?;
+        let mut follower = Follower::with(
+            &servo,
+            self.log.period / self.log.steps as f64,
+            Output::Measured,
+        )?;
         follower.settle(self.log.commanded.first().copied().unwrap_or_default());
         Ok(follower)
     }
@@ -151,18 +156,20 @@ impl<'a> Search<'a> {
     pub(super) fn errors(&self, place: &DVector<f64>) -> Result<Vec<f64>, Box<Diagnostic>> {
         let mut follower = self.follower(place)?;
         let Log {
+            steps,
             commanded,
             measured,
             lead,
             ..
         } = self.log;
-        let mut errors = Vec::with_capacity(commanded.len() - lead);
+        let mut errors = Vec::with_capacity(measured.len() - lead);
         follower.run(
             commanded.len(),
             |index| commanded[index],
             |index, value| {
-                if index >= lead {
-                    errors.push(measured[index] - value);
+                let row = index / steps;
+                if row >= lead && (index + 1) % steps == 0 {
+                    errors.push(measured[row] - value);
                 }
             },
         );
@@ -188,6 +195,7 @@ impl<'a> Search<'a> {
             }
         }
         let Log {
+            steps,
             commanded,
             measured,
             lead,
@@ -195,14 +203,15 @@ impl<'a> Search<'a> {
         } = self.log;
         let mut triangle = DMatrix::zeros(count + 1, count + 1);
         let mut predicted = vec![[0.0; BLOCK]; followers.len()];
-        let starts = (0..commanded.len()).step_by(BLOCK);
+        let starts = (0..measured.len()).step_by(BLOCK);
         for start in starts {
-            let length = BLOCK.min(commanded.len() - start);
+            let length = BLOCK.min(measured.len() - start);
             for (follower, predicted) in followers.iter_mut().zip(&mut predicted) {
+                // The last of the steps to a row is the one that stays.
                 follower.run(
-                    length,
-                    |index| commanded[start + index],
-                    |index, value| predicted[index] = value,
+                    length * steps,
+                    |index| commanded[start * steps + index],
+                    |index, value| predicted[index / steps] = value,
                 );
             }
             let skipped = lead.saturating_sub(start).min(length);

@@ -1,9 +1,10 @@
 //! Numbers of servos from synthetic logs, whose true numbers are known.
 
-use libm::{cos, log, sin, sqrt};
+use libm::{cos, sin, sqrt};
 use post_machine::servo::{Feedback, Servo};
 use post_motion::servo::fit::{Fit, Log, fit};
 use post_motion::servo::{Follower, Output};
+use post_testkit::seeded;
 
 use super::{direct_loops, feedrate_paper, gear_loops, of_loops, screw_loops, with_friction};
 
@@ -11,23 +12,6 @@ const PERIOD: f64 = 1e-3;
 
 /// Names of numbers, and the factors by which they are wrong at the beginning.
 type Wrong<'a> = &'a [(&'a str, f64)];
-
-/// Normally distributed errors (Box, Muller 1958).
-struct Noise(u64);
-
-impl Noise {
-    fn even(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn next(&mut self) -> f64 {
-        let (one, other) = (self.even(), self.even());
-        sqrt(-2.0 * log(one)) * cos(std::f64::consts::TAU * other)
-    }
-}
 
 /// Accelerated hard and often.
 fn lively() -> Vec<f64> {
@@ -44,17 +28,14 @@ fn even() -> Vec<f64> {
 /// What a log of the servo has, with errors of the standard deviation `spread`, each of which keeps the share `kept` of the
 /// one before.
 fn measured_with(servo: &Servo, commanded: &[f64], spread: f64, kept: f64, seed: u64) -> Vec<f64> {
-    let mut noise = Noise(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-    for _ in 0..8 {
-        noise.next();
-    }
-    let mut error = spread * noise.next();
+    let mut noise = seeded(seed);
+    let mut error = spread * noise.normal();
     let mut follower = Follower::with(servo, PERIOD, Output::Measured).unwrap();
     follower.settle(commanded[0]);
     let values = commanded.iter().map(|value| follower.next(*value));
     values
         .map(|value| {
-            error = kept * error + spread * sqrt(1.0 - kept * kept) * noise.next();
+            error = kept * error + spread * sqrt(1.0 - kept * kept) * noise.normal();
             value + error
         })
         .collect()
@@ -80,6 +61,7 @@ fn fitted(
     let names: Vec<&str> = wrong.iter().map(|(name, _)| *name).collect();
     let log = Log {
         period: PERIOD,
+        steps: 1,
         commanded,
         measured,
         lead,
@@ -261,6 +243,7 @@ fn what_cannot_be_fitted_is_refused() {
     let commanded = lively();
     let log = Log {
         period: PERIOD,
+        steps: 1,
         commanded: &commanded,
         measured: &commanded,
         lead: 0,

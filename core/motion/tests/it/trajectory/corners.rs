@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_motion::path::Way;
+use post_motion::trajectory::TimeLimit;
 use post_motion::{Corner, Pace, Task, Waiting};
 use post_testkit::{randomised, seeded};
 
@@ -157,4 +158,59 @@ fn a_corner_is_slowed_down_for_until_no_axis_jumps_by_more_than_a_period_makes()
         slowest >= due * 0.999 && slowest < due + 2.1,
         "{slowest} mm/s, not {due}"
     );
+}
+
+/// Between two moves, before a wait and at the end: three times so long.
+#[test]
+fn a_stop_takes_as_long_as_axes_need_to_be_in_position() {
+    let seconds = |motion: &str| {
+        let limits = "max_feed = 30000, max_accel = 2000";
+        let machine = trunnion(limits, limits, motion);
+        let (mut program, _) = square(&machine, 1.0, Corner::Stop, 3000.0);
+        program.tasks.push(Task::Wait {
+            line: 9,
+            seconds: 1.0,
+            why: Waiting::Dwell,
+        });
+        let to = program.stance([0.0; 3], &program.here.joints);
+        program.go(Way::Tip, to, Pace::Minutes(0.01), Corner::Stop);
+        let run = run(&machine, &program.tasks, &program.solver, 100);
+        let last = run.times.last().expect("moves");
+        (last.begins + last.seconds, run.times[0].limit)
+    };
+    let [(plain, _), (longer, limit)] = [seconds("period = 0.001"), seconds("in_position = 0.25")];
+    assert!((longer - plain - 0.75).abs() < 1e-9, "{plain} {longer}");
+    assert_eq!(limit, TimeLimit::Corner);
+}
+
+/// The motion that stands still at corners keeps every tolerance: no larger one may take longer, but for what is lost by
+/// trying some lengths of a curve and not all.
+#[test]
+fn more_tolerance_is_never_slower_with_jerk_limits() {
+    let (rounds, mut rng) = randomised(40u16, 37);
+    for round in rounds {
+        let limits = format!(
+            "max_feed = 30000, max_accel = {}, max_jerk = {}",
+            rng.order(2.5, 4.0),
+            rng.order(4.0, 5.5)
+        );
+        let machine = trunnion(&limits, &limits, "period = 0.001");
+        let (turn, feed) = (rng.range(0.2, 3.0), rng.order(2.5, 4.3));
+        let seconds = |corner: Corner| {
+            let (program, _) = square(&machine, turn, corner, feed);
+            let run = run(&machine, &program.tasks, &program.solver, 1000);
+            let last = run.times.last().expect("moves");
+            last.begins + last.seconds
+        };
+        let mut least = seconds(Corner::Stop).min(seconds(Corner::Path));
+        for tolerance in [0.001, 0.01, 0.05, 0.2, 1.0, 5.0] {
+            let tolerance = Some(tolerance);
+            let now = seconds(Corner::Blend { tolerance });
+            assert!(
+                now <= least * 1.05,
+                "{round} {turn} {feed} {limits} {tolerance:?}: {now}, {least} with less"
+            );
+            least = least.min(now);
+        }
+    }
 }

@@ -1,0 +1,85 @@
+//! A move as the planner keeps it until its corner is known.
+
+use post_machine::kinematics::Joints;
+
+use super::Planner;
+use crate::limits::MoveLimits;
+use crate::path::{Way, turns};
+use crate::trajectory::TimeLimit;
+use crate::trajectory::bounds::Bounds;
+use crate::trajectory::corner::Side;
+use crate::{At, Move};
+
+/// A move whose end is open.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    /// Its number in the law.
+    pub number: u64,
+    pub found: MoveLimits,
+    pub whole: Bounds,
+    pub half: Bounds,
+    /// The length that its parameter from 0 to 1 has in the coordinate of the law.
+    pub scale: f64,
+    /// The share of it that the corner before has taken.
+    pub taken: f64,
+    /// It begins a run.
+    pub begins: bool,
+    /// Overlapped by the move before: the change of its rate that it begins with, 1/s², and for how long, s.
+    pub entrance: Option<[f64; 2]>,
+    /// Joined to the move before: how the axes' derivatives change over the coordinate of the law.
+    pub kink: Option<[Joints; 2]>,
+    pub at: At,
+}
+
+impl Entry {
+    /// What a corner has to know of it.
+    pub fn side<'a>(&'a self, task: &'a Move) -> Side<'a> {
+        Side {
+            task,
+            found: &self.found,
+            whole: &self.whole,
+            half: &self.half,
+            overlapped: self.entrance.is_some(),
+        }
+    }
+}
+
+impl Planner {
+    /// The entry of a move; `asked`: its time at the programmed feed, s.
+    pub(super) fn entry(
+        &self,
+        task: &Move,
+        found: MoveLimits,
+        asked: Option<f64>,
+        at: At,
+    ) -> Entry {
+        let sweep = match &task.way {
+            Way::Arc { sweep, .. } if !turns(task.solver.chain(), [&task.from, &task.to]) => {
+                Some(libm::fabs(*sweep))
+            }
+            _ => None,
+        };
+        let feed = asked.unwrap_or(0.0);
+        let bounds = |share: f64| {
+            let seconds = feed.max(self.block_time);
+            let mut bounds = Bounds::new(&found, &self.limits, seconds, share, sweep);
+            if bounds.by[0] == TimeLimit::Feed && feed < seconds {
+                bounds.by[0] = TimeLimit::BlockTime;
+            }
+            bounds
+        };
+        let whole = bounds(1.0);
+        Entry {
+            number: 0,
+            half: bounds(0.5),
+            scale: 1.0 / whole.rate,
+            whole,
+            found,
+            taken: 0.0,
+            begins: true,
+            entrance: None,
+            kink: None,
+            at,
+        }
+    }
+}

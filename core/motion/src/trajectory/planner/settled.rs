@@ -1,0 +1,65 @@
+//! What the look-ahead has settled becomes sections of the law, time of tasks, and jumps.
+
+use post_machine::kinematics::Joints;
+
+use super::Planner;
+use crate::Jump;
+use crate::trajectory::TimeLimit;
+use crate::trajectory::block::{Part, Why};
+use crate::trajectory::law::{Section, Span};
+
+impl Planner {
+    /// What the look-ahead has settled goes into the law.
+    pub(super) fn take(&mut self, part: Part) {
+        let Part { phase, from, .. } = part;
+        let piece = *self.law.piece(part.block);
+        let reached = |kink: &mut (u64, [Joints; 2])| kink.0 <= part.block;
+        while let Some((number, [change, bend])) = self.kinks.pop_front_if(reached) {
+            if number == part.block {
+                let (velocity, along) = (phase.velocity, phase.acceleration);
+                self.jumps.push_back(Jump {
+                    time: self.clock,
+                    change: change.map(|change| change * velocity),
+                    bend: std::array::from_fn(|place| {
+                        bend[place] * velocity * velocity + change[place] * along
+                    }),
+                });
+            }
+        }
+        let covered = phase.length(phase.seconds);
+        let reason = match part.why {
+            Why::Velocity => piece.by[0],
+            Why::Corner if piece.at.cuts => TimeLimit::Corner,
+            Why::Corner | Why::Change => match phase.jerk == 0.0 {
+                true => piece.by[1],
+                false => piece.by[2],
+            },
+        };
+        let share = covered / piece.length;
+        let (task, whole) = match piece.span {
+            Span::Along { from, to } => (piece.at.task, to - from),
+            Span::Corner { shares, .. } => match from + 0.5 * covered < 0.5 * piece.length {
+                true => (piece.at.task, 2.0 * shares[0]),
+                false => (piece.second, 2.0 * shares[1]),
+            },
+        };
+        self.accounts
+            .spend(task, phase.seconds, share * whole, reason);
+        if let Some(border) = piece.border.filter(|_| self.bordered < Some(part.block)) {
+            let place = border * piece.length;
+            if border == 0.0 || from + covered >= place {
+                let time = self.clock + phase.time_at(place - from);
+                self.accounts.border(time);
+                self.bordered = Some(part.block);
+            }
+        }
+        self.law.push(Section {
+            run: self.run,
+            piece: part.block,
+            from,
+            begins: self.clock,
+            phase,
+        });
+        self.clock += phase.seconds;
+    }
+}

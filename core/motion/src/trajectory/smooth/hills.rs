@@ -1,0 +1,86 @@
+//! Hills: a double S from knot to knot.
+
+use super::knots::Knot;
+use super::{SAME, Step, Work};
+use crate::trajectory::block::Why;
+use crate::trajectory::envelope::Envelope;
+
+/// Blocks are unlike from this ratio of their accelerations or jerks on.
+const UNLIKE: f64 = 2.0;
+
+impl Work {
+    /// Lays a hill from each knot to the next.
+    pub(super) fn lay_hills(&mut self, ahead: &Envelope) {
+        self.steps.clear();
+        for index in 0..self.knots.len() - 1 {
+            self.lay(ahead, self.knots[index], self.knots[index + 1]);
+        }
+    }
+
+    /// One hill, or several where these are gone over sooner.
+    fn lay(&mut self, ahead: &Envelope, knot: Knot, next: Knot) {
+        let profile = knot.profile(next.velocity);
+        if let Some((knot, middle)) = self.split(ahead, &knot, &next, profile.seconds()) {
+            self.lay(ahead, knot, middle);
+            return self.lay(ahead, middle, next);
+        }
+        let why = |corner: bool| match corner {
+            true => Why::Corner,
+            false => Why::Change,
+        };
+        let [up, cruise, _] = profile.counts();
+        let phases = profile.phases();
+        for (place, phase) in phases.iter().enumerate() {
+            let reached = phase.velocity >= knot.top * (1.0 - 1e-6);
+            let why = match place {
+                _ if place < up => why(knot.corner),
+                _ if place >= up + cruise => why(next.corner),
+                _ if reached => Why::Velocity,
+                _ => why(knot.corner || next.corner),
+            };
+            let last = place + 1 == phases.len();
+            self.steps.push(Step {
+                phase: *phase,
+                why,
+                rests: last || place + 1 == up || place + 1 == up + cruise,
+                ends: last.then_some(next.place),
+            });
+        }
+    }
+
+    /// A hill in two where its blocks are least alike, if that takes less than `seconds`.
+    fn split(
+        &self,
+        ahead: &Envelope,
+        knot: &Knot,
+        next: &Knot,
+        seconds: f64,
+    ) -> Option<(Knot, Knot)> {
+        let unlike = |place: usize| {
+            let [last, next] = [&ahead.blocks[place - 1], &ahead.blocks[place]];
+            let ratio = |one: f64, other: f64| (one / other).max(other / one);
+            ratio(last.acceleration, next.acceleration).max(ratio(last.jerk, next.jerk))
+        };
+        let places = (knot.place + 1..next.place).map(|place| (place, unlike(place)));
+        let (place, unlike) = places.max_by(|one, other| one.1.total_cmp(&other.1))?;
+        if unlike < UNLIKE {
+            return None;
+        }
+        let first = self.up_to(ahead, *knot, place);
+        let middle = Knot {
+            place,
+            velocity: ahead.squares[place].sqrt(),
+            ..Knot::default()
+        };
+        let mut middle = self.up_to(ahead, middle, next.place);
+        let reached = [
+            first.ramp.reach(first.velocity, first.length),
+            middle.ramp.reach(next.velocity, middle.length),
+        ];
+        middle.velocity = middle.velocity.min(reached[0]).min(reached[1]);
+        let possible = first.covers(middle.velocity) && middle.covers(next.velocity);
+        let both =
+            || first.profile(middle.velocity).seconds() + middle.profile(next.velocity).seconds();
+        (possible && both() < seconds * (1.0 - SAME)).then_some((first, middle))
+    }
+}

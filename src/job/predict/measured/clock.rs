@@ -62,14 +62,6 @@ impl Clock {
             .filter(|step| *step > ONE_STEP * usual)
             .map(|step| libm::rint(step / usual) as usize - 1)
             .sum();
-        // Rounded times make the usual step coarse; the mean of all is not.
-        let first = times[0];
-        let mean = (times[times.len() - 1] - first) / (times.len() - 1 + missing) as f64;
-        let period = match (mean - usual).abs() < SAME * usual {
-            true => mean,
-            false => usual,
-        };
-        // Means of what is left of a line through the first and the last row.
         let mut places = Vec::with_capacity(times.len());
         let mut place = 0.0;
         for (row, time) in times.iter().enumerate() {
@@ -78,13 +70,28 @@ impl Clock {
             }
             places.push(place);
         }
+        // Rounded times make the usual step coarse, and two rows alone that of the line through them.
+        let first = times[0];
+        let count = times.len() as f64;
+        let middle = places.iter().sum::<f64>() / count;
+        let mut sums = [0.0; 2];
+        for (place, time) in places.iter().zip(times.iter()) {
+            let arm = place - middle;
+            sums[0] += arm * arm;
+            sums[1] += arm * (time - first);
+        }
+        let mean = sums[1] / sums[0];
+        let period = match (mean - usual).abs() < SAME * usual {
+            true => mean,
+            false => usual,
+        };
+        // What is left of that line.
         let beside = |row: usize, time: f64| time - (first + places[row] * period);
         let beside: Vec<f64> = times
             .iter()
             .enumerate()
             .map(|(row, time)| beside(row, *time))
             .collect();
-        let count = beside.len() as f64;
         let mean = beside.iter().sum::<f64>() / count;
         let squares = beside.iter().map(|one| (one - mean) * (one - mean));
         let jitter = libm::sqrt(squares.sum::<f64>() / count);

@@ -396,7 +396,7 @@ const SLIPS: &[Slip] = &[
         "tolerance = 0.005",
         "tolerance = 0.005\n\n[motion]\nperiod = 15",
         "52 15",
-        "at most 1 s is possible",
+        "period is 15 s; from 0.00001 to 1 s is possible",
         true,
     ),
     (

@@ -92,7 +92,7 @@ fn a_control_stands_still_where_it_waits_and_at_rapids() {
         ]
     );
     assert_eq!(notes.len(), 1, "{notes:?}");
-    assert!(notes[0].starts_with("line 13: the program stops"));
+    assert!(notes[0].starts_with("line 13 of the program: the program stops"));
     let Task::Move(cut) = &planned[2].task else {
         panic!("a cut");
     };

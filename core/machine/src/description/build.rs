@@ -282,6 +282,7 @@ impl Builder<'_> {
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
         let motion = self.motion(&file.motion);
+        let plan = self.plan(&file.plan, &motion, accuracy.tolerance);
         let mut machine = Machine {
             clamps,
             indexes,
@@ -325,6 +326,7 @@ impl Builder<'_> {
             solution,
             rewind,
             motion,
+            plan,
             frame: Frame::default(),
             heads: Vec::new(),
             unused_options,

@@ -39,6 +39,8 @@ pub struct Solution {
 pub enum Rule {
     /// Travel of every axis over its largest feed, summed.
     Time,
+    /// The time that the machine takes, as far as feeds and accelerations of its axes tell it beforehand.
+    CycleTime,
     /// Root of the sum of squares of the rotary travels.
     Travel,
     /// The largest rotary travel.
@@ -205,6 +207,10 @@ impl Builder<'_> {
             .and_then(|name| axes.iter().position(|axis| axis.name == name));
         match (text.as_str(), named) {
             ("time", _) => Rule::Time,
+            ("cycle-time", _) => {
+                self.accelerations(rule, axes);
+                Rule::CycleTime
+            }
             ("travel", _) => Rule::Travel,
             ("largest-axis", _) => Rule::LargestAxis,
             (_, Some(place)) => Rule::Axis(place),
@@ -213,10 +219,27 @@ impl Builder<'_> {
                     "machine-solution",
                     rule.span(),
                     format!("there is no rule {text}"),
-                    "\"time\", \"travel\", \"largest-axis\", or \"axis:C\" for an axis of the chain",
+                    "\"time\", \"cycle-time\", \"travel\", \"largest-axis\", or \"axis:C\" for an axis of the chain",
                 );
                 Rule::Time
             }
+        }
+    }
+
+    /// A cycle time is made of accelerations: every axis has to have one.
+    fn accelerations(&mut self, rule: &Spanned<String>, axes: &[Axis]) {
+        let lacking = axes.iter().filter(|axis| axis.max_accel.is_infinite());
+        let names: Vec<&str> = lacking.map(|axis| axis.name.as_str()).collect();
+        if !names.is_empty() {
+            self.fault(
+                "machine-solution",
+                rule.span(),
+                format!(
+                    "cycle-time is made of accelerations, and the file gives no max_accel of {}",
+                    names.join(", ")
+                ),
+                "max_accel in mm/s² or deg/s² under [axis.…] of each, or rule = \"time\"",
+            );
         }
     }
 

@@ -9,6 +9,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::motion_file::MotionFile;
+use super::plan_file::PlanFile;
 use super::program_file::ProgramFile;
 use super::quantity::{Number, Quantity};
 use super::servo_file::ServoFile;
@@ -71,6 +72,9 @@ pub(crate) struct MachineFile {
     /// How the control makes motion of a program; for what is predicted, not for what is posted.
     #[serde(default)]
     pub motion: MotionFile,
+    /// What planned feeds keep; for `post --plan`.
+    #[serde(default)]
+    pub plan: PlanFile,
 }
 
 /// Where the part sits.
@@ -228,10 +232,11 @@ pub(crate) struct AxisFile {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SolutionFile {
-    /// What is to be small over a pass: `time` (each axis' way over its `max_feed`), `travel` (root of the sum
-    /// of squares of the rotary ways), `largest-axis` (the largest rotary way), or the way of one axis,
+    /// What is to be small over a pass: `time` (each axis' way over its `max_feed`), `cycle-time` (how long the
+    /// machine takes about, by the feeds of the program and `max_feed`, `max_accel` and `max_jerk` of the axes; close to
+    /// poles also which way to turn early), `travel` (root of the sum of squares of the rotary ways), `largest-axis` (the largest rotary way), or the way of one axis,
     /// `axis:C`. `time` if not said.
-    #[schemars(with = "Option<String>", extend("pattern" = "^(time|travel|largest-axis|axis:[A-Z][0-9]*)$"))]
+    #[schemars(with = "Option<String>", extend("pattern" = "^(time|cycle-time|travel|largest-axis|axis:[A-Z][0-9]*)$"))]
     pub rule: Option<Spanned<String>>,
     /// Sides of zero on which axes should stand if they can: `{ A = "negative" }`.
     #[serde(default)]

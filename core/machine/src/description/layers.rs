@@ -222,6 +222,7 @@ const TOP: &[&str] = &[
     "solution",
     "rewind",
     "motion",
+    "plan",
     "head",
 ];
 

@@ -15,6 +15,8 @@ mod motion;
 mod motion_file;
 mod numbers;
 mod options;
+mod plan;
+mod plan_file;
 mod program;
 mod program_file;
 mod quantity;
@@ -45,6 +47,8 @@ pub use layers::Source;
 pub use limits::MOST_BYTES;
 pub use motion::MotionRules;
 pub use motion_file::{BlendRule, CornerRule, LimitsActOn, RapidRule};
+pub use plan::PlanRules;
+pub use plan_file::PlanSolver;
 pub use program::{ProgramRules, ProgramText, TextPlace};
 pub use schema::schema;
 pub use setting::Setting;
@@ -97,6 +101,8 @@ pub struct Machine {
     pub rewind: Option<Rewind>,
     /// How its control makes motion of a program.
     pub motion: MotionRules,
+    /// What its planned feeds keep.
+    pub plan: PlanRules,
     /// Where the axes go between the passes.
     pub frame: Frame,
     /// Some axis is clamped and let go by words.
@@ -202,6 +208,11 @@ impl Axis {
         } else {
             1.0
         }
+    }
+
+    /// What its positions are told in: `mm`, or `deg` of a rotary axis.
+    pub fn unit_name(&self) -> &'static str {
+        if self.joint.rotary { "deg" } else { "mm" }
     }
 
     /// What the control shows at `value`: mm or degrees.

@@ -5,7 +5,7 @@ use super::motion_file::{BlendRule, CornerRule, LimitsActOn, MotionFile, RapidRu
 use super::quantity::Quantity;
 use crate::diagnostic::Short;
 
-/// How a control makes motion of a program. What is posted does not depend on it.
+/// How a control makes motion of a program. What is posted does not depend on it, but for feeds that are planned.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionRules {
     /// Time from one set-point to the next, s.
@@ -96,7 +96,7 @@ impl Builder<'_> {
         let corner_tolerance = positive("corner_tolerance", &file.corner_tolerance);
         let mut seconds = |name: &str, said: &Option<Quantity>| {
             said.as_ref()
-                .map_or(0.0, |said| self.seconds_of(name, said))
+                .map_or(0.0, |said| self.seconds_of("motion", name, said))
         };
         MotionRules {
             period,
@@ -130,14 +130,16 @@ impl Builder<'_> {
         None
     }
 
-    fn seconds_of(&mut self, name: &str, said: &Quantity) -> f64 {
+    /// A time of `[table]`.
+    pub(super) fn seconds_of(&mut self, table: &str, name: &str, said: &Quantity) -> f64 {
         let value = self.number(said);
-        if !(0.0..=MOST_SECONDS).contains(&value) {
+        // What is no number was told already.
+        if !value.is_nan() && !(0.0..=MOST_SECONDS).contains(&value) {
             self.fault(
                 "machine-motion",
                 said.span(),
                 format!(
-                    "[motion] {name} is {} s; it must be 0 to {MOST_SECONDS} s",
+                    "[{table}] {name} is {} s; it must be 0 to {MOST_SECONDS} s",
                     Short(value)
                 ),
                 "the unit is seconds",

@@ -6,7 +6,7 @@ use toml::Spanned;
 
 use super::quantity::{Number, Quantity};
 
-/// How the control makes motion of a program. What is posted does not depend on it.
+/// How the control makes motion of a program. What is posted does not depend on it, but for feeds that are planned.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MotionFile {

@@ -5,10 +5,12 @@ use nalgebra::Vector3;
 
 use super::batch::Axes;
 use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns};
+use super::derivatives::{self, Course, ORDERS};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
 use super::numeric;
 use super::orientation::{Branches, Orientation, RotarySet, angle};
+use super::turning_axis;
 
 /// How far a returned solution may miss the pose when it is put through the forward product: mm per metre
 /// of reach, and radians.
@@ -254,6 +256,41 @@ impl Solver {
                 Ok(())
             }
         }
+    }
+
+    /// How the axes go along a path on which the tip goes as `tip` says (value and derivatives by the parameter, mm, part
+    /// frame) and the rotary axes as the joints of `course`: fills in its linear joints, their derivatives and the rates
+    /// of the tip.
+    ///
+    /// # Errors
+    /// [`Unreachable::Linear`] if the linear axes span no volume at these angles, or do not place the tip alone.
+    pub fn course(
+        &self,
+        tip: &[Vector3<f64>; ORDERS],
+        course: &mut Course,
+    ) -> Result<(), Unreachable> {
+        let Form::Closed { linear, .. } = &self.form else {
+            return Err(Unreachable::Linear);
+        };
+        let turns = self.chain.turns(&course.joints[0]);
+        self.place(tip[0], &mut course.joints[0], &turns)?;
+        let ways = linear.ways(&course.joints[0]);
+        derivatives::follow(&self.chain, &ways, tip, course)
+    }
+
+    /// How the joints `rotary` (up to two) go along a path on which the tool axis goes as `axis` says (a unit vector and its derivatives by
+    /// the parameter, part frame): fills in their derivatives in `course`, whose values are given.
+    /// [`Solver::course`] goes on from there.
+    ///
+    /// # Errors
+    /// [`Unreachable::Axis`] on the pole, and where fewer than two rotary axes cannot follow; how much is missing.
+    pub fn turn_along(
+        &self,
+        rotary: &[usize],
+        axis: &[Vector3<f64>; ORDERS],
+        course: &mut Course,
+    ) -> Result<(), Unreachable> {
+        turning_axis::follow(&self.chain, rotary, axis, course)
     }
 
     /// [`Solver::place`] of a batch: puts the linear axes of `at` where the tips stand on `tips` (mm, part frame; at

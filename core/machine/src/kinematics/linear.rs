@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::batch::{Axes, LANES};
 use super::chain::{Chain, Joints, MAX_AXES, Turns, turn};
+use super::derivatives::Share;
 use super::fault::{NoClosedForm, Unreachable};
 
 /// A linear axis beside the three that place the tip: a quill.
@@ -173,6 +174,25 @@ impl Linear {
             joints[joint] = *value;
         }
         Ok(())
+    }
+
+    /// Which joints each of the three ways is made of, the linear axes standing where `joints` has them.
+    pub(super) fn ways(&self, joints: &Joints) -> [[Share; 2]; 3] {
+        std::array::from_fn(|place| {
+            let joint = self.joints[place];
+            let mut way = [Share { joint, share: 1.0 }, Share { joint, share: 0.0 }];
+            for quill in self.seconds.iter().filter(|quill| quill.beside == place) {
+                // Where the other stands at the end of its travel, the quill goes in its place.
+                let at_end = || quill.travel.contains(&joints[joint]);
+                let share = quill.share.unwrap_or_else(|| f64::from(u8::from(at_end())));
+                way[0].share -= share;
+                way[1] = Share {
+                    joint: quill.joint,
+                    share,
+                };
+            }
+            way
+        })
     }
 
     /// [`Linear::place`] of a batch: the linear axes of `at` for `tips`. False, and nothing done, where the linear

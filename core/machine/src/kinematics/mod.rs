@@ -4,6 +4,7 @@
 pub mod batch;
 pub mod chain;
 pub mod choose;
+mod derivatives;
 mod fault;
 pub mod inverse;
 mod kept_tip;
@@ -11,9 +12,12 @@ mod linear;
 mod numeric;
 pub mod orientation;
 pub mod travel;
+mod turning_axis;
 
 pub use chain::{Chain, Joint, Joints, MAX_AXES, Pose, Trace, Turns};
+pub use derivatives::{Course, ORDERS};
 pub use fault::{NoClosedForm, POLE, Unreachable};
 pub use inverse::{Freedom, Solver};
 pub use kept_tip::{KeptTip, Slides};
 pub use linear::Second;
+pub use turning_axis::direction;

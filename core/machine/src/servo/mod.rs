@@ -32,6 +32,7 @@
 
 mod parameters;
 mod poles;
+mod response;
 mod state_space;
 
 use std::f64::consts::TAU;
@@ -41,6 +42,7 @@ use serde::Deserialize;
 
 pub use parameters::Parameter;
 pub use poles::{Pole, stable};
+pub use response::Response;
 pub use state_space::{Released, StateSpace};
 
 use crate::diagnostic::Place;

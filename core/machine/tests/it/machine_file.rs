@@ -4,7 +4,7 @@
 use std::fs;
 
 use post_machine::description::{
-    BlendRule, CornerRule, LimitsActOn, Machine, RapidRule, Setting, Tcp, load,
+    BlendRule, CornerRule, LimitsActOn, Machine, RapidRule, Rule, Setting, Tcp, load,
 };
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_testkit::repository;
@@ -489,6 +489,36 @@ fn every_slip_is_refused_where_it_stands() {
             Some("m.toml")
         );
     }
+}
+
+/// A cycle time cannot be told without accelerations; with them the rule is as good as any.
+#[test]
+fn the_rule_of_the_cycle_time_asks_for_accelerations() {
+    let ruled = |text: &str| {
+        text.replace(
+            "[control]",
+            "[solution]\nrule = \"cycle-time\"\n\n[control]",
+        )
+    };
+    let found = try_load(&ruled(GOOD), &[]).unwrap_err();
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(underlined(&found[0]), "42 \"cycle-time\"");
+    assert!(
+        found[0].message.contains("max_accel of C, A, Y, X, Z"),
+        "{}",
+        found[0].message
+    );
+    assert!(found[0].help.is_some());
+    let driven = GOOD.replace("rotary =", "max_accel = 300\nrotary =");
+    let found = try_load(&ruled(&driven), &[]).unwrap_err();
+    assert!(
+        found[0].message.ends_with("max_accel of Y, X, Z"),
+        "{}",
+        found[0].message
+    );
+    let driven = driven.replace("linear =", "max_accel = 4000\nlinear =");
+    let machine = try_load(&ruled(&driven), &[]).unwrap();
+    assert_eq!(machine.solution.rule, Rule::CycleTime);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::problem::{Problem, Source};
+use crate::table::Source;
 
 /// Why no feed keeps every limit. Samples are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,8 +76,20 @@ pub enum Infeasible {
 impl Infeasible {
     /// The sample where it shows, if it is one.
     #[must_use]
-    pub fn sample(&self) -> Option<usize> {
-        match *self {
+    pub fn sample(mut self) -> Option<usize> {
+        self.sample_mut().copied()
+    }
+
+    /// The same fault of a part of a path that begins with sample `first` of the whole.
+    pub(crate) fn shifted(mut self, first: usize) -> Self {
+        if let Some(sample) = self.sample_mut() {
+            *sample += first;
+        }
+        self
+    }
+
+    fn sample_mut(&mut self) -> Option<&mut usize> {
+        match self {
             Self::Shape => None,
             Self::Standstill { sample }
             | Self::Unbounded { sample }
@@ -88,22 +100,6 @@ impl Infeasible {
             | Self::OutOfReach { sample, .. }
             | Self::Contradiction { sample, .. } => Some(sample),
         }
-    }
-
-    /// The same fault of a part of a path that begins with sample `first` of the whole.
-    pub(crate) fn shifted(mut self, first: usize) -> Self {
-        match &mut self {
-            Self::Shape => {}
-            Self::Standstill { sample }
-            | Self::Unbounded { sample }
-            | Self::TooShort { sample }
-            | Self::NoProgress { sample }
-            | Self::NotANumber { sample, .. }
-            | Self::TooFastStart { sample, .. }
-            | Self::OutOfReach { sample, .. }
-            | Self::Contradiction { sample, .. } => *sample += first,
-        }
-        self
     }
 
     /// The limit that it breaks, if it is one.
@@ -119,50 +115,6 @@ impl Infeasible {
             | Self::TooFastStart { source, .. }
             | Self::OutOfReach { source, .. }
             | Self::Contradiction { source, .. } => Some(source),
-        }
-    }
-
-    /// A sentence with the limit by its name in `problem`.
-    #[must_use]
-    pub fn describe(&self, problem: &Problem) -> String {
-        let by = |row: Option<Source>| match row {
-            Some(source) => format!(" ({} allows no more)", problem.name(source)),
-            None => String::new(),
-        };
-        match *self {
-            Self::TooFastStart {
-                sample,
-                source,
-                needed,
-                allowed,
-                braking,
-            } => format!(
-                "the start is too fast: at sample {sample} the squared parameter speed is still {needed:.6} after the \
-                 hardest braking{}, and {} allows {allowed:.6}",
-                by(braking),
-                problem.name(source)
-            ),
-            Self::OutOfReach {
-                sample,
-                source,
-                needed,
-                allowed,
-                accelerating,
-            } => format!(
-                "the end is too fast: at sample {sample} the squared parameter speed would have to be {needed:.6} \
-                 already{}, and {} allows {allowed:.6}",
-                by(accelerating),
-                problem.name(source)
-            ),
-            Self::NotANumber { sample, source } => format!(
-                "{} is no limit at sample {sample}: not finite, or negative",
-                problem.name(source)
-            ),
-            Self::Contradiction { sample, source } => format!(
-                "behind sample {sample} the limits contradict each other, among them {}",
-                problem.name(source)
-            ),
-            _ => self.to_string(),
         }
     }
 }

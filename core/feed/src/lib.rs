@@ -10,7 +10,9 @@
 //! |---|---|---|---|
 //! | [`reach`] | velocity, acceleration, errors | linear, two passes; streams | the default |
 //! | [`linear_program`] | the same | linear an iteration, some twenty of them | the paper's optimum of `Σ f²`, with a proof |
-//! | [`jerk`] | jerk too | linear an iteration, some hundred of them | where drives have jerk limits |
+//! | [`jerk`] | jerk too | linear an iteration, some hundred of them; streams | where drives have jerk limits |
+//!
+//! Where a path is known by points alone, [`fit`] lays smooth curves along them.
 //!
 //! ```
 //! use post_feed::limits::{AxisAcceleration, AxisVelocity, Collocation, Feed};
@@ -38,6 +40,8 @@
 //! [`reach::Stream`], a plan that breaks a limit because an iteration was stopped.
 
 pub mod curve;
+mod feed_spline;
+pub mod fit;
 mod infeasible;
 mod interior;
 pub mod jerk;
@@ -48,7 +52,10 @@ pub mod profile;
 pub mod reach;
 pub mod response;
 pub mod samples;
+mod table;
+mod window;
 
+pub use feed_spline::FeedSpline;
 pub use infeasible::Infeasible;
 pub use problem::{Ends, Problem};
 pub use samples::Samples;

@@ -4,32 +4,7 @@ use crate::infeasible::Infeasible;
 use crate::limits::Limit;
 use crate::samples::Samples;
 
-/// Which limit a bound or row comes from: an index into [`Problem::names`], and the axis where there is one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Source {
-    /// Index into [`Problem::names`].
-    pub limit: u16,
-    /// Index of the axis, in the order of [`Samples::axes`].
-    pub axis: Option<u16>,
-}
-
-/// `-1 <= here * q[i] + next * q[i + 1] <= 1`: what is limited, as a share of its limit, on the way from one sample to
-/// the next.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Row {
-    /// Coefficient of `q[i]`, in 1 / (unit of q).
-    pub here: f64,
-    /// Coefficient of `q[i + 1]`, in 1 / (unit of q).
-    pub next: f64,
-}
-
-impl Row {
-    /// The limited value as a share of its limit, with its sign.
-    #[must_use]
-    pub fn value(self, here: f64, next: f64) -> f64 {
-        self.here * here + self.next * next
-    }
-}
+pub use crate::table::{Row, Source, Table};
 
 /// The speed of the path parameter squared that the plan begins and ends with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -167,6 +142,27 @@ impl Problem {
         }
     }
 
+    /// Lowers the upper bound of `q` at a sample for a reason that no [`Limit`] knows, as a corner where two batches
+    /// meet, with a name for reports.
+    pub fn lower(&mut self, sample: usize, bound: f64, name: &str) {
+        let limit = self.number_of(name);
+        // What is not a number must not get lost in a comparison.
+        if bound < self.upper[sample] || bound.is_nan() {
+            self.upper[sample] = bound;
+            self.causes[sample] = Source { limit, axis: None };
+        }
+    }
+
+    /// The number of a name, which is appended if it is new.
+    pub(crate) fn number_of(&mut self, name: &str) -> u16 {
+        let known = self.names.iter().position(|known| known == name);
+        let number = known.unwrap_or_else(|| {
+            self.names.push(name.to_owned());
+            self.names.len() - 1
+        });
+        number as u16
+    }
+
     /// Number of rows of each interval.
     #[must_use]
     pub fn stride(&self) -> usize {
@@ -190,6 +186,50 @@ impl Problem {
         match source.axis {
             Some(axis) => format!("{name} of axis {axis}"),
             None => name.to_owned(),
+        }
+    }
+
+    /// A fault of this problem as a sentence, with the limit by its name.
+    #[must_use]
+    pub fn describe(&self, fault: &Infeasible) -> String {
+        let by = |row: Option<Source>| match row {
+            Some(source) => format!(" ({} allows no more)", self.name(source)),
+            None => String::new(),
+        };
+        match *fault {
+            Infeasible::TooFastStart {
+                sample,
+                source,
+                needed,
+                allowed,
+                braking,
+            } => format!(
+                "the start is too fast: at sample {sample} the squared parameter speed is still {needed:.6} after the \
+                 hardest braking{}, and {} allows {allowed:.6}",
+                by(braking),
+                self.name(source)
+            ),
+            Infeasible::OutOfReach {
+                sample,
+                source,
+                needed,
+                allowed,
+                accelerating,
+            } => format!(
+                "the end is too fast: at sample {sample} the squared parameter speed would have to be {needed:.6} \
+                 already{}, and {} allows {allowed:.6}",
+                by(accelerating),
+                self.name(source)
+            ),
+            Infeasible::NotANumber { sample, source } => format!(
+                "{} is no limit at sample {sample}: not finite, or negative",
+                self.name(source)
+            ),
+            Infeasible::Contradiction { sample, source } => format!(
+                "behind sample {sample} the limits contradict each other, among them {}",
+                self.name(source)
+            ),
+            _ => fault.to_string(),
         }
     }
 
@@ -252,9 +292,8 @@ impl Problem {
             worst.raise(share, sample, self.causes[sample]);
         }
         for (interval, pair) in q.windows(2).enumerate() {
-            for (row, &source) in self.rows_of(interval).iter().zip(&self.sources) {
-                worst.raise(row.value(pair[0], pair[1]).abs(), interval, source);
-            }
+            let usage = self.used_between(interval, pair[0], pair[1]);
+            worst.raise(usage.share, interval, usage.source);
         }
         worst
     }
@@ -262,16 +301,35 @@ impl Problem {
     /// The limit that is used most at a sample: its bound, and the rows of both intervals that it ends.
     #[must_use]
     pub fn active(&self, q: &[f64], sample: usize) -> Usage {
+        let before = sample.checked_sub(1).map(|before| q[before]);
+        self.used(sample, q[sample], before, q.get(sample + 1).copied())
+    }
+
+    /// As [`Problem::active`], by `q` of the sample and its neighbours.
+    pub(crate) fn used(
+        &self,
+        sample: usize,
+        q: f64,
+        before: Option<f64>,
+        behind: Option<f64>,
+    ) -> Usage {
         let mut worst = Usage::default();
         if self.upper[sample] > 0.0 {
-            let share = q[sample] / self.upper[sample];
-            worst.raise(share, sample, self.causes[sample]);
+            worst.raise(q / self.upper[sample], sample, self.causes[sample]);
         }
-        for interval in sample.saturating_sub(1)..(sample + 1).min(self.steps.len()) {
-            for (row, &source) in self.rows_of(interval).iter().zip(&self.sources) {
-                let share = row.value(q[interval], q[interval + 1]).abs();
-                worst.raise(share, sample, source);
-            }
+        let arriving = before.map(|before| self.used_between(sample - 1, before, q));
+        let leaving = behind.map(|behind| self.used_between(sample, q, behind));
+        for usage in [arriving, leaving].into_iter().flatten() {
+            worst.raise(usage.share, sample, usage.source);
+        }
+        worst
+    }
+
+    /// The row that is used most between two samples.
+    pub(crate) fn used_between(&self, interval: usize, here: f64, next: f64) -> Usage {
+        let mut worst = Usage::default();
+        for (row, &source) in self.rows_of(interval).iter().zip(&self.sources) {
+            worst.raise(row.value(here, next).abs(), interval, source);
         }
         worst
     }
@@ -298,39 +356,5 @@ impl Usage {
                 source,
             };
         }
-    }
-}
-
-/// What a [`Limit`] writes its bounds and rows into.
-pub struct Table<'a> {
-    limit: u16,
-    first: usize,
-    stride: usize,
-    upper: &'a mut [f64],
-    causes: &'a mut [Source],
-    rows: &'a mut [Row],
-}
-
-impl Table<'_> {
-    /// Lowers the upper bound of `q` at a sample to `bound`, if it is not lower already.
-    pub fn lower(&mut self, sample: usize, bound: f64, axis: Option<u16>) {
-        // What is not a number must not get lost in a comparison.
-        if bound < self.upper[sample] || bound.is_nan() {
-            self.upper[sample] = bound;
-            self.causes[sample] = Source {
-                limit: self.limit,
-                axis,
-            };
-        }
-    }
-
-    /// Sets the limit's row number `row` of an interval.
-    pub fn set(&mut self, interval: usize, row: usize, value: Row) {
-        self.rows[interval * self.stride + self.first + row] = value;
-    }
-
-    /// The rows of an interval from the limit's first row on.
-    pub fn rows_mut(&mut self, interval: usize) -> &mut [Row] {
-        &mut self.rows[interval * self.stride + self.first..(interval + 1) * self.stride]
     }
 }

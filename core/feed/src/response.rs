@@ -6,6 +6,13 @@ pub trait Response {
     fn at(&self, frequency: f64) -> Answer;
 }
 
+/// What tells the answer at a frequency in rad/s is a drive: so a servo of another crate serves without knowing this one.
+impl<F: Fn(f64) -> Answer> Response for F {
+    fn at(&self, frequency: f64) -> Answer {
+        self(frequency)
+    }
+}
+
 /// A complex number: the answer's size and phase against what was asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
@@ -16,6 +23,12 @@ pub struct Answer {
 }
 
 impl Answer {
+    /// Of a drive that is where it is commanded.
+    pub const EXACT: Self = Self {
+        real: 1.0,
+        imaginary: 0.0,
+    };
+
     /// `|G|`.
     #[must_use]
     pub fn gain(self) -> f64 {
@@ -29,69 +42,4 @@ impl Answer {
         let imaginary = self.imaginary * other.real - self.real * other.imaginary;
         libm::atan2(imaginary, real)
     }
-}
-
-/// A quotient of polynomials in `s`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Transfer {
-    /// From the constant term up.
-    pub numerator: Vec<f64>,
-    /// From the constant term up.
-    pub denominator: Vec<f64>,
-}
-
-/// Gains of a PID position loop around a drive, in the units of the feedrate paper's Table 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pid {
-    /// Proportional, V/mm.
-    pub proportional: f64,
-    /// Integral, V/(mm s).
-    pub integral: f64,
-    /// Derivative, V/(mm/s).
-    pub derivative: f64,
-    /// Current amplifier times torque constant times screw lead, V to mm.
-    pub drive: f64,
-    /// Moment of inertia, kg m².
-    pub inertia: f64,
-    /// Viscous damping, kg m²/s.
-    pub damping: f64,
-}
-
-impl Pid {
-    /// `K (kd s² + kp s + ki) / (J s³ + (B + K kd) s² + K kp s + K ki)`: the feedrate paper's eq. 2, in which `s` is
-    /// missing behind `kp`.
-    #[must_use]
-    pub fn transfer(&self) -> Transfer {
-        let [integral, proportional, derivative] =
-            [self.integral, self.proportional, self.derivative].map(|gain| self.drive * gain);
-        Transfer {
-            numerator: vec![integral, proportional, derivative],
-            denominator: vec![
-                integral,
-                proportional,
-                self.damping + derivative,
-                self.inertia,
-            ],
-        }
-    }
-}
-
-impl Response for Transfer {
-    fn at(&self, frequency: f64) -> Answer {
-        let [a, b] = polynomial(&self.numerator, frequency);
-        let [c, d] = polynomial(&self.denominator, frequency);
-        let square = c * c + d * d;
-        Answer {
-            real: (a * c + b * d) / square,
-            imaginary: (b * c - a * d) / square,
-        }
-    }
-}
-
-/// A polynomial at `j * frequency`, real and imaginary part.
-fn polynomial(coefficients: &[f64], frequency: f64) -> [f64; 2] {
-    let step = |[real, imaginary]: [f64; 2], coefficient: &f64| {
-        [coefficient - imaginary * frequency, real * frequency]
-    };
-    coefficients.iter().rev().fold([0.0, 0.0], step)
 }

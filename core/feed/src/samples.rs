@@ -28,7 +28,21 @@ pub struct Samples {
     /// Length of the block of the program that goes on behind each sample, in units of the parameter; empty where
     /// there are no blocks.
     pub blocks: Vec<f64>,
+    /// Largest feed of the block of the program that goes on behind each sample (at the last sample: of the one before
+    /// it), mm/s; infinite where the program sets none, empty where there are no blocks.
+    pub feeds: Vec<f64>,
+    /// How the tip goes in the part frame per unit of each axis: of each axis, at each sample, mm/mm or mm/rad. Empty
+    /// where it is not known. There may be fewer than [`Samples::axes`]: what stands behind them there, coordinates with
+    /// limits of their own, moves no tip.
+    pub rates: Vec<Vec<[f64; 3]>>,
+    /// Share of the tolerance of the contour error that may be used at each sample, above 0 and up to 1; empty: all
+    /// of it.
+    pub contour_share: Vec<f64>,
 }
+
+/// Below this speed of the tip per unit of parameter speed, mm, the tip counts as standing still: rotary axes alone
+/// turn, and what is left of `|P'|` is rounding.
+const STILL: f64 = 1e-9;
 
 impl Samples {
     /// Number of samples.
@@ -55,7 +69,8 @@ impl Samples {
         self.parameter[interval + 1] - self.parameter[interval]
     }
 
-    /// Whether every array has a value for each sample; the lengths of blocks may be missing.
+    /// Whether every array has a value for each sample; lengths and feeds of blocks may be missing, and so may shares of
+    /// the contour error and the rates of all axes together.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         let count = self.len();
@@ -66,7 +81,12 @@ impl Samples {
         self.tip.iter().all(|all| all.len() == count)
             && self.curvature.len() == count
             && axes.into_iter().all(|all| all.len() == count)
-            && (self.blocks.is_empty() || self.blocks.len() == count)
+            && [&self.blocks, &self.feeds, &self.contour_share]
+                .into_iter()
+                .all(|all| all.is_empty() || all.len() == count)
+            && (!self.has_rates()
+                || self.rates.len() <= self.axes.len()
+                    && self.rates.iter().all(|all| all.len() == count))
     }
 
     /// Removes all samples and keeps the memory.
@@ -80,10 +100,28 @@ impl Samples {
             axis.third.clear();
         }
         self.blocks.clear();
+        self.feeds.clear();
+        self.contour_share.clear();
+        self.rates.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Whether it is known how each axis moves the tip.
+    #[must_use]
+    pub fn has_rates(&self) -> bool {
+        self.rates.iter().any(|all| !all.is_empty())
+    }
+
+    /// Appends how each axis moves the tip at the sample that was pushed last: [`Samples::rates`], one for each axis.
+    pub fn push_rates(&mut self, rates: &[[f64; 3]]) {
+        self.rates.resize_with(rates.len(), Vec::new);
+        for (all, &one) in self.rates.iter_mut().zip(rates) {
+            all.push(one);
+        }
     }
 
     /// Appends a sample: parameter, first to third derivative of the tip, first to third derivative of each axis. The
-    /// curvature follows from the tip.
+    /// curvature follows from the tip; length and feed of its block, where there are blocks, rates and shares are
+    /// appended apart.
     pub fn push(&mut self, parameter: f64, tip: [[f64; 3]; 3], axes: &[[f64; 3]]) {
         self.parameter.push(parameter);
         for (all, one) in self.tip.iter_mut().zip(tip) {
@@ -113,15 +151,20 @@ impl Samples {
     }
 }
 
-/// Curvature of a path with these first and second derivatives; 0 where the first is.
+/// Curvature of a path with these first and second derivatives; 0 where the tip stands still.
 #[must_use]
 pub fn curvature(first: [f64; 3], second: [f64; 3]) -> f64 {
     let speed = norm(first);
-    if speed > 0.0 {
-        norm(cross(first, second)) / (speed * speed * speed)
-    } else {
+    if is_still(speed) {
         0.0
+    } else {
+        norm(cross(first, second)) / (speed * speed * speed)
     }
+}
+
+/// Whether `|P'|` says that the tip stands still.
+pub(crate) fn is_still(stretch: f64) -> bool {
+    stretch <= STILL
 }
 
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -41,10 +41,15 @@ pub fn seeded(own: u64) -> Rng {
     Rng(own.wrapping_add(seed.wrapping_mul(0xD1B5_4A32_D192_ED03)))
 }
 
-/// SplitMix64: the same numbers on every system and in every run. [`seeded`] and [`randomised`] make it.
+/// SplitMix64: the same numbers on every system and in every run. [`seeded`] and [`randomised`] make that of a test.
 pub struct Rng(u64);
 
 impl Rng {
+    /// The numbers of a seed alone: for generators of cases that have a seed each, and for what is no test.
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     pub fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;

@@ -2,18 +2,18 @@
 
 /// A symmetric matrix whose entry `(i + k, i)` is `rows[i][k]`, for `k` below `K`.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Band<const K: usize> {
-    pub(super) rows: Vec<[f64; K]>,
+pub(crate) struct Band<const K: usize> {
+    pub(crate) rows: Vec<[f64; K]>,
 }
 
 impl<const K: usize> Band<K> {
-    pub(super) fn reset(&mut self, size: usize) {
+    pub(crate) fn reset(&mut self, size: usize) {
         self.rows.clear();
         self.rows.resize(size, [0.0; K]);
     }
 
     /// Factors into `L D L'` in place: `D` takes the diagonal, `L` the rest.
-    pub(super) fn factor(&mut self) {
+    pub(crate) fn factor(&mut self) {
         let size = self.rows.len();
         for column in 0..size {
             let pivot = self.rows[column];
@@ -30,20 +30,29 @@ impl<const K: usize> Band<K> {
     }
 
     /// Solves for a right side in place, after [`Band::factor`].
-    pub(super) fn solve(&self, side: &mut [f64]) {
+    pub(crate) fn solve(&self, side: &mut [f64]) {
+        self.solve_each::<1>(side.as_chunks_mut().0);
+    }
+
+    /// Solves for `W` right sides at once: each waits for fewer of its own results.
+    pub(crate) fn solve_each<const W: usize>(&self, sides: &mut [[f64; W]]) {
         let size = self.rows.len();
         for column in 0..size {
-            let value = side[column];
+            let value = sides[column];
             for k in 1..K.min(size - column) {
-                side[column + k] -= self.rows[column][k] * value;
+                for (side, value) in sides[column + k].iter_mut().zip(value) {
+                    *side -= self.rows[column][k] * value;
+                }
             }
         }
         for column in (0..size).rev() {
-            let mut value = side[column] / self.rows[column][0];
-            for k in 1..K.min(size - column) {
-                value -= self.rows[column][k] * side[column + k];
+            let mut value = sides[column].map(|side| side / self.rows[column][0]);
+            for k in (1..K.min(size - column)).rev() {
+                for (value, side) in value.iter_mut().zip(sides[column + k]) {
+                    *value -= self.rows[column][k] * side;
+                }
             }
-            side[column] = value;
+            sides[column] = value;
         }
     }
 }

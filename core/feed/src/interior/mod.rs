@@ -6,7 +6,7 @@
 //! (Mehrotra, *On the implementation of a primal-dual interior point method*, 1992; Wright, *Primal-Dual
 //! Interior-Point Methods*, 1997).
 
-mod band;
+pub(crate) mod band;
 
 use band::Band;
 

@@ -46,6 +46,10 @@ impl Piece {
         match self {
             // The integral of step * share^(-2/3) / sqrt(q).
             Self::Leave(q) | Self::Arrive(q) => 3.0 * step / q.sqrt(),
+            // Constant acceleration, from rest too.
+            Self::Quadratic([a, b, c]) if (a - 2.0 * b + c).abs() <= 1e-12 * (a + c) => {
+                2.0 * step / (a.sqrt() + c.sqrt())
+            }
             Self::Quadratic(_) => {
                 let speed = |share: f64| self.at(share, step)[0].sqrt();
                 let each = GAUSS.iter().map(|[node, weight]| {

@@ -14,16 +14,26 @@
 //!
 //! Samples are best closer together where the path is at rest: [`graded`].
 //!
+//! **Long paths** and paths with corners are planned in windows: [`Stream`].
+//!
 //! **The cost** is the time, `Σ weight / sqrt(coefficient)`, which by convexity is never below the true time.
 
+mod ahead;
 mod forms;
 mod law;
 mod rounds;
+mod rules;
+mod spline;
+pub mod stream;
 
 pub use law::{Law, Piece};
+pub use stream::{Batch, Passed, Stream};
+
+use rounds::{ROOM, Stretch, Work};
+use spline::State;
 
 use crate::infeasible::Infeasible;
-use crate::limits::Limit;
+use crate::limits::{Channel, Limit};
 use crate::problem::Problem;
 use crate::samples::Samples;
 use crate::{profile, reach};
@@ -106,34 +116,56 @@ pub fn solve(
 ) -> Result<Plan, Infeasible> {
     let fast = reach::solve(problem)?;
     let last = problem.steps.len();
-    let mut plan = Plan {
-        law: Law {
-            steps: problem.steps.clone(),
-            pieces: Vec::with_capacity(last),
-        },
-        seconds: 0.0,
-        bound: profile::duration(&problem.steps, &fast),
-        rounds: 0,
-        iterations: 0,
+    let mut law = Law {
+        steps: problem.steps.clone(),
+        pieces: Vec::with_capacity(last),
     };
+    let mut work = Work::default();
+    let corners = vec![false; last + 1];
     let mut first = 0;
     while first < last {
         let stop = (first + 1..last).find(|&sample| problem.upper[sample] == 0.0);
         let next = stop.unwrap_or(last);
-        if next - first < 4 {
-            return Err(Infeasible::TooShort { sample: first });
-        }
-        let stretch = rounds::Stretch {
-            samples,
-            limits,
-            problem,
-            fast: &fast,
-            first,
-            last: next,
+        let at = |sample: usize, end: f64| {
+            let whole = sample == 0 || sample == last;
+            if whole { end } else { 0.0 }
         };
-        stretch.plan(settings, &mut plan)?;
+        let start = State::even(at(first, problem.ends.start));
+        let stretch = Stretch {
+            channels: &|interval, sink| of_limits(samples, limits, first + interval, sink),
+            steps: &problem.steps[first..next],
+            upper: &problem.upper[first..=next],
+            causes: &problem.causes[first..=next],
+            fast: &fast[first..=next],
+            corners: &corners[first..=next],
+            start,
+            end: at(next, problem.ends.end),
+            room: if start.is_rest() { 0.0 } else { ROOM },
+        };
+        let planned = stretch.plan(settings, None, &mut work);
+        let planned = planned.map_err(|fault| fault.shifted(first))?;
+        law.pieces.extend(planned.law.pieces);
         first = next;
     }
-    plan.seconds = plan.law.duration();
-    Ok(plan)
+    Ok(Plan {
+        seconds: law.duration(),
+        law,
+        bound: profile::duration(&problem.steps, &fast),
+        rounds: work.rounds,
+        iterations: work.iterations,
+    })
+}
+
+/// What the limits hand on in an interval, each with its number.
+fn of_limits(
+    samples: &Samples,
+    limits: &[&dyn Limit],
+    interval: usize,
+    sink: &mut dyn FnMut(u16, Channel),
+) {
+    for (index, limit) in limits.iter().enumerate() {
+        limit.channels(samples, interval, &mut |channel| {
+            sink(index as u16, channel)
+        });
+    }
 }

@@ -2,8 +2,8 @@
 
 use super::channel::axis_channels;
 use super::{Channel, Collocation, Limit, Order, first_derivative};
-use crate::problem::{Row, Table};
 use crate::samples::Samples;
+use crate::table::{Row, Table};
 
 /// `|Q' * s̈ + Q'' * q| <= a` of each axis, with `s̈ = (q[i + 1] - q[i]) / (2 * step)` between two samples: linear in
 /// both. Where a row is kept is told by [`Collocation`]; [`Collocation::Start`] is eq. 23 as it is printed.
@@ -16,7 +16,7 @@ pub struct AxisAcceleration {
 }
 
 impl Limit for AxisAcceleration {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "axis acceleration"
     }
 

@@ -2,8 +2,8 @@
 
 use super::channel::axis_channels;
 use super::{Channel, Limit, Order};
-use crate::problem::Table;
 use crate::samples::Samples;
+use crate::table::Table;
 
 /// `|Q' * s⃛ + 3 * Q'' * ṡ * s̈ + Q''' * ṡ³| <= j` of each axis.
 ///
@@ -15,7 +15,7 @@ pub struct AxisJerk {
 }
 
 impl Limit for AxisJerk {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "axis jerk"
     }
 

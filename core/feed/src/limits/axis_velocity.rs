@@ -1,8 +1,8 @@
 //! Velocity of each axis (feedrate paper, eq. 22).
 
 use super::{Collocation, Limit, first_derivative};
-use crate::problem::Table;
 use crate::samples::Samples;
+use crate::table::Table;
 
 /// `|Q'| * ds/dt <= v` of each axis, so `q <= (v / |Q'|)^2`.
 #[derive(Clone, Debug)]
@@ -14,7 +14,7 @@ pub struct AxisVelocity {
 }
 
 impl Limit for AxisVelocity {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "axis velocity"
     }
 

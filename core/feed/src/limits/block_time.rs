@@ -1,8 +1,8 @@
 //! Block processing time of the control.
 
-use super::{Collocation, Limit};
-use crate::problem::Table;
+use super::{Collocation, Limit, Place, least_of_blocks};
 use crate::samples::Samples;
+use crate::table::Table;
 
 /// A control that needs `seconds` to prepare a block must not finish one sooner: the speed on a block of length `l`
 /// stays below `l / seconds`, everywhere on the block. Lengths are [`Samples::blocks`].
@@ -15,17 +15,14 @@ pub struct BlockTime {
 }
 
 impl Limit for BlockTime {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "block time"
     }
 
     fn apply(&self, samples: &Samples, table: &mut Table<'_>) {
-        for (sample, length) in samples.blocks.iter().enumerate() {
-            let speed = length / self.seconds;
-            table.lower(sample, speed * speed, None);
-            if self.collocation == Collocation::Throughout && sample + 1 < samples.len() {
-                table.lower(sample + 1, speed * speed, None);
-            }
+        for place in Place::all(samples, self.collocation) {
+            let length = least_of_blocks(&samples.blocks, &place);
+            place.bound(table, length / self.seconds);
         }
     }
 }

@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
+use super::first_derivative;
 use crate::samples::{Samples, dot};
 
 /// Which derivative by time is limited.
@@ -33,6 +34,21 @@ pub struct Channel {
 }
 
 impl Channel {
+    /// The limited derivative by time at a share of the interval, 0 to 1, as a share of the limit and with its sign:
+    /// where `q`, its slope and its second derivative by the parameter are these.
+    #[must_use]
+    pub fn used(&self, share: f64, step: f64, [q, slope, bend]: [f64; 3]) -> f64 {
+        let mix = |[a, b]: [f64; 2]| a + (b - a) * share;
+        let [a, b, c] = first_derivative(self.first, self.second, step);
+        let first = mix([mix([a, b]), mix([b, c])]);
+        let (second, third) = (mix(self.second), mix(self.third));
+        let value = match self.order {
+            Order::Acceleration => 0.5 * first * slope + second * q,
+            Order::Jerk => q.sqrt() * (0.5 * first * bend + 1.5 * second * slope + third * q),
+        };
+        value / self.limit
+    }
+
     /// Of the derivatives at two samples, the second one `step` behind the first. The third derivative may jump at a
     /// sample (at the knot of a cubic spline it does), and a sample has the one behind it: at the interval's end it
     /// follows from the second.

@@ -1,8 +1,8 @@
 //! Chord error of the control's interpolator (feedrate paper, eqs. 14, 15).
 
 use super::{Collocation, Limit, bound_feed};
-use crate::problem::Table;
 use crate::samples::Samples;
+use crate::table::Table;
 
 /// The way of one interpolation period `T` is a chord of the path; on an arc of radius `ρ` it strays from the path by
 /// at most `δ` if the feed is at most `2 * sqrt(ρ² - (ρ - δ)²) / T`.
@@ -29,7 +29,7 @@ impl ChordError {
 }
 
 impl Limit for ChordError {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "chord error"
     }
 

@@ -26,13 +26,13 @@ pub use feed::Feed;
 pub use tip_acceleration::TipAcceleration;
 pub use tip_jerk::TipJerk;
 
-use crate::problem::Table;
-use crate::samples::{Samples, norm};
+use crate::samples::{Samples, is_still, norm};
+use crate::table::Table;
 
 /// Something that a feed must keep.
 pub trait Limit {
     /// What it limits, in the words of a report: `axis acceleration`.
-    fn name(&self) -> &str;
+    fn name(&self) -> &'static str;
 
     /// The rows that it has in each interval: for each the axis that it is of. Their number must not depend on the
     /// batch.
@@ -89,30 +89,38 @@ pub(crate) fn first_derivative(first: [f64; 2], second: [f64; 2], step: f64) -> 
     [first[0], middle, first[1]]
 }
 
-/// Bounds `q` so that the feed of the tip stays below what `most` says of a curvature in 1/mm, mm/s.
-pub(crate) fn bound_feed(
-    samples: &Samples,
-    collocation: Collocation,
-    table: &mut Table<'_>,
-    most: impl Fn(f64) -> f64,
-) {
-    let q = |feed: f64, stretch: f64| {
-        let speed = feed / stretch;
-        // At rest of the tip (a cusp, or rotary axes alone) there is no feed to bound.
-        if stretch > 0.0 {
-            speed * speed
+/// Where a bound of the tip's feed holds: a sample, or an interval with both its ends.
+pub(crate) struct Place {
+    pub(crate) samples: std::ops::RangeInclusive<usize>,
+    /// The largest `|P'|`, mm per unit of the parameter.
+    pub(crate) stretch: f64,
+    /// The largest curvature, 1/mm.
+    pub(crate) curvature: f64,
+}
+
+impl Place {
+    /// All of a batch: its samples, or its intervals if a limit is kept between samples too.
+    fn all(samples: &Samples, collocation: Collocation) -> impl Iterator<Item = Self> + '_ {
+        let throughout = collocation == Collocation::Throughout;
+        let count = if throughout {
+            samples.intervals()
         } else {
-            f64::INFINITY
-        }
-    };
-    if collocation != Collocation::Throughout {
-        for sample in 0..samples.len() {
-            let bound = q(most(samples.curvature[sample]), samples.stretch(sample));
-            table.lower(sample, bound, None);
-        }
-        return;
+            samples.len()
+        };
+        (0..count).map(move |first| {
+            if throughout {
+                Self::between(samples, first)
+            } else {
+                Self {
+                    samples: first..=first,
+                    stretch: samples.stretch(first),
+                    curvature: samples.curvature[first],
+                }
+            }
+        })
     }
-    for interval in 0..samples.intervals() {
+
+    fn between(samples: &Samples, interval: usize) -> Self {
         let step = samples.step(interval);
         let [first, second, _] = &samples.tip;
         let middle = |axis: usize| {
@@ -121,9 +129,57 @@ pub(crate) fn bound_feed(
         };
         let middle = norm([middle(0), middle(1), middle(2)]);
         let ends = samples.stretch(interval).max(samples.stretch(interval + 1));
-        let curvature = samples.curvature[interval].max(samples.curvature[interval + 1]);
-        let bound = q(most(curvature), ends.max(middle));
-        table.lower(interval, bound, None);
-        table.lower(interval + 1, bound, None);
+        Self {
+            samples: interval..=interval + 1,
+            stretch: ends.max(middle),
+            curvature: samples.curvature[interval].max(samples.curvature[interval + 1]),
+        }
     }
+
+    /// Whether the tip stands still there, so that there is no feed to bound: at a cusp, or where rotary axes alone
+    /// turn.
+    pub(crate) fn is_still(&self) -> bool {
+        is_still(self.stretch)
+    }
+
+    /// Bounds the speed of the parameter there.
+    pub(crate) fn bound(&self, table: &mut Table<'_>, speed: f64) {
+        // A speed below 0 is none, and must not become one by being squared.
+        let bound = if speed >= 0.0 {
+            speed * speed
+        } else {
+            f64::NAN
+        };
+        for sample in self.samples.clone() {
+            table.lower(sample, bound, None);
+        }
+    }
+}
+
+/// Bounds `q` so that the feed of the tip stays below what `most` says of a curvature in 1/mm, mm/s; nothing where the
+/// tip stands still.
+pub(crate) fn bound_feed(
+    samples: &Samples,
+    collocation: Collocation,
+    table: &mut Table<'_>,
+    most: impl Fn(f64) -> f64,
+) {
+    for place in Place::all(samples, collocation).filter(|place| !place.is_still()) {
+        place.bound(table, most(place.curvature) / place.stretch);
+    }
+}
+
+/// The least of what each sample of a place has of its block; infinite where there are no blocks. Between two samples a
+/// block may end and the next begin, so both count.
+pub(crate) fn least_of_blocks(each: &[f64], place: &Place) -> f64 {
+    let here = each.get(place.samples.clone()).unwrap_or_default();
+    // What is not a number must not get lost in a comparison.
+    let least = |least: f64, &value: &f64| {
+        if value < least || value.is_nan() {
+            value
+        } else {
+            least
+        }
+    };
+    here.iter().fold(f64::INFINITY, least)
 }

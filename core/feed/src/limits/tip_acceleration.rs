@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use super::axis_acceleration::acceleration;
 use super::channel::tip_channels;
 use super::{Channel, Collocation, Limit, Order};
-use crate::problem::{Row, Table};
 use crate::samples::{Samples, dot, norm};
+use crate::table::{Row, Table};
 
 /// Pairs of parallel sides of the polygon that stands for the disc.
 const PAIRS: usize = 8;
@@ -25,7 +25,7 @@ pub struct TipAcceleration {
 }
 
 impl Limit for TipAcceleration {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "tip acceleration"
     }
 

@@ -2,8 +2,8 @@
 
 use super::channel::tip_channels;
 use super::{Channel, Limit, Order};
-use crate::problem::Table;
 use crate::samples::Samples;
+use crate::table::Table;
 
 /// `|P' * s⃛ + 3 * P'' * ṡ * s̈ + P''' * ṡ³| <= j`, a ball.
 ///
@@ -16,7 +16,7 @@ pub struct TipJerk {
 }
 
 impl Limit for TipJerk {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "tip jerk"
     }
 

@@ -17,7 +17,7 @@ pub mod stream;
 use crate::infeasible::Infeasible;
 use crate::problem::{Problem, Row};
 
-pub use stream::Stream;
+pub use stream::{Settled, Stream};
 
 /// Controllable sets, and the plan through them; its memory is used again from problem to problem.
 #[derive(Clone, Debug, Default)]
@@ -34,6 +34,21 @@ impl Reach {
     /// # Errors
     /// Where one is empty, or does not hold the speed that the plan begins with: which limit, and where.
     pub fn controllable(&mut self, problem: &Problem) -> Result<(), Infeasible> {
+        self.backward(problem)?;
+        let start = problem.ends.start;
+        // A start that was itself the outcome of a pass may differ from the bound by rounding.
+        let margin = 1e-12 * problem.upper[0];
+        if start > self.high[0] + margin {
+            return Err(blame::start(problem));
+        }
+        if start < self.low[0] - margin {
+            return Err(blame::end(problem, 0, start, start));
+        }
+        Ok(())
+    }
+
+    /// Finds the controllable sets, whatever the plan begins with.
+    pub(crate) fn backward(&mut self, problem: &Problem) -> Result<(), Infeasible> {
         let count = problem.upper.len();
         self.low.clear();
         self.low.resize(count, 0.0);
@@ -59,15 +74,6 @@ impl Reach {
             };
             (self.low[sample], self.high[sample]) = (low, high);
         }
-        let start = problem.ends.start;
-        // A start that was itself the outcome of a pass may differ from the bound by rounding.
-        let margin = 1e-12 * problem.upper[0];
-        if start > self.high[0] + margin {
-            return Err(blame::start(problem));
-        }
-        if start < self.low[0] - margin {
-            return Err(blame::end(problem, 0, start, start));
-        }
         Ok(())
     }
 
@@ -86,15 +92,19 @@ impl Reach {
     /// Which limit cannot be kept, and where.
     pub fn solve_into(&mut self, problem: &Problem, plan: &mut Vec<f64>) -> Result<(), Infeasible> {
         self.controllable(problem)?;
+        self.forward(problem, problem.ends.start, plan);
+        Ok(())
+    }
+
+    /// The fastest plan from `q` through the sets that were found.
+    pub(crate) fn forward(&self, problem: &Problem, mut q: f64, plan: &mut Vec<f64>) {
         plan.clear();
-        plan.push(problem.ends.start);
-        let mut q = problem.ends.start;
+        plan.push(q);
         for sample in 0..problem.steps.len() {
             let (low, high) = (self.low[sample + 1], self.high[sample + 1]);
             q = step::highest_after(problem.rows_of(sample), q, low, high);
             plan.push(q);
         }
-        Ok(())
     }
 
     /// The plan nearest to `wish` that a forward pass can have: each `q` is moved into what the one before allows and

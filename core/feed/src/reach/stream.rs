@@ -9,13 +9,53 @@
 
 use super::{Reach, step};
 use crate::infeasible::Infeasible;
-use crate::problem::{Ends, Problem};
+use crate::problem::{Ends, Problem, Source, Usage};
+use crate::window::Window;
 
 /// Look-aheads that a window is long: all but one of them are handed on at once, so that the sets of few samples are
 /// found twice.
 const WINDOW: usize = 4;
 
+/// A sample whose speed is settled.
+#[derive(Clone, Copy, Debug)]
+pub struct Settled<'a> {
+    /// Its number, counted from the beginning of the path.
+    pub sample: usize,
+    /// The squared speed of the parameter there, `(ds/dt)²`.
+    pub q: f64,
+    window: &'a Problem,
+    /// Its number in the window.
+    place: usize,
+    /// `q` of the samples before and behind, where they are in the window.
+    neighbours: [Option<f64>; 2],
+    /// What the interval before the window used most.
+    arrived: Usage,
+}
+
+impl Settled<'_> {
+    /// The limit that is used most here: the sample's bound, and the rows of both intervals that it ends. It is found
+    /// when it is asked for, and costs what reading the rows of two intervals costs.
+    #[must_use]
+    pub fn active(&self) -> Usage {
+        let [before, behind] = self.neighbours;
+        let mut usage = self.window.used(self.place, self.q, before, behind);
+        if self.place == 0 {
+            usage.raise(self.arrived.share, self.sample, self.arrived.source);
+        }
+        Usage {
+            sample: self.sample,
+            ..usage
+        }
+    }
+}
+
 /// Plans a path that comes in batches, and hands on `q` sample by sample as soon as the look-ahead allows.
+///
+/// **Corners.** Batches may meet at a corner: the first ends with the derivatives before it, the next begins at the same
+/// sample with those behind it, so that each interval's rows are of one side. The speed there is one, and its bound the
+/// lower of the two batches'; what a corner itself allows the caller puts into one of them by [`Problem::lower`].
+///
+/// **Faults.** A batch that is refused leaves nothing in the stream: another may take its place.
 ///
 /// ```
 /// use post_feed::problem::{Problem, Row};
@@ -26,8 +66,8 @@ const WINDOW: usize = 4;
 /// let batch = Problem::from_rows(vec![0.5; 100], vec![400.0; 101], 1, vec![row; 100]);
 /// let mut stream = Stream::new(1, 32);
 /// let mut plan = Vec::new();
-/// stream.push(&batch, &mut |q| plan.push(q))?;
-/// stream.finish(0.0, &mut |q| plan.push(q))?;
+/// stream.push(&batch, &mut |sample| plan.push(sample.q))?;
+/// stream.finish(0.0, &mut |sample| plan.push(sample.q))?;
 /// assert_eq!(plan.len(), 101);
 /// assert_eq!(plan[..4], [0.0, 50.0, 100.0, 150.0]);
 /// assert!(stream.all_certain());
@@ -35,11 +75,12 @@ const WINDOW: usize = 4;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Stream {
+    stride: usize,
     lookahead: usize,
     /// The samples that are not handed on yet; begins with the speed that was reached.
-    window: Problem,
+    window: Window,
     reach: Reach,
-    done: usize,
+    arrived: Usage,
     uncertain: usize,
 }
 
@@ -48,15 +89,15 @@ impl Stream {
     #[must_use]
     pub fn new(stride: usize, lookahead: usize) -> Self {
         let lookahead = lookahead.max(1);
-        let mut window = Problem::default();
-        window.upper.reserve(WINDOW * lookahead + 1);
-        window.rows.reserve(WINDOW * lookahead * stride);
-        window.sources.resize(stride, Default::default());
+        let mut window = Window::default();
+        window.problem.upper.reserve(WINDOW * lookahead + 1);
+        window.problem.rows.reserve(WINDOW * lookahead * stride);
         Self {
+            stride,
             lookahead,
             window,
             reach: Reach::default(),
-            done: 0,
+            arrived: Usage::default(),
             uncertain: 0,
         }
     }
@@ -73,41 +114,41 @@ impl Stream {
         self.uncertain
     }
 
+    /// Samples that are not handed on yet: never more than four look-aheads and one.
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        self.window.problem.upper.len()
+    }
+
     /// Takes the next batch, whose first sample is the last of the batch before (its bound is the lower of the two),
-    /// and hands on `q` of each sample that is settled, in order. `ends.start` counts in the first batch alone,
-    /// `ends.end` nowhere: [`Stream::finish`] is told the end. A batch has passed [`Problem::check`], as those of
-    /// [`Problem::new`] have.
+    /// and hands on each sample that is settled, in order. `ends.start` counts in the first batch alone, `ends.end`
+    /// nowhere: [`Stream::finish`] is told the end.
     ///
     /// # Errors
-    /// A start that is too fast; sample numbers count from the beginning of the path.
-    ///
-    /// # Panics
-    /// If the batch has another number of rows an interval.
-    pub fn push(&mut self, batch: &Problem, sink: &mut impl FnMut(f64)) -> Result<(), Infeasible> {
-        let window = &mut self.window;
-        assert_eq!(batch.stride(), window.stride(), "rows of an interval");
-        if let Some(joint) = window.upper.last_mut() {
-            if batch.upper[0] < *joint {
-                *joint = batch.upper[0];
-                let last = window.causes.len() - 1;
-                window.causes[last] = batch.causes[0];
-            }
-        } else {
-            window.names.clone_from(&batch.names);
-            window.sources.clone_from(&batch.sources);
-            window.ends.start = batch.ends.start;
-            window.upper.push(batch.upper[0]);
-            window.causes.push(batch.causes[0]);
+    /// As [`Problem::check`], with the samples of the batch, and [`Infeasible::Shape`] where it has other rows an
+    /// interval than the first: the batch is not taken, another may follow in its place. A start that is too fast for what
+    /// lies ahead, with samples counted from the beginning of the path: nothing of the path was handed on, and the
+    /// batch is not taken; [`Stream::clear`] begins anew.
+    pub fn push(
+        &mut self,
+        batch: &Problem,
+        sink: &mut impl FnMut(Settled<'_>),
+    ) -> Result<(), Infeasible> {
+        if batch.stride() != self.stride {
+            return Err(Infeasible::Shape);
         }
+        let joint = self.window.begin(batch)?;
+        let done = self.window.done;
         for interval in 0..batch.steps.len() {
-            if self.window.steps.len() >= WINDOW * self.lookahead {
-                self.advance((WINDOW - 1) * self.lookahead, 0.0, sink)?;
+            if self.window.problem.steps.len() >= WINDOW * self.lookahead
+                && let Err(fault) = self.advance((WINDOW - 1) * self.lookahead, 0.0, sink)
+            {
+                if self.window.done == done {
+                    self.window.withdraw(&joint);
+                }
+                return Err(fault);
             }
-            let window = &mut self.window;
-            window.steps.push(batch.steps[interval]);
-            window.rows.extend_from_slice(batch.rows_of(interval));
-            window.upper.push(batch.upper[interval + 1]);
-            window.causes.push(batch.causes[interval + 1]);
+            self.window.append(batch, interval, &joint);
         }
         Ok(())
     }
@@ -115,17 +156,44 @@ impl Stream {
     /// Hands on the rest of the path, which ends with `end`; another path may follow then.
     ///
     /// # Errors
-    /// A start that is too fast, an end that cannot be reached from where the look-ahead had left the plan.
-    pub fn finish(&mut self, end: f64, sink: &mut impl FnMut(f64)) -> Result<(), Infeasible> {
-        if self.window.upper.is_empty() {
+    /// A start that is too fast, an end that cannot be reached from where the look-ahead had left the plan. Nothing is
+    /// handed on then, and the path may go on, or be finished with another end: at rest it always can be, if its start
+    /// is not too fast.
+    pub fn finish(
+        &mut self,
+        end: f64,
+        sink: &mut impl FnMut(Settled<'_>),
+    ) -> Result<(), Infeasible> {
+        if self.window.problem.upper.is_empty() {
             return Ok(());
         }
-        self.advance(self.window.steps.len(), end, sink)?;
-        sink(self.window.ends.start);
-        self.window.upper.clear();
-        self.window.causes.clear();
-        self.done = 0;
+        if !(end >= 0.0 && end.is_finite()) {
+            return Err(Infeasible::Shape);
+        }
+        self.advance(self.window.problem.steps.len(), end, sink)?;
+        sink(Settled {
+            sample: self.window.done,
+            q: self.window.problem.ends.start,
+            window: &self.window.problem,
+            place: 0,
+            neighbours: [None, None],
+            arrived: self.arrived,
+        });
+        self.clear();
         Ok(())
+    }
+
+    /// Forgets what was not handed on: the next batch begins another path.
+    pub fn clear(&mut self) {
+        self.window.clear();
+        self.arrived = Usage::default();
+    }
+
+    /// The name of where a bound or row comes from, as reports print it. Batches may have lowered bounds for different
+    /// reasons: the stream numbers all their names.
+    #[must_use]
+    pub fn name(&self, source: Source) -> String {
+        self.window.problem.name(source)
     }
 
     /// Plans the window as if it ended with `end`, hands on its first `count` samples and drops them.
@@ -133,13 +201,14 @@ impl Stream {
         &mut self,
         count: usize,
         end: f64,
-        sink: &mut impl FnMut(f64),
+        sink: &mut impl FnMut(Settled<'_>),
     ) -> Result<(), Infeasible> {
-        let window = &mut self.window;
+        let done = self.window.done;
+        let window = &mut self.window.problem;
         window.ends.end = end;
         let found = self.reach.controllable(window);
-        found.map_err(|fault| fault.shifted(self.done))?;
-        let (_, high) = self.reach.sets();
+        found.map_err(|fault| fault.shifted(done))?;
+        let (low, high) = self.reach.sets();
         let last = window.steps.len();
         if count < last {
             // How far back from the window's end it matters with which speed the path goes on there.
@@ -152,19 +221,27 @@ impl Stream {
             }
             self.uncertain += count.saturating_sub(met);
         }
+        let mut before = None;
         let mut q = window.ends.start;
-        for (sample, &high) in high[1..=count].iter().enumerate() {
-            sink(q);
-            let low = self.reach.low[sample + 1];
-            q = step::highest_after(window.rows_of(sample), q, low, high);
+        for place in 0..count {
+            let behind =
+                step::highest_after(window.rows_of(place), q, low[place + 1], high[place + 1]);
+            sink(Settled {
+                sample: done + place,
+                q,
+                window,
+                place,
+                neighbours: [before, Some(behind)],
+                arrived: self.arrived,
+            });
+            before = Some(q);
+            q = behind;
+        }
+        if let Some(before) = before {
+            self.arrived = window.used_between(count - 1, before, q);
         }
         window.ends = Ends { start: q, end };
-        let stride = window.stride();
-        window.upper.drain(..count);
-        window.causes.drain(..count);
-        window.steps.drain(..count);
-        window.rows.drain(..count * stride);
-        self.done += count;
+        self.window.drop_first(count);
         Ok(())
     }
 }

@@ -6,6 +6,19 @@ use post_feed::{Ends, Problem, linear_program, profile, reach};
 
 use crate::support::paths::{Dual, dual, even};
 
+/// The path's limits of velocity and acceleration.
+fn drives(path: &Dual, collocation: Collocation) -> (AxisVelocity, AxisAcceleration) {
+    let velocity = AxisVelocity {
+        limits: path.velocity.clone(),
+        collocation,
+    };
+    let acceleration = AxisAcceleration {
+        limits: path.acceleration.clone(),
+        collocation,
+    };
+    (velocity, acceleration)
+}
+
 /// TOPP-RA's 7.13 s at 2,001 points, which is what velocity and acceleration alone allow.
 #[test]
 fn velocity_and_acceleration_alone_give_the_published_lower_bound() {
@@ -23,14 +36,7 @@ fn velocity_and_acceleration_alone_give_the_published_lower_bound() {
         Collocation::Ends,
         Collocation::Throughout,
     ] {
-        let velocity = AxisVelocity {
-            limits: path.velocity.clone(),
-            collocation,
-        };
-        let acceleration = AxisAcceleration {
-            limits: path.acceleration.clone(),
-            collocation,
-        };
+        let (velocity, acceleration) = drives(&path, collocation);
         let problem = Problem::new(&samples, &[&velocity, &acceleration], Ends::default()).unwrap();
         let plan = reach::solve(&problem).unwrap();
         let seconds = profile::duration(&problem.steps, &plan);
@@ -77,14 +83,7 @@ fn used(path: &Dual, parameters: &[f64], law: &Law, each: usize) -> [f64; 3] {
 fn with_jerk_limits_no_limit_is_broken_between_samples_and_published_times_are_beaten() {
     let Some(path) = dual() else { return };
     let collocation = Collocation::Throughout;
-    let velocity = AxisVelocity {
-        limits: path.velocity.clone(),
-        collocation,
-    };
-    let acceleration = AxisAcceleration {
-        limits: path.acceleration.clone(),
-        collocation,
-    };
+    let (velocity, acceleration) = drives(&path, collocation);
     let jerk = AxisJerk {
         limits: path.jerk.clone(),
     };

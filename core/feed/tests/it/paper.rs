@@ -8,10 +8,11 @@ use post_feed::limits::{
     AxisAcceleration, AxisJerk, AxisVelocity, ChordError, Collocation, ContourError, Feed, Limit,
     TipAcceleration, TipJerk, deviation,
 };
-use post_feed::response::{Pid, Response, Transfer};
+use post_feed::response::Response;
 use post_feed::{Ends, Problem, Samples, linear_program, profile, reach};
 
 use crate::support::paths::{butterfly, even, length, plane, spans};
+use crate::support::servo::{Pid, Transfer};
 
 /// Table 1.
 fn servo(axis: char) -> Transfer {

@@ -4,8 +4,9 @@ use post_feed::limits::Collocation;
 use post_feed::problem::Ends;
 use post_feed::reach::{self, Stream};
 use post_feed::{Infeasible, Problem};
+use post_testkit::Rng;
 
-use crate::support::random::{self, Random};
+use crate::support::random;
 
 /// The plan in batches of random length, and how many samples depended on what lies behind the look-ahead.
 fn streamed(
@@ -13,17 +14,19 @@ fn streamed(
     lookahead: usize,
     seed: u64,
 ) -> Result<(Vec<f64>, usize), Infeasible> {
-    let mut random = Random::new(seed);
+    let mut random = Rng::new(seed);
     let mut stream = Stream::new(problem.stride(), lookahead);
     let mut plan = Vec::new();
     let last = problem.steps.len();
     let mut first = 0;
     while first < last {
-        let next = (first + random.of(1.0, 300.0) as usize).min(last);
-        stream.push(&problem.part(first, next), &mut |q| plan.push(q))?;
+        let next = (first + random.range(1.0, 300.0) as usize).min(last);
+        stream.push(&problem.part(first, next), &mut |sample| {
+            plan.push(sample.q)
+        })?;
         first = next;
     }
-    stream.finish(problem.ends.end, &mut |q| plan.push(q))?;
+    stream.finish(problem.ends.end, &mut |sample| plan.push(sample.q))?;
     Ok((plan, stream.uncertain()))
 }
 
@@ -79,8 +82,8 @@ fn too_short_a_look_ahead_costs_speed_and_breaks_no_limit() {
 fn a_start_and_an_end_in_motion_are_kept() {
     let mut problem = random::problem(3, 3, 4000, Collocation::Throughout);
     problem.ends = Ends {
-        start: 0.5 * problem.upper[0],
-        end: 0.5 * problem.upper[3999],
+        start: 0.1 * problem.upper[0],
+        end: 0.1 * problem.upper[3999],
     };
     let whole = reach::solve(&problem).unwrap();
     let (plan, _) = streamed(&problem, 1500, 3).unwrap();

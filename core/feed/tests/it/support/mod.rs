@@ -4,3 +4,4 @@ pub mod jet;
 pub mod oracle;
 pub mod paths;
 pub mod random;
+pub mod servo;

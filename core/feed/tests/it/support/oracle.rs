@@ -6,8 +6,17 @@ use clarabel::solver::{
 };
 use post_feed::Problem;
 
-/// `q` and objective, or nothing where clarabel finds that there is no plan.
-pub fn solve(problem: &Problem, weights: &[f64]) -> Option<(Vec<f64>, f64)> {
+/// Why clarabel has no plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unsolved {
+    /// There is none.
+    Infeasible,
+    /// It ended before it knew, as it does here and there on the border of what is feasible.
+    Undecided,
+}
+
+/// `q` and objective.
+pub fn solve(problem: &Problem, weights: &[f64]) -> Result<(Vec<f64>, f64), Unsolved> {
     let count = problem.upper.len();
     let scale = problem.upper.iter().copied().fold(0.0, f64::max);
     let (mut rows, mut columns, mut values, mut side) = (vec![], vec![], vec![], vec![]);
@@ -44,6 +53,7 @@ pub fn solve(problem: &Problem, weights: &[f64]) -> Option<(Vec<f64>, f64)> {
         verbose: false,
         max_iter: 200,
         tol_gap_rel: 1e-9,
+        tol_feas: 1e-9,
         ..DefaultSettings::default()
     };
     let none = CscMatrix::zeros((count, count));
@@ -51,10 +61,20 @@ pub fn solve(problem: &Problem, weights: &[f64]) -> Option<(Vec<f64>, f64)> {
     solver.solve();
     match solver.solution.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved => {}
-        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => return None,
+        // Stopped short of its tolerances, and near enough for ours.
+        SolverStatus::MaxIterations | SolverStatus::InsufficientProgress
+            if solver.info.gap_rel < 1e-7
+                && solver.info.res_primal < 1e-8
+                && solver.info.res_dual < 1e-8 => {}
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+            return Err(Unsolved::Infeasible);
+        }
+        SolverStatus::MaxIterations | SolverStatus::InsufficientProgress => {
+            return Err(Unsolved::Undecided);
+        }
         other => panic!("clarabel: {other:?}"),
     }
     let q: Vec<f64> = solver.solution.x.iter().map(|x| x * scale).collect();
     let objective = q.iter().zip(weights).map(|(q, weight)| q * weight).sum();
-    Some((q, objective))
+    Ok((q, objective))
 }

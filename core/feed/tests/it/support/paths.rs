@@ -1,32 +1,11 @@
 //! The paths of `../shared/data/geometry`, as samples.
 
-use std::path::{Path, PathBuf};
-
 use post_feed::Samples;
 use post_feed::curve::Curve;
+use post_testkit::shared;
 use serde_json::Value;
 
 use super::jet::Jet;
-
-/// A file of `../shared`, which is no part of the repository. Where it is missing the caller skips what needs it, and
-/// this says so; with `CI` set that is a failure.
-fn shared(path: &str) -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .ancestors()
-        .nth(2)
-        .unwrap();
-    let path = root.join("../shared").join(path);
-    if path.exists() {
-        return Some(path);
-    }
-    assert!(
-        std::env::var_os("CI").is_none(),
-        "{} is missing",
-        path.display()
-    );
-    eprintln!("skipped: {} is missing", path.display());
-    None
-}
 
 fn json(name: &str) -> Option<Value> {
     let path = shared(&format!("data/geometry/{name}"))?;

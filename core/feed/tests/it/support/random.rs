@@ -3,39 +3,23 @@
 use post_feed::limits::{AxisAcceleration, AxisVelocity, Collocation, Feed, Limit};
 use post_feed::problem::Row;
 use post_feed::{Ends, Problem, Samples};
-
-/// A generator of the xorshift family: the same numbers everywhere.
-pub struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
-    }
-
-    /// Of `low..high`.
-    pub fn of(&mut self, low: f64, high: f64) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        low + (high - low) * (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
+use post_testkit::Rng;
 
 /// A smooth path of `axes` axes, each a straight part and three waves; the first three are the tip too.
 /// Axes stand still for an instant here and there: zero-inertia points.
-pub fn samples(random: &mut Random, axes: usize, count: usize, length: f64) -> Samples {
+pub fn samples(random: &mut Rng, axes: usize, count: usize, length: f64) -> Samples {
     let waves: Vec<[[f64; 3]; 3]> = (0..axes)
         .map(|_| {
             std::array::from_fn(|_| {
                 [
-                    random.of(0.5, 6.0),
-                    random.of(0.05, 0.8),
-                    random.of(0.0, 6.3),
+                    random.range(0.5, 6.0),
+                    random.range(0.05, 0.8),
+                    random.range(0.0, 6.3),
                 ]
             })
         })
         .collect();
-    let straight: Vec<f64> = (0..axes).map(|_| random.of(-0.6, 0.6)).collect();
+    let straight: Vec<f64> = (0..axes).map(|_| random.range(-0.6, 0.6)).collect();
     let mut samples = Samples::default();
     for index in 0..count {
         let s = length * index as f64 / (count - 1) as f64;
@@ -63,6 +47,20 @@ pub fn samples(random: &mut Random, axes: usize, count: usize, length: f64) -> S
     samples
 }
 
+/// Samples `first..=last` alone: a batch.
+pub fn part(samples: &Samples, first: usize, last: usize) -> Samples {
+    let mut part = Samples::default();
+    for sample in first..=last {
+        let tip = [0, 1, 2].map(|order| samples.tip[order][sample]);
+        let each = samples.axes.iter();
+        let axes: Vec<[f64; 3]> = each
+            .map(|axis| [axis.first[sample], axis.second[sample], axis.third[sample]])
+            .collect();
+        part.push(samples.parameter[sample], tip, &axes);
+    }
+    part
+}
+
 /// Limits of the size of small machines.
 pub struct Limits {
     feed: Feed,
@@ -71,13 +69,13 @@ pub struct Limits {
 }
 
 impl Limits {
-    pub fn new(random: &mut Random, axes: usize, collocation: Collocation) -> Self {
-        let limits = (0..axes).map(|_| random.of(20.0, 120.0)).collect();
+    pub fn new(random: &mut Rng, axes: usize, collocation: Collocation) -> Self {
+        let limits = (0..axes).map(|_| random.range(20.0, 120.0)).collect();
         let velocity = AxisVelocity {
             limits,
             collocation,
         };
-        let limits = (0..axes).map(|_| random.of(50.0, 2000.0)).collect();
+        let limits = (0..axes).map(|_| random.range(50.0, 2000.0)).collect();
         Self {
             velocity,
             acceleration: AxisAcceleration {
@@ -85,7 +83,7 @@ impl Limits {
                 collocation,
             },
             feed: Feed {
-                most: random.of(30.0, 200.0),
+                most: random.range(30.0, 200.0),
                 collocation,
             },
         }
@@ -98,7 +96,7 @@ impl Limits {
 
 /// Such a path of 100 mm under such limits.
 pub fn problem(seed: u64, axes: usize, count: usize, collocation: Collocation) -> Problem {
-    let mut random = Random::new(seed);
+    let mut random = Rng::new(seed);
     let samples = samples(&mut random, axes, count, 100.0);
     let limits = Limits::new(&mut random, axes, collocation);
     Problem::new(&samples, &limits.all(), Ends::default()).unwrap()
@@ -106,15 +104,19 @@ pub fn problem(seed: u64, axes: usize, count: usize, collocation: Collocation) -
 
 /// A problem all of whose rows are monotone, with bounds that jump and steep rows, not from any path.
 pub fn monotone(seed: u64, count: usize) -> Problem {
-    let mut random = Random::new(seed);
-    let upper = (0..count).map(|_| random.of(0.1, 100.0)).collect();
+    let mut random = Rng::new(seed);
+    let upper = (0..count).map(|_| random.range(0.1, 100.0)).collect();
     let stride = 3;
     let rows = (0..stride * (count - 1))
         .map(|_| {
-            let sign = if random.of(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
+            let sign = if random.range(0.0, 1.0) < 0.5 {
+                -1.0
+            } else {
+                1.0
+            };
             Row {
-                here: -sign * random.of(0.0, 1.0),
-                next: sign * random.of(0.0, 1.0),
+                here: -sign * random.range(0.0, 1.0),
+                next: sign * random.range(0.0, 1.0),
             }
         })
         .collect();
@@ -123,18 +125,18 @@ pub fn monotone(seed: u64, count: usize) -> Problem {
 
 /// Rows of any signs, so that a larger feed here may forbid one next door.
 pub fn any(seed: u64, count: usize) -> Problem {
-    let mut random = Random::new(seed);
-    let upper = (0..count).map(|_| random.of(0.1, 100.0)).collect();
+    let mut random = Rng::new(seed);
+    let upper = (0..count).map(|_| random.range(0.1, 100.0)).collect();
     let stride = 3;
     let mut row = || {
-        let size = libm::exp(random.of(-6.0, 1.0));
+        let size = libm::exp(random.range(-6.0, 1.0));
         Row {
-            here: size * random.of(-1.0, 1.0),
+            here: size * random.range(-1.0, 1.0),
             // One in ten bounds its own sample alone.
-            next: if random.of(0.0, 1.0) < 0.1 {
+            next: if random.range(0.0, 1.0) < 0.1 {
                 0.0
             } else {
-                size * random.of(-1.0, 1.0)
+                size * random.range(-1.0, 1.0)
             },
         }
     };

@@ -1,0 +1,286 @@
+//! The feed of a plan as a spline along the path: the last step of the feedrate paper (section 3.2).
+//!
+//! The paper fits a spline to the feed itself. Off from rest that cannot be: the feed begins as the square root of the
+//! way, and a polynomial feed of the way never leaves rest. `q = (ds/dt)²` begins as the way itself, so the spline is one
+//! of `q`: of degree 2, so that acceleration is continuous. The feed is `|dP/ds| * sqrt(q)`.
+
+use crate::jerk::{Law, Piece};
+
+/// `q = (ds/dt)²` by the path parameter: pieces between knots, value and slope continuous.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FeedSpline {
+    /// Parameters at which pieces meet, from the first to the last, growing.
+    pub knots: Vec<f64>,
+    /// `q` between each knot and the next.
+    pub pieces: Vec<Piece>,
+}
+
+impl FeedSpline {
+    /// Of a plan whose `q` is linear between samples: each corner of it is rounded by the parabola that touches both
+    /// sides half the shorter step off the sample.
+    ///
+    /// The parabola stays inside the corner, so what is a limit of `q` and its slope *at the sample* is kept; beside it
+    /// both are by a term of first order in the step. [`FeedSpline::slow`] makes up for it where it counts.
+    ///
+    /// # Panics
+    /// If there are fewer than two samples, or not one `q` for each.
+    #[must_use]
+    pub fn rounded(parameters: &[f64], q: &[f64]) -> Self {
+        assert!(
+            parameters.len() == q.len() && q.len() > 1,
+            "a q for each of two samples or more"
+        );
+        let last = q.len() - 1;
+        let mut spline = Self {
+            knots: vec![parameters[0]],
+            pieces: Vec::with_capacity(2 * q.len()),
+        };
+        let mut at = q[0];
+        for sample in 1..last {
+            let [before, here, next] = [
+                parameters[sample - 1],
+                parameters[sample],
+                parameters[sample + 1],
+            ];
+            let half = 0.5 * (here - before).min(next - here);
+            let side = |step: f64, other: f64| q[sample] + (other - q[sample]) * half / step;
+            let left = side(here - before, q[sample - 1]);
+            let right = side(next - here, q[sample + 1]);
+            spline.line(here - half, &mut at, left);
+            spline
+                .pieces
+                .push(Piece::Quadratic([left, q[sample], right]));
+            spline.knots.push(here + half);
+            at = right;
+        }
+        spline.line(parameters[last], &mut at, q[last]);
+        if let Some(knot) = spline.knots.last_mut() {
+            *knot = parameters[last];
+        }
+        spline
+    }
+
+    /// A straight piece up to `knot`, unless the last piece ends there.
+    fn line(&mut self, knot: f64, at: &mut f64, to: f64) {
+        let from = self.knots[self.knots.len() - 1];
+        let size = knot.abs().max(from.abs());
+        if knot - from > 1e-13 * size {
+            let middle = f64::midpoint(*at, to);
+            self.pieces.push(Piece::Quadratic([*at, middle, to]));
+            self.knots.push(knot);
+        }
+        *at = to;
+    }
+
+    /// Of a plan with jerk limits, whose law is such a spline, over the samples that it was made for.
+    ///
+    /// # Panics
+    /// If there is not one sample more than pieces.
+    #[must_use]
+    pub fn of_law(parameters: &[f64], law: &Law) -> Self {
+        assert_eq!(parameters.len(), law.pieces.len() + 1, "samples of the law");
+        Self {
+            knots: parameters.to_vec(),
+            pieces: law.pieces.clone(),
+        }
+    }
+
+    /// The piece that a parameter lies on; the first and the last go on beyond their ends.
+    #[must_use]
+    pub fn piece(&self, parameter: f64) -> usize {
+        let inner = &self.knots[1..self.knots.len() - 1];
+        inner.partition_point(|&knot| knot <= parameter)
+    }
+
+    /// `q` and its first and second derivative by the parameter, at a share (0 to 1) of a piece.
+    #[must_use]
+    pub fn within(&self, piece: usize, share: f64) -> [f64; 3] {
+        self.pieces[piece].at(share, self.knots[piece + 1] - self.knots[piece])
+    }
+
+    /// The same at a parameter.
+    #[must_use]
+    pub fn at(&self, parameter: f64) -> [f64; 3] {
+        let piece = self.piece(parameter);
+        let [from, to] = [self.knots[piece], self.knots[piece + 1]];
+        self.within(piece, ((parameter - from) / (to - from)).clamp(0.0, 1.0))
+    }
+
+    /// Time from one share of a piece to a later one, s.
+    #[must_use]
+    pub fn time_within(&self, piece: usize, [from, to]: [f64; 2]) -> f64 {
+        let step = self.knots[piece + 1] - self.knots[piece];
+        match self.pieces[piece] {
+            // By q = q1 * share^(4/3), as in `Piece::duration`.
+            Piece::Leave(q) => 3.0 * step * (libm::cbrt(to) - libm::cbrt(from)) / q.sqrt(),
+            Piece::Arrive(q) => {
+                3.0 * step * (libm::cbrt(1.0 - from) - libm::cbrt(1.0 - to)) / q.sqrt()
+            }
+            Piece::Quadratic(_) => {
+                let part = step * (to - from);
+                let [start, slope, _] = self.within(piece, from);
+                let [end, ..] = self.within(piece, to);
+                Piece::Quadratic([start, start + 0.5 * slope * part, end]).duration(part)
+            }
+        }
+    }
+
+    /// The share of a piece that is reached so many seconds behind another, at most its end.
+    #[must_use]
+    pub fn share_after(&self, piece: usize, from: f64, seconds: f64) -> f64 {
+        let (mut low, mut high) = (from, 1.0);
+        for _ in 0..52 {
+            let middle = f64::midpoint(low, high);
+            if self.time_within(piece, [from, middle]) > seconds {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        low
+    }
+
+    /// Takes everything at `share` of the speed: velocities by it, accelerations by its square, jerks by its cube.
+    pub fn slow(&mut self, share: f64) {
+        let factor = share * share;
+        for piece in &mut self.pieces {
+            match piece {
+                Piece::Quadratic(q) => *q = q.map(|q| q * factor),
+                Piece::Leave(q) | Piece::Arrive(q) => *q *= factor,
+            }
+        }
+    }
+
+    /// Time of the whole, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        let steps = self.knots.windows(2).map(|pair| pair[1] - pair[0]);
+        let each = self.pieces.iter().zip(steps);
+        each.map(|(piece, step)| piece.duration(step)).sum()
+    }
+
+    /// The B-spline of degree 2: its knots, the first and the last three times, and its coefficients, three fewer.
+    ///
+    /// Where the first piece leaves rest with constant jerk (or the last comes to rest so), `q` is no polynomial on it:
+    /// it is the value at the inner knot times the share of the piece to the power of 4/3. The B-spline goes on beyond
+    /// the rest there, over half as much again, and counts from the inner knot on.
+    #[must_use]
+    pub fn b_spline(&self) -> (Vec<f64>, Vec<f64>) {
+        let last = self.pieces.len();
+        let jerk = |piece: &Piece| matches!(piece, Piece::Leave(_) | Piece::Arrive(_));
+        let mut inner = self.knots.clone();
+        if jerk(&self.pieces[0]) {
+            inner[0] = self.knots[1] - 1.5 * (self.knots[1] - self.knots[0]);
+        }
+        if jerk(&self.pieces[last - 1]) {
+            inner[last] = self.knots[last - 1] + 1.5 * (self.knots[last] - self.knots[last - 1]);
+        }
+        let mut knots = vec![inner[0]; 2];
+        knots.extend_from_slice(&inner);
+        knots.extend([inner[last]; 2]);
+        let mut coefficients = vec![self.within(0, 0.0)[0]];
+        coefficients.extend(self.pieces.iter().map(|piece| match piece {
+            Piece::Quadratic([_, middle, _]) => *middle,
+            Piece::Leave(_) | Piece::Arrive(_) => 0.0,
+        }));
+        coefficients.push(self.within(last - 1, 1.0)[0]);
+        (knots, coefficients)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::Curve;
+
+    fn example() -> FeedSpline {
+        FeedSpline::rounded(
+            &[0.0, 1.0, 2.0, 2.5, 4.0, 4.125, 5.0],
+            &[0.0, 10.0, 8.0, 3.0, 9.0, 9.5, 0.0],
+        )
+    }
+
+    #[test]
+    fn value_and_slope_are_continuous_and_corners_are_cut() {
+        let spline = example();
+        for (index, pair) in spline.pieces.windows(2).enumerate() {
+            let [a, b, c] = [0, 1, 2].map(|place| spline.knots[index + place]);
+            let (end, begin) = (pair[0].at(1.0, b - a), pair[1].at(0.0, c - b));
+            assert!((end[0] - begin[0]).abs() < 1e-12, "{end:?} {begin:?}");
+            assert!((end[1] - begin[1]).abs() < 1e-9, "{end:?} {begin:?}");
+        }
+        assert_eq!((spline.at(0.0)[0], spline.at(5.0)[0]), (0.0, 0.0));
+        // A quarter of half a step times the change of slope below the corner.
+        assert!((spline.at(1.0)[0] - (10.0 - 0.25 * 0.5 * 12.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_coefficients_are_those_of_a_b_spline() {
+        let spline = example();
+        let (knots, points) = spline.b_spline();
+        let points = points.into_iter().map(|q| [q]).collect();
+        let curve = Curve::new(2, knots, points, Vec::new()).unwrap();
+        for step in 0..=500 {
+            let at = f64::from(step) / 100.0;
+            let (own, other) = (spline.at(at), curve.derivatives(at));
+            assert!((own[0] - other[0][0]).abs() < 1e-11, "{at}");
+            assert!((own[1] - other[1][0]).abs() < 1e-10, "{at}");
+        }
+    }
+
+    #[test]
+    fn times_of_parts_add_up_and_shares_are_found_by_them() {
+        for piece in [
+            Piece::Leave(6.0),
+            Piece::Arrive(6.0),
+            Piece::Quadratic([0.0, 2.0, 4.0]),
+            Piece::Quadratic([2.0, 3.0, 2.5]),
+        ] {
+            let spline = FeedSpline {
+                knots: vec![1.0, 3.0],
+                pieces: vec![piece],
+            };
+            let parts = [[0.0, 0.25], [0.25, 0.5], [0.5, 1.0]];
+            let sum: f64 = parts.map(|part| spline.time_within(0, part)).iter().sum();
+            let whole = spline.duration();
+            assert!((sum / whole - 1.0).abs() < 1e-6, "{piece:?} {sum} {whole}");
+            let half = spline.time_within(0, [0.0, 0.5]);
+            assert!((spline.share_after(0, 0.0, half) - 0.5).abs() < 1e-9);
+            assert!(spline.share_after(0, 0.25, 100.0) > 1.0 - 1e-12);
+        }
+    }
+
+    /// Off from rest with constant jerk, then evenly: `q` and its slope meet at the inner knot.
+    #[test]
+    fn beyond_a_start_with_jerk_the_b_spline_counts_from_the_inner_knot_on() {
+        let (q1, slope) = (6.0, 4.0 / 3.0 * 6.0 / 2.0);
+        let spline = FeedSpline {
+            knots: vec![0.0, 2.0, 3.0],
+            pieces: vec![
+                Piece::Leave(q1),
+                Piece::Quadratic([q1, q1 + 0.5 * slope, 9.0]),
+            ],
+        };
+        let (knots, points) = spline.b_spline();
+        let points = points.into_iter().map(|q| [q]).collect();
+        let curve = Curve::new(2, knots, points, Vec::new()).unwrap();
+        for at in [2.0, 2.3, 2.9, 3.0] {
+            let (own, other) = (spline.at(at), curve.derivatives(at));
+            assert!((own[0] - other[0][0]).abs() < 1e-12, "{at}");
+            assert!((own[1] - other[1][0]).abs() < 1e-11, "{at}");
+        }
+    }
+
+    #[test]
+    fn a_line_from_rest_has_its_time_exactly() {
+        // Constant acceleration of 50 over 100: 2 s to speed 100, and down again.
+        let mut spline = FeedSpline::rounded(&[0.0, 50.0, 100.0], &[0.0, 5000.0, 10_000.0]);
+        assert!(
+            (spline.duration() - 2.0).abs() < 1e-12,
+            "{}",
+            spline.duration()
+        );
+        spline.slow(0.5);
+        assert!((spline.duration() - 4.0).abs() < 1e-12);
+    }
+}

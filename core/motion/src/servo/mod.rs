@@ -11,20 +11,17 @@
 //! exactly, with the friction's force constant (that of the velocity at the step's end, or what stops the table there) and
 //! the flanks touching or not as at its beginning. Errors are in proportion to the step.
 //!
-//! [`Response`] answers in the frequency domain, [`fit`] adjusts numbers of a servo to a measured log.
+//! [`post_machine::servo::Response`] answers in the frequency domain, [`fit`] adjusts numbers of a servo to a measured log.
 
 mod discrete;
 pub mod fit;
 mod linear;
-mod response;
 mod stepped;
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::Joints;
 use post_machine::servo::{MAX_ORDER, Servo, StateSpace};
-
-pub use response::Response;
 
 use linear::Linear;
 use stepped::Stepped;

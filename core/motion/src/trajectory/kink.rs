@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use post_machine::description::BlendRule;
 use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
 
-use super::corner::Side;
+use super::side::Side;
 use crate::Move;
 use crate::limits::{AxisLimits, MoveLimits};
 use crate::path::Way;

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`Planner`] | takes tasks, cuts their moves into *pieces* of path at the corners and joins these to *runs*, within which the machine does not stand still; fills set-points |
 //! | `bounds` | what limits along a move come to: rate of its parameter, change of the rate, change of that |
+//! | `side` | a move as a corner sees it: which way it goes, at its ends |
 //! | `corner` | what happens between two moves: stop, join, round, overlap |
 //! | `kink` | what jumps where two moves are joined |
 //! | `round` | curves in the place of corners |
@@ -47,6 +48,7 @@ mod look_ahead;
 mod planner;
 pub mod profile;
 mod round;
+mod side;
 mod smooth;
 
 pub use planner::Planner;

@@ -3,8 +3,8 @@
 use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::bounds::{ARC, Bounds, CURVE, NORMAL};
-use super::corner::Side;
 use super::kink::Kink;
+use super::side::Side;
 use crate::limits::{AxisLimits, MoveLimits};
 use crate::path::Way;
 

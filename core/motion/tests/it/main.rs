@@ -2,5 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod contour;
+mod contour_limit;
 mod servo;
 mod trajectory;

@@ -7,7 +7,7 @@ use crate::limits::MoveLimits;
 use crate::path::{Way, turns};
 use crate::trajectory::TimeLimit;
 use crate::trajectory::bounds::Bounds;
-use crate::trajectory::corner::Side;
+use crate::trajectory::side::Side;
 use crate::{At, Move};
 
 /// A move whose end is open.

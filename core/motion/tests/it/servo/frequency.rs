@@ -1,9 +1,11 @@
 //! Frequency responses, by complex algebra from the block diagram.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use libm::{atan2, cos, hypot, sin};
 use nalgebra::Complex;
-use post_machine::servo::{Feedback, Loops};
-use post_motion::servo::{Follower, Response};
+use post_machine::servo::{Feedback, Loops, Response};
+use post_motion::servo::Follower;
 
 use super::{all_loops, feedrate_paper, of_loops, transfer};
 
@@ -170,6 +172,25 @@ fn how_far_a_gain_holds() {
         }
         assert!((found - omega).abs() <= step, "{share}: {found} {omega}");
     }
+}
+
+/// As far as the steady state goes: the swing of the table on its transmission, unless the loops end before.
+#[test]
+fn the_natural_frequency_is_that_of_the_table_or_of_the_loops() {
+    for loops in all_loops() {
+        let response = Response::new(&of_loops(loops.clone()));
+        let (least, band) = (response.natural_frequency(), response.bandwidth());
+        assert!(least > 0.0 && least <= band);
+        let swing = loops.drive.mechanics().natural_frequency();
+        assert!(swing.is_none_or(|swing| least <= swing), "{least}");
+        // Up to there the axis follows, with more than half of the power.
+        for part in 1..=50 {
+            let omega = least.min(1e4) * f64::from(part) / 50.0;
+            assert!(response.gain(omega) > 0.999 * FRAC_1_SQRT_2, "{omega}");
+        }
+    }
+    let paper = Response::new(&feedrate_paper());
+    assert_eq!(paper.natural_frequency(), paper.bandwidth());
 }
 
 /// A resonance so narrow that no grid of frequencies would meet it.

@@ -4,6 +4,7 @@
 //! commands. So the choice of axis values sees all of its way, and what cannot be kept is made of those moves, as if
 //! nobody had tried. What `blocks` keeps is one block or several, each behind a command with what was printed of it.
 
+use nalgebra::Vector3;
 use post_machine::description::{Arcs, Machine, Tcp};
 use post_machine::kinematics::Joints;
 use post_plugin::Capabilities;
@@ -35,6 +36,8 @@ pub struct PrintedCurve {
     pub words: CurveWords,
     /// Axis values where some axis turns back on the way, in order.
     pub between: Vec<Joints>,
+    /// Places of the control point between its ends, mm, part frame, by which its feed is planned; none where no feed is.
+    pub way: Vec<Vector3<f64>>,
 }
 
 /// The words of a curve.

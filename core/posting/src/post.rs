@@ -17,11 +17,13 @@ use crate::expand::{Expand, Line};
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
 use crate::observer::{Observer, Observers, Output};
+use crate::plan::{Plan, PlanWatch};
 use crate::program::{Interpreter, Reading, Step};
 use crate::refusal;
 use crate::report::{AxisRange, Deviation, Report};
 use crate::shift::{PathShift, Shift};
 use crate::stream::{BATCH, Flow, Outlet};
+use crate::tightening::Tightening;
 use crate::timing::Timing;
 use crate::window::Window;
 
@@ -38,6 +40,10 @@ pub struct Job {
     pub ahead: Option<Arc<Ahead>>,
     /// What texts of the program can speak of.
     pub facts: JobFacts,
+    /// The feed is planned: `[plan]`.
+    pub plans: bool,
+    /// Where that plan may use less than the limit of the contour error.
+    pub tightening: Option<Arc<Tightening>>,
     /// Lines of the CL file that become the program, if not all: those before them set the state that it begins in.
     pub lines: Option<Range<u64>>,
 }
@@ -64,6 +70,8 @@ struct Stages<'a> {
     configured: Vec<Flow<Configured>>,
     blocks: Blocks<'a>,
     made: Vec<Flow<Block>>,
+    plan: Option<Plan<'a>>,
+    planned: Vec<Flow<Block>>,
     timing: Timing<'a>,
     observers: Observers<'a>,
     emit: Emit<'a>,
@@ -88,6 +96,8 @@ impl Stages<'_> {
             configured,
             blocks,
             made,
+            plan,
+            planned,
             timing,
             observers,
             emit,
@@ -103,11 +113,18 @@ impl Stages<'_> {
             observers.blocks(made);
             emit.take(made, findings);
         };
-        let mut made = Outlet::new(made, &mut to_emit);
+        let told = plan.as_ref().map(Plan::told);
+        let mut planned = Outlet::new(planned, &mut to_emit);
+        let mut to_plan = |made: &mut Vec<Flow<Block>>| match plan {
+            Some(plan) => plan.take(made, &mut planned, findings),
+            None => planned.pass(made),
+        };
+        let mut made = Outlet::new(made, &mut to_plan);
         let mut to = Surroundings {
             out: &mut made,
             findings,
             audience: observers.audience(),
+            placer: told.as_deref(),
         };
         let mut to_blocks =
             |configured: &mut Vec<Flow<Configured>>| blocks.take(configured, &mut to);
@@ -132,6 +149,10 @@ impl Stages<'_> {
             blocks.finish(line, &mut to);
         }
         made.flush();
+        if let (Some(plan), true) = (plan, finish) {
+            plan.finish(&mut planned, findings);
+        }
+        planned.flush();
         if let Some(line) = last_line {
             emit.finish(line, findings);
         }
@@ -143,6 +164,7 @@ impl Stages<'_> {
             self.expand.first_line(),
             self.configuration.first_line(),
             self.blocks.first_line(),
+            self.plan.as_ref().and_then(Plan::first_line),
         ];
         kept.into_iter().flatten().min()
     }
@@ -175,7 +197,7 @@ impl<'a> Post<'a> {
         let ahead = job.ahead.filter(|_| planes);
         // A plane is come to in machine coordinates where a head turns.
         let tcp_still = writes.has(Capabilities::TCP_STILL) && ahead.is_none();
-        let stages = Stages {
+        let mut stages = Stages {
             expand: Expand::new(machine, job.reading.chord_tolerance, writes, ahead),
             shift: None,
             lines: Vec::new(),
@@ -184,9 +206,16 @@ impl<'a> Post<'a> {
             configured: Vec::new(),
             blocks: Blocks::new(machine, writes, &format, model, job.trust_model),
             made: Vec::new(),
+            plan: job
+                .plans
+                .then(|| Plan::new(machine, &format, job.tightening)),
+            planned: Vec::new(),
             observers: Observers::default(),
             emit: Emit::new(machine, &job.facts, dialect, output),
         };
+        if job.plans {
+            stages.blocks.plans();
+        }
         let findings = Findings::new(&job.reading.file);
         if machine.control.planes && !planes {
             findings.add(refusal::no_planes(machine));
@@ -206,6 +235,13 @@ impl<'a> Post<'a> {
     /// Shows what is made to `observer` from here on.
     pub fn watch(&mut self, observer: &'a mut dyn Observer) {
         self.stages.observers.add(observer);
+    }
+
+    /// Shows the planned feed to `watch`, where one is planned.
+    pub fn watch_plan(&mut self, watch: &'a mut dyn PlanWatch) {
+        if let Some(plan) = &mut self.stages.plan {
+            plan.watch(watch);
+        }
     }
 
     /// Has the points of cuts moved by `shift`, none by more than `[accuracy] servo_compensation`. What is certified is
@@ -359,6 +395,7 @@ impl<'a> Post<'a> {
             axes,
             tools: stages.configuration.tools().to_vec(),
             branch_changes: counts.branch_changes,
+            plan: stages.plan.as_ref().map(Plan::report),
             rewinds: counts.rewinds + stages.expand.rewinds(),
             points_eased: counts.eased,
             time_s: (durations.cutting + durations.other) * 60.0,

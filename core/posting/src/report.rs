@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::plan::PlanReport;
+
 use post_machine::description::ControlPoint;
 
 /// The summary of one program. Its keys are those of `--summary FILE.json`.
@@ -67,6 +69,9 @@ pub struct Report {
     pub ignored_words: Vec<(String, u64)>,
     /// Plugins that took part.
     pub plugins: Vec<PluginUse>,
+    /// What the planned feed came to, if one was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plan: Option<PlanReport>,
     /// Warnings, as sentences.
     pub warnings: Vec<String>,
 }

@@ -68,6 +68,13 @@ impl<'o, T> Outlet<'o, T> {
         }
     }
 
+    /// Hands on a batch as it is, behind what there is; it is empty then.
+    pub(crate) fn pass(&mut self, batch: &mut Vec<T>) {
+        self.flush();
+        (self.next)(batch);
+        batch.clear();
+    }
+
     /// Hands on what there is.
     pub(crate) fn flush(&mut self) {
         if !self.batch.is_empty() {

@@ -75,7 +75,7 @@ impl<'n> Move<'n> {
             from,
             to,
             tolerances: Tolerances {
-                tip: tip - chord,
+                tip: tip - chord - if loose { 0.0 } else { placer.reserve() },
                 axis,
             },
             control_keeps_tip: machine.control.tcp == Tcp::Control,

@@ -105,6 +105,8 @@ pub struct Placer {
     control_point: ControlPoint,
     tip_rounding: f64,
     axis_rounding: f64,
+    /// What is left of the tolerance of the tip in cuts, mm.
+    reserve: f64,
 }
 
 impl Placer {
@@ -184,6 +186,7 @@ impl Placer {
             words,
             branch: Cell::new(0),
             axis_tolerance: machine.accuracy.axis_tolerance,
+            reserve: 0.0,
             control_point: machine.control_point,
         }
     }
@@ -194,6 +197,21 @@ impl Placer {
             words: self.words.in_plane(plane)?,
             ..self.clone()
         })
+    }
+
+    /// The same, leaving so much of the tolerance of the tip in cuts, mm, to who puts rounded points into blocks later: what
+    /// rounding makes of such a point, but a fifth of the tolerance at most.
+    pub(crate) fn leaving_room(&self, tolerance: f64) -> Self {
+        Self {
+            reserve: self.tip_rounding.min(0.2 * tolerance),
+            ..self.clone()
+        }
+    }
+
+    /// What is left of the tolerance of the tip in cuts, mm.
+    #[inline]
+    pub(super) fn reserve(&self) -> f64 {
+        self.reserve
     }
 
     /// The point of the tool that poses and errors are those of.

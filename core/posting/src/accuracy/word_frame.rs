@@ -81,6 +81,11 @@ impl WordFrame {
         self.turn * direction
     }
 
+    /// The control point at a place in the frame of the words, mm, part frame.
+    pub(crate) fn in_part(&self, place: Vector3<f64>) -> Vector3<f64> {
+        self.at + self.turn.transpose() * (place - self.words)
+    }
+
     /// For each linear joint how it goes with the words, mm a mm.
     pub(crate) fn slides(&self) -> &[(usize, Vector3<f64>)] {
         &self.slides

@@ -296,7 +296,11 @@ impl Blocks<'_> {
         Some(ArcBlock {
             node: Box::new(*node),
             printed,
-            curve: PrintedCurve { words, between },
+            curve: PrintedCurve {
+                words,
+                between,
+                way: self.way_of_arc(frame, &printed),
+            },
             minutes: self.arc_follow(frame, &printed),
             off,
             bound: Bound::default(),
@@ -323,6 +327,21 @@ impl Blocks<'_> {
         let holds =
             bound.tip + chord <= accuracy.tolerance && bound.axis <= accuracy.axis_tolerance;
         holds.then_some(bound)
+    }
+
+    /// Places along an arc by which its feed is planned, none where no feed is: as many as its chords need to stay within a
+    /// tenth of the tolerance.
+    fn way_of_arc(&self, frame: &WordFrame, printed: &PrintedArc) -> Vec<Vector3<f64>> {
+        if !self.plans {
+            return Vec::new();
+        }
+        let radius = printed.radii[0].max(printed.radii[1]);
+        let sagitta = (0.1 * self.machine.accuracy.tolerance).min(radius);
+        let chord = 2.0 * libm::acos(1.0 - sagitta / radius);
+        let count = libm::ceil(printed.turn / chord).clamp(2.0, 4096.0) as u32;
+        (1..count)
+            .map(|place| frame.in_part(printed.at(f64::from(place) / f64::from(count))))
+            .collect()
     }
 
     /// Axis values where some axis turns back along an arc, in order; none where one leaves its travel.

@@ -41,8 +41,19 @@ pub struct Block {
     pub nominal: Nominal,
     /// How fast the linear axes can follow where the control keeps the tip.
     pub follow: Follow,
+    /// What a planned feed leaves it; filled in by the planning stage.
+    pub planned: Planned,
     /// How long it takes; filled in by the timing stage.
     pub time: Time,
+}
+
+/// What a planned feed leaves a block.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Planned {
+    /// The least time, minutes; zero where nothing is planned.
+    pub minutes: f64,
+    /// The limit that asks for it, if it is not the feed that the CL file asks for.
+    pub limit: Option<&'static str>,
 }
 
 impl Block {
@@ -52,6 +63,21 @@ impl Block {
         match self.pace {
             Pace::PerMinute(feed) if self.nominal.moves && self.way > STILL => self.way / feed,
             _ => self.nominal.minutes,
+        }
+    }
+}
+
+impl Block {
+    /// What a share of the block is due, and how fast it can be followed. Nowhere in it the axes are faster than where
+    /// the whole is fastest.
+    pub(crate) fn part(&self, share: f64) -> Self {
+        Self {
+            nominal: self.nominal.share(share),
+            follow: Follow {
+                minutes: self.follow.minutes * share,
+                ..self.follow
+            },
+            ..*self
         }
     }
 }
@@ -88,6 +114,8 @@ pub enum Reason {
     Stage,
     /// The tool is drawn back, turned and brought back.
     Rewind,
+    /// The planned feed changes there.
+    Feed,
 }
 
 /// How long a block takes.

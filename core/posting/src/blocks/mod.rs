@@ -13,6 +13,7 @@ mod plane;
 mod splined;
 mod staged;
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
 use nalgebra::Vector3;
@@ -30,7 +31,7 @@ use along::Following;
 pub(crate) use audience::Audience;
 pub(crate) use between_words::BetweenWords;
 pub use between_words::Follow;
-pub use block::{Block, MotionKind, Reason, Time};
+pub use block::{Block, MotionKind, Planned, Reason, Time};
 use gathered::Gathered;
 pub use nominal::Nominal;
 pub(crate) use nominal::{Kinds, STILL, Travels};
@@ -91,6 +92,8 @@ pub(crate) struct Surroundings<'s, 'o> {
     pub findings: &'s Findings,
     /// Who looks on, if anybody does.
     pub audience: Option<&'s dyn Audience>,
+    /// Where the placer is put that blocks from here on are made with, if anybody behind asks for it.
+    pub placer: Option<&'s RefCell<Option<Rc<Placer>>>>,
 }
 
 /// Counts of this stage.
@@ -125,6 +128,8 @@ pub(crate) struct Blocks<'a> {
     gathered: Gathered,
     /// Which curves are kept.
     keeps: Keeps,
+    /// Feeds are planned behind this stage: curves tell their way.
+    plans: bool,
     /// A curve whose end has not come yet.
     following: Option<Following>,
     /// What each leg of the run in hand is due.
@@ -170,6 +175,7 @@ impl<'a> Blocks<'a> {
             between: BetweenWords::new(machine),
             gathered: Gathered::default(),
             keeps: Keeps::new(machine, writes),
+            plans: false,
             following: None,
             nominal: Vec::new(),
             last: None,
@@ -183,6 +189,24 @@ impl<'a> Blocks<'a> {
             largest: Largest::default(),
             counts: Counts::default(),
         }
+    }
+
+    /// Feeds are planned behind this stage.
+    pub(crate) fn plans(&mut self) {
+        self.plans = true;
+    }
+
+    /// Blocks from here on are made with another placer; those before it have been handed on by then.
+    fn use_placer(&mut self, placer: Option<Rc<Placer>>, to: &mut Surroundings<'_, '_>) {
+        if let Some(told) = to.placer {
+            to.out.flush();
+            told.borrow_mut().clone_from(&placer);
+            // Blocks may be cut behind this stage, at rounded points.
+            let tolerance = self.machine.accuracy.tolerance;
+            self.placer = placer.map(|placer| Rc::new(placer.leaving_room(tolerance)));
+            return;
+        }
+        self.placer = placer;
     }
 
     /// Counts so far.
@@ -265,7 +289,7 @@ impl<'a> Blocks<'a> {
             Flow::Point(Configured::Point(chosen)) => self.point(chosen, lane, placed, to),
             Flow::Point(Configured::Placer(placer)) => {
                 self.end_run(to);
-                self.take_placer(placer);
+                self.take_placer(placer, to);
             }
             Flow::Point(Configured::Broken) => {
                 self.end_run(to);
@@ -631,6 +655,7 @@ impl<'a> Blocks<'a> {
             way: 0.0,
             nominal: Nominal::default(),
             follow: Follow::default(),
+            planned: Planned::default(),
             time: Time::default(),
         }
     }

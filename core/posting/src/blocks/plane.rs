@@ -66,10 +66,10 @@ impl Planes {
 
 impl Blocks<'_> {
     /// Another placer comes; the tool leaves a plane with the one that it is in it with.
-    pub(super) fn take_placer(&mut self, placer: &Rc<Placer>) {
+    pub(super) fn take_placer(&mut self, placer: &Rc<Placer>, to: &mut Surroundings<'_, '_>) {
         self.planes.outside = Some(Rc::clone(placer));
         if !self.planes.told {
-            self.placer = Some(Rc::clone(placer));
+            self.use_placer(Some(Rc::clone(placer)), to);
         }
         self.planes.stands = None;
     }
@@ -89,7 +89,7 @@ impl Blocks<'_> {
     /// No plane is in force any more; the tool has left the part.
     fn leave_plane(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
         self.planes.stands = None;
-        self.placer.clone_from(&self.planes.outside);
+        self.use_placer(self.planes.outside.clone(), to);
         if std::mem::take(&mut self.planes.told) {
             to.out.command(line, Command::Plane(None));
         }
@@ -162,7 +162,7 @@ impl Blocks<'_> {
         let Some(inside) = outside.in_plane(plane) else {
             return;
         };
-        self.placer = Some(Rc::new(inside));
+        self.use_placer(Some(Rc::new(inside)), to);
         self.planes.told = true;
         to.out.command(line, Command::Plane(Some(Box::new(plane))));
     }

@@ -21,6 +21,26 @@ struct SplineBlock {
     bound: Bound,
 }
 
+/// Places between the ends by which a feed is planned: so many a knot span.
+const PLACES: u32 = 16;
+
+/// Places along a spline between its ends, mm, part frame.
+fn places(printed: &Spline, frame: &WordFrame) -> Vec<Vector3<f64>> {
+    let cubics = printed.cubics();
+    let mut places: Vec<Vector3<f64>> = cubics
+        .flat_map(|[a, b, c, d]| {
+            (1..=PLACES).map(move |place| {
+                let t = f64::from(place) / f64::from(PLACES);
+                let s = 1.0 - t;
+                (a * s + b * (3.0 * t)) * (s * s) + (c * (3.0 * s) + d * t) * (t * t)
+            })
+        })
+        .map(|place| frame.in_part(place))
+        .collect();
+    places.pop();
+    places
+}
+
 impl Blocks<'_> {
     /// Makes a block along a spline of the control point, if that can be.
     pub(super) fn keep_spline(
@@ -135,6 +155,10 @@ impl Blocks<'_> {
                     points: words,
                 },
                 between,
+                way: match self.plans {
+                    true => places(&printed, frame),
+                    false => Vec::new(),
+                },
             },
             bound,
             node: Box::new(node),

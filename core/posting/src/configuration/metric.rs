@@ -1,7 +1,9 @@
 //! What is to be small over the path: the measure of a move of the axes.
 
 use post_machine::description::{Machine, Rule, Side};
-use post_machine::kinematics::{Joints, MAX_AXES};
+use post_machine::kinematics::{Chain, Joints, MAX_AXES};
+
+use super::cycle_time::Drives;
 
 /// An axis without `max_feed` counts as one with so many mm/min or degrees/min.
 const USUAL_FEED: f64 = 10_000.0;
@@ -20,7 +22,12 @@ pub(crate) struct Measure {
     prefer: Vec<(usize, Side)>,
     /// What the control shows at zero of each axis.
     zero: Joints,
+    /// Under `cycle-time`: what the time is made of.
+    drives: Option<Box<Drives>>,
 }
+
+/// Of times that are the same, that counts more in which the axes travel less: so much of the travel is added.
+const TIE: f64 = 1e-6;
 
 impl Measure {
     pub(crate) fn new(machine: &Machine) -> Self {
@@ -43,11 +50,28 @@ impl Measure {
             slowness,
             prefer: machine.solution.prefer.clone(),
             zero,
+            drives: (machine.solution.rule == Rule::CycleTime)
+                .then(|| Box::new(Drives::new(machine))),
+        }
+    }
+
+    /// What the time is made of, under the rule `cycle-time`.
+    #[inline]
+    pub(crate) fn drives(&self) -> Option<&Drives> {
+        self.drives.as_deref()
+    }
+
+    /// The cost of a rapid, or of a turn off the part: [`Measure::between`], or seconds under `cycle-time`.
+    #[inline]
+    pub(crate) fn off_part(&self, chain: &Chain, from: &Joints, to: &Joints) -> f64 {
+        match self.drives() {
+            Some(drives) => drives.rapid(chain, from, to) + self.between(from, to),
+            None => self.between(from, to),
         }
     }
 
     /// The cost of a move: minutes under `time`, degrees (mm) under the other rules. Those decide by the
-    /// measure alone only where it differs; the time breaks their ties.
+    /// measure alone only where it differs; the time breaks their ties. Under `cycle-time` what breaks the ties alone.
     #[inline]
     pub(crate) fn between(&self, from: &Joints, to: &Joints) -> f64 {
         self.weigh(from, to, true)
@@ -55,7 +79,10 @@ impl Measure {
 
     /// [`Measure::between`] of the rotary axes alone: nobody knows where the tool comes from.
     pub(crate) fn approach(&self, from: &Joints, to: &Joints) -> f64 {
-        self.weigh(from, to, false)
+        let turn = self.drives().map_or(0.0, |drives| {
+            drives.rest_to_rest(from, to, 1.0, |place| self.rotary[place])
+        });
+        turn + self.weigh(from, to, false)
     }
 
     #[inline]
@@ -80,9 +107,10 @@ impl Measure {
             }
             time += way * self.slowness[index];
         }
-        let tie = 1e-6 * time;
+        let tie = TIE * time;
         match self.rule {
             Rule::Time => time,
+            Rule::CycleTime => tie,
             Rule::Travel => squares.sqrt().to_degrees() + tie,
             Rule::LargestAxis => largest.to_degrees() + tie,
             Rule::Axis(place) => {

@@ -5,6 +5,8 @@
 
 mod backtrace;
 mod cost;
+mod cycle_time;
+mod ease;
 mod full_turns;
 mod metric;
 mod recovery;

@@ -201,9 +201,11 @@ impl Route<'_> {
             self.rewound.push(state.joints);
             let index = self.trellis.states.len();
             self.trellis.states.push(State {
-                cost: state
-                    .cost
-                    .and_rewind(self.trellis.measure.between(&state.joints, &joints)),
+                cost: state.cost.and_rewind(self.trellis.measure.off_part(
+                    placer.solver().chain(),
+                    &state.joints,
+                    &joints,
+                )),
                 joints,
                 from: state.from,
                 root: if self.mark + 1 == self.trellis.layers.len() {

@@ -123,6 +123,34 @@ impl Judge for Trial<'_> {
     }
 }
 
+impl Trial<'_> {
+    /// Where the axes stand on the way of a cut, the points put in that it needs, and at which share of it: up to its end.
+    /// False where it does not come through.
+    pub(super) fn pieces(
+        &mut self,
+        placer: &Placer,
+        motion: &Motion,
+        (from_pose, from): (&Pose, &Joints),
+        (to_pose, to): (&Pose, &Joints),
+        pieces: &mut Vec<(f64, Joints)>,
+    ) -> bool {
+        pieces.clear();
+        let node = |pose: &Pose, joints: &Joints, t: f64| placer.settled(*pose, t, joints).ok();
+        let (Some(from), Some(to)) = (node(from_pose, from, 0.0), node(to_pose, to, 1.0)) else {
+            return false;
+        };
+        let planned = Move::planned(self.machine, placer, motion.chord, false, [&from, &to]);
+        if planned.whole().is_some() {
+            pieces.push((1.0, to.trace.joints));
+            return true;
+        }
+        let through = self.linearise.comes_through(&planned);
+        let nodes = self.linearise.pieces().iter().map(|piece| &piece.to);
+        pieces.extend(nodes.map(|node| (node.t, node.trace.joints)));
+        through
+    }
+}
+
 impl<'a> Route<'a> {
     /// A route that begins where the machine file says.
     ///

@@ -3,15 +3,13 @@
 use super::backtrace::Backtrace;
 use super::cost::Cost;
 use super::route::{Chosen, Route};
-use super::taut::{Gate, taut};
-use super::trellis::{HELD, Judge, Kind, State, Trellis, pose};
-use crate::program::{Motion, Pace};
+use super::trellis::{HELD, State, Trellis};
 use post_machine::description::Pole;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::POLE;
 
 /// Values that differ by less are the same, radians.
-const SAME: f64 = 1e-9;
+pub(super) const SAME: f64 = 1e-9;
 
 impl Route<'_> {
     /// Settles all points.
@@ -132,48 +130,6 @@ impl Route<'_> {
         Some(best)
     }
 
-    /// Can the cuts that lead to these points be made as the way has it? Only those are tried that the trellis did not
-    /// try: from and to points that are eased or held.
-    fn comes_through(&mut self, way: &Backtrace, points: std::ops::Range<usize>) -> bool {
-        if self.trellis.freedom == 0.0 {
-            return true;
-        }
-        let (trellis, judge) = (&self.trellis, &mut self.judge);
-        let turned = |layer: usize| {
-            let place = way.eased.binary_search_by_key(&layer, |(layer, _)| *layer);
-            // What was handed out may have been eased.
-            let out = layer == 0 && trellis.eased(trellis.layers[0].latitude.0);
-            out || place.is_ok() || trellis.states[way.states[layer]].branch == HELD
-        };
-        judge.strict = true;
-        let mut points = points;
-        let good = points.all(|layer| {
-            let [before, at] = [layer - 1, layer].map(|layer| &trellis.layers[layer]);
-            if at.kind != Kind::Cut || !(turned(layer - 1) || turned(layer)) {
-                return true;
-            }
-            let from = way.joints(trellis, layer - 1);
-            let to = match trellis.states[way.states[layer]].rewind {
-                Some(before) => self.rewound[before],
-                None => way.joints(trellis, layer),
-            };
-            // Nothing turns and the axis hardly sweeps: the tip goes straight, and the tool axis is off by no more than
-            // at the ends.
-            let sweep = (at.motion.axis - before.motion.axis).norm();
-            if sweep <= 2.0 * trellis.freedom && trellis.axes.largest_turn(&from, &to) == 0.0 {
-                return true;
-            }
-            judge.passes(
-                &self.settings[at.setting].1,
-                &at.motion,
-                (&pose(&before.motion), &from),
-                (&pose(&at.motion), &to),
-            )
-        });
-        judge.strict = false;
-        good
-    }
-
     /// The trellis of the points that wait, every point met exactly; none where no way leads through it, or where the
     /// tool is drawn back on the way.
     fn exact(&mut self) -> Option<Trellis> {
@@ -202,101 +158,6 @@ impl Route<'_> {
             }
         }
         exact.best().map(|_| exact)
-    }
-
-    /// Pulls the pole joint taut wherever the tolerance leaves it room.
-    fn ease(&mut self, way: &mut Backtrace) {
-        let mut at = usize::from(self.anchored);
-        while let Some(run) = self.ease_next(way, at) {
-            // The point behind the run is come to from it.
-            let end = (run.end + 1).min(self.trellis.layers.len());
-            if !self.comes_through(way, run.start.max(1)..end) {
-                way.eased.retain(|(layer, _)| *layer < run.start);
-            }
-            at = run.end;
-        }
-    }
-
-    /// Pulls the pole joint taut over the next points from `at` where the tolerance leaves it room; gives which they
-    /// are.
-    fn ease_next(&self, way: &mut Backtrace, at: usize) -> Option<std::ops::Range<usize>> {
-        let trellis = &self.trellis;
-        let layers = &trellis.layers;
-        let pole = self.settings[layers[0].setting].1.solver().pole_joint()?;
-        let state = |way: &Backtrace, layer: usize| trellis.states[way.states[layer]];
-        let roomy = |way: &Backtrace, layer: usize| {
-            self.trellis.eased(layers[layer].latitude.0) && state(way, layer).rewind.is_none()
-        };
-        let at = (at..layers.len()).find(|layer| roomy(way, *layer))?;
-        let end = (at..layers.len())
-            .find(|layer| !roomy(way, *layer))
-            .unwrap_or(layers.len());
-        // The point behind the run, if there is one, is where the string must arrive.
-        let gates: Vec<Gate> = (at..end)
-            .chain((end < layers.len()).then_some(end))
-            .map(|layer| Gate {
-                time: match layers[layer].kind {
-                    Kind::Cut => Some(minutes(trellis, layer)),
-                    Kind::First | Kind::Rapid => None,
-                },
-                range: if layer < end {
-                    self.room(layer, &state(way, layer), pole)
-                } else {
-                    let state = state(way, layer);
-                    let value = match state.rewind {
-                        Some(before) => self.rewound[before][pole],
-                        None => state.joints[pole],
-                    };
-                    [value, value]
-                },
-            })
-            .collect();
-        let start = if at > 0 {
-            way.joints(trellis, at - 1)[pole]
-        } else {
-            self.near[pole]
-        };
-        let values = taut(Some(start), &gates);
-        for (layer, value) in (at..end).zip(values) {
-            if let Some(joints) = self.turned_to(way, layer, pole, value) {
-                way.eased.push((layer, joints));
-            }
-        }
-        Some(at..end)
-    }
-
-    /// What the tolerance leaves the pole joint at a point.
-    fn room(&self, layer: usize, state: &State, pole: usize) -> [f64; 2] {
-        let [least, most] = self.trellis.axes.travel(pole);
-        if state.branch == HELD {
-            return [least, most];
-        }
-        let sine = self.trellis.layers[layer].latitude.0;
-        let half = self.trellis.freedom / sine.max(1e-12);
-        let value = state.joints[pole];
-        [(value - half).max(least), (value + half).min(most)]
-    }
-
-    /// Where the axes stand with the pole joint at `value`; none if it stands there, or the others cannot follow.
-    fn turned_to(&self, way: &Backtrace, layer: usize, pole: usize, value: f64) -> Option<Joints> {
-        let trellis = &self.trellis;
-        let joints = trellis.states[way.states[layer]].joints;
-        if (value - joints[pole]).abs() < SAME {
-            return None;
-        }
-        let at = &trellis.layers[layer];
-        let solver = self.settings[at.setting].1.solver();
-        let mut last = match layer {
-            0 => joints,
-            layer => way.joints(trellis, layer - 1),
-        };
-        let turned = value - last[pole];
-        last[pole] = value;
-        // The others come as near as they can, on the turns where they are.
-        let stand = trellis
-            .axes
-            .held(solver, &pose(&at.motion), &last, turned)?;
-        Some(stand.joints)
     }
 
     fn hand_out(&mut self, way: &Backtrace, upto: usize) {
@@ -378,21 +239,4 @@ impl Trellis {
         (a != b && a != HELD && b != HELD)
             || self.axes.largest_turn(before, after) > std::f64::consts::PI + SAME
     }
-}
-
-/// Time of a cut, minutes.
-fn minutes(trellis: &Trellis, layer: usize) -> f64 {
-    let motion = &trellis.layers[layer].motion;
-    let way = layer.checked_sub(1).map_or(0.0, |before| {
-        distance(&trellis.layers[before].motion, motion)
-    });
-    match motion.pace {
-        Pace::PerMinute(feed) => way / feed,
-        Pace::InverseTime(feed) => 1.0 / feed,
-        Pace::Rapid => 0.0,
-    }
-}
-
-fn distance(from: &Motion, to: &Motion) -> f64 {
-    (to.tip - from.tip).norm()
 }

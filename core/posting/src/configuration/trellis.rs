@@ -3,6 +3,7 @@
 //! them is known at every point.
 
 use super::cost::Cost;
+use super::cycle_time::{Clock, Drives};
 use super::metric::Measure;
 use super::solution::{Axes, Found, Stand};
 use crate::accuracy::Placer;
@@ -114,6 +115,15 @@ pub(crate) trait Judge {
     ) -> bool;
 }
 
+/// Time that the program asks for a move over `way` mm, minutes; a rapid has none.
+pub(super) fn minutes(motion: &Motion, way: f64) -> f64 {
+    match motion.pace {
+        Pace::PerMinute(feed) => way / feed,
+        Pace::InverseTime(feed) => 1.0 / feed,
+        Pace::Rapid => 0.0,
+    }
+}
+
 /// The points that are not settled yet; the first of them is, if `anchored`.
 #[derive(Debug)]
 pub(crate) struct Trellis {
@@ -128,6 +138,9 @@ pub(crate) struct Trellis {
     pub cone: f64,
     /// What a pole joint may be off by, as an angle of the tool axis, radians.
     pub freedom: f64,
+    /// Under the rule `cycle-time`: what the program asks for the cut to the newest layer and for the one that is being pushed,
+    /// s.
+    asked: [f64; 2],
 }
 
 /// Where a point is wanted.
@@ -164,6 +177,7 @@ impl Trellis {
             searched: Vec::new(),
             cone: libm::sin(freedom).max(post_machine::kinematics::POLE),
             freedom,
+            asked: [0.0; 2],
         }
     }
 
@@ -197,6 +211,12 @@ impl Trellis {
             .layers
             .last()
             .map(|layer| layer.first..layer.first + layer.count);
+        if self.measure.drives().is_some() {
+            self.asked = [
+                self.asked_for(self.layers.len().saturating_sub(1)),
+                self.asked_next(motion),
+            ];
+        }
         let mut stands = std::mem::take(&mut self.stands);
         stands.clear();
         let last = before
@@ -237,10 +257,10 @@ impl Trellis {
             match kind {
                 Kind::First => {
                     for stand in &stands {
-                        self.reach(stand, None, near);
+                        self.reach(placer, stand, None, near);
                     }
                 }
-                Kind::Rapid => self.turn(&stands, range),
+                Kind::Rapid => self.turn(placer, &stands, range),
                 Kind::Cut => {
                     if placer.solver().closed_form() {
                         let passage = Passage {
@@ -413,9 +433,11 @@ impl Trellis {
             return;
         }
         let (cost, way) = match &before {
+            Some(state) if kind == Kind::Cut => (state.cost, self.way_on(state, &stand.joints)),
             Some(state) => (
                 state.cost,
-                self.measure.between(&state.joints, &stand.joints),
+                self.measure
+                    .off_part(placer.solver().chain(), &state.joints, &stand.joints),
             ),
             None => (Cost::NONE, self.measure.approach(near, &stand.joints)),
         };
@@ -433,7 +455,8 @@ impl Trellis {
     }
 
     /// Every set of turns of a stand, come to from one state or from nowhere.
-    fn reach(&mut self, stand: &Stand, from: Option<usize>, near: &Joints) {
+    fn reach(&mut self, placer: &Placer, stand: &Stand, from: Option<usize>, near: &Joints) {
+        let chain = placer.solver().chain();
         let Self {
             axes,
             measure,
@@ -444,7 +467,7 @@ impl Trellis {
         let last = before.map_or(*near, |state| state.joints);
         axes.turned(stand, &last, &mut |joints| {
             let (cost, way) = match &before {
-                Some(state) => (state.cost, measure.between(&state.joints, joints)),
+                Some(state) => (state.cost, measure.off_part(chain, &state.joints, joints)),
                 None => (Cost::NONE, measure.approach(near, joints)),
             };
             states.push(State {
@@ -459,7 +482,7 @@ impl Trellis {
     }
 
     /// Off the part every state can be reached from every other.
-    fn turn(&mut self, stands: &[Stand], before: std::ops::Range<usize>) {
+    fn turn(&mut self, placer: &Placer, stands: &[Stand], before: std::ops::Range<usize>) {
         let first = self.states.len();
         let mut begun = false;
         for index in before {
@@ -469,7 +492,7 @@ impl Trellis {
             let near = self.states[index].joints;
             let from = self.states.len();
             for stand in stands {
-                self.reach(stand, Some(index), &near);
+                self.reach(placer, stand, Some(index), &near);
             }
             if !begun {
                 begun = true;
@@ -550,15 +573,61 @@ impl Trellis {
         }
     }
 
+    /// What it costs to go on in a cut from a state of the newest layer.
+    #[inline]
+    fn way_on(&self, state: &State, joints: &Joints) -> f64 {
+        let travel = self.measure.between(&state.joints, joints);
+        match self.measure.drives() {
+            Some(drives) => travel + self.seconds_on(drives, state, joints),
+            None => travel,
+        }
+    }
+
+    /// How long that takes, with what is lost where the velocities change. (How a state was come to counts as it is cheapest
+    /// so far; a dearer way that would have gone on more smoothly is not known any more. And how the tool came to the first
+    /// layer is not known at all.)
+    #[cold]
+    fn seconds_on(&self, drives: &Drives, state: &State, joints: &Joints) -> f64 {
+        let newest = self.layers.len() - 1;
+        let before = self.states[state.from].joints;
+        let cut = self.layers[newest].kind == Kind::Cut && state.rewind.is_none();
+        let mut clock = Clock::new(drives, if cut { before } else { state.joints });
+        match (cut, newest) {
+            (false, _) => clock.rests(),
+            (true, 0) => clock = Clock::new(drives, state.joints),
+            (true, _) => clock.cuts(&state.joints, self.asked[0]),
+        }
+        let known = clock.seconds;
+        clock.cuts(joints, self.asked[1]);
+        clock.seconds - known
+    }
+
+    /// What the program asks for the cut to a layer, s; 0 for a rapid, and where it is not known how far that goes.
+    pub(super) fn asked_for(&self, layer: usize) -> f64 {
+        match layer.checked_sub(1) {
+            Some(before) => {
+                let [before, at] = [before, layer].map(|layer| &self.layers[layer].motion);
+                60.0 * minutes(at, (at.tip - before.tip).norm())
+            }
+            None => 0.0,
+        }
+    }
+
+    /// The same for a point behind the newest layer.
+    fn asked_next(&self, motion: &Motion) -> f64 {
+        self.layers.last().map_or(0.0, |last| {
+            60.0 * minutes(motion, (motion.tip - last.motion.tip).norm())
+        })
+    }
+
     /// The state that stands at `joints` and comes from another.
     #[inline]
     fn after(&self, from: usize, joints: Joints, branch: u8) -> State {
         let state = &self.states[from];
         State {
-            cost: state.cost.and(
-                self.measure.between(&state.joints, &joints),
-                self.measure.against(&joints),
-            ),
+            cost: state
+                .cost
+                .and(self.way_on(state, &joints), self.measure.against(&joints)),
             joints,
             from,
             root: state.root,

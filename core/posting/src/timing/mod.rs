@@ -176,7 +176,7 @@ impl<'a> Timing<'a> {
     /// A rapid takes what its slowest axis needs; where its axes would go too fast, or each for itself, it is written
     /// as a feed move, if the machine file says so.
     fn rapid(&mut self, block: &mut Block, findings: &Findings) {
-        let (least, _) = self.least(block);
+        let (least, ..) = self.least(block);
         block.time.minutes = least;
         if self.rapids.is_fed(&self.last, block, least) {
             let written = self.feeds.write(block, &self.last, least);
@@ -187,15 +187,15 @@ impl<'a> Timing<'a> {
 
     #[inline]
     fn cut(&mut self, block: &mut Block, findings: &Findings) {
-        let (least, limit) = self.least(block);
+        let (least, limit, needed) = self.least(block);
         block.time.limit = limit
             .filter(|_| least > block.asked() * (1.0 + 1e-9))
-            .map(Limit::name);
+            .map(|limit| limit.name(block));
         let written = self.feeds.write(block, &self.last, least);
         if written.capped {
             block.time.limit = Some("most_inverse_time");
         }
-        self.put(block, written, least, findings);
+        self.put(block, written, needed, findings);
         self.statistics.limited += u64::from(block.time.limit.is_some());
         // Drawn back at a feed, the tool is off the part.
         match block.loose {
@@ -235,17 +235,22 @@ impl<'a> Timing<'a> {
         self.low.count += 1;
     }
 
-    /// The least time that all limits leave a block, minutes, and the limit that asks for it.
+    /// The least time that all limits leave a block, minutes, the limit that asks for it, and the least time that the axes
+    /// need.
     #[inline]
-    fn least(&self, block: &Block) -> (f64, Option<&dyn Limit>) {
+    fn least(&self, block: &Block) -> (f64, Option<&dyn Limit>, f64) {
         let mut least = (0.0, None);
+        let mut needed = 0.0;
         for limit in &self.limits {
             let minutes = limit.least_minutes(&self.last, block);
             if minutes > least.0 {
                 least = (minutes, Some(&**limit));
             }
+            if limit.must_hold() && minutes > needed {
+                needed = minutes;
+            }
         }
-        least
+        (least.0, least.1, needed)
     }
 }
 

@@ -11,6 +11,7 @@ mod events;
 mod feed;
 mod holes;
 mod path;
+mod plan;
 mod planes;
 mod program;
 mod route;

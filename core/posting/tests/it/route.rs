@@ -2,6 +2,7 @@
 //! comes out close to poles and at the end of travel. The printed words are judged by nothing of the crate.
 
 mod choice;
+mod cycle_time;
 mod exhaustive;
 mod pole;
 mod rewind;
@@ -75,6 +76,8 @@ struct Given<'a> {
     c: String,
     second: [f64; 2],
     feeds: [f64; 5],
+    /// Of X, Y, Z, the other axis and C; none: none are given.
+    accelerations: Option<[f64; 5]>,
     linear: f64,
     accuracy: &'a str,
     /// Further tables: `[solution]`, `[rewind]`.
@@ -89,6 +92,7 @@ impl Default for Given<'_> {
             c: String::new(),
             second: [-175.0, 175.0],
             feeds: [20_000.0, 20_000.0, 15_000.0, 5400.0, 9000.0],
+            accelerations: None,
             linear: 5000.0,
             accuracy: "tolerance = 0.005\naxis_tolerance = 0.05\nrapid_tolerance = 0.5",
             more: String::new(),
@@ -112,6 +116,7 @@ fn bench(class: &Class<'_>, given: &Given<'_>) -> Bench {
         c,
         second: tilt,
         feeds: [x, y, z, tilting, turning],
+        accelerations,
         linear,
         accuracy,
         more,
@@ -121,6 +126,10 @@ fn bench(class: &Class<'_>, given: &Given<'_>) -> Bench {
         "cyclic = true".to_owned()
     } else {
         format!("travel = {c}")
+    };
+    let [ax, ay, az, tilted, turned] = match accelerations {
+        Some(values) => values.map(|value| format!("max_accel = {value}")),
+        None => Default::default(),
     };
     let text = format!(
         r#"
@@ -135,23 +144,28 @@ rotary = [0, 0, 1]
 point = [0, 0, 0]
 {c}
 max_feed = {turning}
+{turned}
 [axis.{second}]
 rotary = {direction}
 point = {point}
 travel = {tilt:?}
 max_feed = {tilting}
+{tilted}
 [axis.X]
 linear = [1, 0, 0]
 travel = [-{linear}, {linear}]
 max_feed = {x}
+{ax}
 [axis.Y]
 linear = [0, 1, 0]
 travel = [-{linear}, {linear}]
 max_feed = {y}
+{ay}
 [axis.Z]
 linear = [0, 0, 1]
 travel = [-{linear}, {linear}]
 max_feed = {z}
+{az}
 [control]
 dialect = "recorder"
 tcp = "{tcp}"
@@ -187,6 +201,7 @@ fn cost(bench: &Bench, from: &Joints, to: &Joints, linear: bool) -> f64 {
     // The time breaks the ties of the other rules.
     match machine.solution.rule {
         Rule::Time => time,
+        Rule::CycleTime => unreachable!("not a sum over the axes"),
         Rule::Travel => squares.sqrt() + 1e-6 * time,
         Rule::LargestAxis => largest + 1e-6 * time,
         Rule::Axis(_) => named + 1e-6 * time,

@@ -60,6 +60,8 @@ pub struct Rules {
     pub lengths: Option<Offsets>,
     /// A feed by time cannot be so large that a block takes less than this, minutes.
     pub least_minutes: f64,
+    /// The feed was planned: it may be below that of the CL file, whatever for.
+    pub planned: bool,
     /// Each line of the program is told with the solution that it ends in.
     pub solutions: bool,
     /// So many faults are told apart; then it is given up.
@@ -90,6 +92,7 @@ impl Rules {
             work_offsets: false,
             lengths: None,
             least_minutes: 0.0,
+            planned: false,
             solutions: false,
             most_faults: 50,
         }

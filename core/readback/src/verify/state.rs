@@ -313,6 +313,10 @@ impl<C: Course> Verifier<'_, C> {
                     self.found.limited += 1;
                     self.block.limited_by = Some("the largest feed by time".to_owned());
                 }
+                _ if self.rules.planned => {
+                    self.found.limited += 1;
+                    self.block.limited_by = Some("the planned feed".to_owned());
+                }
                 _ => {
                     self.found.slower += 1;
                     let message = format!(

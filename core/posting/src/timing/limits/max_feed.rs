@@ -22,7 +22,7 @@ impl MaxFeed {
 }
 
 impl Limit for MaxFeed {
-    fn name(&self) -> &'static str {
+    fn name(&self, _: &Block) -> &'static str {
         "max_feed"
     }
 

@@ -1,6 +1,7 @@
 //! What keeps a block from being faster: each limit a file of its own, and a line in [`of`].
 
 mod max_feed;
+mod planned;
 
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
@@ -9,8 +10,13 @@ use crate::blocks::Block;
 
 /// A limit of the machine.
 pub trait Limit: std::fmt::Debug {
-    /// Its name, as the machine file has it.
-    fn name(&self) -> &'static str;
+    /// Its name for a block that it limits, as the machine file has it.
+    fn name(&self, block: &Block) -> &'static str;
+
+    /// An axis cannot do more; else it is a wish that the least feed that is printed may pass.
+    fn must_hold(&self) -> bool {
+        true
+    }
 
     /// The least time of a block that begins with the axes at `from` (mm, radians), minutes.
     fn least_minutes(&self, from: &Joints, block: &Block) -> f64;
@@ -18,5 +24,8 @@ pub trait Limit: std::fmt::Debug {
 
 /// The limits that hold on a machine.
 pub fn of(machine: &Machine) -> Vec<Box<dyn Limit>> {
-    vec![Box::new(max_feed::MaxFeed::new(machine))]
+    vec![
+        Box::new(max_feed::MaxFeed::new(machine)),
+        Box::new(planned::PlannedFeed),
+    ]
 }

@@ -3,28 +3,32 @@
 use super::*;
 
 /// The rotary values, degrees, at which a CL line is arrived at: C and the other axis.
-fn angles(bench: &Bench, run: &Run, line: u64) -> [f64; 2] {
+pub(super) fn angles(bench: &Bench, run: &Run, line: u64) -> [f64; 2] {
     let joints = bench.joints(run.arrival(line).expect("a position"));
     let c = bench.place("C");
     let other = bench.rotary().into_iter().find(|place| *place != c);
     [joints[c], joints[other.expect("another axis")]].map(f64::to_degrees)
 }
 
-fn close(a: [f64; 2], b: [f64; 2]) -> bool {
+pub(super) fn close(a: [f64; 2], b: [f64; 2]) -> bool {
     a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 2e-3)
+}
+
+/// The line of B in a head inclined so that B 45 and B -45 lay the tool 160° apart about C.
+pub(super) fn inclined() -> String {
+    let (tan_10, tan_22) = (
+        libm::tan(10f64.to_radians()),
+        libm::tan(22.5f64.to_radians()),
+    );
+    let tilt = libm::acos(tan_10 / tan_22);
+    format!("[0, {}, {}]", libm::sin(tilt), libm::cos(tilt))
 }
 
 /// PostWorks' published example: the rotary axes may move by (50, 90) or by (110, 0) degrees; root of squares,
 /// largest axis, sum and one named axis choose the sets 1, 1, 2, 2.
 #[test]
 fn the_four_measures_choose_as_published() {
-    // A head inclined so that B 45 and B -45 lay the tool 160° apart about C.
-    let (tan_10, tan_22) = (
-        libm::tan(10f64.to_radians()),
-        libm::tan(22.5f64.to_radians()),
-    );
-    let tilt = libm::acos(tan_10 / tan_22);
-    let direction = format!("[0, {}, {}]", libm::sin(tilt), libm::cos(tilt));
+    let direction = inclined();
     let class = Class {
         direction: &direction,
         ..CLASSES[3]

@@ -123,6 +123,7 @@ fn exhaustive(seed: u64, sides: bool) {
                         start[1]
                     ),
                     decimals: 7,
+                    ..Given::default()
                 };
                 let bench = bench(class, &given);
                 let points = short(&mut rng, class);

@@ -36,17 +36,17 @@ fn circle(beside: f64, count: usize) -> Vec<Point> {
 }
 
 /// What came of a path close to the pole.
-struct Outcome {
+pub(super) struct Outcome {
     way: f64,
     time: f64,
-    axis: f64,
-    tip: f64,
+    pub(super) axis: f64,
+    pub(super) tip: f64,
     blocks: u64,
-    eased: u64,
-    over: (f64, String),
+    pub(super) eased: u64,
+    pub(super) over: (f64, String),
 }
 
-fn outcome(
+pub(super) fn outcome(
     class: &Class<'_>,
     tcp: &str,
     second: [f64; 2],
@@ -56,6 +56,7 @@ fn outcome(
     let given = Given {
         tcp,
         second,
+        accelerations: Some([5000.0, 5000.0, 5000.0, 300.0, 600.0]),
         more: format!("[solution]\n{solution}"),
         ..Given::default()
     };
@@ -428,7 +429,7 @@ fn full_turns_of_an_endless_axis_are_one_way() {
 }
 
 /// Cuts across the pole and beside it, points far apart and close, some of them within what blending takes up.
-fn over(rng: &mut Rng) -> Vec<Point> {
+pub(super) fn over(rng: &mut Rng) -> Vec<Point> {
     let (sine, cosine) = libm::sincos(rng.range(-3.0, 3.0));
     let beside = if rng.pick(2) == 0 {
         0.0

@@ -1,0 +1,152 @@
+//! What a planned feed keeps on a machine, as the planner's limits.
+
+use post_feed::limits::{
+    AxisAcceleration, AxisJerk, AxisVelocity, BlockTime, ChordError, Collocation, Feed, Limit,
+    TipAcceleration, TipJerk,
+};
+use post_machine::description::{Machine, PlanRules};
+use post_machine::diagnostic::Diagnostic;
+use post_motion::limits::AxisLimits;
+
+use super::contour::contour_error;
+
+/// The limits of a machine's axes in the order of [`post_feed::samples::Samples::axes`]: its axes by place in the chain
+/// and, where its limits hold for the programmed coordinates, those three.
+#[derive(Clone, Debug)]
+pub(super) struct Axes {
+    limits: AxisLimits,
+    /// Of the axes of the chain.
+    pub(super) count: usize,
+}
+
+impl Axes {
+    pub(super) fn new(machine: &Machine) -> Self {
+        Self {
+            limits: AxisLimits::new(machine),
+            count: machine.axes.len(),
+        }
+    }
+
+    /// The coordinates of the tip stand behind the axes.
+    pub(super) fn programmed(&self) -> bool {
+        self.limits.programmed.is_some()
+    }
+
+    /// Limits by place in the chain, those of the coordinates behind them.
+    fn each(&self, of: &[f64]) -> Vec<f64> {
+        let mut each = of[..self.count].to_vec();
+        if let Some(coordinates) = &self.limits.programmed {
+            let mut programmed = [f64::INFINITY; 3];
+            for (place, coordinate) in coordinates[..self.count].iter().enumerate() {
+                if let Some(coordinate) = coordinate {
+                    programmed[*coordinate] = of[place];
+                    each[place] = f64::INFINITY;
+                }
+            }
+            each.extend(programmed);
+        }
+        each
+    }
+
+    /// What the velocity may jump by where a path has a corner: by axis, mm/s or rad/s.
+    pub(super) fn jumps(&self) -> Vec<f64> {
+        self.each(&self.limits.jump)
+    }
+
+    /// Largest accelerations by axis.
+    pub(super) fn accelerations(&self) -> Vec<f64> {
+        self.each(&self.limits.acceleration)
+    }
+
+    pub(super) fn tip_jump(&self) -> f64 {
+        self.limits.tip_jump
+    }
+
+    pub(super) fn tip_acceleration(&self) -> f64 {
+        self.limits.tip_acceleration
+    }
+}
+
+/// What a plan keeps on `machine`: the feed of each block, velocity, acceleration and jerk of axes and tip, the errors that
+/// `rules` limit, and the time that the control takes for a block. Everywhere along the path, between samples too.
+pub fn limits(machine: &Machine, rules: &PlanRules) -> Vec<Box<dyn Limit>> {
+    let axes = Axes::new(machine);
+    let collocation = Collocation::Throughout;
+    let finite = |all: &[f64]| all.iter().any(|one| one.is_finite());
+    let mut limits: Vec<Box<dyn Limit>> = vec![Box::new(Feed {
+        most: f64::INFINITY,
+        collocation,
+    })];
+    limits.push(Box::new(AxisVelocity {
+        limits: axes.each(&axes.limits.velocity),
+        collocation,
+    }));
+    let accelerations = axes.accelerations();
+    if finite(&accelerations) {
+        limits.push(Box::new(AxisAcceleration {
+            limits: accelerations,
+            collocation,
+        }));
+    }
+    if axes.limits.tip_acceleration.is_finite() {
+        limits.push(Box::new(TipAcceleration {
+            limit: axes.limits.tip_acceleration,
+            collocation,
+        }));
+    }
+    let jerks = axes.each(&axes.limits.jerk);
+    if finite(&jerks) {
+        limits.push(Box::new(AxisJerk { limits: jerks }));
+    }
+    if axes.limits.tip_jerk.is_finite() {
+        limits.push(Box::new(TipJerk {
+            limit: axes.limits.tip_jerk,
+        }));
+    }
+    let contour = |tolerance| {
+        contour_error(machine, tolerance, collocation).map(|limit| Box::new(limit) as _)
+    };
+    limits.extend(rules.contour_error.and_then(contour));
+    if let Some(tolerance) = rules.chord_error {
+        limits.push(Box::new(ChordError {
+            tolerance,
+            period: machine.motion.period,
+            collocation,
+        }));
+    }
+    if machine.motion.block_time > 0.0 {
+        limits.push(Box::new(BlockTime {
+            seconds: machine.motion.block_time,
+            collocation,
+        }));
+    }
+    limits
+}
+
+/// What a plan on `machine` cannot keep, or need not.
+pub(super) fn warnings(machine: &Machine) -> Vec<Diagnostic> {
+    let mut warnings = Vec::new();
+    let axes = &machine.axes;
+    if machine.plan.contour_error.is_some() && axes.iter().all(|axis| axis.servo.is_none()) {
+        let message = format!(
+            "[plan] contour_error limits nothing: no axis of {} has a servo, and all are where they are commanded",
+            machine.name
+        );
+        warnings.push(Diagnostic::warning("plan", message).help("describe them in [servo.X] …"));
+    }
+    let without: Vec<&str> = axes
+        .iter()
+        .filter(|axis| axis.max_accel.is_infinite())
+        .map(|axis| axis.name.as_str())
+        .collect();
+    if !without.is_empty() {
+        let message = format!(
+            "the planned feed keeps no acceleration of {}: the machine file gives no max_accel",
+            without.join(", ")
+        );
+        warnings.push(
+            Diagnostic::warning("plan", message).help("max_accel of each [axis.X], mm/s² or °/s²"),
+        );
+    }
+    warnings
+}

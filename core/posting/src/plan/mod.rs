@@ -1,0 +1,443 @@
+//! The fastest feed that axes, tip and servos can follow, planned over the blocks as they come (Chen, Ren and Sun 2016).
+//!
+//! Blocks are chords of a path that was smooth. Between corners a curve is laid through their ends, within a share of the
+//! tolerance ([`post_feed::fit`]); the axes follow it by the chain's own derivatives; the limits make bounds and rows of
+//! its samples, and reachability analysis finds the fastest feed along it. Each block then has the least feed that is
+//! planned anywhere on it; where that changes too much inside a block, the block is cut.
+//!
+//! It streams: a block waits until the look-ahead has settled its samples, commands among the blocks wait with it. The
+//! path is planned from standstill to standstill: at rapids, at words that the control stands still for, around holes,
+//! and, where the control stops at every corner, from block to block.
+
+mod account;
+mod contour;
+mod corner;
+mod cut;
+mod graded;
+mod limits;
+mod line;
+mod pieces;
+mod queue;
+mod samples;
+mod solver;
+mod watch;
+
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use post_feed::fit::{self, Fit};
+use post_machine::description::{CornerRule, FeedMode, InverseTime, Machine, Tcp};
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::Format;
+
+use crate::accuracy::Placer;
+use crate::blocks::{Block, MotionKind};
+use crate::findings::Findings;
+use crate::program::{Command, HoleMark};
+use crate::stream::{Flow, Outlet};
+use crate::tightening::Tightening;
+use account::Account;
+pub use account::{LimitShare, PlanReport, axis_name};
+pub use limits::limits;
+use line::{Due, Line};
+use queue::{Queue, Start};
+pub use watch::{PlanWatch, PlannedPoint};
+
+/// The name under which corners stand among the limits.
+const CORNER: &str = "corner";
+
+/// How the parameter of the curve, a length, counts turns: mm a radian.
+const TURN_WEIGHT: f64 = 10.0;
+
+/// Rotary axes are smoothed by no more than this, radians: 0.02°.
+const TURN: f64 = 3.5e-4;
+
+/// Largest distance of samples along a straight line, mm.
+const SPACING: f64 = 2.0;
+
+/// What the fit takes for no way at all, in tolerances.
+const STANDS: f64 = 1.001e-3;
+
+/// Where the placer is told that blocks are made with.
+pub(crate) type PlacerCell = Rc<RefCell<Option<Rc<Placer>>>>;
+
+/// Who looks on while feeds are planned.
+type Watching<'a> = Rc<RefCell<&'a mut dyn PlanWatch>>;
+
+/// The stage that plans feeds.
+pub(crate) struct Plan<'a> {
+    base: &'a Machine,
+    machine: &'a Machine,
+    /// Where the contour error may use less than its limit.
+    tightening: Option<Arc<Tightening>>,
+    watch: Option<Watching<'a>>,
+    told: PlacerCell,
+    run: Option<Run<'a>>,
+    queue: Queue,
+    account: Account,
+    /// Where the axes stand; none where nobody knows.
+    stands: Option<Start>,
+    /// Where the last leg of the curve ends.
+    point: fit::Point,
+    /// A path has begun.
+    moves: bool,
+    /// The moves are those of a hole, which may become a cycle.
+    in_hole: bool,
+    /// What the next block passes on its way.
+    way: Vec<Vector3<f64>>,
+    refused: bool,
+    /// What the machine cannot keep was told.
+    warned: bool,
+    /// The control takes no block for shorter than this, s.
+    least_block: f64,
+}
+
+/// What plans with one placer.
+struct Run<'a> {
+    fit: Fit,
+    line: Line<'a>,
+}
+
+impl<'a> Plan<'a> {
+    pub(crate) fn new(
+        machine: &'a Machine,
+        format: &Format,
+        tightening: Option<Arc<Tightening>>,
+    ) -> Self {
+        Self {
+            base: machine,
+            machine,
+            tightening,
+            watch: None,
+            told: PlacerCell::default(),
+            run: None,
+            queue: Queue::default(),
+            account: Account::default(),
+            stands: None,
+            point: [0.0; fit::MOST],
+            moves: false,
+            in_hole: false,
+            way: Vec::new(),
+            refused: false,
+            warned: false,
+            least_block: least_block(machine, format),
+        }
+    }
+
+    /// Shows what is planned to `watch`.
+    pub(crate) fn watch(&mut self, watch: &'a mut dyn PlanWatch) {
+        self.queue.watched = true;
+        self.watch = Some(Rc::new(RefCell::new(watch)));
+    }
+
+    /// Where the stage before tells its placer.
+    pub(crate) fn told(&self) -> PlacerCell {
+        Rc::clone(&self.told)
+    }
+
+    /// Line of the CL file of the first block that waits.
+    pub(crate) fn first_line(&self) -> Option<u64> {
+        self.queue.first_line()
+    }
+
+    /// What was planned so far.
+    pub(crate) fn report(&self) -> PlanReport {
+        self.account.report(self.machine)
+    }
+
+    /// Takes a batch, which is empty then.
+    pub(crate) fn take(
+        &mut self,
+        batch: &mut Vec<Flow<Block>>,
+        out: &mut Outlet<'_, Flow<Block>>,
+        findings: &Findings,
+    ) {
+        self.take_placer(out, findings);
+        for next in batch.drain(..) {
+            match next {
+                Flow::Command { line, command } => {
+                    self.command(&command, out, findings);
+                    self.queue.push(Flow::Command { line, command });
+                }
+                Flow::Point(block) => self.block(block, out, findings),
+            }
+        }
+        if !self.moves {
+            self.queue.ready(&mut |flow| out.push(flow));
+        }
+    }
+
+    /// The program ends.
+    pub(crate) fn finish(&mut self, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
+        self.stop(out, findings);
+    }
+
+    /// Blocks are made with another placer.
+    fn take_placer(&mut self, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
+        let told = self.told.borrow().clone();
+        let known = self.run.as_ref().map(|run| Rc::as_ptr(run.line.placer()));
+        if told.as_ref().map(Rc::as_ptr) == known {
+            return;
+        }
+        self.stop(out, findings);
+        self.run = None;
+        let (Some(placer), false) = (told, self.refused) else {
+            return;
+        };
+        if !placer.solver().closed_form() {
+            self.refused = true;
+            findings.add(no_closed_form(self.machine));
+            return;
+        }
+        let watch = self.watch.clone();
+        let tightening = self.tightening.clone();
+        let line = Line::new(self.machine, placer, tightening, watch, self.least_block);
+        if !std::mem::replace(&mut self.warned, true) {
+            for warning in limits::warnings(self.machine) {
+                findings.add(warning);
+            }
+        }
+        let accuracy = &self.machine.accuracy;
+        self.run = Some(Run {
+            fit: Fit::new(fit::Rules {
+                dimensions: line.dimensions(),
+                tolerance: self.machine.plan.smoothing,
+                turn_tolerance: (0.5 * accuracy.axis_tolerance).min(TURN),
+                corner: accuracy.corner,
+                turn_weight: TURN_WEIGHT,
+                spacing: Some(SPACING),
+                ..fit::Rules::default()
+            }),
+            line,
+        });
+    }
+
+    fn command(
+        &mut self,
+        command: &Command,
+        out: &mut Outlet<'_, Flow<Block>>,
+        findings: &Findings,
+    ) {
+        match command {
+            Command::Curve(curve) => self.way.clone_from(&curve.way),
+            Command::Hole(mark) => {
+                self.stop(out, findings);
+                self.in_hole = !matches!(mark, HoleMark::Done);
+            }
+            Command::Head(name) => {
+                self.stop(out, findings);
+                if let Some(head) = self.base.head(name) {
+                    self.machine = &head.machine;
+                    self.run = None;
+                }
+            }
+            // Nobody knows where the tool stands behind it.
+            Command::Subprogram(_) => {
+                self.stop(out, findings);
+                self.stands = None;
+            }
+            _ if stands_still(command) => self.stop(out, findings),
+            _ => {}
+        }
+    }
+
+    fn block(&mut self, block: Block, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
+        if block.still {
+            self.queue.push(Flow::Point(block));
+            return;
+        }
+        let way = std::mem::take(&mut self.way);
+        let end = Start {
+            joints: block.joints,
+            words: block.words,
+            tip: block.tip,
+            axis: block.axis,
+        };
+        let start = self.stands.replace(end);
+        let cuts = matches!(
+            block.kind,
+            MotionKind::Linear | MotionKind::Arc | MotionKind::Spline
+        );
+        let planned = start.filter(|_| cuts && !self.in_hole && self.run.is_some());
+        match planned {
+            Some(start) => self.plan(block, &start, &end, &way, out, findings),
+            None => {
+                self.stop(out, findings);
+                self.queue.push(Flow::Point(block));
+            }
+        }
+        // Its memory serves the next curve.
+        self.way = way;
+        self.way.clear();
+        if self.machine.motion.corner == CornerRule::Stop {
+            self.stop(out, findings);
+        }
+    }
+
+    /// The feed of a block is planned.
+    fn plan(
+        &mut self,
+        block: Block,
+        start: &Start,
+        end: &Start,
+        way: &[Vector3<f64>],
+        out: &mut Outlet<'_, Flow<Block>>,
+        findings: &Findings,
+    ) {
+        let Some(run) = &mut self.run else {
+            return;
+        };
+        let along = self.machine.control_point.along;
+        let point =
+            |run: &Run<'_>, at: &Start| run.line.point(at.tip + at.axis * along, &at.joints);
+        let last = point(run, end);
+        if !self.moves {
+            self.point = point(run, start);
+        }
+        let tolerance = STANDS * self.machine.plan.smoothing;
+        if distance(&self.point, &last) < tolerance {
+            // Too short for the curve: it is gone at the feed of the CL file, whatever comes before and behind it.
+            self.queue.push(Flow::Point(block));
+            self.account.give_up(1);
+            return;
+        }
+        if !self.moves {
+            run.fit.clear();
+            run.fit.push(&self.point, &mut |_| {});
+            run.line.begin(&start.joints);
+            self.moves = true;
+        }
+        let mut due = Due::of(&block, along != 0.0);
+        if let (Some(tightening), true) = (&self.tightening, along != 0.0) {
+            // The curve goes beside the tip, whose places are known.
+            due.share = tightening.least(block.line, &start.tip, &end.tip);
+        }
+        self.queue.open(block, *start);
+        let mut places = Vec::new();
+        for place in way {
+            let mut point = last;
+            point[..3].copy_from_slice(place.as_slice());
+            let before = places.last().unwrap_or(&self.point);
+            if distance(before, &point) > tolerance && distance(&last, &point) > tolerance {
+                places.push(point);
+            }
+        }
+        places.push(last);
+        run.line.due(due, places.len());
+        let mut failed = false;
+        let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
+        let mut take = |leg: &fit::Leg<'_>| {
+            failed = failed
+                || line
+                    .leg(leg, queue, account, &mut |flow| out.push(flow))
+                    .is_err();
+        };
+        for point in &places {
+            run.fit.push(point, &mut take);
+        }
+        self.point = last;
+        if failed {
+            self.fail(out, findings);
+        }
+    }
+
+    /// The tool comes to a standstill: what waits is planned to its end.
+    fn stop(&mut self, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
+        if let (true, Some(run)) = (self.moves, &mut self.run) {
+            let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
+            let mut failed = false;
+            run.fit.cut(&mut |leg| {
+                failed = failed
+                    || line
+                        .leg(leg, queue, account, &mut |flow| out.push(flow))
+                        .is_err();
+            });
+            failed = failed
+                || line
+                    .finish(queue, account, &mut |flow| out.push(flow))
+                    .is_err();
+            self.moves = false;
+            if failed {
+                self.fail(out, findings);
+            }
+        }
+        self.queue.ready(&mut |flow| out.push(flow));
+    }
+
+    /// What waits goes on without a plan.
+    #[cold]
+    fn fail(&mut self, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
+        self.moves = false;
+        if let Some(run) = &mut self.run {
+            run.fit.clear();
+            if let Some(fault) = run.line.give_up() {
+                findings.at(self.queue.first_line().unwrap_or_default(), fault);
+            }
+        }
+        self.account.give_up(self.queue.give_up());
+        self.queue.ready(&mut |flow| out.push(flow));
+    }
+}
+
+/// The least time that a block can have by its feed, s: that of the largest feed by time.
+fn least_block(machine: &Machine, format: &Format) -> f64 {
+    let control = &machine.control;
+    let by_time = match control.feed {
+        FeedMode::Auto => control.tcp == Tcp::Post && format.inverse_time.is_some(),
+        FeedMode::PerMinute => false,
+        FeedMode::InverseTime => true,
+    };
+    match format.most_inverse_time.filter(|_| by_time) {
+        None => 0.0,
+        Some(most) => match control.inverse_time {
+            InverseTime::Minutes => 60.0 / most,
+            InverseTime::Seconds => 1.0 / most,
+        },
+    }
+}
+
+/// How far two points of the curve are apart, as its parameter counts.
+fn distance(from: &fit::Point, to: &fit::Point) -> f64 {
+    let ways = from
+        .iter()
+        .zip(to)
+        .enumerate()
+        .map(|(coordinate, (from, to))| {
+            let way = to - from;
+            if coordinate < 3 {
+                way
+            } else {
+                way * TURN_WEIGHT
+            }
+        });
+    ways.map(|way| way * way).sum::<f64>().sqrt()
+}
+
+/// The control stands still for it.
+fn stands_still(command: &Command) -> bool {
+    command.leaves()
+        || matches!(
+            command,
+            Command::Spindle(_)
+                | Command::SurfaceSpeed { .. }
+                | Command::Compensate(_)
+                | Command::Literal(_)
+                | Command::Dwell(_)
+                | Command::Stop
+                | Command::OptionalStop
+                | Command::Plane(_)
+        )
+}
+
+fn no_closed_form(machine: &Machine) -> Diagnostic {
+    Diagnostic::warning(
+        "plan",
+        format!(
+            "no feed is planned: on {} the linear axes do not place the tip alone, and its feeds are those of the CL file",
+            machine.name
+        ),
+    )
+    .help("post without --plan")
+}

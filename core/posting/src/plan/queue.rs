@@ -1,0 +1,176 @@
+//! Blocks that wait for their feed, commands among them: nothing overtakes anything.
+
+use std::collections::VecDeque;
+
+use nalgebra::Vector3;
+use post_machine::axis_words::WordValues;
+use post_machine::kinematics::Joints;
+
+use super::pieces::{Profile, Sample};
+use super::samples::{Place, Stand};
+use super::solver::Step;
+use crate::blocks::Block;
+use crate::stream::Flow;
+
+/// Where a block begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    pub joints: Joints,
+    pub words: WordValues,
+    /// mm, part frame.
+    pub tip: Vector3<f64>,
+    /// The tool axis, unit vector, part frame.
+    pub axis: Vector3<f64>,
+}
+
+/// One that waits.
+#[derive(Debug)]
+struct Waiting {
+    flow: Flow<Block>,
+    /// Of a block whose feed is planned.
+    open: Option<Start>,
+}
+
+/// A sample of the path that the solver has.
+#[derive(Clone, Debug)]
+struct Mark {
+    /// From the start of its block.
+    at: f64,
+    /// Speed of the tip for that of the parameter.
+    stretch: f64,
+    /// The block ends with it.
+    ends: bool,
+    /// For who looks on: how the path comes there, and how it leaves if that is another way.
+    stand: Option<Box<Stand>>,
+    leaves: Option<Box<Stand>>,
+}
+
+/// Blocks and commands in order, and the samples that lie on them.
+#[derive(Debug, Default)]
+pub(super) struct Queue {
+    waiting: VecDeque<Waiting>,
+    marks: VecDeque<Mark>,
+    /// The plan along the first open block, as far as it is settled.
+    pub(super) profile: Profile,
+    /// From the sample before to the one settled last, s.
+    pub(super) seconds: f64,
+    /// Somebody looks on.
+    pub(super) watched: bool,
+    /// The sample settled last, as the path comes there, and as it leaves a corner.
+    pub(super) stand: Option<Box<Stand>>,
+    leaves: Option<Box<Stand>>,
+}
+
+impl Queue {
+    /// What needs no plan.
+    pub(super) fn push(&mut self, flow: Flow<Block>) {
+        self.waiting.push_back(Waiting { flow, open: None });
+    }
+
+    /// A block whose feed is planned.
+    pub(super) fn open(&mut self, block: Block, start: Start) {
+        self.waiting.push_back(Waiting {
+            flow: Flow::Point(block),
+            open: Some(start),
+        });
+    }
+
+    /// The solver was handed a sample.
+    pub(super) fn mark(&mut self, at: f64, place: &Place, ends: bool) {
+        self.marks.push_back(Mark {
+            at,
+            stretch: place.stretch(),
+            ends,
+            stand: self.watched.then(|| Box::new(place.stand())),
+            leaves: None,
+        });
+    }
+
+    /// The path leaves the last sample another way than it came.
+    pub(super) fn corner(&mut self, place: &Place) {
+        if let (true, Some(mark)) = (self.watched, self.marks.back_mut()) {
+            mark.leaves = Some(Box::new(place.stand()));
+        }
+    }
+
+    /// The sample settled last as the path leaves it; it is forgotten.
+    pub(super) fn left(&mut self) -> Option<Box<Stand>> {
+        let came = self.stand.take();
+        self.leaves.take().or(came)
+    }
+
+    /// The next sample is settled; true if a block ends with it, whose plan is then in the profile.
+    pub(super) fn settle(&mut self, step: &Step) -> bool {
+        let Some(mark) = self.marks.pop_front() else {
+            return false;
+        };
+        (self.stand, self.leaves) = (mark.stand, mark.leaves);
+        let from = self.profile.last().filter(|from| mark.at > from.at);
+        let seconds = from.map_or(0.0, |from| {
+            let even = 2.0 * (mark.at - from.at) / (from.q.sqrt() + step.q.sqrt());
+            step.seconds.unwrap_or(even)
+        });
+        let mut rest = seconds;
+        if let Some(halfway) = step.halfway.filter(|_| from.is_some()) {
+            rest = 0.5 * seconds;
+            self.profile.halfway(mark.at, halfway, mark.stretch, rest);
+        }
+        self.seconds = seconds;
+        self.profile.push(Sample {
+            at: mark.at,
+            q: step.q,
+            stretch: mark.stretch,
+            seconds: rest,
+        });
+        mark.ends
+    }
+
+    /// Everything up to the first block that still waits for its feed, that block with it: of all before it nothing is
+    /// unknown any more. None where none waits.
+    pub(super) fn first_open(
+        &mut self,
+        ready: &mut dyn FnMut(Flow<Block>),
+    ) -> Option<(Block, Start)> {
+        while let Some(next) = self.waiting.pop_front() {
+            match (next.flow, next.open) {
+                (Flow::Point(block), Some(start)) => return Some((block, start)),
+                (flow, _) => ready(flow),
+            }
+        }
+        None
+    }
+
+    /// All that waits for nothing any more.
+    pub(super) fn ready(&mut self, ready: &mut dyn FnMut(Flow<Block>)) {
+        while self.waiting.front().is_some_and(|next| next.open.is_none()) {
+            if let Some(next) = self.waiting.pop_front() {
+                ready(next.flow);
+            }
+        }
+    }
+
+    /// The blocks that wait are left as they are; gives their number.
+    pub(super) fn give_up(&mut self) -> usize {
+        let taken = self.waiting.iter_mut().map(|next| next.open.take());
+        let count = taken.flatten().count();
+        self.marks.clear();
+        self.profile.clear();
+        count
+    }
+
+    /// Line of the CL file of the first block that waits for its feed.
+    pub(super) fn open_line(&self) -> Option<u64> {
+        self.waiting.iter().find_map(|next| match &next.flow {
+            Flow::Point(block) if next.open.is_some() => Some(block.line),
+            _ => None,
+        })
+    }
+
+    /// Line of the CL file of the first that waits.
+    pub(super) fn first_line(&self) -> Option<u64> {
+        self.waiting.front().map(|next| match &next.flow {
+            Flow::Point(block) => block.line,
+            Flow::Command { line, .. } => *line,
+        })
+    }
+}

@@ -1,0 +1,264 @@
+//! Legs of the smooth curve become samples of the path as the planner's limits see it.
+
+use std::rc::Rc;
+
+use nalgebra::Vector3;
+use post_feed::fit::{self, Sample};
+use post_feed::jerk::Batch;
+use post_feed::limits::Limit;
+use post_feed::{Ends, Infeasible, Problem, Samples};
+use post_machine::kinematics::{Course, Joints, MAX_AXES, ORDERS, Unreachable};
+
+use super::limits::Axes;
+use crate::accuracy::Placer;
+
+/// Axes of the chain, and the coordinates of the tip behind them.
+pub(super) const MOST: usize = MAX_AXES + 3;
+
+/// Samples that are handed to the solver together.
+const BATCH: usize = 128;
+
+/// First to third derivative of each axis.
+pub(super) type Derivatives = [[f64; 3]; MOST];
+
+/// The path at one sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// First to third derivative of the control point, mm, part frame.
+    pub tip: [[f64; 3]; 3],
+    /// Of each axis, mm or radians.
+    pub axes: Derivatives,
+    /// How each axis moves the control point.
+    rates: [[f64; 3]; MOST],
+    /// Where that is, mm, part frame.
+    at: [f64; 3],
+    /// All of it that the chain knows.
+    course: Course,
+}
+
+/// A sample as those see it who look on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stand {
+    /// The control point and its derivatives.
+    pub tip: [[f64; 3]; ORDERS],
+    pub course: Course,
+}
+
+impl Place {
+    /// For who looks on.
+    pub(super) fn stand(&self) -> Stand {
+        let [first, second, third] = self.tip;
+        Stand {
+            tip: [self.at, first, second, third],
+            course: self.course,
+        }
+    }
+
+    /// Speed of the control point for that of the parameter.
+    pub(super) fn stretch(&self) -> f64 {
+        self.tip[0]
+            .iter()
+            .map(|part| part * part)
+            .sum::<f64>()
+            .sqrt()
+    }
+}
+
+/// What a block says of its samples.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Said {
+    /// The feed of the control point that the CL file asks for, mm/s.
+    pub feed: f64,
+    /// Length of the block, in units of the parameter.
+    pub length: f64,
+    /// The share of the contour error that it may have.
+    pub share: f64,
+}
+
+/// Makes batches of samples.
+#[derive(Debug)]
+pub(super) struct Sampler {
+    placer: Rc<Placer>,
+    /// Places of the rotary axes that the curve has coordinates of.
+    rotary: Vec<usize>,
+    /// Where the other axes stand.
+    held: Joints,
+    axes: usize,
+    programmed: bool,
+    samples: Samples,
+    problem: Problem,
+    /// The last sample, which the next batch begins with.
+    last: Option<(Place, Said)>,
+    at: f64,
+    /// What a corner at its first sample allows.
+    corner: Option<f64>,
+}
+
+impl Sampler {
+    pub(super) fn new(placer: Rc<Placer>, axes: &Axes, held: &Joints) -> Self {
+        let joints = placer.solver().chain().joints().iter().enumerate();
+        let rotary = joints
+            .filter(|(_, joint)| joint.rotary)
+            .map(|(place, _)| place);
+        Self {
+            rotary: rotary.collect(),
+            placer,
+            held: *held,
+            axes: axes.count,
+            programmed: axes.programmed(),
+            samples: Samples::default(),
+            problem: Problem::default(),
+            last: None,
+            at: 0.0,
+            corner: None,
+        }
+    }
+
+    /// Coordinates of the curve: the control point, and the rotary axes.
+    pub(super) fn dimensions(&self) -> usize {
+        3 + self.rotary.len()
+    }
+
+    /// A stance as a point of the curve.
+    pub(super) fn point(&self, tip: Vector3<f64>, joints: &Joints) -> fit::Point {
+        let mut point = [0.0; fit::MOST];
+        point[..3].copy_from_slice(tip.as_slice());
+        for (coordinate, place) in point[3..].iter_mut().zip(&self.rotary) {
+            *coordinate = joints[*place];
+        }
+        point
+    }
+
+    /// Axes of each sample.
+    pub(super) fn count(&self) -> usize {
+        self.axes + if self.programmed { 3 } else { 0 }
+    }
+
+    /// The path at a sample of the curve.
+    ///
+    /// # Errors
+    /// The linear axes cannot follow.
+    pub(super) fn place(&self, sample: &Sample) -> Result<Place, Unreachable> {
+        let mut course = Course::default();
+        course.joints[0] = self.held;
+        for order in 0..ORDERS {
+            for (coordinate, place) in self.rotary.iter().enumerate() {
+                course.joints[order][*place] = sample.values[order][3 + coordinate];
+            }
+        }
+        let tip = sample
+            .values
+            .map(|value| Vector3::new(value[0], value[1], value[2]));
+        self.placer.solver().course(&tip, &mut course)?;
+        let mut place = Place {
+            tip: [1, 2, 3].map(|order| tip[order].into()),
+            axes: [[0.0; 3]; MOST],
+            rates: [[0.0; 3]; MOST],
+            at: tip[0].into(),
+            course,
+        };
+        for axis in 0..self.axes {
+            place.axes[axis] = [1, 2, 3].map(|order: usize| course.joints[order][axis]);
+            place.rates[axis] = course.rates[axis].into();
+        }
+        if self.programmed {
+            for (coordinate, axis) in place.axes[self.axes..self.axes + 3].iter_mut().enumerate() {
+                *axis = [1, 2, 3].map(|order: usize| tip[order][coordinate]);
+            }
+        }
+        Ok(place)
+    }
+
+    /// The last sample; none where the path begins.
+    pub(super) fn last(&self) -> Option<&Place> {
+        self.last.as_ref().map(|(place, _)| place)
+    }
+
+    /// The path goes on from a corner with its own derivatives, and no faster than `q` there.
+    pub(super) fn corner(&mut self, place: &Place, said: Said, q: f64) {
+        self.samples.clear();
+        self.put(place, said);
+        self.corner = Some(q);
+    }
+
+    /// What a block says holds from the last sample on.
+    pub(super) fn enter(&mut self, said: Said) {
+        if let Some((_, last)) = &mut self.last {
+            *last = said;
+        }
+        if let Some(feed) = self.samples.feeds.last_mut() {
+            *feed = said.feed;
+        }
+        if let Some(length) = self.samples.blocks.last_mut() {
+            *length = said.length;
+        }
+        if let Some(share) = self.samples.contour_share.last_mut() {
+            *share = share.min(said.share);
+        }
+    }
+
+    /// The path goes on by `way` to this sample, or begins there.
+    pub(super) fn push(&mut self, place: &Place, said: Said, way: f64) {
+        self.at += way;
+        self.put(place, said);
+    }
+
+    fn put(&mut self, place: &Place, said: Said) {
+        let count = self.count();
+        self.samples.push(self.at, place.tip, &place.axes[..count]);
+        self.samples.push_rates(&place.rates[..count]);
+        self.samples.feeds.push(said.feed);
+        self.samples.blocks.push(said.length);
+        self.samples.contour_share.push(said.share);
+        self.last = Some((*place, said));
+    }
+
+    /// There are so many that the solver should have them.
+    pub(super) fn is_full(&self) -> bool {
+        self.samples.len() > BATCH
+    }
+
+    /// The samples gathered so far as a problem, and a new batch that begins with the last of them; none where there is
+    /// no way between them.
+    ///
+    /// # Errors
+    /// What no limit bounds, or is not a number.
+    pub(super) fn batch<'b>(
+        &'b mut self,
+        limits: &'b [&'b dyn Limit],
+    ) -> Result<Option<Batch<'b>>, Infeasible> {
+        if self.samples.len() < 2 {
+            return Ok(None);
+        }
+        let found = self.problem.refill(&self.samples, limits, Ends::default());
+        let corner = self.corner.take();
+        if let Some(q) = corner {
+            self.problem.lower(0, q, super::CORNER);
+        }
+        found.map(|()| {
+            Some(Batch {
+                samples: &self.samples,
+                limits,
+                problem: &self.problem,
+                corner: corner.is_some(),
+            })
+        })
+    }
+
+    /// The batch was taken: the next begins with its last sample.
+    pub(super) fn next(&mut self) {
+        self.samples.clear();
+        self.at = 0.0;
+        if let Some((place, said)) = self.last {
+            self.put(&place, said);
+        }
+    }
+
+    /// The path ends.
+    pub(super) fn end(&mut self) {
+        self.samples.clear();
+        self.last = None;
+        self.corner = None;
+        self.at = 0.0;
+    }
+}

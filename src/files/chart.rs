@@ -2,11 +2,13 @@
 //!
 //! Nothing is told by colour, so that it can be printed in grey.
 
+mod envelope;
 mod panels;
 mod plot;
 
 use super::scale::Scale;
 use super::svg::{self, label, upright};
+pub use envelope::Envelope;
 pub use panels::{Panel, Panels};
 use plot::{Area, HEIGHT, LEFT, ROW, TOP, WIDTH, columns_of, legend, titles, width};
 

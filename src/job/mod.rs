@@ -8,6 +8,8 @@ pub mod nc_program;
 pub mod nc_to_cl;
 pub mod one_program;
 pub mod other_dialect;
+pub mod plan;
+pub mod plan_rounds;
 pub mod plugin_finder;
 mod plugin_folders;
 pub mod predict;

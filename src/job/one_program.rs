@@ -1,12 +1,14 @@
 //! One CL file, or some of its lines, on one machine: one program.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
+use post_posting::plan::PlanWatch;
 use post_posting::report::Report;
-use post_posting::{Job, JobFacts, LookedAhead, Output, PathShift, Post};
+use post_posting::{Job, JobFacts, LookedAhead, Output, PathShift, Post, Tightening};
 
 use super::plugin_finder;
 use crate::arguments::JobArguments;
@@ -28,17 +30,30 @@ pub struct OneProgram<'a> {
     pub lines: Option<Range<u64>>,
     /// The error model's word is taken.
     pub trust_model: bool,
+    /// Its feed is planned.
+    pub plans: bool,
+    /// Where that plan may use less than the limit of the contour error.
+    pub tightening: Option<Arc<Tightening>>,
+}
+
+/// Who takes part while a program is written.
+#[derive(Default)]
+pub struct Beside<'s, 'w> {
+    /// Moves the points of its path.
+    pub shift: Option<&'s mut dyn PathShift>,
+    /// Sees its plan.
+    pub watch: Option<&'w mut dyn PlanWatch>,
 }
 
 impl OneProgram<'_> {
     /// Writes it to `file`: its report, if all is good, and every finding. `ahead` is what a first pass over the whole CL
-    /// file has found, where the machine's texts ask for it; the points of its path are moved by `shift`.
+    /// file has found, where the machine's texts ask for it.
     pub fn write(
         self,
         ahead: Option<&LookedAhead>,
         source: &mut ClSource,
         file: &mut dyn Output,
-        shift: Option<&mut dyn PathShift>,
+        beside: Beside<'_, '_>,
     ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
         let Self {
             arguments,
@@ -47,6 +62,8 @@ impl OneProgram<'_> {
             target,
             lines,
             trust_model,
+            plans,
+            tightening,
         } = self;
         let cl_file = arguments.input();
         let program = super::program_name(cl_file, Some(target));
@@ -72,6 +89,8 @@ impl OneProgram<'_> {
         let job = Job {
             ahead: planes,
             trust_model,
+            plans,
+            tightening,
             facts: JobFacts {
                 program,
                 cl_file: plugin_finder::cl_name(cl_file),
@@ -82,8 +101,11 @@ impl OneProgram<'_> {
         };
         let mut post =
             Post::new(machine, job, &mut dialect, &mut model, file).map_err(|finding| *finding)?;
-        if let Some(shift) = shift {
+        if let Some(shift) = beside.shift {
             post.shift(shift);
+        }
+        if let Some(watch) = beside.watch {
+            post.watch_plan(watch);
         }
         super::read(input, &mut post)?;
         let (mut report, findings) = post.finish();

@@ -38,6 +38,8 @@ pub struct Reading<'a> {
     pub limits: Limits,
     /// Largest deviations that are other than the machine file's: mm, radians.
     pub tolerances: [Option<f64>; 2],
+    /// The feed was planned: it may be below that of the CL file.
+    pub planned: bool,
     /// Each line is told with the solution of the machine that it ends in.
     pub solutions: bool,
     /// Lines of the CL file that the program is made of; none: all.
@@ -236,6 +238,7 @@ pub fn hold<C: Course, R: Read + Seek>(
             .is_some_and(|offsets| !offsets.work.is_empty()),
         lengths: (!in_the_offset).then(|| offsets.clone()),
         solutions: reading.solutions,
+        planned: reading.planned,
         least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
         tool_registers: tools
             .iter()

@@ -8,6 +8,7 @@ mod list_machines;
 mod list_words;
 mod new;
 mod place;
+mod plan;
 mod plugin;
 mod post;
 mod predict;
@@ -30,6 +31,7 @@ use list_machines::MachinesArguments;
 use list_words::WordsArguments;
 use new::NewArguments;
 use place::PlaceArguments;
+use plan::PlanArguments;
 use plugin::PluginArguments;
 use post::PostArguments;
 use predict::PredictArguments;
@@ -63,6 +65,7 @@ use verify::VerifyArguments;
   post verify part.nc --machine dmu50 --against part.cls --map map.json
   post diff old.nc new.nc --machine ac-trunnion
   post predict part.nc --machine ac-trunnion --pictures prediction
+  post plan curve.json --pictures plan
   post plugin show fanuc
   post plugin new mine --iso
   post plugin test target/release/libpost_mine.so
@@ -90,6 +93,7 @@ enum Verb {
     New(NewArguments),
     Study(Box<StudyArguments>),
     Place(Box<PlaceArguments>),
+    Plan(Box<PlanArguments>),
     Predict(Box<PredictArguments>),
     Verify(Box<VerifyArguments>),
     Plugin(PluginArguments),
@@ -110,6 +114,7 @@ impl CommandLine {
             Some(Verb::New(arguments)) => new::run(&arguments),
             Some(Verb::Study(arguments)) => study::run(&arguments),
             Some(Verb::Place(arguments)) => place::run(&arguments),
+            Some(Verb::Plan(arguments)) => plan::run(&arguments),
             Some(Verb::Predict(arguments)) => predict::run(&arguments),
             Some(Verb::Verify(arguments)) => verify::run(&arguments),
             Some(Verb::Plugin(arguments)) => plugin::run(&arguments),

@@ -23,7 +23,7 @@ use post_posting::{LookedAhead, PathShift};
 use post_readback::interpret::Limits;
 use serde::Serialize;
 
-use super::one_program::OneProgram;
+use super::one_program::{Beside, OneProgram};
 use crate::failure::Failure;
 use crate::files::{ClSource, Scratch};
 use crate::job::predict::{self, Against, Asked, Sample};
@@ -203,7 +203,12 @@ impl Tried<'_, '_> {
             machine,
             ..self.program.clone()
         };
-        let (report, findings) = program.write(self.ahead, self.source, &mut text, shift)?;
+        let (report, findings) = program.write(
+            self.ahead,
+            self.source,
+            &mut text,
+            Beside { shift, watch: None },
+        )?;
         match report {
             Some(_) => Ok(text),
             None => Err(findings.into()),

@@ -22,7 +22,7 @@ pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
         };
         AxisFound {
             name: axis.name.clone(),
-            unit: if axis.joint.rotary { "deg" } else { "mm" },
+            unit: axis.unit_name(),
             servo: axis.servo.is_some(),
             following: extreme(&peaks.following, 1.0, f64::INFINITY),
             velocity: extreme(&peaks.velocity, 60.0, axis.max_feed),

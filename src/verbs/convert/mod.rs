@@ -21,7 +21,7 @@ use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg, Role};
 use crate::job::nc_program::{self, NcControl};
 use crate::job::nc_to_cl::{self, Tools};
-use crate::job::one_program::OneProgram;
+use crate::job::one_program::{Beside, OneProgram};
 use crate::job::read_back::{self, Against, Held, Reading};
 use crate::job::{self, plugin_finder};
 use crate::terminal::{self, clock, number, table};
@@ -215,8 +215,10 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         target: &arguments.output,
         lines: None,
         trust_model: false,
+        plans: false,
+        tightening: None,
     };
-    let (report, findings) = one.write(ahead.as_ref(), &mut source, program, None)?;
+    let (report, findings) = one.write(ahead.as_ref(), &mut source, program, Beside::default())?;
     notes.extend(findings);
     let Some(report) = report else {
         return Err(notes.into());
@@ -244,6 +246,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         offsets: None,
         limits: Limits::default(),
         tolerances: [Some(tolerance), Some(axis_tolerance)],
+        planned: false,
         solutions: false,
         lines: None,
     };

@@ -2,6 +2,7 @@
 
 mod parts;
 mod setup_sheet;
+mod shown;
 mod summary;
 
 use std::ops::Range;
@@ -12,6 +13,7 @@ use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::DialectSession;
 use post_posting::LookedAhead;
+use post_posting::plan::PlanWatch;
 use post_posting::report::Report;
 use post_readback::interpret::Limits;
 use post_readback::verify::Verification;
@@ -21,12 +23,13 @@ use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
 use crate::job::compensate::{self, Compensation, Moved};
-use crate::job::one_program::OneProgram;
+use crate::job::one_program::{Beside, OneProgram};
 use crate::job::predict::{self, Against, Asked, Predicted, Prediction};
 use crate::job::read_back::{self, Held, Reading};
-use crate::job::{self, plugin_finder};
+use crate::job::{self, plan_rounds, plugin_finder};
 use crate::terminal;
 use parts::Split;
+use shown::ShownArguments;
 
 const SETUP_SHEET: Role = Role {
     what: "setup sheet",
@@ -79,6 +82,22 @@ pub struct PostArguments {
     #[arg(long)]
     compensate_servo: bool,
 
+    /// Plans the feed: the fastest that keeps the feed of the CL file, velocity and acceleration of axes and tip, and what
+    /// `[plan]` of the machine file limits besides (contour error of the servos, chord error of the interpolation); jerk too
+    /// with its `solver = "jerk"`.
+    /// Blocks are cut where their feed changes. `--set plan.contour_error=0.02` sets a limit for one run.
+    #[arg(long)]
+    plan: bool,
+
+    /// Plans again where the servos are predicted (`post predict`) to leave the tool farther off its path than `[plan]
+    /// contour_error`: more gently there, up to so many times, until the limit is kept or the rounds are used up. Tells the
+    /// time of each round, and of the program without a plan. Each round posts and predicts the whole program.
+    #[arg(long, value_name = "N", requires = "plan", value_parser = clap::value_parser!(u32).range(1..=100))]
+    plan_rounds: Option<u32>,
+
+    #[command(flatten)]
+    shown: ShownArguments,
+
     /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axes, and how far the tool
     /// strays; with =FILE as JSON too, of several programs a list.
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, value_parser = PathArg::parser())]
@@ -110,6 +129,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let looks_ahead =
         machine.program.looks_ahead || arguments.split.is_some() || arguments.setup_sheet.is_some();
     let twice = arguments.compensate_servo
+        || arguments.plan_rounds.is_some()
         || looks_ahead
         || machine.control.planes
         || arguments.verify
@@ -126,10 +146,13 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         false => None,
     };
     let parts = the_parts(arguments, machine, &finder, ahead.as_ref())?;
+    let places = arguments.shown.places(arguments.split, parts.len());
+    let folders = places.folders()?;
     let mut targets: Vec<(Role, &PathArg)> = parts
         .iter()
         .map(|part| (Role::PROGRAM, &part.target))
         .collect();
+    targets.extend(places.maps.iter().map(|map| (shown::MAP, map)));
     targets.extend(
         arguments
             .summary
@@ -150,16 +173,30 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let mut verifications = Vec::new();
     let mut predictions = Vec::new();
     let mut compensations = Vec::new();
+    let mut plans = Vec::new();
     let mut findings = Vec::new();
-    for (part, file) in parts.iter().zip(&mut files) {
-        let program = OneProgram {
+    let mut drawn = Vec::new();
+    let (programs, others) = files.split_at_mut(parts.len());
+    let (maps, others) = others.split_at_mut(places.maps.len());
+    let mut maps = maps.iter_mut();
+    for (part, file) in parts.iter().zip(programs) {
+        let mut program = OneProgram {
             arguments: &arguments.job,
             machine: &part.machine,
             finder: &finder,
             target: &part.target,
             lines: part.lines.clone(),
             trust_model: arguments.trust_model,
+            plans: arguments.plan,
+            tightening: None,
         };
+        if let Some(most) = arguments.plan_rounds {
+            let (tightening, found) =
+                plan_rounds::plan(&program, most, ahead.as_ref(), &mut source)?;
+            program.tightening = tightening;
+            findings.extend(plan_rounds::warning(&found));
+            plans.push(found);
+        }
         let compensated = match arguments.compensate_servo {
             true => Some(compensate::compensate(
                 &program,
@@ -168,14 +205,15 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             )?),
             false => None,
         };
-        let (report, found) = write(
-            program,
-            compensated.as_ref(),
-            ahead.as_ref(),
-            &mut source,
-            file,
-        )?;
-        compensations.extend(compensated.as_ref().map(|found| found.found.clone()));
+        let draws = !folders.is_empty();
+        let wrote = shown::show(&part.machine, &part.target, maps.next(), draws, |watch| {
+            let files = (&mut source, &mut *file);
+            write(program, compensated.as_ref(), ahead.as_ref(), files, watch)
+        })?;
+        let ((report, found), pictures) = wrote;
+        drawn.extend(pictures);
+        let moved = compensated.as_ref().is_some_and(|moved| moved.found.kept);
+        compensations.extend(compensated.map(|moved| moved.found));
         // What is wrong with the file is found again in each of its parts.
         for finding in found {
             if !findings.contains(&finding) {
@@ -187,8 +225,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             None => return Err(findings.into()),
         }
         if arguments.verify {
-            let moved = compensated.is_some_and(|found| found.moves.is_some());
-            let held = read_back((arguments, moved), part, &finder, &mut source, file)?;
+            let held = read_back(arguments, part, moved, &finder, &mut source, file)?;
             if held.is_wrong() {
                 findings.extend(held.findings);
                 return Err(findings.into());
@@ -201,7 +238,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             predictions.push(predicted.found);
         }
     }
-    let mut others = files[parts.len()..].iter_mut();
+    let mut others = others.iter_mut();
     let mut next_if = |asked: bool| asked.then(|| others.next()).flatten();
     if let Some(file) = next_if(arguments.summary.is_some()) {
         let told: Vec<Told<'_>> = reports
@@ -212,6 +249,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
                 verification: verifications.get(index),
                 prediction: predictions.get(index),
                 servo_compensation: compensations.get(index),
+                plan_rounds: plans.get(index),
             })
             .collect();
         let json = match (arguments.split, told.as_slice()) {
@@ -245,7 +283,13 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     }
     // Standard output is for a program or for JSON, alone there.
     let taken = files.iter().any(AtomicFile::is_standard);
+    for (folder, pictures) in folders.iter().zip(&drawn) {
+        folder.add(pictures, &mut files)?;
+    }
     AtomicFile::finish(files)?;
+    for (folder, pictures) in folders.iter().zip(&drawn) {
+        folder.tidy(pictures)?;
+    }
     debug_assert!(
         findings
             .iter()
@@ -262,6 +306,9 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             if let Some(found) = compensations.get(index) {
                 text.push_str(&compensate::text(found));
             }
+            if let Some(found) = plans.get(index) {
+                text.push_str(&plan_rounds::text(found));
+            }
             if let Some(found) = predictions.get(index) {
                 text.push('\n');
                 text.push_str(&predict::text(found));
@@ -276,20 +323,26 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes a program, its points moved where that helps.
+/// Writes a program, its points moved where that helps; `watch` sees its plan.
 fn write(
     program: OneProgram<'_>,
     compensated: Option<&Compensation>,
     ahead: Option<&LookedAhead>,
-    source: &mut ClSource,
-    file: &mut AtomicFile,
+    (source, file): (&mut ClSource, &mut AtomicFile),
+    watch: Option<&mut dyn PlanWatch>,
 ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
     let moved = compensated.and_then(|found| Some((&found.machine, found.moves.as_ref()?)));
     let Some((machine, moves)) = moved else {
-        return program.write(ahead, source, file, None);
+        let beside = Beside { shift: None, watch };
+        return program.write(ahead, source, file, beside);
     };
     let program = OneProgram { machine, ..program };
-    program.write(ahead, source, file, Some(&mut Moved::new(moves)))
+    let mut moved = Moved::new(moves);
+    let beside = Beside {
+        shift: Some(&mut moved),
+        watch,
+    };
+    program.write(ahead, source, file, beside)
 }
 
 /// The machine of the command line, its program so numbered if a number is given.
@@ -350,10 +403,11 @@ fn the_parts(
         .collect()
 }
 
-/// Reads a program back from the disk and holds it against the CL file.
+/// Reads a program back from the disk and holds it against the CL file; `moved` if its points were moved for the servos.
 fn read_back(
-    (arguments, moved): (&PostArguments, bool),
+    arguments: &PostArguments,
     part: &Part,
+    moved: bool,
     finder: &Finder,
     source: &mut ClSource,
     file: &mut AtomicFile,
@@ -369,6 +423,7 @@ fn read_back(
         offsets: None,
         limits: Limits::default(),
         tolerances: [moved, None],
+        planned: arguments.plan,
         solutions: false,
         lines: part.lines.clone(),
     };
@@ -413,6 +468,9 @@ struct Told<'a> {
     /// What moving points for the servos has done.
     #[serde(skip_serializing_if = "Option::is_none")]
     servo_compensation: Option<&'a compensate::Found>,
+    /// What planning the feed in rounds has done.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    plan_rounds: Option<&'a plan_rounds::Found>,
 }
 
 /// Where the program goes.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use post_posting::plan::PlanReport;
 use post_posting::report::{Deviation, LengthSource, Report};
 use post_readback::verify::Verification;
 
@@ -154,10 +155,16 @@ pub fn text(
             clock(report.cutting_time_s),
             match report.blocks_limited {
                 0 => String::new(),
+                count if report.plan.is_some() =>
+                    format!("; {count} blocks slower than the CL file asks"),
                 count => format!("; {count} blocks slowed down by an axis' largest feed"),
             }
         ),
     );
+    if let Some(plan) = &report.plan {
+        row("planned feed", planned(plan));
+        row("held by", held_by(plan));
+    }
     let fast = &report.fast_rapids;
     if fast.count > 0 {
         row(
@@ -184,6 +191,49 @@ pub fn text(
         },
     );
     text
+}
+
+/// What a plan came to.
+fn planned(plan: &PlanReport) -> String {
+    let mut text = format!(
+        "{} blocks in {} at the feeds written ({} by the plan, {} at the feeds of the CL file if the tool never slowed down)",
+        plan.blocks,
+        clock(plan.printed_s),
+        clock(plan.planned_s),
+        clock(plan.asked_s)
+    );
+    // Writing to a String cannot fail.
+    if plan.blocks_cut > 0 {
+        let _ = write!(
+            text,
+            "; {} blocks cut where the feed changes, {} put in",
+            plan.blocks_cut, plan.blocks_added
+        );
+    }
+    if plan.blocks_unplanned > 0 {
+        let _ = write!(text, "; {} blocks not planned", plan.blocks_unplanned);
+    }
+    text
+}
+
+/// Limits that hold the planned feed, as shares of its time.
+fn held_by(plan: &PlanReport) -> String {
+    let whole: f64 = plan.limits.iter().map(|limit| limit.time_s).sum();
+    let shares = plan.limits.iter().map(|limit| {
+        let name = match &limit.axis {
+            Some(axis) => format!("{} of {axis}", limit.limit),
+            None => limit.limit.clone(),
+        };
+        (name, 100.0 * limit.time_s / whole)
+    });
+    let told: Vec<String> = shares
+        .filter(|(_, share)| *share >= 0.05)
+        .map(|(name, share)| format!("{name} {} %", number(share, 1)))
+        .collect();
+    match told.is_empty() {
+        true => "nothing".to_owned(),
+        false => told.join(", "),
+    }
 }
 
 /// A number with its decimals, no zero of it negative.

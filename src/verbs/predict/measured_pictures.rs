@@ -4,9 +4,8 @@
 use post_machine::axis_words;
 use post_machine::description::Machine;
 
-use super::envelope::Envelope;
 use super::pictures::{File, MICRO, file_name};
-use crate::files::chart::{DASHED, Draw, GREY, Look, Panel, Panels, Series};
+use crate::files::chart::{DASHED, Draw, Envelope, GREY, Look, Panel, Panels, Series};
 use crate::job::predict::Prediction;
 use crate::job::predict::measured::{MeasuredFound, MeasuredPoint};
 use crate::terminal::number;

@@ -1,6 +1,5 @@
 //! `post predict`: what an NC program does on its machine, before it is run there.
 
-mod envelope;
 mod measured_arguments;
 mod measured_pictures;
 mod path_pictures;

@@ -4,12 +4,11 @@
 use post_machine::axis_words;
 use post_machine::description::Machine;
 
-use super::envelope::Envelope;
 use super::measured_pictures;
 use super::path_pictures;
 use super::spectrum::Spectrum;
 use super::trail::Trail;
-use crate::files::chart::{DASHED, DOTTED, Draw, LOOKS, Panel, Panels, Series};
+use crate::files::chart::{DASHED, DOTTED, Draw, Envelope, LOOKS, Panel, Panels, Series};
 use crate::job::predict::{Prediction, Sample};
 
 /// The files that there can be.

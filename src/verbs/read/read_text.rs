@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use post_machine::description::Machine;
+use post_machine::description::{Axis, Machine};
 use post_readback::interpret::ReadReport;
 
 use super::survey::Survey;
@@ -80,11 +80,7 @@ fn axes(machine: &Machine, survey: &Survey<'_>, text: &mut String) {
     ]];
     for (name, [least, most]) in &survey.axes {
         let axis = machine.with_axis(name).map(|(_, axis)| axis);
-        let unit = if axis.is_some_and(|axis| axis.joint.rotary) {
-            "deg"
-        } else {
-            "mm"
-        };
+        let unit = axis.map_or("mm", Axis::unit_name);
         let travel = axis.and_then(|axis| Some(axis.travel?.map(|end| axis.reading(end))));
         rows.push([
             format!("{name} {unit}"),

@@ -8,7 +8,7 @@ use post_readback::interpret::Limits;
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::positive;
 use crate::failure::Failure;
-use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
+use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::job::read_back::{self, Reading};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::terminal;
@@ -63,6 +63,10 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
     summary: Option<PathArg>,
 
+    /// The feed was planned (`post --plan`): it may be below that of the CL file.
+    #[arg(long)]
+    planned: bool,
+
     /// So many blocks are run once more, by loops, jumps and subprograms; more are refused.
     #[arg(long, value_name = "N", default_value_t = Limits::default().blocks)]
     most_blocks: u64,
@@ -109,10 +113,11 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
             ..Limits::default()
         },
         tolerances: [None, arguments.axis_tolerance.map(f64::to_radians)],
+        planned: arguments.planned,
         solutions: arguments.map.is_some(),
         lines: None,
     };
-    let mut map = arguments.map.as_ref().map(|_| Map::default());
+    let mut map = arguments.map.as_ref().map(|_| JsonRows::default());
     let held = {
         let file = map.is_some().then(|| &mut texts[0]);
         let mut file = file;
@@ -145,37 +150,4 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     }
     terminal::findings(&held.findings);
     Ok(())
-}
-
-/// The table of lines, written as it comes.
-#[derive(Default)]
-struct Map {
-    rows: u64,
-    /// The first fault of writing it.
-    fault: Option<files::FileFault>,
-}
-
-impl Map {
-    fn row(&mut self, row: &post_readback::verify::BlockReport, file: &mut AtomicFile) {
-        let lead = match self.rows {
-            0 => "[\n",
-            _ => ",\n",
-        };
-        self.rows += 1;
-        let text = format!("{lead}{}", files::json_line(row));
-        if self.fault.is_none() {
-            self.fault = file.write_bytes(text.as_bytes()).err();
-        }
-    }
-
-    fn end(self, file: &mut AtomicFile) -> Result<(), Failure> {
-        if let Some(fault) = self.fault {
-            return Err(fault.into());
-        }
-        let end: &[u8] = match self.rows {
-            0 => b"[]\n",
-            _ => b"\n]\n",
-        };
-        Ok(file.write_bytes(end)?)
-    }
 }

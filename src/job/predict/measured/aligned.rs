@@ -151,7 +151,7 @@ fn units(machine: &Machine, columns: &Columns, [wanted, logged]: [Joints; 2]) ->
             axis.name,
             number(logged[place] / axis.unit(), 4),
             number(wanted[place] / axis.unit(), 4),
-            if axis.joint.rotary { "deg" } else { "mm" },
+            axis.unit_name(),
             unit.name
         ))
     })

@@ -29,18 +29,20 @@ pub(super) fn between(machine: &Machine, log: &Log) -> Option<[Difference; MAX_A
     (!known).then(|| log.commanded.between())
 }
 
-/// Says so where it matters.
-pub(super) fn doubt(machine: &Machine, log: &Log, findings: &mut Vec<Diagnostic>) {
-    let Some(between) = between(machine, log) else {
-        return;
-    };
+/// Says so where it matters; `between` as [`between`] gives it.
+pub(super) fn doubt(
+    machine: &Machine,
+    log: &Log,
+    between: &[Difference; MAX_AXES],
+    findings: &mut Vec<Diagnostic>,
+) {
     let mut axes = Vec::new();
     for place in axis_words::order(machine) {
         let axis = &machine.axes[place];
         let most = between[place].most.abs() / axis.unit();
         if log.has[Which::Commanded as usize][place] && most > MATTERS {
-            let unit = if axis.joint.rotary { "deg" } else { "mm" };
-            axes.push(format!("{} {} {unit}", axis.name, number(most, 4)));
+            let most = number(most, 4);
+            axes.push(format!("{} {most} {}", axis.name, axis.unit_name()));
         }
     }
     if axes.is_empty() {

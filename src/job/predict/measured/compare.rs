@@ -192,10 +192,13 @@ impl<'a> Compared<'a> {
         }
     }
 
-    /// What is left of each axis of the log.
-    pub fn axes(&self, machine: &Machine) -> Vec<AxisLaid> {
+    /// What is left of each axis of the log; `between` as [`coarse::between`] gives it.
+    pub fn axes(
+        &self,
+        machine: &Machine,
+        between: Option<&[Difference; MAX_AXES]>,
+    ) -> Vec<AxisLaid> {
         let logged = |place: &usize| (0..2).any(|which| self.overlay.log.has[which][*place]);
-        let between = coarse::between(machine, &self.overlay.log);
         let axes = post_machine::axis_words::order(machine).into_iter();
         axes.filter(logged)
             .map(|place| {
@@ -204,7 +207,7 @@ impl<'a> Compared<'a> {
                     self.sums[place].map(|sum| Left::of(&sum, axis.unit()));
                 AxisLaid {
                     name: axis.name.clone(),
-                    unit: if axis.joint.rotary { "deg" } else { "mm" },
+                    unit: axis.unit_name(),
                     alike: self.alignment.alike[place],
                     zero: self.alignment.zeros[place] / axis.unit(),
                     commanded,
@@ -213,7 +216,6 @@ impl<'a> Compared<'a> {
                     following_predicted: predicted,
                     following,
                     between_rows: between
-                        .as_ref()
                         .and_then(|between| Left::of(&between[place], axis.unit())),
                 }
             })

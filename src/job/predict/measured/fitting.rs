@@ -122,7 +122,7 @@ fn axis(machine: &Machine, log: &Log, place: usize, keys: &[&str]) -> Result<Axi
     let undetermined = found.undetermined.iter();
     Ok(AxisFitted {
         name: axis.name.clone(),
-        unit: if axis.joint.rotary { "deg" } else { "mm" },
+        unit: axis.unit_name(),
         before: found.before / axis.unit(),
         after: found.after / axis.unit(),
         rows_alike: found.hanging_together,

@@ -105,7 +105,10 @@ impl Overlay {
         let log = &self.log;
         let alignment = aligned::aligned(self, machine)?;
         aligned::doubts(&alignment, machine, findings);
-        coarse::doubt(machine, log, findings);
+        let between = coarse::between(machine, log);
+        if let Some(between) = &between {
+            coarse::doubt(machine, log, between, findings);
+        }
         let mut compared = Compared::new(self, machine, &alignment)?;
         compared.run(chains, listen);
         let columns = log.columns.read.iter().map(|column| ColumnRead {
@@ -132,7 +135,7 @@ impl Overlay {
             overlap_s: alignment.overlap,
             predicted_s: self.commanded.seconds(),
             motion_s: self.motion(),
-            axes: compared.axes(machine),
+            axes: compared.axes(machine, between.as_ref()),
             contour: compared.contour(),
         })
     }

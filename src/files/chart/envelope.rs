@@ -26,6 +26,11 @@ impl Envelope {
         }
     }
 
+    /// Way of a share.
+    pub fn width(&self) -> f64 {
+        self.width
+    }
+
     /// Takes a value of each channel; those that are NaN are none.
     pub fn take(&mut self, way: f64, values: impl Iterator<Item = f64>) {
         let mut place = (way / self.width) as usize;

@@ -1,0 +1,270 @@
+//! What a plan has to keep: the limits of the machine, of its servos and of the job.
+
+use post_feed::limits::{
+    AxisAcceleration, AxisJerk, AxisVelocity, ChordError, Collocation, ContourError, Feed, Limit,
+    TipAcceleration, TipJerk,
+};
+use post_feed::response::{Answer, Response};
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+use post_machine::servo;
+
+/// Points of the table of a servo's deviation.
+const STEPS: usize = 4096;
+
+/// What a feed is planned under, mm, rad and s; infinite where there is no limit.
+pub struct Keep {
+    /// Of the tip against the part.
+    pub feed: f64,
+    /// By axis, in the order in which they are told.
+    pub velocity: Vec<f64>,
+    pub acceleration: Vec<f64>,
+    pub jerk: Vec<f64>,
+    pub tip_acceleration: f64,
+    pub tip_jerk: f64,
+    /// Of one interpolation period.
+    pub chord_error: f64,
+    /// From one set-point to the next.
+    pub period: f64,
+    pub contour_error: f64,
+    /// What the servos do; none where an axis that leads the tip has none.
+    pub servos: Option<Deviation>,
+}
+
+/// What the command line says over the files.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Over {
+    /// mm/s.
+    pub feed: Option<f64>,
+    /// mm; infinite: no limit.
+    pub chord_error: Option<f64>,
+    /// mm; infinite: no limit.
+    pub contour_error: Option<f64>,
+    /// s.
+    pub period: Option<f64>,
+}
+
+impl Keep {
+    /// The limits of `machine` for its axes at the places `axes`, with `over` over them.
+    ///
+    /// # Errors
+    /// A contour error is to be kept, and nothing is known of the servos.
+    pub fn new(machine: &Machine, axes: &[usize], over: Over) -> Result<Self, Box<Diagnostic>> {
+        let of = |limit: &dyn Fn(usize) -> f64| axes.iter().map(|place| limit(*place)).collect();
+        let servos = Deviation::new(machine, axes);
+        let contour_error = over.contour_error.or(machine.plan.contour_error);
+        if servos.is_none() && contour_error.is_some_and(f64::is_finite) {
+            let message = format!(
+                "{}: a contour error is to be kept, and not every axis that leads the tip has a servo",
+                machine.name
+            );
+            let help = "servo in the limits of the curve file, or [servo.X] of the machine file, says what a servo does; --contour-error off plans without";
+            return Err(Diagnostic::error("plan", message).help(help).boxed());
+        }
+        let none = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
+        Ok(Self {
+            feed: none(over.feed),
+            velocity: of(&|place| machine.axes[place].max_feed / 60.0),
+            acceleration: of(&|place| machine.axes[place].max_accel),
+            jerk: of(&|place| machine.axes[place].max_jerk),
+            tip_acceleration: machine.motion.tip_accel,
+            tip_jerk: machine.motion.tip_jerk,
+            chord_error: none(over.chord_error.or(machine.plan.chord_error)),
+            period: over.period.unwrap_or(machine.motion.period),
+            contour_error: none(contour_error),
+            servos,
+        })
+    }
+
+    /// Some jerk is limited.
+    pub fn has_jerk(&self) -> bool {
+        self.tip_jerk.is_finite() || self.jerk.iter().any(|jerk| jerk.is_finite())
+    }
+
+    /// As limits of a problem; jerk among them if it is asked for.
+    pub fn limits(&self, jerk: bool) -> Vec<Box<dyn Limit>> {
+        let collocation = Collocation::Throughout;
+        let mut limits: Vec<Box<dyn Limit>> = Vec::new();
+        if self.feed.is_finite() {
+            let most = self.feed;
+            limits.push(Box::new(Feed { most, collocation }));
+        }
+        limits.push(Box::new(AxisVelocity {
+            limits: self.velocity.clone(),
+            collocation,
+        }));
+        limits.push(Box::new(AxisAcceleration {
+            limits: self.acceleration.clone(),
+            collocation,
+        }));
+        if self.tip_acceleration.is_finite() {
+            let limit = self.tip_acceleration;
+            limits.push(Box::new(TipAcceleration { limit, collocation }));
+        }
+        if self.chord_error.is_finite() {
+            limits.push(Box::new(ChordError {
+                tolerance: self.chord_error,
+                period: self.period,
+                collocation,
+            }));
+        }
+        if let (true, Some(servos)) = (self.contour_error.is_finite(), &self.servos) {
+            let axes: Vec<&dyn Response> = servos.servos.iter().map(|servo| servo as _).collect();
+            limits.push(Box::new(ContourError::new(
+                &axes,
+                self.contour_error,
+                servos.highest,
+                collocation,
+            )));
+        }
+        if jerk && self.jerk.iter().any(|jerk| jerk.is_finite()) {
+            limits.push(Box::new(AxisJerk {
+                limits: self.jerk.clone(),
+            }));
+        }
+        if jerk && self.tip_jerk.is_finite() {
+            let limit = self.tip_jerk;
+            limits.push(Box::new(TipJerk { limit }));
+        }
+        limits
+    }
+}
+
+/// What the servos of the axes make of a path.
+pub struct Deviation {
+    servos: Vec<AxisResponse>,
+    /// The formula goes up to here, rad/s.
+    pub highest: f64,
+    /// The answers of the axes at even steps of the frequency's logarithm up to the highest.
+    answers: Vec<Vec<Answer>>,
+    /// By how much of its radius the path of straight axes strays from a circle, likewise.
+    table: Vec<f64>,
+}
+
+/// The lowest frequency of the tables, as a share of the highest.
+const LOWEST: f64 = 1e-6;
+
+/// An axis without a servo is where it is commanded.
+struct AxisResponse(Option<servo::Response>);
+
+impl Response for AxisResponse {
+    fn at(&self, frequency: f64) -> Answer {
+        let Some(servo) = &self.0 else {
+            return Answer::EXACT;
+        };
+        let value = servo.at(frequency);
+        Answer {
+            real: value.re,
+            imaginary: value.im,
+        }
+    }
+}
+
+impl Deviation {
+    /// Of `axes`; none where no axis has a servo, or where, of straight axes alone, one has none.
+    fn new(machine: &Machine, axes: &[usize]) -> Option<Self> {
+        let servos = axes.iter().map(|place| {
+            let servo = machine.axes[*place].servo.as_ref();
+            AxisResponse(servo.map(|servo| servo::Response::new(servo)))
+        });
+        let servos: Vec<AxisResponse> = servos.collect();
+        let turns = axes.iter().any(|place| machine.axes[*place].joint.rotary);
+        let known = servos.iter().filter(|servo| servo.0.is_some()).count();
+        if known == 0 || (!turns && known < servos.len()) {
+            return None;
+        }
+        let highest = servos.iter().filter_map(|servo| servo.0.as_ref());
+        let highest = highest
+            .map(servo::Response::natural_frequency)
+            .fold(f64::INFINITY, f64::min);
+        let ratio = libm::log(1.0 / LOWEST) / STEPS as f64;
+        let at = |step: usize| highest * libm::exp(-ratio * (STEPS - step) as f64);
+        let answers = servos.iter().map(|servo| {
+            let each = (0..=STEPS).map(|step| servo.at(at(step)));
+            each.collect::<Vec<Answer>>()
+        });
+        let answers = answers.collect();
+        let all: Vec<&dyn Response> = servos.iter().map(|servo| servo as _).collect();
+        let deviation = |step: usize| post_feed::limits::deviation(&all, at(step));
+        let table = (0..=STEPS).map(deviation).collect();
+        Some(Self {
+            highest,
+            answers,
+            table,
+            servos,
+        })
+    }
+
+    /// The step of the tables below a frequency, and how far it is to the next.
+    fn place(&self, frequency: f64) -> Option<(usize, f64)> {
+        let place = 1.0 + libm::log(frequency / self.highest) / libm::log(1.0 / LOWEST);
+        let place = place * STEPS as f64;
+        let below = (place > 0.0).then(|| (place as usize).min(STEPS - 1))?;
+        Some((below, place - below as f64))
+    }
+
+    /// The contour error that the formula says of a feed (mm/s) on a path of a curvature (1/mm), mm: that of a circle
+    /// that straight axes go along for ever (feedrate paper, eqs. 6, 7).
+    pub fn on_a_circle(&self, feed: f64, curvature: f64) -> f64 {
+        let curvature = curvature.max(1e-9);
+        let frequency = feed * curvature;
+        let deviation = match self.place(frequency) {
+            Some((below, share)) => {
+                self.table[below] + share * (self.table[below + 1] - self.table[below])
+            }
+            // Where frequencies go to 0 it falls with the frequency at least.
+            None => self.table[0] * frequency / (self.highest * LOWEST),
+        };
+        deviation / curvature
+    }
+
+    /// The contour error of axes of any kind: how each moves the tip (mm a unit), its velocity and its acceleration; and
+    /// how the tip goes. What each axis strays from where it was commanded, at the frequency with which the path of the
+    /// axes bends, as far as it moves the tip across its path (`post_feed::limits::ContourError`).
+    pub fn through_axes(&self, axes: &[([f64; 3], f64, f64)], along: [f64; 3]) -> f64 {
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let (mut speed, mut both) = (0.0, 0.0);
+        for (rate, velocity, acceleration) in axes {
+            let square = dot(*rate, *rate);
+            speed += square * velocity * velocity;
+            both += square * velocity * acceleration;
+        }
+        if speed <= 0.0 {
+            return 0.0;
+        }
+        let bends = axes.iter().map(|(rate, velocity, acceleration)| {
+            let rest = acceleration - velocity * both / speed;
+            dot(*rate, *rate) * rest * rest
+        });
+        let frequency = libm::sqrt(bends.sum::<f64>() / speed).clamp(1e-9, self.highest);
+        let (below, share) = self.place(frequency).unwrap_or((0, 0.0));
+        let frequency = frequency.max(self.highest * LOWEST);
+        let length = dot(along, along);
+        let mut off = [0.0; 3];
+        // A lag that all axes share leaves nothing across the path: that of the first is taken for it.
+        let mut common = None;
+        for ((rate, velocity, acceleration), answers) in axes.iter().zip(&self.answers) {
+            let [a, b] = [answers[below], answers[below + 1]];
+            let answer = Answer {
+                real: a.real + share * (b.real - a.real),
+                imaginary: a.imaginary + share * (b.imaginary - a.imaginary),
+            };
+            let phase = answer.phase_from(*common.get_or_insert(answer));
+            let gain = answer.gain();
+            let (sine, cosine) = libm::sincos(-phase);
+            let late = gain * sine / frequency;
+            let short = (1.0 - gain * cosine) / (frequency * frequency);
+            let error = short * acceleration - late * velocity;
+            for (off, rate) in off.iter_mut().zip(rate) {
+                *off += rate * error;
+            }
+        }
+        let square = dot(off, off);
+        let part = if length > 0.0 {
+            dot(off, along) * dot(off, along) / length
+        } else {
+            0.0
+        };
+        libm::sqrt((square - part).max(0.0))
+    }
+}

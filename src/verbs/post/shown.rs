@@ -1,0 +1,191 @@
+//! `--map` and `--plan-pictures`: the plan of each program, shown.
+
+use clap::Args;
+use post_machine::description::Machine;
+use post_posting::plan::{PlanWatch, PlannedPoint};
+
+use super::parts::{self, Split};
+use crate::failure::Failure;
+use crate::files::{AtomicFile, FileFault, JsonRows, OwnFolder, PathArg, Role};
+use crate::job::plan::map::{LimitMap, MapRow};
+use crate::job::plan::pictures;
+use crate::job::plan::posted::{Along, Limited, MARK};
+
+const PICTURES: Role = Role {
+    what: "plan",
+    remedy: "name another folder with --plan-pictures",
+};
+
+/// What a map is to the files of a run.
+pub const MAP: Role = Role {
+    what: "map",
+    remedy: "name another file with --map",
+};
+
+#[derive(Debug, Args)]
+pub struct ShownArguments {
+    /// Tells which limit holds the planned feed where: a row for each stretch with one line of the CL file and one limit,
+    /// with way (mm) and time (s, by the plan) from and to, limit, axis, least and largest feed (mm/min); planned cuts
+    /// alone. CSV where the name ends in .csv, else JSON; `-` is standard output, JSON. With --split one for each program:
+    /// map-1.json, map-2.json, …
+    #[arg(long, value_name = "FILE", requires = "plan", value_parser = PathArg::parser())]
+    map: Option<PathArg>,
+
+    /// Draws the plan into this folder, as SVG: feed, velocity, acceleration and jerk of the axes, chord error and contour
+    /// error along the way of the tip in planned cuts, limits drawn in; and tells beside them, as JSON, what is used of each
+    /// limit. With --split a folder for each program: FOLDER-1, FOLDER-2, …
+    #[arg(long, value_name = "FOLDER", requires = "plan", value_parser = PathArg::parser())]
+    plan_pictures: Option<PathArg>,
+}
+
+/// The places of what is shown, program by program; empty where nothing is asked for.
+pub struct Places {
+    pub maps: Vec<PathArg>,
+    folders: Vec<PathArg>,
+}
+
+/// The files of a folder of pictures.
+pub type Drawn = Vec<(&'static str, String)>;
+
+impl ShownArguments {
+    /// For so many programs.
+    pub fn places(&self, split: Option<Split>, count: usize) -> Places {
+        let each = |named: &Option<PathArg>| match (named, split) {
+            (None, _) => Vec::new(),
+            (Some(named), None) => vec![named.clone()],
+            (Some(named), Some(_)) => {
+                let numbers = 1..=count;
+                numbers
+                    .map(|number| parts::target(named, number, count))
+                    .collect()
+            }
+        };
+        Places {
+            maps: each(&self.map),
+            folders: each(&self.plan_pictures),
+        }
+    }
+}
+
+impl Places {
+    /// The folders of pictures.
+    ///
+    /// # Errors
+    /// Something stands in the place of one, or files in it are no pictures of a plan.
+    pub fn folders(&self) -> Result<Vec<OwnFolder<'_>>, Failure> {
+        let mut opened = Vec::with_capacity(self.folders.len());
+        for folder in &self.folders {
+            let folder = OwnFolder::open(folder, PICTURES, MARK, &pictures::NAMES);
+            opened.push(folder.map_err(|fault| *fault)?);
+        }
+        Ok(opened)
+    }
+}
+
+/// Has a program written by `write`, with one who looks on if a map or pictures of it are asked for. What `write` gives, and
+/// the pictures.
+///
+/// # Errors
+/// Those of `write`, and of writing the map.
+pub fn show<T>(
+    machine: &Machine,
+    program: &PathArg,
+    map: Option<&mut AtomicFile>,
+    draws: bool,
+    write: impl FnOnce(Option<&mut dyn PlanWatch>) -> Result<T, Failure>,
+) -> Result<(T, Option<Drawn>), Failure> {
+    if map.is_none() && !draws {
+        return Ok((write(None)?, None));
+    }
+    let limited = Limited::new(machine).map_err(|fault| *fault)?;
+    let gauges = limited.gauges();
+    let mut shown = Shown {
+        map: map.map(MapFile::new),
+        along: draws.then(|| Along::new(&limited, &gauges)),
+    };
+    let given = write(Some(&mut shown))?;
+    if let Some(map) = shown.map {
+        map.finish()?;
+    }
+    let name = program.path().and_then(|path| path.file_name());
+    let name = name.map_or("program".into(), |name| name.to_string_lossy());
+    Ok((given, shown.along.map(|along| along.files(&name))))
+}
+
+/// Who looks on.
+struct Shown<'a> {
+    map: Option<MapFile<'a>>,
+    along: Option<Along<'a>>,
+}
+
+impl PlanWatch for Shown<'_> {
+    fn planned(&mut self, point: &PlannedPoint<'_>) {
+        if let Some(map) = &mut self.map {
+            map.take(point);
+        }
+        if let Some(along) = &mut self.along {
+            along.take(point);
+        }
+    }
+}
+
+/// A map that is written as it comes.
+struct MapFile<'f> {
+    map: LimitMap,
+    file: &'f mut AtomicFile,
+    rows: Rows,
+}
+
+/// How it is written.
+enum Rows {
+    Json(JsonRows),
+    /// So far without a fault, or the first.
+    Csv(Result<(), FileFault>),
+}
+
+impl<'f> MapFile<'f> {
+    fn new(file: &'f mut AtomicFile) -> Self {
+        let rows = match file.name().to_ascii_lowercase().ends_with(".csv") {
+            true => Rows::Csv(file.write_bytes(MapRow::HEAD.as_bytes())),
+            false => Rows::Json(JsonRows::default()),
+        };
+        Self {
+            map: LimitMap::default(),
+            file,
+            rows,
+        }
+    }
+
+    fn take(&mut self, point: &PlannedPoint<'_>) {
+        if let Some(row) = self.map.take(point) {
+            self.rows.row(&row, self.file);
+        }
+    }
+
+    fn finish(self) -> Result<(), FileFault> {
+        let Self {
+            map,
+            file,
+            mut rows,
+        } = self;
+        if let Some(row) = map.finish() {
+            rows.row(&row, file);
+        }
+        match rows {
+            Rows::Json(rows) => rows.end(file),
+            Rows::Csv(written) => written,
+        }
+    }
+}
+
+impl Rows {
+    fn row(&mut self, row: &MapRow, file: &mut AtomicFile) {
+        match self {
+            Self::Json(rows) => rows.row(row, file),
+            Self::Csv(written) if written.is_ok() => {
+                *written = file.write_bytes(row.csv().as_bytes());
+            }
+            Self::Csv(_) => {}
+        }
+    }
+}

@@ -49,8 +49,8 @@ fn check_kept(found: &Value) {
 
 const PAPER: [&str; 4] = ["-m", "tests/papers/feedrate.toml", "--feed", "3000"];
 
-/// The case set of the paper on the published butterfly: about 10.8 s and 42 µm without its contour limit, 11.95 s and 20
-/// µm with it.
+/// The case set of the paper on the published butterfly: about 10.8 s and 42 µm without its contour limit, 11.9 s and 20
+/// µm with it; with ever more samples 11.89 s.
 #[test]
 fn the_butterfly_keeps_the_papers_limits_with_and_without_its_contour_error() {
     let Some(butterfly) = shared("data/geometry/butterfly_nurbs.json") else {
@@ -77,7 +77,7 @@ fn the_butterfly_keeps_the_papers_limits_with_and_without_its_contour_error() {
     );
     assert!((error(&free) - 42.4).abs() < 0.3, "{}", error(&free));
     assert!(
-        (number(&kept["seconds"]) - 11.95).abs() < 0.03,
+        (number(&kept["seconds"]) - 11.9).abs() < 0.02,
         "{}",
         kept["seconds"]
     );

@@ -79,8 +79,11 @@ impl Profile {
     pub(super) fn begin(&mut self) {
         let last = self.samples.last().copied();
         self.samples.clear();
-        self.samples
-            .extend(last.map(|last| Sample { at: 0.0, ..last }));
+        self.samples.extend(last.map(|last| Sample {
+            at: 0.0,
+            seconds: 0.0,
+            ..last
+        }));
     }
 
     /// The plan goes on.

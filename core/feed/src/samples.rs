@@ -38,6 +38,9 @@ pub struct Samples {
     /// Share of the tolerance of the contour error that may be used at each sample, above 0 and up to 1; empty: all
     /// of it.
     pub contour_share: Vec<f64>,
+    /// Third derivatives are continuous at the samples, as those of a quintic spline are; else each sample has the one
+    /// behind it, and the one ahead of it follows from the second, which is exact where the path is cubic.
+    pub smooth: bool,
 }
 
 /// Below this speed of the tip per unit of parameter speed, mm, the tip counts as standing still: rotary axes alone

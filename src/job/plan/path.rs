@@ -320,7 +320,11 @@ impl<'m> CurvePath<'m> {
     /// # Errors
     /// Where the axes cannot follow.
     pub fn samples(&self, index: usize, parameters: &[f64]) -> Result<Samples, (f64, NoStation)> {
-        let mut samples = Samples::default();
+        let mut samples = Samples {
+            // Curves through points are quintics; a spline may be of any degree.
+            smooth: matches!(self.stretches[index].tip, Track::Pieces(_)),
+            ..Samples::default()
+        };
         for &parameter in parameters {
             let station = self.at(index, parameter).map_err(|why| (parameter, why))?;
             let [_, first, second, third] = station.tip;

@@ -3,8 +3,8 @@
 //!
 //! With `q = ṡ²` the parameter has `s̈ = q' / 2` and `s⃛ = q'' ṡ / 2`. So the second derivative of a function `Q(s)` by
 //! time is `Q' q' / 2 + Q'' q`, and the third is `sqrt(q) * (Q' q'' / 2 + 3/2 Q'' q' + Q''' q)`. Over an interval `Q'`
-//! is taken as quadratic, `Q''` and `Q'''` as linear, so that both brackets are cubics; a cubic lies between its least
-//! and its largest Bernstein coefficient.
+//! and `Q'''` are taken as quadratic, `Q''` as linear, so that the brackets are a cubic and a quartic; a polynomial lies
+//! between its least and its largest Bernstein coefficient.
 
 use crate::limits::{Channel, first_derivative};
 
@@ -13,6 +13,9 @@ pub(super) type Form = [f64; 3];
 
 /// Bernstein coefficients of a cubic.
 pub(super) type Cubic<T> = [T; 4];
+
+/// Bernstein coefficients of a quartic.
+pub(super) type Quartic<T> = [T; 5];
 
 /// `Q' q' / 2 + Q'' q`.
 pub(super) fn acceleration(channel: &Channel, step: f64) -> Cubic<Form> {
@@ -30,7 +33,7 @@ pub(super) fn acceleration(channel: &Channel, step: f64) -> Cubic<Form> {
 }
 
 /// `Q' q'' / 2 + 3/2 Q'' q' + Q''' q`.
-pub(super) fn jerk(channel: &Channel, step: f64) -> Cubic<Form> {
+pub(super) fn jerk(channel: &Channel, step: f64) -> Quartic<Form> {
     let first = elevated(first_derivative(channel.first, channel.second, step));
     let [c0, c1] = channel.second;
     let [e0, e1] = slope(step);
@@ -45,15 +48,17 @@ pub(super) fn jerk(channel: &Channel, step: f64) -> Cubic<Form> {
         sum(scaled(2.0 / 3.0, x1), scaled(1.0 / 3.0, x2)),
         x2,
     ];
-    let last = times_q(channel.third);
-    std::array::from_fn(|index| sum(sum(scaled(first[index], half), middle[index]), last[index]))
+    let both = std::array::from_fn(|index| sum(scaled(first[index], half), middle[index]));
+    let (both, last) = (raised(both), quadratic_times_q(channel.third));
+    std::array::from_fn(|index| sum(both[index], last[index]))
 }
 
-/// `q` itself as a cubic.
-pub(super) const Q: Cubic<Form> = [
+/// `q` itself as a quartic.
+pub(super) const Q: Quartic<Form> = [
     [1.0, 0.0, 0.0],
-    [1.0 / 3.0, 2.0 / 3.0, 0.0],
-    [0.0, 2.0 / 3.0, 1.0 / 3.0],
+    [0.5, 0.5, 0.0],
+    [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
+    [0.0, 0.5, 0.5],
     [0.0, 0.0, 1.0],
 ];
 
@@ -71,23 +76,26 @@ pub(super) fn leaving_jerk(channel: &Channel, step: f64) -> f64 {
     let first = elevated(first_derivative(channel.first, channel.second, step));
     let [c0, c1] = channel.second;
     let middle = elevated([0.0, 0.5 * c0, c1]);
-    let [t0, t1] = channel.third;
-    let last = [0.0, 0.0, t0 / 3.0, t1];
-    let at = |index: usize| {
-        2.0 / 9.0 * first[index] / (step * step) + 2.0 * middle[index] / step + last[index]
-    };
-    largest(&[at(0), at(1), at(2), at(3)])
+    let both = std::array::from_fn(|index| {
+        let push = 2.0 / 9.0 * first[index] / (step * step);
+        [push, 2.0 * middle[index] / step, 0.0]
+    });
+    let both = raised(both);
+    let [t0, t1, t2] = channel.third;
+    let last = [0.0, 0.0, t0 / 6.0, 0.5 * t1, t2];
+    let at = |index: usize| both[index][0] + both[index][1] + last[index];
+    largest(&[at(0), at(1), at(2), at(3), at(4)])
 }
 
 /// The same function with the parameter running the other way.
 pub(super) fn reversed(channel: &Channel) -> Channel {
     let [f0, f1] = channel.first;
     let [c0, c1] = channel.second;
-    let [t0, t1] = channel.third;
+    let [t0, t1, t2] = channel.third;
     Channel {
         first: [-f1, -f0],
         second: [c1, c0],
-        third: [-t1, -t0],
+        third: [-t2, -t1, -t0],
         ..*channel
     }
 }
@@ -114,6 +122,28 @@ fn times_q([a, b]: [f64; 2]) -> Cubic<Form> {
     ]
 }
 
+/// A quadratic times `q`.
+fn quadratic_times_q([a, b, c]: [f64; 3]) -> Quartic<Form> {
+    [
+        [a, 0.0, 0.0],
+        [0.5 * b, 0.5 * a, 0.0],
+        [c / 6.0, 2.0 / 3.0 * b, a / 6.0],
+        [0.0, 0.5 * c, 0.5 * b],
+        [0.0, 0.0, c],
+    ]
+}
+
+/// A cubic as a quartic.
+fn raised([a, b, c, d]: Cubic<Form>) -> Quartic<Form> {
+    [
+        a,
+        sum(scaled(0.25, a), scaled(0.75, b)),
+        sum(scaled(0.5, b), scaled(0.5, c)),
+        sum(scaled(0.75, c), scaled(0.25, d)),
+        d,
+    ]
+}
+
 /// A quadratic as a cubic.
 fn elevated([a, b, c]: [f64; 3]) -> Cubic<f64> {
     [a, (a + 2.0 * b) / 3.0, (2.0 * b + c) / 3.0, c]
@@ -133,20 +163,31 @@ mod tests {
     use super::*;
     use crate::limits::Order;
 
-    fn bernstein(coefficients: [f64; 4], t: f64) -> f64 {
-        let u = 1.0 - t;
-        let [a, b, c, d] = coefficients;
-        a * u * u * u + 3.0 * b * u * u * t + 3.0 * c * u * t * t + d * t * t * t
+    /// By the scheme of de Casteljau.
+    fn bernstein(coefficients: &[f64], t: f64) -> f64 {
+        match coefficients {
+            [value] => *value,
+            more => {
+                let pairs = more
+                    .windows(2)
+                    .map(|pair| pair[0] + t * (pair[1] - pair[0]));
+                bernstein(&pairs.collect::<Vec<_>>(), t)
+            }
+        }
     }
 
-    /// `Q = s³ - 2 s² + 5 s`, on `1..=1.5`.
+    /// `Q = s³ - 2 s² + 5 s`, on `1..=1.5`, with a third derivative that is another one in between.
     fn channel() -> (Channel, impl Fn(f64) -> [f64; 3]) {
-        let at = |s: f64| [3.0 * s * s - 4.0 * s + 5.0, 6.0 * s - 4.0, 6.0];
+        let at = |s: f64| {
+            let share = (s - 1.0) / 0.5;
+            let third = 6.0 + 3.0 * 2.0 * share * (1.0 - share);
+            [3.0 * s * s - 4.0 * s + 5.0, 6.0 * s - 4.0, third]
+        };
         let (here, next) = (at(1.0), at(1.5));
         let channel = Channel {
             first: [here[0], next[0]],
             second: [here[1], next[1]],
-            third: [here[2], next[2]],
+            third: [here[2], 9.0, next[2]],
             order: Order::Jerk,
             limit: 1.0,
             axis: None,
@@ -155,26 +196,28 @@ mod tests {
     }
 
     #[test]
-    fn the_cubics_are_the_derivatives_by_time() {
+    fn the_polynomials_are_the_derivatives_by_time() {
         let (channel, at) = channel();
         let q = [4.0, 7.0, 6.0];
         let piece = Piece::Quadratic(q);
-        let value = |forms: Cubic<Form>| {
-            forms.map(|form| form.iter().zip(q).map(|(a, b)| a * b).sum::<f64>())
+        let value = |forms: &[Form]| -> Vec<f64> {
+            let each = forms.iter();
+            each.map(|form| form.iter().zip(q).map(|(a, b)| a * b).sum())
+                .collect()
         };
         let (second, third) = (
-            value(acceleration(&channel, 0.5)),
-            value(jerk(&channel, 0.5)),
+            value(&acceleration(&channel, 0.5)),
+            value(&jerk(&channel, 0.5)),
         );
         for step in 0..=10 {
             let share = f64::from(step) / 10.0;
             let [first, bend, twist] = at(1.0 + 0.5 * share);
             let [q, slope, curve] = piece.at(share, 0.5);
             let want = 0.5 * first * slope + bend * q;
-            assert!((bernstein(second, share) - want).abs() < 1e-11);
+            assert!((bernstein(&second, share) - want).abs() < 1e-11);
             let want = 0.5 * first * curve + 1.5 * bend * slope + twist * q;
-            assert!((bernstein(third, share) - want).abs() < 1e-11);
-            assert!((bernstein(value(Q), share) - q).abs() < 1e-12);
+            assert!((bernstein(&third, share) - want).abs() < 1e-11);
+            assert!((bernstein(&value(&Q), share) - q).abs() < 1e-12);
         }
     }
 

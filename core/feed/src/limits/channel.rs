@@ -23,8 +23,8 @@ pub struct Channel {
     pub first: [f64; 2],
     /// The second.
     pub second: [f64; 2],
-    /// The third, from inside.
-    pub third: [f64; 2],
+    /// The third, from inside, as Bernstein coefficients of a quadratic.
+    pub third: [f64; 3],
     /// Which derivative by time is limited.
     pub order: Order,
     /// To at most this, in both directions.
@@ -41,7 +41,8 @@ impl Channel {
         let mix = |[a, b]: [f64; 2]| a + (b - a) * share;
         let [a, b, c] = first_derivative(self.first, self.second, step);
         let first = mix([mix([a, b]), mix([b, c])]);
-        let (second, third) = (mix(self.second), mix(self.third));
+        let [t0, t1, t2] = self.third;
+        let (second, third) = (mix(self.second), mix([mix([t0, t1]), mix([t1, t2])]));
         let value = match self.order {
             Order::Acceleration => 0.5 * first * slope + second * q,
             Order::Jerk => q.sqrt() * (0.5 * first * bend + 1.5 * second * slope + third * q),
@@ -49,22 +50,28 @@ impl Channel {
         value / self.limit
     }
 
-    /// Of the derivatives at two samples, the second one `step` behind the first. The third derivative may jump at a
-    /// sample (at the knot of a cubic spline it does), and a sample has the one behind it: at the interval's end it
-    /// follows from the second.
-    pub(super) fn between(
+    /// Of the derivatives at two samples, the second one `step` behind the first, on a path whose third derivative is
+    /// `smooth` or jumps at samples. In between it is on the whole what the second one gains.
+    fn between(
         first: [f64; 2],
         second: [f64; 2],
-        third: f64,
+        third: [f64; 2],
+        smooth: bool,
         step: f64,
         order: Order,
         limit: f64,
     ) -> Self {
         let mean = (second[1] - second[0]) / step;
+        let [t0, t2] = third;
+        let third = match smooth {
+            true => [t0, 3.0 * mean - t0 - t2, t2],
+            // The second sample has the one behind it: what it is ahead of it follows.
+            false => [t0, mean, 2.0 * mean - t0],
+        };
         Self {
             first,
             second,
-            third: [third, 2.0 * mean - third],
+            third,
             order,
             limit,
             axis: None,
@@ -83,8 +90,8 @@ pub(super) fn axis_channels(
     let step = samples.step(interval);
     for (index, (axis, &limit)) in samples.axes.iter().zip(limits).enumerate() {
         let pair = |all: &[f64]| [all[interval], all[interval + 1]];
-        let (first, second) = (pair(&axis.first), pair(&axis.second));
-        let channel = Channel::between(first, second, axis.third[interval], step, order, limit);
+        let (first, second, third) = (pair(&axis.first), pair(&axis.second), pair(&axis.third));
+        let channel = Channel::between(first, second, third, samples.smooth, step, order, limit);
         sink(Channel {
             axis: Some(index as u16),
             ..channel
@@ -183,10 +190,10 @@ pub(super) fn tip_channels(
     let step = samples.step(interval);
     for &unit in &directions.units {
         let pair = |all: &[[f64; 3]]| [dot(unit, all[interval]), dot(unit, all[interval + 1])];
-        let (first, second) = (pair(&samples.tip[0]), pair(&samples.tip[1]));
-        let third = dot(unit, samples.tip[2][interval]);
+        let [first, second, third] = samples.tip.each_ref().map(|all| pair(all));
         let limit = limit * directions.share;
-        sink(Channel::between(first, second, third, step, order, limit));
+        let channel = Channel::between(first, second, third, samples.smooth, step, order, limit);
+        sink(channel);
     }
 }
 

@@ -177,7 +177,7 @@ fn channels(first: &Bound, last: &Bound) -> [Channel; 2] {
     [1.0, -1.0].map(|sign| Channel {
         first: [sign * first.push, sign * last.push],
         second: [first.rate, last.rate],
-        third: [0.0; 2],
+        third: [0.0; 3],
         order: Order::Acceleration,
         limit: 1.0,
         axis: None,

@@ -106,7 +106,11 @@ impl Sampler {
             held: *held,
             axes: axes.count,
             programmed: axes.programmed(),
-            samples: Samples::default(),
+            // The curve is a quintic.
+            samples: Samples {
+                smooth: true,
+                ..Samples::default()
+            },
             problem: Problem::default(),
             last: None,
             at: 0.0,

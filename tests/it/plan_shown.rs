@@ -183,13 +183,9 @@ fn errors_that_the_machine_limits_stand_in_the_map_and_are_kept() {
             let name = limit["limit"].as_str().unwrap();
             let share = limit["largest_share"].as_f64().unwrap();
             println!("{solver} {name}: {share}");
-            // The contour error here is that of a table.
-            let most = match name {
-                "contour error" => 1.02,
-                // At some samples the plan measures up to 2.15 of the jerk of C: told above, and not judged by this test.
-                name if name.starts_with("jerk") => continue,
-                _ => 1.001,
-            };
+            // Held against limits that are linear between samples: the contour error, of a table besides, where the curve
+            // bends otherwise.
+            let most = if name == "contour error" { 1.06 } else { 1.01 };
             assert!(share <= most, "{limit}");
         }
         let picture = fs::read_to_string(at("plan/contour-error.svg")).unwrap();

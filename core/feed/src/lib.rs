@@ -49,6 +49,7 @@ pub mod limits;
 pub mod linear_program;
 pub mod problem;
 pub mod profile;
+pub mod quintic;
 pub mod reach;
 pub mod response;
 pub mod samples;

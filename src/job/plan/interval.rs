@@ -1,6 +1,7 @@
 //! The plan of a posted program between two samples of its path.
 
 use post_feed::jerk::Piece;
+use post_feed::quintic;
 use post_machine::description::Machine;
 use post_machine::kinematics::{Course, ORDERS};
 use post_posting::plan::PlannedPoint;
@@ -129,23 +130,16 @@ impl Interval<'_> {
         std::array::from_fn(|place| q[place].max(0.0).sqrt() * rates[place])
     }
 
-    /// Where the path is at a share of it. Derivatives are those of the ends, and linear between them: never beyond both.
+    /// Where the path is at a share of it: a quintic, as the planned curve is, with the derivatives of both ends.
     pub fn station(&self, share: f64) -> Station {
         let [from, to] = &self.ends;
-        let between = |from: f64, to: f64| from + share * (to - from);
         let mut station = Station {
             parameter: 0.0,
-            tip: from.tip,
+            tip: quintic::between(&from.tip, &to.tip, self.length, share),
             course: from.course,
         };
-        let tips = station.tip.iter_mut().flatten();
-        for (value, to) in tips.zip(to.tip.iter().flatten()) {
-            *value = between(*value, *to);
-        }
-        let joints = station.course.joints.iter_mut().flatten();
-        for (value, to) in joints.zip(to.course.joints.iter().flatten()) {
-            *value = between(*value, *to);
-        }
+        let joints = [from, to].map(|end| &end.course.joints);
+        station.course.joints = quintic::between(joints[0], joints[1], self.length, share);
         for (rate, to) in station.course.rates.iter_mut().zip(&to.course.rates) {
             *rate += (to - *rate) * share;
         }

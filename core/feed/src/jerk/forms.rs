@@ -2,9 +2,9 @@
 //! quadratic `q`.
 //!
 //! With `q = ṡ²` the parameter has `s̈ = q' / 2` and `s⃛ = q'' ṡ / 2`. So the second derivative of a function `Q(s)` by
-//! time is `Q' q' / 2 + Q'' q`, and the third is `sqrt(q) * (Q' q'' / 2 + 3/2 Q'' q' + Q''' q)`. Over an interval `Q'`
-//! and `Q'''` are taken as quadratic, `Q''` as linear, so that the brackets are a cubic and a quartic; a polynomial lies
-//! between its least and its largest Bernstein coefficient.
+//! time is `Q' q' / 2 + Q'' q`, and the third is `sqrt(q) * (Q' q'' / 2 + 3/2 Q'' q' + Q''' q)`. Over an interval
+//! acceleration takes `Q'` as quadratic and `Q''` as linear, jerk takes `Q'` as quartic, as that of a quintic spline is, so
+//! that the brackets are a cubic and a quartic; a polynomial lies between its least and its largest Bernstein coefficient.
 
 use crate::limits::{Channel, first_derivative};
 
@@ -34,23 +34,23 @@ pub(super) fn acceleration(channel: &Channel, step: f64) -> Cubic<Form> {
 
 /// `Q' q'' / 2 + 3/2 Q'' q' + Q''' q`.
 pub(super) fn jerk(channel: &Channel, step: f64) -> Quartic<Form> {
-    let first = elevated(first_derivative(channel.first, channel.second, step));
-    let [c0, c1] = channel.second;
+    let (first, second) = (channel.first(step), channel.second(step));
     let [e0, e1] = slope(step);
     let bend = 1.0 / (step * step);
     // q'' / 2.
     let half = [bend, -2.0 * bend, bend];
-    let (x0, x2) = (scaled(1.5 * c0, e0), scaled(1.5 * c1, e1));
-    let x1 = sum(scaled(0.75 * c0, e1), scaled(0.75 * c1, e0));
-    let middle = [
-        x0,
-        sum(scaled(1.0 / 3.0, x0), scaled(2.0 / 3.0, x1)),
-        sum(scaled(2.0 / 3.0, x1), scaled(1.0 / 3.0, x2)),
-        x2,
-    ];
-    let both = std::array::from_fn(|index| sum(scaled(first[index], half), middle[index]));
-    let (both, last) = (raised(both), quadratic_times_q(channel.third));
-    std::array::from_fn(|index| sum(both[index], last[index]))
+    let last = quadratic_times_q(channel.third);
+    std::array::from_fn(|index| {
+        let [here, before] = linear_parts(index);
+        let mut form = sum(scaled(first[index], half), last[index]);
+        if index < 4 {
+            form = sum(form, scaled(1.5 * here * second[index], e0));
+        }
+        if index > 0 {
+            form = sum(form, scaled(1.5 * before * second[index - 1], e1));
+        }
+        form
+    })
 }
 
 /// `q` itself as a quartic.
@@ -73,18 +73,15 @@ pub(super) fn leaving_acceleration(channel: &Channel, step: f64) -> f64 {
 
 /// The same for the third derivative and `q1^(3/2)`: `2/9 Q' / step² + 2 Q'' * share / step + Q''' * share²`.
 pub(super) fn leaving_jerk(channel: &Channel, step: f64) -> f64 {
-    let first = elevated(first_derivative(channel.first, channel.second, step));
-    let [c0, c1] = channel.second;
-    let middle = elevated([0.0, 0.5 * c0, c1]);
-    let both = std::array::from_fn(|index| {
-        let push = 2.0 / 9.0 * first[index] / (step * step);
-        [push, 2.0 * middle[index] / step, 0.0]
-    });
-    let both = raised(both);
+    let (first, second) = (channel.first(step), channel.second(step));
     let [t0, t1, t2] = channel.third;
     let last = [0.0, 0.0, t0 / 6.0, 0.5 * t1, t2];
-    let at = |index: usize| both[index][0] + both[index][1] + last[index];
-    largest(&[at(0), at(1), at(2), at(3), at(4)])
+    let at: Quartic<f64> = std::array::from_fn(|index| {
+        let [_, before] = linear_parts(index);
+        let middle = index.checked_sub(1).map_or(0.0, |at| before * second[at]);
+        2.0 / 9.0 * first[index] / (step * step) + 2.0 * middle / step + last[index]
+    });
+    largest(&at)
 }
 
 /// The same function with the parameter running the other way.
@@ -133,20 +130,11 @@ fn quadratic_times_q([a, b, c]: [f64; 3]) -> Quartic<Form> {
     ]
 }
 
-/// A cubic as a quartic.
-fn raised([a, b, c, d]: Cubic<Form>) -> Quartic<Form> {
-    [
-        a,
-        sum(scaled(0.25, a), scaled(0.75, b)),
-        sum(scaled(0.5, b), scaled(0.5, c)),
-        sum(scaled(0.75, c), scaled(0.25, d)),
-        d,
-    ]
-}
-
-/// A quadratic as a cubic.
-fn elevated([a, b, c]: [f64; 3]) -> Cubic<f64> {
-    [a, (a + 2.0 * b) / 3.0, (2.0 * b + c) / 3.0, c]
+/// In the coefficient of this index of a cubic times a linear function: the share of the cubic's own coefficient of that
+/// index with the one end of the function, and that of the one before it with the other end.
+fn linear_parts(index: usize) -> [f64; 2] {
+    let before = 0.25 * index as f64;
+    [1.0 - before, before]
 }
 
 fn scaled(factor: f64, form: Form) -> Form {
@@ -176,18 +164,19 @@ mod tests {
         }
     }
 
-    /// `Q = s³ - 2 s² + 5 s`, on `1..=1.5`, with a third derivative that is another one in between.
-    fn channel() -> (Channel, impl Fn(f64) -> [f64; 3]) {
-        let at = |s: f64| {
-            let share = (s - 1.0) / 0.5;
-            let third = 6.0 + 3.0 * 2.0 * share * (1.0 - share);
-            [3.0 * s * s - 4.0 * s + 5.0, 6.0 * s - 4.0, third]
+    /// `Q = s³ - 2 s² + 5 s` and so many `s⁵`, on `1..=1.5`.
+    fn channel(fifth: f64) -> (Channel, impl Fn(f64) -> [f64; 3]) {
+        let at = move |s: f64| {
+            let first = 3.0 * s * s - 4.0 * s + 5.0 + 5.0 * fifth * s.powi(4);
+            let second = 6.0 * s - 4.0 + 20.0 * fifth * s.powi(3);
+            [first, second, 6.0 + 60.0 * fifth * s * s]
         };
         let (here, next) = (at(1.0), at(1.5));
         let channel = Channel {
             first: [here[0], next[0]],
             second: [here[1], next[1]],
-            third: [here[2], 9.0, next[2]],
+            // s² from 1 to 1.5 has the middle coefficient 1.5.
+            third: [here[2], 6.0 + 60.0 * fifth * 1.5, next[2]],
             order: Order::Jerk,
             limit: 1.0,
             axis: None,
@@ -197,7 +186,8 @@ mod tests {
 
     #[test]
     fn the_polynomials_are_the_derivatives_by_time() {
-        let (channel, at) = channel();
+        let (cubic, of_cubic) = channel(0.0);
+        let (channel, at) = channel(0.3);
         let q = [4.0, 7.0, 6.0];
         let piece = Piece::Quadratic(q);
         let value = |forms: &[Form]| -> Vec<f64> {
@@ -206,16 +196,19 @@ mod tests {
                 .collect()
         };
         let (second, third) = (
-            value(&acceleration(&channel, 0.5)),
+            value(&acceleration(&cubic, 0.5)),
             value(&jerk(&channel, 0.5)),
         );
         for step in 0..=10 {
             let share = f64::from(step) / 10.0;
-            let [first, bend, twist] = at(1.0 + 0.5 * share);
             let [q, slope, curve] = piece.at(share, 0.5);
+            let [first, bend, _] = of_cubic(1.0 + 0.5 * share);
             let want = 0.5 * first * slope + bend * q;
             assert!((bernstein(&second, share) - want).abs() < 1e-11);
+            let [first, bend, twist] = at(1.0 + 0.5 * share);
             let want = 0.5 * first * curve + 1.5 * bend * slope + twist * q;
+            let used = want * q.sqrt();
+            assert!((channel.used(share, 0.5, [q, slope, curve]) - used).abs() < 1e-11);
             assert!((bernstein(&third, share) - want).abs() < 1e-11);
             assert!((bernstein(&value(&Q), share) - q).abs() < 1e-12);
         }
@@ -223,7 +216,7 @@ mod tests {
 
     #[test]
     fn off_from_rest_the_bounds_hold_and_are_met() {
-        let (channel, at) = channel();
+        let (channel, at) = channel(0.0);
         let piece = Piece::Leave(3.0);
         let (mut second, mut third): (f64, f64) = (0.0, 0.0);
         for step in 1..=1000 {

@@ -39,15 +39,38 @@ impl Channel {
     #[must_use]
     pub fn used(&self, share: f64, step: f64, [q, slope, bend]: [f64; 3]) -> f64 {
         let mix = |[a, b]: [f64; 2]| a + (b - a) * share;
-        let [a, b, c] = first_derivative(self.first, self.second, step);
-        let first = mix([mix([a, b]), mix([b, c])]);
-        let [t0, t1, t2] = self.third;
-        let (second, third) = (mix(self.second), mix([mix([t0, t1]), mix([t1, t2])]));
+        let quadratic = |[a, b, c]: [f64; 3]| mix([mix([a, b]), mix([b, c])]);
         let value = match self.order {
-            Order::Acceleration => 0.5 * first * slope + second * q,
-            Order::Jerk => q.sqrt() * (0.5 * first * bend + 1.5 * second * slope + third * q),
+            Order::Acceleration => {
+                let first = quadratic(first_derivative(self.first, self.second, step));
+                0.5 * first * slope + mix(self.second) * q
+            }
+            Order::Jerk => {
+                let cubic =
+                    |[a, b, c, d]: [f64; 4]| mix([quadratic([a, b, c]), quadratic([b, c, d])]);
+                let [a, b, c, d, e] = self.first(step);
+                let first = mix([cubic([a, b, c, d]), cubic([b, c, d, e])]);
+                let (second, third) = (cubic(self.second(step)), quadratic(self.third));
+                q.sqrt() * (0.5 * first * bend + 1.5 * second * slope + third * q)
+            }
         };
         value / self.limit
+    }
+
+    /// Bernstein coefficients of the second derivative, a cubic whose derivative is the third.
+    pub(crate) fn second(&self, step: f64) -> [f64; 4] {
+        let ([c0, c1], [t0, _, t2]) = (self.second, self.third);
+        [c0, c0 + step * t0 / 3.0, c1 - step * t2 / 3.0, c1]
+    }
+
+    /// Bernstein coefficients of the first derivative, a quartic whose derivative is the second; where its ends ask for
+    /// two middles, the one between them.
+    pub(crate) fn first(&self, step: f64) -> [f64; 5] {
+        let ([f0, f1], [c0, up, down, c1]) = (self.first, self.second(step));
+        let quarter = 0.25 * step;
+        let (low, high) = (f0 + quarter * c0, f1 - quarter * c1);
+        let middle = (low + quarter * up).midpoint(high - quarter * down);
+        [f0, low, middle, high, f1]
     }
 
     /// Of the derivatives at two samples, the second one `step` behind the first, on a path whose third derivative is

@@ -1,9 +1,18 @@
-//! Samples along straight ways, closer towards the ends of a leg: there the speed changes.
+//! More samples of a leg: along straight ways, closer towards its ends, where the speed changes; next to stops; and where
+//! the way bends otherwise between samples than at them.
 
-use post_feed::fit::{MOST, Point, Sample};
+use post_feed::fit::{Point, Sample};
+use post_feed::quintic;
 
 /// A way is straight whose direction changes by less than this share from sample to sample.
 const STRAIGHT: f64 = 1e-3;
+
+/// A way is bent evenly whose second derivative halfway is off what is between those of its ends by less than this share
+/// of the largest of the three.
+const UNEVEN: f64 = 0.05;
+
+/// So often a way is halved at most.
+const MOST_HALVED: usize = 3;
 
 /// Samples are as far apart as this share of the way to the nearer end of their leg.
 const GRADE: f64 = 0.5;
@@ -27,7 +36,7 @@ pub(super) fn graded(first: &Sample, rest: &[Sample], finest: f64, out: &mut Vec
                 if at + 0.5 * finest >= to.at {
                     break;
                 }
-                out.push(on(from, at));
+                out.push(on(from, to, at));
             }
         }
         out.push(*to);
@@ -50,51 +59,119 @@ pub(super) fn at_least(count: usize, first: &Sample, samples: &mut Vec<Sample>) 
         let Some(place) = longest else {
             return;
         };
-        let before = from(place);
-        let middle = on(before, before.at.midpoint(samples[place].at));
+        let middle = halfway(from(place), &samples[place]);
         samples.insert(place, middle);
     }
 }
 
+/// Puts in samples where the second derivative halfway is not about what is between those of both sides: limits are held
+/// against what is linear from sample to sample.
+pub(super) fn evenly_bent(first: &Sample, samples: &mut Vec<Sample>) {
+    let mut place = 0;
+    let mut from = *first;
+    while place < samples.len() {
+        let to = samples[place];
+        place = halve(&from, &to, place, MOST_HALVED, samples) + 1;
+        from = to;
+    }
+}
+
+/// Puts what is needed between two samples, the second of which stands at `place`: where it stands then.
+fn halve(
+    from: &Sample,
+    to: &Sample,
+    place: usize,
+    times: usize,
+    samples: &mut Vec<Sample>,
+) -> usize {
+    let middle = halfway(from, to);
+    let [here, half, there] = [from, &middle, to].map(|sample| sample.values[2]);
+    let off: Point = std::array::from_fn(|axis| half[axis] - 0.5 * (here[axis] + there[axis]));
+    let most = size(&here).max(size(&half)).max(size(&there));
+    if times == 0 || size(&off) <= UNEVEN * most {
+        return place;
+    }
+    samples.insert(place, middle);
+    let place = halve(from, &middle, place, times - 1, samples);
+    halve(&middle, to, place + 1, times - 1, samples)
+}
+
 fn straight(from: &Sample, to: &Sample) -> bool {
     let step = to.at - from.at;
-    let size = |point: &Point| point.iter().map(|part| part * part).sum::<f64>().sqrt();
     let speed = size(&from.values[1]);
     [from, to]
         .iter()
         .all(|sample| size(&sample.values[2]) * step <= STRAIGHT * speed)
 }
 
-/// The curve so far on from a sample, by its derivatives there.
-fn on(from: &Sample, at: f64) -> Sample {
-    let way = at - from.at;
-    let [value, first, second, third] = &from.values;
-    let sum = |terms: [(&Point, f64); 4]| -> Point {
-        std::array::from_fn(|axis| terms.iter().map(|(term, share)| term[axis] * share).sum())
-    };
-    let none = [0.0; MOST];
-    let (square, cube) = (way * way / 2.0, way * way * way / 6.0);
+fn size(point: &Point) -> f64 {
+    point.iter().map(|part| part * part).sum::<f64>().sqrt()
+}
+
+fn halfway(from: &Sample, to: &Sample) -> Sample {
+    on(from, to, from.at.midpoint(to.at))
+}
+
+/// The curve between two samples.
+fn on(from: &Sample, to: &Sample, at: f64) -> Sample {
+    let step = to.at - from.at;
     Sample {
         at,
-        values: [
-            sum([(value, 1.0), (first, way), (second, square), (third, cube)]),
-            sum([(first, 1.0), (second, way), (third, square), (&none, 0.0)]),
-            sum([(second, 1.0), (third, way), (&none, 0.0), (&none, 0.0)]),
-            *third,
-        ],
+        values: quintic::between(&from.values, &to.values, step, (at - from.at) / step),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use post_feed::fit;
 
     fn sample(at: f64, bend: f64) -> Sample {
-        let mut values = [[0.0; MOST]; 4];
+        let mut values = [[0.0; fit::MOST]; 4];
         values[0][0] = at;
         values[1][0] = 1.0;
         values[2][1] = bend;
         Sample { at, values }
+    }
+
+    /// Of `y = s⁵ / 20`, whose second derivative is a cubic.
+    fn fifth(at: f64) -> Sample {
+        let mut values = [[0.0; fit::MOST]; 4];
+        (values[0][0], values[1][0]) = (at, 1.0);
+        values[0][1] = at.powi(5) / 20.0;
+        values[1][1] = at.powi(4) / 4.0;
+        values[2][1] = at.powi(3);
+        values[3][1] = 3.0 * at.powi(2);
+        Sample { at, values }
+    }
+
+    #[test]
+    fn an_uneven_bend_has_samples_between_which_it_is_about_linear() {
+        let (first, mut samples) = (fifth(-2.0), vec![fifth(0.5), fifth(2.0)]);
+        evenly_bent(&first, &mut samples);
+        assert!((6..=16).contains(&samples.len()), "{}", samples.len());
+        let mut from = first;
+        for to in samples {
+            let wanted = fifth(to.at);
+            for (found, wanted) in to
+                .values
+                .iter()
+                .flatten()
+                .zip(wanted.values.iter().flatten())
+            {
+                assert!((found - wanted).abs() < 1e-12);
+            }
+            let linear = 0.5 * (from.values[2][1] + to.values[2][1]);
+            let off = (fifth(from.at.midpoint(to.at)).values[2][1] - linear).abs();
+            let most = from.values[2][1].abs().max(to.values[2][1].abs());
+            assert!(off <= 0.05 * most || to.at - from.at < 0.32, "{}", to.at);
+            from = to;
+        }
+        let (first, mut even) = (sample(0.0, 0.1), vec![sample(20.0, 0.1)]);
+        even[0].values[1][1] = 2.0;
+        even[0].values[0][1] = 20.0;
+        evenly_bent(&first, &mut even);
+        assert_eq!(even.len(), 1);
     }
 
     #[test]

@@ -15,7 +15,7 @@ use post_machine::kinematics::Joints;
 use super::account::Account;
 use super::corner::Corner;
 use super::cut::Cutter;
-use super::graded::{at_least, graded};
+use super::graded::{at_least, evenly_bent, graded};
 use super::limits::{self, Axes};
 use super::pieces::{Cutting, Piece, Profile};
 use super::queue::{Queue, Start};
@@ -83,6 +83,8 @@ pub(super) struct Line<'a> {
     solver: Solver,
     /// Jerk is planned, which needs some intervals between stops.
     jerk: bool,
+    /// A limit is asked for that holds the tool in bends, beyond what its axes can.
+    bends: bool,
     /// The least acceleration of a linear axis, mm/s².
     acceleration: f64,
     samples: Vec<Sample>,
@@ -140,6 +142,7 @@ impl<'a> Line<'a> {
             limits,
             solver: Solver::new(rules.solver, stride),
             jerk: rules.solver == PlanSolver::Jerk,
+            bends: rules.contour_error.is_some(),
             acceleration: machine
                 .axes
                 .iter()
@@ -241,6 +244,9 @@ impl<'a> Line<'a> {
         let mut samples = std::mem::take(&mut self.samples);
         let finest = self.finest(said.feed);
         graded(first, rest, finest, &mut samples);
+        if self.bends {
+            evenly_bent(first, &mut samples);
+        }
         if self.jerk && (leg.begins || leg.ends) {
             at_least(LEAST_FOR_JERK, first, &mut samples);
         }

@@ -1,0 +1,65 @@
+//! A quintic between two places by value and derivatives to the third at both.
+
+/// Value, first, second and third derivative of each coordinate at a place.
+pub type Jet<const N: usize> = [[f64; N]; 4];
+
+/// The quintic from `from` to `to`, `step` behind it, at a share of the way. Where the two are of one quintic it is that
+/// one; else its third derivative is theirs at both ends, and so are all others.
+#[must_use]
+pub fn between<const N: usize>(from: &Jet<N>, to: &Jet<N>, step: f64, share: f64) -> Jet<N> {
+    let mut found = [[0.0; N]; 4];
+    for coordinate in 0..N {
+        let [value, f0, c0, t0] = from.map(|order| order[coordinate]);
+        let [end, f1, c1, t1] = to.map(|order| order[coordinate]);
+        // Bernstein coefficients of the third derivative, the second, the first and the value, each an integral of the
+        // one before; the middle one of the first as both ends ask for, halved.
+        let third = [t0, 3.0 * (c1 - c0) / step - t0 - t1, t1];
+        let second = [c0, c0 + step * t0 / 3.0, c1 - step * t1 / 3.0, c1];
+        let (low, high) = (f0 + 0.25 * step * c0, f1 - 0.25 * step * c1);
+        let middle = 0.5 * (low + high + 0.25 * step * (second[1] - second[2]));
+        let first = [f0, low, middle, high, f1];
+        let (up, down) = (value + 0.2 * step * f0, end - 0.2 * step * f1);
+        let (higher, lower) = (up + 0.2 * step * low, down - 0.2 * step * high);
+        found[0][coordinate] = bernstein([value, up, higher, lower, down, end], share);
+        found[1][coordinate] = bernstein(first, share);
+        found[2][coordinate] = bernstein(second, share);
+        found[3][coordinate] = bernstein(third, share);
+    }
+    found
+}
+
+/// A polynomial of these coefficients at a share of its interval, by de Casteljau's scheme.
+fn bernstein<const N: usize>(mut coefficients: [f64; N], share: f64) -> f64 {
+    for last in (1..N).rev() {
+        for at in 0..last {
+            coefficients[at] += share * (coefficients[at + 1] - coefficients[at]);
+        }
+    }
+    coefficients[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quintic_is_found_again() {
+        let at = |s: f64| -> Jet<2> {
+            let third = 60.0 * s * s - 24.0 * s + 6.0;
+            [
+                [s.powi(5) - s.powi(4) + s.powi(3) + 2.0, 3.0 - s],
+                [5.0 * s.powi(4) - 4.0 * s.powi(3) + 3.0 * s * s, -1.0],
+                [20.0 * s.powi(3) - 12.0 * s * s + 6.0 * s, 0.0],
+                [third, 0.0],
+            ]
+        };
+        for part in 0..=8 {
+            let share = f64::from(part) / 8.0;
+            let found = between(&at(-0.4), &at(1.1), 1.5, share);
+            let wanted = at(-0.4 + 1.5 * share);
+            for (found, wanted) in found.iter().flatten().zip(wanted.iter().flatten()) {
+                assert!((found - wanted).abs() < 1e-12, "{found} {wanted}");
+            }
+        }
+    }
+}

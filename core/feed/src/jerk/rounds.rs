@@ -17,8 +17,9 @@ const TOLERANCE: f64 = 1e-7;
 const ABOVE: f64 = 2.0;
 
 /// By which share of a limit rows are drawn in where a stretch begins in motion, or another goes on from within it. What
-/// the iteration's tolerance leaves can then not break a limit, and what goes on has this much room.
-pub(super) const ROOM: f64 = 1e-6;
+/// the iteration's tolerance leaves can then not break a limit, and what goes on has this much room: with a hundredth of
+/// it, windows along a straight line found no plan from where they were left.
+pub(super) const ROOM: f64 = 1e-4;
 
 /// A part of a path without a stop on the way.
 pub(super) struct Stretch<'a> {

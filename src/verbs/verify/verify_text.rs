@@ -49,7 +49,10 @@ pub fn text(held: &Held, machine: &Machine, name: &str, tolerances: [Option<f64>
     for (count, what) in [
         (found.excursions, "times a cut is left and gone on with"),
         (found.rapids_at_feed, "rapids made at feed"),
-        (found.limited, "cuts slowed down by an axis' largest feed"),
+        (
+            found.limited,
+            "cuts slower than the CL file asks, by an axis, the largest F by time or the plan",
+        ),
     ] {
         if count > 0 {
             more.push(format!("{count} {what}"));

@@ -22,7 +22,8 @@ pub struct Verification {
     pub nearest_rapid: Option<(u64, String)>,
     /// Times that the tool left a cut and came back to where it left.
     pub excursions: u64,
-    /// Cuts that are slower than the course asks, because an axis could not go faster.
+    /// Cuts that are slower than the course asks, because an axis could not go faster, the control takes no larger F by
+    /// time, or the feed is planned.
     pub limited: u64,
     /// Cuts that are slower than the course asks, and no axis explains it.
     pub slower: u64,

@@ -8,7 +8,13 @@ use post_posting::{Block, Flow, MotionKind, Observer, Reason};
 use post_report::meta::{Event, Meta};
 use post_report::table::{Column, TableWriter};
 
+use nalgebra::Vector3;
+use post_machine::description::Tcp;
+use post_machine::kinematics::{Chain, Joints};
+
+use super::cl_window::ClWindow;
 use super::parts::{Parts, fault};
+use super::path_rows::PathRows;
 use crate::failure::Failure;
 use crate::files::Scratch;
 
@@ -52,10 +58,16 @@ pub struct BlockRows<'m> {
     /// Tip and axis in cuts, tip in rapids.
     largest: [Largest; 3],
     fault: Option<Failure>,
+    path: PathRows,
+    cl: ClWindow,
+    /// The chain of the head in use, its tool without a length.
+    chain: Option<Chain>,
+    /// Where the last block ended: its line, its axis values and its tip.
+    last: Option<(u64, Joints, Vector3<f64>)>,
 }
 
 /// Decimals of which the last is at most a fiftieth of a tolerance.
-fn decimals(tolerance: f64) -> u8 {
+pub fn decimals(tolerance: f64) -> u8 {
     let mut decimals = 2;
     let mut step = 0.01;
     while step > tolerance / 50.0 && decimals < 9 {
@@ -63,6 +75,12 @@ fn decimals(tolerance: f64) -> u8 {
         decimals += 1;
     }
     decimals
+}
+
+/// The chain of a machine, its tool without a length; none if it cannot be solved.
+fn chain(machine: &Machine) -> Option<Chain> {
+    let solver = machine.solver(0.0).ok()?;
+    Some(solver.chain().clone())
 }
 
 fn power(decimals: u8) -> f64 {
@@ -80,7 +98,7 @@ impl<'m> BlockRows<'m> {
     ///
     /// # Errors
     /// There is no place for them.
-    pub fn new(machine: &'m Machine) -> Result<Self, Failure> {
+    pub fn new(machine: &'m Machine, cl: ClWindow) -> Result<Self, Failure> {
         let mut axes: Vec<(String, bool)> = Vec::new();
         let heads = machine.heads.iter().map(|head| &head.machine);
         for axis in std::iter::once(machine)
@@ -120,6 +138,7 @@ impl<'m> BlockRows<'m> {
             Column::new("feed", "mm/min", 1),
             Column::new("asked", "mm/min", 1),
             Column::new("limit", "", 0),
+            Column::new("tool_length", "mm", 4),
         ]);
         Ok(Self {
             machine,
@@ -139,6 +158,10 @@ impl<'m> BlockRows<'m> {
             left_out: 0,
             largest: [Largest::default(); 3],
             fault: None,
+            path: PathRows::new(machine)?,
+            cl,
+            chain: chain(machine),
+            last: None,
         })
     }
 
@@ -158,6 +181,8 @@ impl<'m> BlockRows<'m> {
                 maximum.row = Some(largest.row);
             }
         }
+        self.path.finish(parts)?;
+        self.cl.finish(parts)?;
         meta.limits = self.limits;
         meta.events = self.events;
         meta.events_left_out = self.left_out;
@@ -239,6 +264,8 @@ impl<'m> BlockRows<'m> {
                 *largest = Largest { value, row, nc: 0 };
             }
         }
+        let length = self.length(block);
+        self.path(row, block, length);
         let head = [
             0.0,
             block.line as f64,
@@ -264,7 +291,64 @@ impl<'m> BlockRows<'m> {
             feed,
             asked,
             limit,
+            length,
         ]);
+    }
+
+    /// Length of the tool in use, mm: by how much the tip stands before the gauge point.
+    fn length(&self, block: &Block) -> f64 {
+        self.chain.as_ref().map_or(0.0, |chain| {
+            let gauge = chain.forward(&block.joints).tip;
+            (gauge - block.tip).dot(&block.axis)
+        })
+    }
+
+    /// Where the tip goes in a block, for the table of the path.
+    fn path(&mut self, row: u64, block: &Block, length: f64) {
+        let last = self.last.replace((block.line, block.joints, block.tip));
+        self.cl.advance(block.line);
+        if let Some((line, joints, tip)) = last {
+            self.cl.forget(line.min(block.line));
+            match block.kind {
+                MotionKind::Position | MotionKind::Reference => {}
+                MotionKind::Arc | MotionKind::Spline => {
+                    // Certified to be that of the CL file within the tolerance: where on it nobody has held it.
+                    for place in self.cl.between(tip, block.tip) {
+                        self.path.place(row, place, None);
+                    }
+                }
+                MotionKind::Rapid | MotionKind::Linear => {
+                    if let Some(middle) = self.middle(&joints, block, tip, length) {
+                        let off = self.cl.off(middle);
+                        self.path.place(row, middle, off);
+                    }
+                }
+            }
+        }
+        let off = self.cl.off(block.tip);
+        self.path.place(row, block.tip, off);
+    }
+
+    /// Where the tip stands in the middle of a block, where that is not the middle of a straight line.
+    fn middle(
+        &self,
+        from: &Joints,
+        block: &Block,
+        tip: Vector3<f64>,
+        length: f64,
+    ) -> Option<Vector3<f64>> {
+        let chain = self.chain.as_ref()?;
+        if self.machine.control.tcp == Tcp::Control {
+            return None;
+        }
+        let mut middle = *from;
+        for (value, to) in middle.iter_mut().zip(&block.joints) {
+            *value = 0.5 * (*value + to);
+        }
+        let pose = chain.forward(&middle);
+        let middle = pose.tip - pose.axis * length;
+        let bow = (middle - 0.5 * (tip + block.tip)).norm();
+        (bow > self.machine.accuracy.tolerance / 50.0).then_some(middle)
     }
 
     /// The number of a limit.
@@ -298,6 +382,7 @@ impl<'m> BlockRows<'m> {
             Command::Head(name) => {
                 let head = self.base.heads.iter().find(|head| head.name == *name);
                 self.machine = head.map_or(self.base, |head| &head.machine);
+                self.chain = chain(self.machine);
                 self.event(row, "head", format!("head {name}"));
             }
             Command::Stop => self.event(row, "stop", "stop".to_owned()),

@@ -4,13 +4,18 @@
 //! program, and what does not fit is left out as a whole.
 
 mod block_rows;
+mod cl_window;
 mod findings;
 mod machine;
+mod made;
 mod parts;
+mod path_rows;
 
 pub use block_rows::BlockRows;
+pub use cl_window::ClWindow;
 pub use findings::warnings;
 pub use machine::machine;
+pub use made::Made;
 pub use parts::{Parts, excludes};
 
 use post_machine::description::Machine;

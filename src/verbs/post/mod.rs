@@ -1,6 +1,5 @@
 //! The verb that has no name: one CL file on one machine becomes one program, or several.
 
-mod page;
 mod parts;
 mod setup_sheet;
 mod shown;
@@ -26,10 +25,9 @@ use crate::job::compensate::{self, Compensation, Moved};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::predict::{self, Against, Asked, Predicted, Prediction};
 use crate::job::read_back::{self, Held, Reading};
-use crate::job::report::BlockRows;
+use crate::job::report::{BlockRows, ClWindow, Made};
 use crate::job::{self, plan_rounds, plugin_finder};
 use crate::terminal;
-use page::Made;
 use parts::Split;
 use shown::ShownArguments;
 
@@ -218,7 +216,13 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         let draws = !folders.is_empty();
         let page = pages.next();
         let mut rows = match page {
-            Some(_) => Some(BlockRows::new(&part.machine)?),
+            Some(_) => {
+                let input = source.open_beside()?;
+                let settings =
+                    read_back::course_settings(&arguments.job, &part.machine, &input.name);
+                let cl = ClWindow::new(&part.machine, settings, input.bytes)?;
+                Some(BlockRows::new(&part.machine, cl)?)
+            }
             None => None,
         };
         let wrote = shown::show(&part.machine, &part.target, maps.next(), draws, |watch| {
@@ -267,7 +271,11 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
                 report,
                 verification: verifications.last(),
                 findings: &findings,
-                plans: arguments.plan,
+                job: match arguments.plan {
+                    true => "plan",
+                    false => "post",
+                },
+                facts: summary::facts(report, verifications.last()),
             };
             made.write(rows, (&mut source, file), arguments.report.most(), page)?;
         }

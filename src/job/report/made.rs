@@ -1,4 +1,4 @@
-//! `--report`: what became of one program, as a page.
+//! What became of a program that was made, as a page.
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
@@ -6,10 +6,9 @@ use post_posting::report::{Deviation, Report};
 use post_readback::verify::Verification;
 use post_report::meta::{AxisUsed, Maximum, Names, Verdict};
 
-use super::summary;
+use super::{BlockRows, Parts};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
-use crate::job::report::{self, BlockRows, Parts};
 
 /// What is known of a program that is made.
 pub struct Made<'a> {
@@ -19,8 +18,10 @@ pub struct Made<'a> {
     pub report: &'a Report,
     pub verification: Option<&'a Verification>,
     pub findings: &'a [Diagnostic],
-    /// Its feed is planned.
-    pub plans: bool,
+    /// What was done: `post`, `plan`, `convert`.
+    pub job: &'static str,
+    /// What its summary tells: names and values.
+    pub facts: Vec<[String; 2]>,
 }
 
 impl Made<'_> {
@@ -36,23 +37,19 @@ impl Made<'_> {
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {
         let names = Names {
-            nc: Some(report::name_of(self.program)),
-            cl: Some(report::name_of(self.cl)),
+            nc: Some(super::name_of(self.program)),
+            cl: Some(super::name_of(self.cl)),
             nc2: None,
             machine: self.machine.name.clone(),
         };
-        let title = format!("{} on {}", report::name_of(self.program), self.machine.name);
-        let job = match self.plans {
-            true => "plan",
-            false => "post",
-        };
-        let mut meta = report::about(job, self.machine, title, names);
+        let title = format!("{} on {}", super::name_of(self.program), self.machine.name);
+        let mut meta = super::about(self.job, self.machine, title, names);
         meta.verdict = self.verdict();
         meta.maxima = self.maxima();
-        meta.facts = summary::facts(self.report, self.verification);
+        meta.facts = self.facts.clone();
         meta.axes_used = self.axes_used();
-        meta.warnings = report::warnings(self.findings, program.name());
-        meta.excludes = report::excludes();
+        meta.warnings = super::warnings(self.findings, program.name());
+        meta.excludes = super::excludes();
         meta.tool_length = self.report.tools.first().map_or(0.0, |tool| tool.length_mm);
         let mut parts = Parts::default();
         rows.finish(&mut parts, &mut meta)?;

@@ -1,0 +1,189 @@
+// Bytes become tables and texts: what core/report packs, and nothing else.
+//
+// A part is base64 of raw deflate. A chunk of a table is its number of rows (32 bits, least byte first), then its columns; a
+// column is the order of its differences (0, 1, 2), its number of byte planes, and the planes, the least bytes first.
+// Folded signs: 0, 1, 2, 3, … are 0, -1, 1, -2, … A value is the integer over ten to the power of its decimals.
+const P = {};
+
+// The format that this page reads.
+P.FORMAT = 1;
+
+P.bytesOfBase64 = (text) => {
+  const letters = atob(text);
+  const bytes = new Uint8Array(letters.length);
+  for (let i = 0; i < letters.length; i += 1) bytes[i] = letters.charCodeAt(i);
+  return bytes;
+};
+
+P.inflate = async (bytes) => {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+};
+
+// The chunks of all parts, by name, inflated. The elements go once they are read: their letters would lie in memory twice.
+P.chunks = async (root) => {
+  const chunks = new Map();
+  const work = [];
+  for (const element of root.querySelectorAll("script.part")) {
+    const name = element.dataset.name;
+    if (!chunks.has(name)) chunks.set(name, []);
+    const list = chunks.get(name);
+    const index = list.push(null) - 1;
+    work.push(P.inflate(P.bytesOfBase64(element.textContent)).then((bytes) => { list[index] = bytes; }));
+    element.remove();
+  }
+  await Promise.all(work);
+  return chunks;
+};
+
+P.uint32 = (bytes, at) => (bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16)) + bytes[at + 3] * 16777216;
+
+// Integers of a column of a chunk that begins at `at`, into `out` from `start`.
+P.integers = (bytes, at, rows, out, start) => {
+  const order = bytes[at];
+  const planes = bytes[at + 1];
+  const first = at + 2;
+  let last = 0;
+  let slope = 0;
+  for (let row = 0; row < rows; row += 1) {
+    let folded = 0;
+    let weight = 1;
+    for (let plane = 0; plane < planes; plane += 1) {
+      folded += bytes[first + plane * rows + row] * weight;
+      weight *= 256;
+    }
+    const odd = folded % 2;
+    const difference = odd ? -(folded + 1) / 2 : folded / 2;
+    if (order === 0) last = difference;
+    else if (order === 1) last += difference;
+    else {
+      slope += difference;
+      last += slope;
+    }
+    out[start + row] = last;
+  }
+};
+
+// A column whose values are unpacked when somebody asks for them first.
+P.Column = class {
+  constructor(meta, rows, pieces) {
+    this.name = meta.name;
+    this.unit = meta.unit;
+    this.decimals = meta.decimals;
+    this.rows = rows;
+    this.pieces = pieces;
+    this.unpacked = null;
+  }
+
+  get values() {
+    if (this.unpacked) return this.unpacked;
+    const values = new Float64Array(this.rows);
+    let start = 0;
+    for (const piece of this.pieces) {
+      P.integers(piece.bytes, piece.at, piece.rows, values, start);
+      start += piece.rows;
+    }
+    this.pieces = null;
+    if (this.decimals === 0) {
+      this.unpacked = Int32Array.from(values);
+    } else {
+      const scale = 10 ** this.decimals;
+      for (let row = 0; row < values.length; row += 1) values[row] /= scale;
+      this.unpacked = values;
+    }
+    return this.unpacked;
+  }
+};
+
+P.table = (meta, chunks) => {
+  const pieces = meta.columns.map(() => []);
+  let sum = 0;
+  for (const bytes of chunks) {
+    const rows = P.uint32(bytes, 0);
+    let at = 4;
+    for (const column of pieces) {
+      column.push({ bytes, at, rows });
+      at += 2 + bytes[at + 1] * rows;
+    }
+    if (at !== bytes.length) throw new Error(`The table ${meta.name} is damaged.`);
+    sum += rows;
+  }
+  if (sum !== meta.rows) throw new Error(`The table ${meta.name} has ${sum} rows, and should have ${meta.rows}.`);
+  const columns = new Map();
+  meta.columns.forEach((column, index) => columns.set(column.name, new P.Column(column, sum, pieces[index])));
+  return { name: meta.name, rows: sum, columns };
+};
+
+// A text, chunk by chunk: the number of its lines (32 bits), how it is packed (0: as it is), and what is packed.
+P.Text = class {
+  constructor(meta, chunks) {
+    this.name = meta.name;
+    this.chunks = chunks;
+    this.starts = [];
+    this.lines = 0;
+    for (const bytes of chunks) {
+      this.starts.push(this.lines);
+      this.lines += P.uint32(bytes, 0);
+    }
+    if (this.lines !== meta.lines) throw new Error(`The text ${meta.name} is damaged.`);
+    this.recent = new Map();
+  }
+
+  // The bytes of a chunk, as they stand in the file.
+  bytesOf(chunk) {
+    const bytes = this.chunks[chunk];
+    return bytes.subarray(5);
+  }
+
+  // The lines of a chunk; those of the last few are kept.
+  linesOf(chunk) {
+    let lines = this.recent.get(chunk);
+    if (!lines) {
+      const bytes = this.bytesOf(chunk);
+      let text;
+      try {
+        text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(bytes);
+      } catch {
+        text = new TextDecoder("windows-1252").decode(bytes);
+      }
+      lines = text.split("\n");
+      if (lines[lines.length - 1] === "") lines.pop();
+      if (this.recent.size >= 8) this.recent.delete(this.recent.keys().next().value);
+      this.recent.set(chunk, lines);
+    }
+    return lines;
+  }
+
+  // Line `index`, counted from 0, without its end.
+  line(index) {
+    if (index < 0 || index >= this.lines) return "";
+    let low = 0;
+    let high = this.starts.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.starts[middle] <= index) low = middle;
+      else high = middle - 1;
+    }
+    const line = this.linesOf(low)[index - this.starts[low]];
+    return line.endsWith("\r") ? line.slice(0, -1) : line;
+  }
+
+  // The whole text, as it stands in the file.
+  async whole() {
+    return new Uint8Array(await new Blob(this.chunks.map((_, chunk) => this.bytesOf(chunk))).arrayBuffer());
+  }
+};
+
+// What the document holds: { meta, tables, texts }.
+P.load = async () => {
+  if (typeof DecompressionStream === "undefined") throw new Error("This browser is too old for the report: it cannot unpack it.");
+  const chunks = await P.chunks(document);
+  const bytes = chunks.get("meta");
+  if (!bytes) throw new Error("The report is cut off: its file is not whole.");
+  const meta = JSON.parse(new TextDecoder().decode(bytes[0]));
+  if (meta.format !== P.FORMAT) throw new Error(`The report has format ${meta.format}, and this page reads ${P.FORMAT}.`);
+  const report = { meta, tables: {}, texts: {} };
+  for (const table of meta.tables) report.tables[table.name] = P.table(table, chunks.get(table.name) || []);
+  for (const text of meta.texts) report.texts[text.name] = new P.Text(text, chunks.get(text.name) || []);
+  return report;
+};

@@ -1,0 +1,140 @@
+//! Rows of numbers, packed as they come.
+
+use std::io::{self, Write};
+
+use crate::deflate::Deflate;
+use crate::meta::{ColumnMeta, TableMeta};
+use crate::{integers, part};
+
+/// Rows of a chunk: few enough that memory is small, enough that the codes are good.
+const CHUNK: usize = 1 << 15;
+
+/// A column of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// What it is counted in, `mm`; empty for bare numbers.
+    pub unit: &'static str,
+    /// Decimals that are kept.
+    pub decimals: u8,
+}
+
+impl Column {
+    /// A column.
+    pub fn new(name: impl Into<String>, unit: &'static str, decimals: u8) -> Self {
+        Self {
+            name: name.into(),
+            unit,
+            decimals,
+        }
+    }
+}
+
+/// Takes the rows of a table and hands them on packed.
+pub struct TableWriter<W> {
+    name: &'static str,
+    columns: Vec<Column>,
+    scales: Vec<f64>,
+    /// The rows of the chunk, column by column.
+    values: Vec<Vec<i64>>,
+    rows: u64,
+    bytes: u64,
+    deflate: Deflate,
+    plain: Vec<u8>,
+    packed: Vec<u8>,
+    out: W,
+}
+
+impl<W: Write> TableWriter<W> {
+    /// An empty table of that name, whose chunks go to `out`.
+    pub fn new(name: &'static str, columns: Vec<Column>, out: W) -> Self {
+        let scales = columns.iter().map(|column| scale(column.decimals));
+        Self {
+            name,
+            scales: scales.collect(),
+            values: columns.iter().map(|_| Vec::with_capacity(CHUNK)).collect(),
+            columns,
+            rows: 0,
+            bytes: 0,
+            deflate: Deflate::of_numbers(),
+            plain: Vec::new(),
+            packed: Vec::new(),
+            out,
+        }
+    }
+
+    /// Rows so far.
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// Takes a row: a value for each column.
+    ///
+    /// # Errors
+    /// A value is no number or too large for its decimals, or what is packed cannot be written.
+    #[inline]
+    pub fn row(&mut self, row: &[f64]) -> io::Result<()> {
+        debug_assert_eq!(row.len(), self.columns.len());
+        let places = self.values.iter_mut().zip(&self.scales);
+        for (index, ((column, scale), value)) in places.zip(row).enumerate() {
+            let scaled = value * scale;
+            // No number fails this too.
+            if !(scaled.abs() < LARGEST) {
+                let name = &self.columns[index].name;
+                let message = format!("{value} cannot stand in the column {name} of the report");
+                return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+            }
+            column.push(scaled.round_ties_even() as i64);
+        }
+        self.rows += 1;
+        match self.values.first() {
+            Some(first) if first.len() < CHUNK => Ok(()),
+            _ => self.flush(),
+        }
+    }
+
+    /// The end of the table: what the page must know of it, and its sink.
+    ///
+    /// # Errors
+    /// What is packed cannot be written.
+    pub fn finish(mut self) -> io::Result<(TableMeta, W)> {
+        self.flush()?;
+        let columns = self.columns.into_iter().map(|column| ColumnMeta {
+            name: column.name,
+            unit: column.unit,
+            decimals: column.decimals,
+        });
+        let meta = TableMeta {
+            name: self.name,
+            rows: self.rows,
+            columns: columns.collect(),
+            bytes: self.bytes,
+        };
+        Ok((meta, self.out))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let rows = self.values.first().map_or(0, Vec::len);
+        if rows == 0 {
+            return Ok(());
+        }
+        self.deflate.piece(&(rows as u32).to_le_bytes());
+        for column in &mut self.values {
+            self.plain.clear();
+            integers::encode(column, &mut self.plain);
+            self.deflate.piece(&self.plain);
+            column.clear();
+        }
+        self.deflate.take(&mut self.packed);
+        self.bytes += part::write(&mut self.out, self.name, &self.packed)?;
+        Ok(())
+    }
+}
+
+/// Integers up to here are exact in the page, and so are their second differences.
+const LARGEST: f64 = (1u64 << 50) as f64;
+
+fn scale(decimals: u8) -> f64 {
+    (0..decimals).fold(1.0, |scale, _| scale * 10.0)
+}

@@ -31,7 +31,7 @@ P.views.settle = () => {
   const { solo, lower } = P.by("views").dataset;
   for (const button of document.querySelectorAll("#head nav button[data-view]")) {
     const { view } = button.dataset;
-    button.setAttribute("aria-pressed", String(solo ? solo === view : ["charts", "spread", "table"].includes(view) ? lower === view : true));
+    button.setAttribute("aria-pressed", String(solo ? solo === view : lower === view));
   }
   if (P.table_view.follow) P.table_view.follow();
 };

@@ -118,6 +118,6 @@ P.chain.values = (row, share) => {
 
 // The length of the tool that is in use in a block, mm.
 P.chain.length = (row) => {
-  const lengths = P.m.column("length");
+  const lengths = P.m.column("tool_length");
   return lengths ? lengths[row] : P.m.meta.tool_length;
 };

@@ -71,12 +71,16 @@ P.lane.draw = (paint, place, rows, { width, left, right }) => {
 // The limit of a lane: a number, or the tolerance that the cuts share.
 P.lane.limit = (lane) => (typeof lane.limit === "number" ? lane.limit : lane.limit ? P.path.common_limit(lane.limit) : 0);
 
-// A logarithm begins three decades under the largest value.
+// A logarithm begins at the least value, but no more than three decades under the largest.
 P.lane.deepest = (lane) => {
   if (lane.deepest) return lane.deepest;
-  let most = 0;
-  for (let row = 0; row < lane.values.length; row++) if (lane.values[row] > most) most = lane.values[row];
-  lane.deepest = 10 ** Math.floor(Math.log10(Math.max(most, P.lane.limit(lane) || 0, 1e-9)) - 3);
+  let most = P.lane.limit(lane) || 1e-9;
+  let least = most;
+  for (const value of lane.values) {
+    if (value > most) most = value;
+    if (value > 0 && value < least) least = value;
+  }
+  lane.deepest = Math.max(10 ** Math.floor(Math.log10(least)), 10 ** Math.floor(Math.log10(most) - 3));
   return lane.deepest;
 };
 

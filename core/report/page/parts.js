@@ -20,7 +20,7 @@ P.parts.build = () => {
   const { low, high, centre } = P.scene;
   const reach = Math.hypot(high[0] - low[0], high[1] - low[1]) / 2;
   const apart = Math.hypot(...add(machine.gauge, mount, -1));
-  const size = P.clamp(reach * 1.15, apart * 0.12, Math.max(apart * 0.5, reach * 1.15)) || 50;
+  const size = P.clamp(reach * 1.15, apart * 0.18, Math.max(apart * 0.5, reach * 1.15)) || 50;
   const bed = P.chain.bed(machine);
 
   const face = (body, tone, a, b, c) => {

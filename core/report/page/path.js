@@ -17,7 +17,7 @@ P.path.build = (view) => {
     button.setAttribute("aria-pressed", String(P.state[name] === on));
     return button;
   };
-  const colours = choose("Colour (c)", P.colour.modes.map((mode) => "Colour: " + mode.title), P.state.colour, (at) => P.set({ colour: at }));
+  const colours = choose("Colour (c)", P.colour.modes.map((mode) => mode.title), P.state.colour, (at) => P.set({ colour: at }));
   const scales = [0, 1, 10, 100, 1000, 10000];
   if (scene.vectors) P.set({ scale: P.path.fitting_scale() });
   const vectors = choose("Deviation vectors (d, D)", scales.map((by) => (by ? `Vectors × ${by.toLocaleString("en")}` : "No vectors")), scales.indexOf(P.state.scale), (at) => P.set({ scale: scales[at] }));
@@ -33,7 +33,7 @@ P.path.build = (view) => {
     P.path.say("This report holds no path.");
     return;
   }
-  if (machine) bar.append(toggle("Machine", "m", "machine", true, false, "Show the machine"), toggle("Machine frame", "f", "frame", "machine", "part", "The bed stands still, the part moves"));
+  if (machine) bar.append(toggle("Machine", "m", "machine", true, false, "Show the machine"), toggle("Bed", "f", "frame", "machine", "part", "Machine frame: the bed stands still, the part moves"));
   if (machine) P.parts.build();
   P.path.start();
   view.append(P.play.build());

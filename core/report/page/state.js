@@ -7,7 +7,7 @@ P.state = {
   brush: null, // [first, last] block of the part that is looked at
   colour: 0, // place in P.colour.modes
   frame: "part", // or "machine"
-  machine: true,
+  machine: false,
   by: "time", // or "block"
   playing: false,
   speed: 1,
@@ -36,7 +36,7 @@ P.el = (tag, properties, ...children) => {
     else if (name === "class") element.className = value;
     else element.setAttribute(name, value === true ? "" : value);
   }
-  element.append(...children.flat().filter((child) => child !== null && child !== undefined));
+  element.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined));
   return element;
 };
 P.by = (id) => document.getElementById(id);
@@ -68,7 +68,7 @@ P.unit = (unit) => (unit === "deg" || unit === "degrees" ? "°" : unit);
 // Of a tick of a chart: no more digits than tell.
 P.short = (value) => {
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e7)) return value.toExponential(1);
+  if (size !== 0 && (size < 1e-5 || size >= 1e7)) return value.toExponential(1);
   return String(Number(value.toPrecision(4)));
 };
 

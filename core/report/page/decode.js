@@ -184,6 +184,6 @@ P.load = async () => {
   if (meta.format !== P.FORMAT) throw new Error(`The report has format ${meta.format}, and this page reads ${P.FORMAT}.`);
   const report = { meta, tables: {}, texts: {} };
   for (const table of meta.tables) report.tables[table.name] = P.table(table, chunks.get(table.name) || []);
-  for (const text of meta.texts) report.texts[text.name] = new P.Text(text, chunks.get(text.name) || []);
+  for (const text of meta.texts) report.texts[text.name] = new P.Text(text, chunks.get(`text.${text.name}`) || []);
   return report;
 };

@@ -82,7 +82,9 @@ impl<W: Write> TextWriter<W> {
         self.deflate.piece(&[PLAIN]);
         self.deflate.piece(&self.chunk);
         self.deflate.take(&mut self.packed);
-        self.bytes += part::write(&mut self.out, self.name, &self.packed)?;
+        // A table may have the same name.
+        let name = format!("text.{}", self.name);
+        self.bytes += part::write(&mut self.out, &name, &self.packed)?;
         self.in_chunk = 0;
         self.chunk.clear();
         Ok(())

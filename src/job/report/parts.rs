@@ -16,14 +16,16 @@ const NAME: &str = "the report";
 /// Longest page without its parts, bytes, with room for what the meta tells: it is not known before what is left out is.
 const PAGE: u64 = 400_000;
 
+const TEXTS: &str = "texts";
+
 /// What is left out first, and how the page calls it.
 const ORDER: [(&str, &str); 6] = [
-    ("nc2", "texts"),
-    ("nc", "texts"),
-    ("cl", "texts"),
+    ("nc2", TEXTS),
+    ("nc", TEXTS),
+    ("cl", TEXTS),
     ("series", "series over time"),
     ("path", "interpolated path"),
-    ("points", "CL path"),
+    ("cl", "CL path"),
 ];
 
 /// Packed tables and texts.
@@ -93,7 +95,7 @@ impl Parts {
                 break;
             }
             let before = self.tables.len() + self.texts.len();
-            if called == "texts" {
+            if called == TEXTS {
                 self.texts.retain(|(text, _)| text.name != name);
             } else {
                 self.tables.retain(|(table, _)| table.name != name);

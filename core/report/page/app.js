@@ -2,6 +2,9 @@
 
 P.views = { names: ["verdict", "path", "nc", "cl", "charts", "spread", "table"] };
 
+// A button to another of the three views that share the place under the path.
+P.lower = (name) => P.button(name[0].toUpperCase() + name.slice(1), `Show the ${name} (${P.views.names.indexOf(name) + 1})`, () => P.views.show(name));
+
 // Shows a view and moves the focus into it.
 P.views.show = (name) => {
   const views = P.by("views");
@@ -33,7 +36,7 @@ P.views.settle = () => {
     const { view } = button.dataset;
     button.setAttribute("aria-pressed", String(solo ? solo === view : lower === view));
   }
-  if (P.table_view.follow) P.table_view.follow();
+  if (P.numbers.follow) P.numbers.follow();
 };
 
 P.views.escape = () => {
@@ -99,10 +102,8 @@ P.views.print = () => {
     root.dataset.theme = "light";
     P.colour.refresh();
     for (const one of [P.charts, P.spread]) {
-      const { clientWidth: width } = P.by("views");
-      Object.assign(one, { width: Math.min(width, 1000), height: 380, dense: 2 });
-      one.canvas.width = one.width * 2;
-      one.canvas.height = 760;
+      Object.assign(one, { width: 1000, height: 380, dense: 2 });
+      Object.assign(one.canvas, { width: 2000, height: 760 });
       one.draw();
     }
   });
@@ -110,8 +111,8 @@ P.views.print = () => {
     if (before) root.dataset.theme = before;
     else delete root.dataset.theme;
     P.views.repaint();
-    P.charts.resize();
-    P.spread.resize();
+    P.charts.fit();
+    P.spread.fit();
   });
 };
 
@@ -127,7 +128,7 @@ P.views.start = (report) => {
   P.path.build(P.by("path"));
   P.charts.build(P.by("charts"));
   P.spread.build(P.by("spread"));
-  P.table_view.build(P.by("table"));
+  P.numbers.build(P.by("table"));
   P.views.head();
   P.views.foot();
   P.keys.build();

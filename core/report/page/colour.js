@@ -99,19 +99,14 @@ P.REASONS = ["point", "eased", "put in", "leave", "stage", "rewind", "feed"];
 
 // The ways of colouring that the columns of this report allow.
 P.colour.find = () => {
-  const { column, meta, rows, unit } = P.m;
+  const { column, meta, unit } = P.m;
   const modes = [];
-  const largest = (values) => {
-    let most = 0;
-    for (let row = 0; row < rows; row++) if (values[row] > most) most = values[row];
-    return most;
-  };
   // Kinds without cutting are no measure of a path: values are shown as they are.
   const share = (name, title, limits) => {
     const values = column(name);
     if (!values) return;
     const fixed = typeof limits === "number" ? limits : 0;
-    const top = limits ? null : largest(values);
+    const top = limits ? null : P.largest(values);
     const limit = limits && !fixed ? limits : null;
     const value = (row) => values[row] / (limit ? limit[row] || Infinity : fixed || top || 1);
     modes.push({ id: name, title, value, bad: name !== "feed", raw: values, unit: unit(name), limit, fixed, top });

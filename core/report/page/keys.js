@@ -17,6 +17,7 @@ P.keys.brush = (end) => {
 };
 
 P.keys.turn_on = (name, values) => P.set({ [name]: values[(values.indexOf(P.state[name]) + 1) % values.length] });
+P.keys.by = () => P.m.timed && P.keys.turn_on("by", ["time", "block"]);
 P.keys.scale = (step) => {
   const scales = [0, 1, 10, 100, 1000, 10000];
   P.set({ scale: scales[P.clamp(scales.indexOf(P.state.scale) + step, 0, scales.length - 1)] });
@@ -52,7 +53,7 @@ P.keys.list = [
   { keys: ["f"], text: "part frame, machine frame", run: () => P.m.meta.machine && P.keys.turn_on("frame", ["part", "machine"]) },
   { keys: [" "], text: "play, pause", run: () => P.keys.turn_on("playing", [false, true]) },
   { keys: ["<", ">"], text: "slower, faster", run: (key) => P.play.faster(key === "<" ? -1 : 1) },
-  { keys: ["b"], text: "by time, by block", run: () => P.m.timed && P.keys.turn_on("by", ["time", "block"]) },
+  { keys: ["b"], text: "by time, by block", run: () => P.keys.by() },
   { keys: ["/"], text: "find in the text", run: () => P.keys.into("find") },
   { keys: ["g"], text: "go to a line", run: () => P.keys.into("go") },
   { keys: ["1", "2", "3", "4", "5", "6", "7"], text: "verdict, path, NC, CL, charts, spread, table; again: the view alone", run: (key) => P.views.key(Number(key) - 1) },

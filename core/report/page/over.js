@@ -2,54 +2,47 @@
 
 P.over = {};
 
-// Marks differ in shape, so that no colour is needed to tell them apart.
-P.over.shapes = { tool: "square", operation: "flag", rewind: "diamond", branch: "triangle", cycle: "circle", stop: "cross", arc: "ring", rapid: "ring" };
+// Marks differ in shape, so that no colour is needed to tell them apart: corners around a middle, in parts of their size.
+P.over.shapes = {
+  tool: [-1, -1, 1, -1, 1, 1, -1, 1, -1, -1],
+  rewind: [0, -1.3, 1.2, 0, 0, 1.3, -1.2, 0, 0, -1.3],
+  branch: [0, -1.3, 1.2, 1, -1.2, 1, 0, -1.3],
+  operation: [0, 0, 0, -3, 2, -2.2, 0, -1.5],
+  stop: [-1, -1, 1, 1, 0, 0, 1, -1, -1, 1],
+};
 
-P.over.shape = (paint, kind, x, y, r) => {
-  const shape = P.over.shapes[kind] || "circle";
+P.over.mark = (paint, { kind, quiet }, x, y) => {
+  const { colour } = P;
+  const size = quiet ? 2.5 : 4.5;
+  const corners = P.over.shapes[kind];
+  paint.fillStyle = quiet ? colour.scene.css : colour.mark.css;
+  const css = quiet ? colour.strong.css : kind === "stop" ? colour.mark.css : colour.scene.css;
+  if (!corners) return P.over.ring(paint, x, y, size, css, 1.5);
+  P.stroke(paint, css, 1.5, corners.map((value, at) => (at % 2 ? y : x) + value * size));
+  return kind === "stop" || paint.fill();
+};
+
+P.over.ring = (paint, x, y, size, css, wide) => {
   paint.beginPath();
-  if (shape === "square") paint.rect(x - r, y - r, 2 * r, 2 * r);
-  else if (shape === "diamond" || shape === "triangle") {
-    paint.moveTo(x, y - r * 1.3);
-    paint.lineTo(x + r * 1.2, shape === "diamond" ? y : y + r);
-    if (shape === "diamond") paint.lineTo(x, y + r * 1.3);
-    paint.lineTo(x - r * 1.2, shape === "diamond" ? y : y + r);
-    paint.closePath();
-  } else if (shape === "cross") {
-    paint.moveTo(x - r, y - r);
-    paint.lineTo(x + r, y + r);
-    paint.moveTo(x + r, y - r);
-    paint.lineTo(x - r, y + r);
-  } else if (shape === "flag") {
-    paint.moveTo(x, y);
-    paint.lineTo(x, y - 3 * r);
-    paint.lineTo(x + 2 * r, y - 2.2 * r);
-    paint.lineTo(x, y - 1.5 * r);
-  } else paint.arc(x, y, r, 0, 7);
+  paint.arc(x, y, size, 0, 7);
+  paint.fill();
+  paint.strokeStyle = css;
+  paint.lineWidth = wide;
+  paint.stroke();
 };
 
 P.over.draw = ({ clip, matrix, bodies }) => {
   const { scene, camera, colour, state } = P;
-  const paint = P.path.over.getContext("2d");
-  const { width, height, dense } = camera;
-  paint.setTransform(dense, 0, 0, dense, 0, 0);
-  paint.clearRect(0, 0, width, height);
-  paint.font = "11px system-ui, sans-serif";
-  paint.lineWidth = 1.5;
-  const at_point = (point) => camera.pixel(matrix, scene.path.pos[point * 3], scene.path.pos[point * 3 + 1], scene.path.pos[point * 3 + 2]);
+  const { width, height } = camera;
+  const paint = P.paint(P.path.over, camera);
   const [first, last] = state.brush || [0, Infinity];
+  const marks = scene.marks.filter((mark) => mark.row >= first && mark.row <= last);
   // Where many would cover the path, the quiet ones step back.
-  const loud = scene.marks.filter((mark) => mark.row >= first && mark.row <= last);
-  const shown = loud.length > scene.budget.marks ? loud.filter((mark) => !mark.quiet).slice(0, scene.budget.marks) : loud;
+  const most = scene.budget.marks;
+  const shown = marks.length > most ? marks.filter((mark) => !mark.quiet).slice(0, most) : marks;
   for (const mark of shown) {
-    const [x, y] = at_point(mark.point);
-    if (x < -9 || y < -9 || x > width + 9 || y > height + 9) continue;
-    P.over.shape(paint, mark.kind, x, y, mark.quiet ? 2.5 : 4.5);
-    paint.fillStyle = mark.quiet ? colour.scene.css : colour.mark.css;
-    paint.strokeStyle = mark.quiet ? colour.strong.css : colour.scene.css;
-    if (mark.kind === "stop") paint.strokeStyle = colour.mark.css;
-    else paint.fill();
-    paint.stroke();
+    const [x, y] = camera.pixel(matrix, ...scene.path.pos.subarray(mark.point * 3, mark.point * 3 + 3));
+    if (x > -9 && y > -9 && x < width + 9 && y < height + 9) P.over.mark(paint, mark, x, y);
   }
   P.over.tip(paint, matrix);
   if (bodies && state.machine) {
@@ -58,31 +51,29 @@ P.over.draw = ({ clip, matrix, bodies }) => {
       const [x, y] = camera.pixel(clip, ...P.chain.apply(bodies[body], at));
       if (placed.some(([px, py]) => Math.abs(px - x) < 15 && Math.abs(py - y) < 15)) continue;
       placed.push([x, y]);
-      P.over.text(paint, text, x, y, colour.text.css, "bold 12px system-ui, sans-serif");
+      P.over.text(paint, text, x, y, colour.text.css);
     }
   }
-  P.over.directions(paint, bodies);
+  P.over.directions(paint);
 };
 
 // Text with a rim of the ground, so that it is read over lines.
-P.over.text = (paint, text, x, y, css, font) => {
-  if (font) paint.font = font;
+P.over.text = (paint, text, x, y, css) => {
+  paint.font = P.BOLD;
   paint.textAlign = "center";
   paint.textBaseline = "middle";
   paint.lineWidth = 4;
   paint.lineJoin = "round";
   paint.strokeStyle = P.colour.scene.css;
   paint.strokeText(text, x, y);
-  paint.fillStyle = css;
-  paint.fillText(text, x, y);
+  P.write(paint, text, x, y, css);
 };
 
-// Where the tip stands, part frame, mm.
+// Where the tip stands, part frame, mm, and the tool axis.
 P.over.tip_at = () => {
   const { state, scene, m } = P;
   const { machine } = m.meta;
-  const { tip, axis } = machine && m.axes.length ? P.chain.forward(machine, P.chain.values(state.row, state.share), P.chain.length(state.row)) : {};
-  if (tip) return { tip, axis };
+  if (machine && m.axes.length) return P.chain.forward(machine, P.chain.values(state.row, state.share), P.chain.length(state.row));
   const point = scene.points_of(state.row)[1] * 3;
   return { tip: [0, 1, 2].map((at) => scene.path.pos[point + at] + scene.centre[at]), axis: null };
 };
@@ -91,57 +82,33 @@ P.over.tip = (paint, matrix) => {
   const { camera, colour, scene } = P;
   const { tip, axis } = P.over.tip_at();
   const from = tip.map((value, at) => value - scene.centre[at]);
-  const [x, y] = camera.pixel(matrix, ...from);
+  const at = camera.pixel(matrix, ...from);
   if (axis) {
     const long = 46 / camera.per_mm();
-    const [ex, ey] = camera.pixel(matrix, ...from.map((value, at) => value + axis[at] * long));
-    for (const [css, wide] of [[colour.scene.css, 5], [colour.select.css, 2]]) {
-      paint.strokeStyle = css;
-      paint.lineWidth = wide;
-      paint.beginPath();
-      paint.moveTo(x, y);
-      paint.lineTo(ex, ey);
-      paint.stroke();
-    }
+    const end = camera.pixel(matrix, ...from.map((value, place) => value + axis[place] * long));
+    P.stroke(paint, colour.scene.css, 5, [...at, ...end]);
+    P.stroke(paint, colour.select.css, 2, [...at, ...end]);
   }
-  paint.beginPath();
-  paint.arc(x, y, 5, 0, 7);
   paint.fillStyle = colour.scene.css;
-  paint.fill();
-  paint.strokeStyle = colour.select.css;
-  paint.lineWidth = 2.5;
-  paint.stroke();
+  P.over.ring(paint, ...at, 5, colour.select.css, 2.5);
 };
 
 // The directions of the frame that stands still, and a length to measure by.
 P.over.directions = (paint) => {
   const { camera, colour } = P;
-  const rows = camera.rows();
+  const [right, up] = camera.rows();
   const [x, y] = [38, camera.height - 44];
-  paint.lineWidth = 2;
   ["X", "Y", "Z"].forEach((name, at) => {
-    const [dx, dy] = [rows[0][at] * 24, -rows[1][at] * 24];
+    const [dx, dy] = [right[at] * 24, -up[at] * 24];
     if (Math.hypot(dx, dy) < 3) return;
-    paint.lineWidth = 2;
-    paint.strokeStyle = colour.quiet.css;
-    paint.beginPath();
-    paint.moveTo(x, y);
-    paint.lineTo(x + dx, y + dy);
-    paint.stroke();
-    P.over.text(paint, name, x + dx * 1.36, y + dy * 1.36, colour.text.css, "bold 11px system-ui, sans-serif");
+    P.stroke(paint, colour.quiet.css, 2, [x, y, x + dx, y + dy]);
+    P.over.text(paint, name, x + dx * 1.36, y + dy * 1.36, colour.text.css);
   });
   const wanted = 110 / camera.per_mm();
   const power = 10 ** Math.floor(Math.log10(wanted));
   const length = [5, 2, 1].map((by) => by * power).find((by) => by <= wanted) || power;
   const pixels = length * camera.per_mm();
   const [left, low] = [84, camera.height - 20];
-  paint.strokeStyle = colour.quiet.css;
-  paint.lineWidth = 1.5;
-  paint.beginPath();
-  paint.moveTo(left, low - 4);
-  paint.lineTo(left, low);
-  paint.lineTo(left + pixels, low);
-  paint.lineTo(left + pixels, low - 4);
-  paint.stroke();
-  P.over.text(paint, length < 0.01 ? `${P.short(length * 1000)} µm` : `${P.short(length)} mm`, left + pixels / 2, low - 10, colour.quiet.css, "11px system-ui, sans-serif");
+  P.stroke(paint, colour.quiet.css, 1.5, [left, low - 4, left, low, left + pixels, low, left + pixels, low - 4]);
+  P.over.text(paint, length < 0.01 ? `${P.short(length * 1000)} µm` : `${P.short(length)} mm`, left + pixels / 2, low - 10, colour.quiet.css);
 };

@@ -6,23 +6,18 @@ P.path.build = (view) => {
   const { scene, m } = P;
   const { machine } = m.meta;
   const { el } = P;
-  const choose = (label, options, chosen, run) => {
-    const select = el("select", { "aria-label": label, title: label, onchange: () => run(Number(select.value)) });
-    options.forEach((text, at) => select.append(el("option", { value: String(at), selected: at === chosen }, text)));
-    return select;
-  };
   const toggle = (text, key, name, on, off, title) => {
     const button = el("button", { type: "button", title: `${title} (${key})`, onclick: () => P.set({ [name]: P.state[name] === on ? off : on }) }, text);
     P.listen(name, () => button.setAttribute("aria-pressed", String(P.state[name] === on)));
     button.setAttribute("aria-pressed", String(P.state[name] === on));
     return button;
   };
-  const colours = choose("Colour (c)", P.colour.modes.map((mode) => mode.title), P.state.colour, (at) => P.set({ colour: at }));
+  const colours = P.choose("Colour (c)", P.colour.modes.map((mode) => mode.title), P.state.colour, (at) => P.set({ colour: at }));
   const scales = [0, 1, 10, 100, 1000, 10000];
   if (scene.vectors) P.set({ scale: P.path.fitting_scale() });
-  const vectors = choose("Deviation vectors (d, D)", scales.map((by) => (by ? `Vectors × ${by.toLocaleString("en")}` : "No vectors")), scales.indexOf(P.state.scale), (at) => P.set({ scale: scales[at] }));
-  const looks = choose("Look (v)", P.camera.looks.map(([name]) => name), 0, (at) => P.path.look(at));
-  const bar = el("div", { class: "bar" }, el("h2", { id: "path-title" }, "Path"), colours, scene.vectors ? vectors : null, looks, el("button", { type: "button", title: "Fit the view (0)", onclick: () => P.path.fit() }, "Fit"));
+  const vectors = P.choose("Deviation vectors (d, D)", scales.map((by) => (by ? `Vectors × ${by.toLocaleString("en")}` : "No vectors")), scales.indexOf(P.state.scale), (at) => P.set({ scale: scales[at] }));
+  const looks = P.choose("Look (v)", P.camera.looks.map(([name]) => name), 0, (at) => P.path.look(at));
+  const bar = el("div", { class: "bar" }, el("h2", { id: "path-title" }, "Path"), colours, scene.vectors ? vectors : null, looks, P.button("Fit", "Fit the view (0)", P.path.fit));
   P.path.canvas = el("canvas", { tabindex: "0", role: "img", "aria-label": "Tool path in three dimensions; the selected block is told in the line at the foot of the page" });
   P.path.over = el("canvas", { class: "over", "aria-hidden": "true" });
   P.path.legend = el("div", { class: "legend" });
@@ -53,7 +48,7 @@ P.path.build = (view) => {
     P.path.repaint();
   });
   P.path.looks = looks;
-  new ResizeObserver(() => P.path.resize()).observe(P.path.stage);
+  P.surface(P.path.stage, [P.path.canvas, P.path.over], P.path.resize);
 };
 
 P.path.say = (text) => {
@@ -69,19 +64,17 @@ P.path.fitting_scale = () => {
   return most > 0 ? P.clamp(10 ** Math.floor(Math.log10((radius * 0.12) / most)), 1, 10000) : 1000;
 };
 
-// The best renderer that is to be had; `P.prefer` lets a test ask for less.
+// The best renderer that is to be had.
 P.path.start = () => {
-  const wanted = P.prefer || "webgl2";
-  let renderer = null;
-  if (wanted === "webgl2") renderer = P.webgl.start(P.path.canvas, () => P.path.load());
-  if (!renderer && wanted !== "tables") {
+  let renderer = P.webgl.start(P.path.canvas, P.path.load);
+  if (!renderer) {
     renderer = P.plain.start(P.path.canvas);
     if (renderer) P.path.say("WebGL2 is not to be had here: the path is drawn in reduced detail.");
   }
   P.path.renderer = renderer;
   if (!renderer) {
     P.path.say("Nothing can be drawn here: the numbers are in the table (7).");
-    P.set({ lower: "table" });
+    P.by("views").dataset.lower = "table";
   } else P.path.load();
 };
 
@@ -127,19 +120,13 @@ P.path.choose = () => {
   P.path.renderer.upload("chosen", { count: last - first + 1, pos: scene.path.pos.slice(first * 3, last * 3 + 3), look });
 };
 
-P.path.resize = () => {
-  const { stage, canvas, over } = P.path;
-  const { clientWidth: width, clientHeight: height } = stage;
-  if (!width || !height || !P.path.renderer) return;
-  const dense = Math.min(window.devicePixelRatio || 1, 2);
-  const first = !P.path.sized;
-  P.path.sized = true;
-  Object.assign(P.camera, { width, height, dense });
-  for (const surface of [canvas, over]) {
-    surface.width = Math.round(width * dense);
-    surface.height = Math.round(height * dense);
+P.path.resize = (size) => {
+  if (!P.path.renderer) return;
+  Object.assign(P.camera, size);
+  if (!P.path.sized) {
+    P.path.sized = true;
+    P.path.look(0);
   }
-  if (first) P.path.look(0);
   P.path.draw(false);
 };
 
@@ -269,7 +256,7 @@ P.path.tell = () => {
     const seen = P.path.seen(mode);
     legend.append(el("div", { class: "kinds" }, mode.kinds.map((name, at) => (seen.has(at) ? el("span", {}, strip(12, () => at * 12 + 6), name) : null))));
   } else if (mode.raw) {
-    const tolerances = mode.limit ? P.path.common_limit(mode.limit) : mode.fixed;
+    const tolerances = mode.limit ? P.m.tolerance : mode.fixed;
     legend.append(strip(170, (at) => (at * 255) / 169));
     const top = mode.top ?? tolerances;
     legend.append(el("div", { class: "ends" }, el("span", {}, "0"), el("span", {}, mode.top === null ? (top ? `tolerance ${P.short(top)} ${P.unit(mode.unit)}` : "tolerance") : ""), el("span", {}, mode.top === null ? "above" : P.quantity(top, mode.unit))));
@@ -283,12 +270,6 @@ P.path.seen = (mode) => {
   const seen = new Set();
   for (let row = 0; row < P.m.rows; row++) seen.add(mode.value(row));
   return seen;
-};
-// The tolerance of the cuts where they share one.
-P.path.common_limit = (limits) => {
-  const { tip } = P.m.meta.tolerances || {};
-  for (let row = 0; row < P.m.rows; row++) if (limits[row] === tip) return tip;
-  return 0;
 };
 P.path.has_rapid = () => {
   const { count, look } = P.scene.path;

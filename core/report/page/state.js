@@ -122,9 +122,11 @@ P.model = (report) => {
     return low;
   };
   const timed = t1 !== null && total > 0;
+  // The tolerance of the cuts, which most share; rapids have another.
+  const tolerance = (report.meta.tolerances || {}).tip || 0;
   const names = [...blocks.columns.keys()];
   const axes = names.filter((name) => name.startsWith("q.")).map((name) => name.slice(2));
-  return { report, meta: report.meta, rows, blocks, column, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes };
+  return { report, meta: report.meta, rows, blocks, column, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance };
 };
 
 // Selects a block, and the machine stands at its end.

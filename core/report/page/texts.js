@@ -46,12 +46,7 @@ P.texts.pane = (view, name, title, file) => {
     box.focus();
   });
   Object.assign(pane, { find, go });
-  box.addEventListener("keydown", (event) => {
-    const step = { ArrowUp: -1, ArrowDown: 1, PageUp: -20, PageDown: 20 }[event.key];
-    if (!step) return;
-    event.preventDefault();
-    P.select_line(name, P.clamp(pane.current + step, 0, text.lines - 1));
-  });
+  P.steps(box, (step) => P.select_line(name, P.clamp(pane.current + step, 0, text.lines - 1)));
   const head = el("div", { class: "bar" }, el("h2", { id: `${view.id}-title` }, title, " ", el("span", { class: "name" }, file || "")));
   const tools = el("div", { class: "bar find" }, find, el("button", { type: "button", "aria-label": "Find back", title: "Back", onclick: () => turn(true) }, "↑"), el("button", { type: "button", "aria-label": "Find on", title: "On", onclick: () => turn(false) }, "↓"), go, told);
   view.append(head, tools, box);

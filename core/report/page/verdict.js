@@ -20,8 +20,11 @@ P.verdict.build = (view) => {
   body.append(el("div", { class: "said" }, (meta.verdict.sentences || []).map((sentence) => el("p", {}, sentence))));
   if ((meta.maxima || []).length) part("Largest", P.verdict.maxima(meta.maxima));
   if ((meta.warnings || []).length) part(`Found (${meta.warnings.length})`, P.verdict.warnings(meta.warnings));
-  if ((meta.facts || []).length) part("Job", el("dl", { class: "facts" }, meta.facts.map(([label, text]) => [el("dt", {}, label), el("dd", {}, text)])));
   if ((meta.axes_used || []).length) part("Travel used", ...meta.axes_used.map(P.verdict.travel));
+  // What stands above is not said twice.
+  const above = [...(meta.maxima || []).map(({ name }) => name), ...(meta.axes_used || []).map(({ name }) => `axis ${name}`)];
+  const facts = (meta.facts || []).filter(([label]) => !above.includes(label));
+  if (facts.length) part("Job", el("dl", { class: "facts" }, facts.map(([label, text]) => [el("dt", {}, label), el("dd", {}, text)])));
   if ((meta.excludes || []).length) part("What “certified” leaves out", el("ul", { class: "plain quiet" }, meta.excludes.map((sentence) => el("li", {}, sentence))));
   const left = [...(meta.parts_left_out || [])];
   if (meta.events_left_out > 0) left.push(`${meta.events_left_out} further marks are not listed.`);

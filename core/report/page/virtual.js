@@ -1,3 +1,13 @@
+// Up and down in a list: by one, by a page.
+P.steps = (box, run) => {
+  box.addEventListener("keydown", (event) => {
+    const step = { ArrowUp: -1, ArrowDown: 1, PageUp: -20, PageDown: 20 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    run(step);
+  });
+};
+
 // A long list of which only what is in sight is there. Browsers end at some ten million pixels: beyond, the bar is scaled.
 
 P.virtual = (box, { count, height, make, top = 0 }) => {

@@ -22,7 +22,7 @@ use crate::files::Scratch;
 const EQUAL: f64 = 1e-9;
 
 /// More events than this are counted and not listed.
-const MOST_EVENTS: usize = 5000;
+pub const MOST_EVENTS: usize = 5000;
 
 /// The largest of something and its row.
 #[derive(Clone, Copy, Debug, Default)]

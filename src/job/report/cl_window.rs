@@ -62,16 +62,9 @@ impl ClWindow {
         settings: Settings,
         input: Box<dyn Read>,
     ) -> Result<Self, Failure> {
-        let columns = vec![
-            Column::new("line", "", 0),
-            Column::new("x", "mm", 4),
-            Column::new("y", "mm", 4),
-            Column::new("z", "mm", 4),
-            Column::new("rapid", "", 0),
-        ];
         Ok(Self {
             course: ClCourse::new(settings, input),
-            table: TableWriter::new("cl", columns, Parts::scratch()?),
+            table: TableWriter::new("cl", Self::columns(), Parts::scratch()?),
             chord: machine.accuracy.tolerance / 10.0,
             along: machine.control_point.along,
             next: None,
@@ -81,6 +74,17 @@ impl ClWindow {
             ended: false,
             fault: None,
         })
+    }
+
+    /// The columns of its table.
+    pub fn columns() -> Vec<Column> {
+        vec![
+            Column::new("line", "", 0),
+            Column::new("x", "mm", 4),
+            Column::new("y", "mm", 4),
+            Column::new("z", "mm", 4),
+            Column::new("rapid", "", 0),
+        ]
     }
 
     /// Reads to the end of `line`.

@@ -12,10 +12,10 @@ P.views.show = (name) => {
   if (!view || view.hidden) return;
   if (["charts", "spread", "table"].includes(name)) views.dataset.lower = name;
   if (views.dataset.solo) views.dataset.solo = name;
+  P.views.settle();
   const inner = view.querySelector(".body, .lines, .grid, canvas");
   (inner || view).focus({ preventScroll: false });
   view.scrollIntoView({ block: "nearest" });
-  P.views.settle();
 };
 
 // A view by its number; asked for again, it stands alone, and once more among the others.
@@ -32,9 +32,11 @@ P.views.key = (at) => {
 
 P.views.settle = () => {
   const { solo, lower } = P.by("views").dataset;
+  const low = ["charts", "spread", "table"];
+  for (const name of P.views.names) P.by(name).classList.toggle("away", solo ? solo !== name : low.includes(name) && lower !== name);
   for (const button of document.querySelectorAll("#head nav button[data-view]")) {
     const { view } = button.dataset;
-    button.setAttribute("aria-pressed", String(solo ? solo === view : lower === view));
+    button.setAttribute("aria-pressed", solo ? solo === view : lower === view);
   }
   if (P.numbers.follow) P.numbers.follow();
 };
@@ -67,7 +69,7 @@ P.views.head = () => {
   const names = meta.names || {};
   const what = [meta.job, names.cl, names.nc, names.nc2, names.machine].filter(Boolean).join(" · ");
   const titles = ["Verdict", "Path", "NC", "CL", "Charts", "Spread", "Table"];
-  const nav = el("nav", { "aria-label": "Views" }, P.views.names.map((name, at) => (P.by(name).hidden ? null : el("button", { type: "button", "data-view": name, onclick: () => P.views.key(at) }, titles[at], el("kbd", {}, String(at + 1))))), el("button", { type: "button", title: "Light or dark (t)", "aria-label": "Light or dark", onclick: () => P.views.theme() }, "◐"), el("button", { type: "button", title: "Keys (?)", "aria-label": "Keys", onclick: () => P.keys.help() }, "?"));
+  const nav = el("nav", { "aria-label": "Views" }, P.views.names.map((name, at) => (P.by(name).hidden ? null : el("button", { "data-view": name, onclick: () => P.views.key(at) }, titles[at], el("kbd", {}, String(at + 1))))), el("button", { title: "Light or dark (t)", "aria-label": "Light or dark", onclick: () => P.views.theme() }, "◐"), el("button", { title: "Keys (?)", "aria-label": "Keys", onclick: () => P.keys.help() }, "?"));
   P.by("head").replaceChildren(P.verdict.badge(meta.verdict), el("div", { class: "titles" }, el("h1", {}, meta.title), el("p", {}, what)), nav);
   document.title = meta.title;
 };

@@ -51,18 +51,18 @@ P.write = (paint, text, x, y, css, align = "center", base = "middle") => {
 // Buttons of which one is chosen.
 P.tabs = (label, titles, run) => {
   const tabs = P.el("div", { class: "tabs", role: "tablist", "aria-label": label });
-  titles.forEach((title, at) => tabs.append(P.el("button", { type: "button", role: "tab", onclick: () => run(at) }, title)));
-  tabs.choose = (chosen) => [...tabs.children].forEach((tab, at) => tab.setAttribute("aria-selected", String(at === chosen)));
+  titles.forEach((title, at) => tabs.append(P.el("button", { role: "tab", onclick: () => run(at) }, title)));
+  tabs.choose = (chosen) => [...tabs.children].forEach((tab, at) => tab.setAttribute("aria-selected", at === chosen));
   tabs.choose(0);
   return tabs;
 };
 
-P.button = (text, title, run) => P.el("button", { type: "button", title, onclick: run }, text);
+P.button = (text, title, run) => P.el("button", { title, onclick: run }, text);
 
 // A choice from a list, told by number.
 P.choose = (label, options, chosen, run) => {
   const select = P.el("select", { "aria-label": label, title: label, onchange: () => run(Number(select.value)) });
-  options.forEach((text, at) => select.append(P.el("option", { value: String(at), selected: at === chosen }, text)));
+  options.forEach((text, at) => select.append(P.el("option", { value: at, selected: at === chosen }, text)));
   return select;
 };
 

@@ -75,7 +75,7 @@ P.keys.build = () => {
   const { el } = P;
   const shown = (key) => el("kbd", {}, P.keys.names[key] || key);
   const dialog = P.by("help");
-  const close = el("button", { type: "button", onclick: () => dialog.close() }, "Close");
+  const close = el("button", { onclick: () => dialog.close() }, "Close");
   dialog.append(
     el("h2", { id: "help-title" }, "Keys"),
     el("dl", { class: "keys" }, P.keys.list.map(({ keys, text }) => el("div", {}, el("dt", {}, keys.length > 4 ? [shown(keys[0]), " … ", shown(keys[keys.length - 1])] : keys.map((key, at) => [at ? " " : "", shown(key)]).flat()), el("dd", {}, text)))),

@@ -7,9 +7,9 @@ P.path.build = (view) => {
   const { machine } = m.meta;
   const { el } = P;
   const toggle = (text, key, name, on, off, title) => {
-    const button = el("button", { type: "button", title: `${title} (${key})`, onclick: () => P.set({ [name]: P.state[name] === on ? off : on }) }, text);
-    P.listen(name, () => button.setAttribute("aria-pressed", String(P.state[name] === on)));
-    button.setAttribute("aria-pressed", String(P.state[name] === on));
+    const button = el("button", { title: `${title} (${key})`, onclick: () => P.set({ [name]: P.state[name] === on ? off : on }) }, text);
+    P.listen(name, () => button.setAttribute("aria-pressed", P.state[name] === on));
+    button.setAttribute("aria-pressed", P.state[name] === on);
     return button;
   };
   const colours = P.choose("Colour (c)", P.colour.modes.map((mode) => mode.title), P.state.colour, (at) => P.set({ colour: at }));
@@ -244,7 +244,7 @@ P.path.tell = () => {
   const mode = colour.modes[P.state.colour];
   legend.replaceChildren(el("b", {}, mode.title));
   const strip = (width, place) => {
-    const canvas = el("canvas", { width: String(width), height: "10" });
+    const canvas = el("canvas", { width: width, height: "10" });
     const paint = canvas.getContext("2d");
     for (let at = 0; at < width; at++) {
       paint.fillStyle = colour.css(place(at));

@@ -5,14 +5,14 @@ P.play = { speeds: [0.1, 0.25, 0.5, 1, 2, 5, 10, 25, 50, 100, 250, 500, 1000] };
 P.play.build = () => {
   const { el, m } = P;
   if (!m.timed) P.set({ by: "block" });
-  const button = el("button", { type: "button", title: "Play (space)", "aria-label": "Play", onclick: () => P.set({ playing: !P.state.playing }) }, "▶");
+  const button = el("button", { title: "Play (space)", "aria-label": "Play", onclick: () => P.set({ playing: !P.state.playing }) }, "▶");
   const scrub = el("input", { type: "range", min: "0", max: "100000", step: "1", value: "0", "aria-label": "Place in the program" });
   scrub.addEventListener("input", () => {
     P.set({ playing: false });
     P.play.to((Number(scrub.value) / 100000) * P.play.whole());
     P.remember();
   });
-  const speed = el("input", { type: "range", min: "0", max: String(P.play.speeds.length - 1), value: String(P.play.speeds.indexOf(P.state.speed)), "aria-label": "Speed (< and >)", class: "speed" });
+  const speed = el("input", { type: "range", min: "0", max: String(P.play.speeds.length - 1), value: P.play.speeds.indexOf(P.state.speed), "aria-label": "Speed (< and >)", class: "speed" });
   speed.addEventListener("input", () => P.set({ speed: P.play.speeds[Number(speed.value)] }));
   const told = el("output", { class: "mono" });
   const by = el("select", { "aria-label": "Play by", onchange: () => P.set({ by: by.value }) }, m.timed ? el("option", { value: "time" }, "by time") : null, el("option", { value: "block" }, "by block"));

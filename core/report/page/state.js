@@ -30,11 +30,12 @@ P.set = (values) => {
 // An element with properties, attributes and children; text enters as text alone.
 P.el = (tag, properties, ...children) => {
   const element = document.createElement(tag);
+  if (tag === "button") element.type = "button";
   for (const [name, value] of Object.entries(properties || {})) {
-    if (value === null || value === undefined || value === false) continue;
+    if (value === null || value === undefined) continue;
     if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-    else if (name === "class") element.className = value;
-    else element.setAttribute(name, value === true ? "" : value);
+    else if (typeof value !== "boolean" || name.startsWith("aria")) element.setAttribute(name, value);
+    else element.toggleAttribute(name, value);
   }
   element.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined));
   return element;

@@ -13,12 +13,12 @@ P.numbers.build = (view) => {
     if (words[one.name]) return words[one.name][value] || "";
     return one.values instanceof Int32Array ? String(value) : P.number(value, one.unit);
   };
-  const box = el("div", { class: "grid", role: "grid", tabindex: "0", "aria-label": "Blocks", "aria-rowcount": String(m.rows + 1), "aria-colcount": String(columns.length + 1) });
+  const box = el("div", { class: "grid", role: "grid", tabindex: "0", "aria-label": "Blocks", "aria-rowcount": m.rows + 1, "aria-colcount": columns.length + 1 });
   box.append(el("div", { class: "row top", role: "row" }, cell("columnheader", "block"), columns.map((one) => cell("columnheader", title(one)))));
   const list = P.virtual(box, {
     count: m.rows,
     height: 20,
-    make: (row) => el("div", { class: "row", role: "row", "aria-rowindex": String(row + 2), "aria-selected": String(row === P.state.row), onclick: () => P.select(row) }, cell("rowheader", String(row + 1)), columns.map((one) => cell("gridcell", text(one, row)))),
+    make: (row) => el("div", { class: "row", role: "row", "aria-rowindex": row + 2, "aria-selected": row === P.state.row, onclick: () => P.select(row) }, cell("rowheader", String(row + 1)), columns.map((one) => cell("gridcell", text(one, row)))),
   });
   P.steps(box, (step) => P.select(P.state.row + step));
   view.append(el("div", { class: "bar" }, el("h2", { id: "table-title" }, "Table"), P.lower("charts"), P.lower("spread")), box);

@@ -25,7 +25,7 @@ P.texts.pane = (view, name, title, file) => {
     count: text.lines,
     height: 18,
     make: (at) => {
-      const line = el("div", { class: "line", role: "option", id: `${name}-${at + 1}`, "aria-selected": String(at === pane.current), "aria-posinset": String(at + 1), "aria-setsize": String(text.lines) }, el("span", { class: "at" }, String(at + 1)), P.texts.coloured(text.line(at), name, pane.needle));
+      const line = el("div", { class: "line", role: "option", id: `${name}-${at + 1}`, "aria-selected": at === pane.current, "aria-posinset": at + 1, "aria-setsize": text.lines }, el("span", { class: "at" }, String(at + 1)), P.texts.coloured(text.line(at), name, pane.needle));
       line.addEventListener("click", () => P.select_line(name, at));
       return line;
     },
@@ -48,7 +48,7 @@ P.texts.pane = (view, name, title, file) => {
   Object.assign(pane, { find, go });
   P.steps(box, (step) => P.select_line(name, P.clamp(pane.current + step, 0, text.lines - 1)));
   const head = el("div", { class: "bar" }, el("h2", { id: `${view.id}-title` }, title, " ", el("span", { class: "name" }, file || "")));
-  const tools = el("div", { class: "bar find" }, find, el("button", { type: "button", "aria-label": "Find back", title: "Back", onclick: () => turn(true) }, "↑"), el("button", { type: "button", "aria-label": "Find on", title: "On", onclick: () => turn(false) }, "↓"), go, told);
+  const tools = el("div", { class: "bar find" }, find, el("button", { "aria-label": "Find back", title: "Back", onclick: () => turn(true) }, "↑"), el("button", { "aria-label": "Find on", title: "On", onclick: () => turn(false) }, "↓"), go, told);
   view.append(head, tools, box);
   P.texts.panes[name] = pane;
   const follow = () => P.texts.follow(pane);

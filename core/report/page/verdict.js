@@ -34,7 +34,7 @@ P.verdict.build = (view) => {
 // Links to the places of something: the line of the program, that of the CL file, else the block.
 P.verdict.places = ({ nc, cl, row }) => {
   const { el } = P;
-  const link = (text, title, run) => el("button", { type: "button", class: "link number", title, onclick: run }, text);
+  const link = (text, title, run) => el("button", { class: "link number", title, onclick: run }, text);
   const made = [];
   const known = row !== null && row !== undefined;
   if (nc) made.push(link(`NC ${nc}`, `Go to line ${nc} of the program`, () => (known ? P.select(row) : P.select_line("nc", nc - 1))));

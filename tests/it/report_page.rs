@@ -289,9 +289,9 @@ const KEYS: &[(&str, &str, &str)] = &[
     ),
     ("P.select(40)", "x", "P.state.row === P.worst()"),
     (
-        "P.select(0); window.mark = P.scene.marks.find(mark => mark.row > 0)",
+        "P.select(0); P.scene.marks = [...P.scene.marks, { row: 70, kind: 'stop', text: 'stop', point: 1 }]",
         "e",
-        "P.state.row === (mark ? mark.row : 0)",
+        "P.state.row === 70",
     ),
     (
         "P.select(P.m.rows - 1); window.mark = P.scene.marks.findLast(mark => mark.row < P.m.rows - 1)",
@@ -427,16 +427,8 @@ fn every_key_does_what_the_help_says() {
             "the help does not tell {key:?}"
         );
         browser.ask(&format!("{settle} {before}; 0"));
-        assert_eq!(
-            browser
-                .ask(after)
-                .as_bool()
-                .filter(|_| !before.is_empty())
-                .unwrap_or(false)
-                && !["w", "W", "e", "E"].contains(key),
-            false,
-            "{key:?} has nothing to do"
-        );
+        let held = !before.is_empty() && browser.ask(after) == true;
+        assert!(!held, "{key:?} has nothing to do");
         browser.press(key);
         assert_eq!(browser.ask(after), true, "{key:?}: {after}");
     }
@@ -498,10 +490,7 @@ fn what_is_looked_for_is_found_and_told_when_it_is_not() {
     let made = blade();
     browser.open(&made.page);
     let program = fs::read_to_string(&made.nc).unwrap();
-    let line = program
-        .lines()
-        .rposition(|line| line.contains("M5") || line.contains("M05"))
-        .unwrap();
+    assert!(program.contains("M5"), "{program}");
     browser.ask("P.by('nc').querySelector('.lines').focus()");
     browser.press("/");
     for key in ["M", "5", "Enter"] {
@@ -513,10 +502,7 @@ fn what_is_looked_for_is_found_and_told_when_it_is_not() {
         .lines()
         .nth(at.as_u64().unwrap() as usize - 1)
         .unwrap();
-    assert!(
-        found.contains("M5"),
-        "line {at}: {found}; the last is {line}"
-    );
+    assert!(found.contains("M5"), "line {at}: {found}");
     browser.ask("P.texts.find(P.texts.panes.nc, 'no such words', false, P.by('nc').querySelector('output'))");
     assert_eq!(
         browser.ask("P.by('nc').querySelector('output').textContent"),

@@ -123,7 +123,6 @@ P.views.start = (report) => {
   P.colour.find();
   P.scene.build();
   P.colour.refresh();
-  if (P.scene.ready) P.scene.recolour();
   P.by("views").dataset.lower = "charts";
   P.verdict.build(P.by("verdict"));
   P.texts.build();

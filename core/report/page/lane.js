@@ -54,7 +54,7 @@ P.lane.draw = (paint, { lane, top, bottom }, rows) => {
   if (near) {
     const y = Math.round(y_of(limit)) + 0.5;
     P.stroke(paint, colour.bad.css, 1.2, [left, y, width - right, y], [6, 4]);
-    P.lane.over(paint, lane, { low, high, rows }, y_of);
+    P.lane.over(paint, lane, limit, { low, high, rows }, y_of);
   }
   paint.restore();
   if (band) P.lane.bands(paint, lane.bands, rows, bottom - band, band);
@@ -89,14 +89,14 @@ P.lane.frame = (paint, lane, top, floor, ticks, y_of) => {
   if (two) P.write(paint, P.unit(lane.unit), 7, middle + 7, quiet.css, "left");
 };
 
-// Columns with a block above its own limit stand out.
-P.lane.over = (paint, lane, { low, high, rows }, y_of) => {
+// Columns with a block above its own limit stand out, as far as they are above that of most.
+P.lane.over = (paint, lane, limit, { low, high, rows }, y_of) => {
   const own = typeof lane.limit === "number" ? null : lane.limit;
   paint.fillStyle = P.colour.bad.css;
   for (let x = 0; x < high.length; x++) {
     let above = !own && high[x] > lane.limit;
     for (let row = rows[x]; own && !above && row <= Math.max(rows[x + 1] - 1, rows[x]); row++) above = lane.values[row] > own[row];
-    if (above) paint.fillRect(P.charts.left + x - 0.5, y_of(high[x]), 2, Math.max(y_of(low[x]) - y_of(high[x]), 3));
+    if (above) paint.fillRect(P.charts.left + x - 0.5, y_of(high[x]), 2, Math.max(Math.min(y_of(low[x]), y_of(limit)) - y_of(high[x]), 3));
   }
 };
 

@@ -6,10 +6,11 @@ P.path.build = (view) => {
   const { scene, m } = P;
   const { machine } = m.meta;
   const { el } = P;
-  const toggle = (text, key, name, on, off, title) => {
-    const button = el("button", { title: `${title} (${key})`, onclick: () => P.set({ [name]: P.state[name] === on ? off : on }) }, text);
-    P.listen(name, () => button.setAttribute("aria-pressed", P.state[name] === on));
-    button.setAttribute("aria-pressed", P.state[name] === on);
+  const toggle = (text, title, name, on, off) => {
+    const button = P.button(text, title, () => P.set({ [name]: P.state[name] === on ? off : on }));
+    const tell = () => button.setAttribute("aria-pressed", P.state[name] === on);
+    P.listen(name, tell);
+    tell();
     return button;
   };
   const colours = P.choose("Colour (c)", P.colour.modes.map((mode) => mode.title), P.state.colour, (at) => P.set({ colour: at }));
@@ -28,23 +29,22 @@ P.path.build = (view) => {
     P.path.say("This report holds no path.");
     return;
   }
-  if (machine) bar.append(toggle("Machine", "m", "machine", true, false, "Show the machine"), toggle("Bed", "f", "frame", "machine", "part", "Machine frame: the bed stands still, the part moves"));
+  if (machine) bar.append(toggle("Machine", "Show the machine (m)", "machine", true, false), toggle("Bed", "Machine frame: the bed stands still, the part moves (f)", "frame", "machine", "part"));
   if (machine) P.parts.build();
   P.path.start();
   view.append(P.play.build());
   P.path.handle();
-  P.listen("row", () => P.path.choose());
+  P.listen("row", P.path.choose);
   P.listen("row share brush", () => P.path.redraw(P.state.playing));
-  P.listen("frame", () => P.path.fit());
-  P.listen("machine", () => P.path.fit());
+  P.listen("frame machine", P.path.fit);
   P.listen("scale", () => {
-    vectors.value = String(scales.indexOf(P.state.scale));
+    vectors.value = scales.indexOf(P.state.scale);
     P.path.comb();
     P.path.tell();
     P.path.redraw();
   });
   P.listen("colour", () => {
-    colours.value = String(P.state.colour);
+    colours.value = P.state.colour;
     P.path.repaint();
   });
   P.path.looks = looks;
@@ -132,7 +132,7 @@ P.path.resize = (size) => {
 
 P.path.look = (at) => {
   P.camera.look(at);
-  P.path.looks.value = String(at);
+  P.path.looks.value = at;
   P.path.fit();
 };
 
@@ -239,40 +239,34 @@ P.path.click = (x, y) => {
 
 // Says what the colours mean.
 P.path.tell = () => {
-  const { legend } = P.path;
-  const { el, colour } = P;
-  const mode = colour.modes[P.state.colour];
-  legend.replaceChildren(el("b", {}, mode.title));
+  const { el, colour, scene, state, m } = P;
+  const mode = colour.modes[state.colour];
   const strip = (width, place) => {
-    const canvas = el("canvas", { width: width, height: "10" });
+    const canvas = el("canvas", { width, height: 10 });
     const paint = canvas.getContext("2d");
     for (let at = 0; at < width; at++) {
-      paint.fillStyle = colour.css(place(at));
+      paint.fillStyle = colour.css(place(at / width));
       paint.fillRect(at, 0, 1, 10);
     }
     return canvas;
   };
+  const has = (test, count) => {
+    for (let at = 0; at < count; at++) if (test(at)) return true;
+    return false;
+  };
+  const told = [el("b", {}, mode.title)];
   if (mode.kinds) {
-    const seen = P.path.seen(mode);
-    legend.append(el("div", { class: "kinds" }, mode.kinds.map((name, at) => (seen.has(at) ? el("span", {}, strip(12, () => at * 12 + 6), name) : null))));
+    const seen = mode.kinds.map((name, kind) => (has((row) => mode.value(row) === kind, m.rows) ? el("span", {}, strip(12, () => kind * 12 + 6), name) : null));
+    told.push(el("div", { class: "kinds" }, seen));
   } else if (mode.raw) {
-    const tolerances = mode.limit ? P.m.tolerance : mode.fixed;
-    legend.append(strip(170, (at) => (at * 255) / 169));
-    const top = mode.top ?? tolerances;
-    legend.append(el("div", { class: "ends" }, el("span", {}, "0"), el("span", {}, mode.top === null ? (top ? `tolerance ${P.short(top)} ${P.unit(mode.unit)}` : "tolerance") : ""), el("span", {}, mode.top === null ? "above" : P.quantity(top, mode.unit))));
+    const limit = mode.limit ? m.tolerance : mode.fixed;
+    const ends = mode.top === null ? [`tolerance ${limit ? P.short(limit) + " " + P.unit(mode.unit) : ""}`, "above"] : [P.quantity(mode.top, mode.unit)];
+    told.push(strip(170, (share) => share * (mode.top === null ? 255 : colour.top)), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));
   }
-  const { vectors, cl } = P.scene;
-  const notes = [cl ? "thin: CL path" : "", P.path.has_rapid() ? "dashed: rapid" : "", vectors && P.state.scale ? `vectors × ${P.state.scale.toLocaleString("en")}${vectors.step > 1 ? `, the largest of every ${vectors.step} points` : ""}` : ""].filter(Boolean);
-  if (notes.length) legend.append(el("div", { class: "quiet" }, notes.join(" · ")));
-};
-
-P.path.seen = (mode) => {
-  const seen = new Set();
-  for (let row = 0; row < P.m.rows; row++) seen.add(mode.value(row));
-  return seen;
-};
-P.path.has_rapid = () => {
-  const { count, look } = P.scene.path;
-  for (let point = 0; point < count; point++) if (look[point * 4 + 1] === P.scene.RAPID) return true;
-  return false;
+  const { vectors, path } = scene;
+  const notes = [];
+  if (scene.cl) notes.push("thin: CL path");
+  if (has((point) => path.look[point * 4 + 1] === scene.RAPID, path.count)) notes.push("dashed: rapid");
+  if (vectors && state.scale) notes.push(`vectors × ${state.scale.toLocaleString("en")}${vectors.step > 1 ? `, the largest of every ${vectors.step} points` : ""}`);
+  P.path.legend.replaceChildren(...told, el("div", { class: "quiet" }, notes.join(" · ")));
 };

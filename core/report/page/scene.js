@@ -201,16 +201,20 @@ P.scene.pick = (matrix, x, y, reach) => {
   let px = 0;
   let py = 0;
   for (let point = 0; point < count; point++) {
-    const [a, b, c] = [pos[point * 3], pos[point * 3 + 1], pos[point * 3 + 2]];
+    const at = point * 3;
+    const a = pos[at];
+    const b = pos[at + 1];
+    const c = pos[at + 2];
     const qx = ((m[0] * a + m[4] * b + m[8] * c + m[12]) * 0.5 + 0.5) * width - x;
     const qy = (0.5 - (m[1] * a + m[5] * b + m[9] * c + m[13]) * 0.5) * height - y;
     const row = look[point * 4 + 2];
-    if (look[point * 4 + 1] !== P.scene.NONE && row >= first && row <= last) {
-      const [dx, dy] = [qx - px, qy - py];
+    if (look[point * 4 + 1] < P.scene.NONE && row >= first && row <= last) {
+      const dx = qx - px;
+      const dy = qy - py;
       const length = dx * dx + dy * dy;
-      const t = length > 0 ? P.clamp(-(px * dx + py * dy) / length, 0, 1) : 1;
-      const [ex, ey] = [px + t * dx, py + t * dy];
-      const distance = ex * ex + ey * ey;
+      const t = length > 0 ? Math.min(Math.max(-(px * dx + py * dy) / length, 0), 1) : 1;
+      const distance = (px + t * dx) ** 2 + (py + t * dy) ** 2;
+      // Of those that are as near, the one in front.
       if (distance < nearest + 0.5) {
         const depth = m[2] * a + m[6] * b + m[10] * c + m[14];
         if (distance < nearest - 0.5 || depth < front) {

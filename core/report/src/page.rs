@@ -11,9 +11,17 @@ pub const STYLE: &str = include_str!("../page/page.css");
 /// The scripts, in the order of their inclusion.
 const SCRIPTS: &[&str] = include!(concat!(env!("OUT_DIR"), "/scripts.rs"));
 
-/// All scripts as one.
+/// All scripts as one, without their comments and indentation, which are for those who read the sources.
 pub fn script() -> String {
-    SCRIPTS.join("\n")
+    let mut script = String::new();
+    for line in SCRIPTS.iter().flat_map(|text| text.lines()) {
+        let line = line.trim_start();
+        if !line.is_empty() && !line.starts_with("//") {
+            script.push_str(line);
+            script.push('\n');
+        }
+    }
+    script
 }
 
 /// How a policy names a text: nothing but it may run.

@@ -5,8 +5,7 @@ P.charts = { groups: [], from: 0, to: 1, left: 76, right: 10 };
 
 // What can be drawn with the columns at hand.
 P.charts.find = () => {
-  const { column, unit, axes, meta } = P.m;
-  const { tip, axis } = meta.tolerances || {};
+  const { column, unit, axes, meta, tolerance, turn, axis_limits } = P.m;
   const lane = (name, title, more) => (column(name) ? [{ name, title, unit: unit(name), values: column(name), ...more }] : []);
   // What the machine file allows an axis, in the unit of the column.
   const rate = (name, key, over) => {
@@ -14,7 +13,7 @@ P.charts.find = () => {
     return found && found[key] ? found[key] / over : null;
   };
   return [
-    { title: "Deviation", lanes: [lane("deviation", "tip", { limit: column("tolerance") || tip, log: true }), lane("axis_deviation", "axis", { limit: axis, log: true })] },
+    { title: "Deviation", lanes: [lane("deviation", "tip", { limit: tolerance, limits: column("tolerance"), log: true }), lane("axis_deviation", "axis", { limit: turn, limits: axis_limits, log: true })] },
     { title: "Feed", lanes: lane("feed", "feed", { other: column("asked"), bands: column("limit"), zero: true }) },
     { title: "Positions", lanes: axes.map((name) => lane("q." + name, name)) },
     { title: "Velocities", lanes: axes.map((name) => lane("v." + name, name, { zero: true, limit: rate(name, "max_feed", 60) })) },

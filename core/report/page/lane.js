@@ -21,7 +21,7 @@ P.lane.draw = (paint, { lane, top, bottom }, rows) => {
   const { left, width, right, room } = P.charts;
   const { colour } = P;
   const { low, high, least, most } = P.lane.spans(lane.values, rows);
-  const limit = typeof lane.limit === "number" ? lane.limit : lane.limit ? P.m.tolerance : 0;
+  const { limit } = lane;
   const other = lane.other ? P.lane.spans(lane.other, rows) : null;
   const band = lane.bands && P.m.meta.limits.length ? 7 : 0;
   const floor = bottom - (band ? band + 3 : 0);
@@ -54,7 +54,7 @@ P.lane.draw = (paint, { lane, top, bottom }, rows) => {
   if (near) {
     const y = Math.round(y_of(limit)) + 0.5;
     P.stroke(paint, colour.bad.css, 1.2, [left, y, width - right, y], [6, 4]);
-    P.lane.over(paint, lane, limit, { low, high, rows }, y_of);
+    P.lane.over(paint, lane, { low, high, rows }, y_of);
   }
   paint.restore();
   if (band) P.lane.bands(paint, lane.bands, rows, bottom - band, band);
@@ -90,12 +90,11 @@ P.lane.frame = (paint, lane, top, floor, ticks, y_of) => {
 };
 
 // Columns with a block above its own limit stand out, as far as they are above that of most.
-P.lane.over = (paint, lane, limit, { low, high, rows }, y_of) => {
-  const own = typeof lane.limit === "number" ? null : lane.limit;
+P.lane.over = (paint, { values, limit, limits }, { low, high, rows }, y_of) => {
   paint.fillStyle = P.colour.bad.css;
   for (let x = 0; x < high.length; x++) {
-    let above = !own && high[x] > lane.limit;
-    for (let row = rows[x]; own && !above && row <= Math.max(rows[x + 1] - 1, rows[x]); row++) above = lane.values[row] > own[row];
+    let above = !limits && high[x] > limit;
+    for (let row = rows[x]; limits && !above && row <= Math.max(rows[x + 1] - 1, rows[x]); row++) above = values[row] > limits[row];
     if (above) paint.fillRect(P.charts.left + x - 0.5, y_of(high[x]), 2, Math.max(Math.min(y_of(low[x]), y_of(limit)) - y_of(high[x]), 3));
   }
 };

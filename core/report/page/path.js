@@ -259,7 +259,7 @@ P.path.tell = () => {
     const seen = mode.kinds.map((name, kind) => (has((row) => mode.value(row) === kind, m.rows) ? el("span", {}, strip(12, () => kind * 12 + 6), name) : null));
     told.push(el("div", { class: "kinds" }, seen));
   } else if (mode.raw) {
-    const limit = mode.limit ? m.tolerance : mode.fixed;
+    const limit = mode.fixed || (mode.id === "deviation" ? m.tolerance : m.turn);
     const ends = mode.top === null ? [`tolerance ${limit ? P.short(limit) + " " + P.unit(mode.unit) : ""}`, "above"] : [P.quantity(mode.top, mode.unit)];
     told.push(strip(170, (share) => share * (mode.top === null ? 255 : colour.top)), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));
   }

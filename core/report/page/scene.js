@@ -102,7 +102,7 @@ P.scene.thin = (line, budget) => {
   return { count: kept.length, pos, look };
 };
 
-// The deviation vectors as pairs: foot on the CL path, and the vector; of every group of points the largest.
+// The deviation vectors as pairs: foot on the CL path, and the vector; of every group of points in cuts the largest.
 P.scene.comb = (count, d) => {
   const { path } = P.scene;
   const step = Math.ceil(count / P.scene.most_vectors);
@@ -111,6 +111,7 @@ P.scene.comb = (count, d) => {
     let best = -1;
     let most = 0;
     for (let point = first; point < Math.min(first + step, count); point++) {
+      if (path.look[point * 4 + 1] !== P.scene.CUT) continue;
       const size = d[0][point] ** 2 + d[1][point] ** 2 + d[2][point] ** 2;
       if (size > most) {
         most = size;

@@ -125,9 +125,13 @@ P.model = (report) => {
   const timed = t1 !== null && total > 0;
   // The tolerance of the cuts, which most share; rapids have another.
   const tolerance = (report.meta.tolerances || {}).tip || 0;
+  // That of the tool axis holds for cuts alone: a rapid may turn the tool as it likes.
+  const kind = column("kind");
+  const turn = (report.meta.tolerances || {}).axis || 0;
+  const axis_limits = kind && turn ? Float32Array.from(kind, (value) => (value <= 2 ? Infinity : turn)) : null;
   const names = [...blocks.columns.keys()];
   const axes = names.filter((name) => name.startsWith("q.")).map((name) => name.slice(2));
-  return { report, meta: report.meta, rows, blocks, column, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance };
+  return { report, meta: report.meta, rows, blocks, column, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance, turn, axis_limits };
 };
 
 // Selects a block, and the machine stands at its end.

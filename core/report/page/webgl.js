@@ -71,7 +71,18 @@ P.webgl.start = (canvas, restored) => {
     names.forEach((name, at) => gl.bindAttribLocation(built, at, name));
     gl.linkProgram(built);
     if (!gl.getProgramParameter(built, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(gl.getProgramInfoLog(built));
-    return { built, at: (name) => gl.getUniformLocation(built, name) };
+    return built;
+  };
+  // Values into the uniforms of a program, each by its kind.
+  const put = (built, values) => {
+    gl.useProgram(built);
+    for (const [name, value] of Object.entries(values)) {
+      const at = gl.getUniformLocation(built, name);
+      if (typeof value === "number") gl.uniform1f(at, value);
+      else if (typeof value === "boolean") gl.uniform1i(at, value);
+      else if (value.length > 4) gl.uniformMatrix4fv(at, false, value);
+      else gl[`uniform${value.length}fv`](at, value);
+    }
   };
   const buffer = (values, kept) => {
     const filled = kept || gl.createBuffer();
@@ -136,51 +147,32 @@ P.webgl.start = (canvas, restored) => {
     stats.draws += 1;
     stats.vertices += vertices;
   };
-  const line = (name, matrix, { width, plain, thin, near, from = 0, to }) => {
+  const line = (name, matrix, { width = 1, plain, thin = false, near = 0 }) => {
     const kept = made.lines[name];
     const segments = kept ? kept.count - (kept.pairs ? 0 : 1) : 0;
     if (segments <= 0) return;
-    const { built, at } = made.line;
     const { width: w, height: h, dense } = P.camera;
-    gl.useProgram(built);
-    gl.uniformMatrix4fv(at("uClip"), false, matrix);
-    gl.uniform2f(at("uSize"), w * dense, h * dense);
-    gl.uniform1f(at("uWidth"), width);
-    gl.uniform1f(at("uPerMm"), P.camera.per_mm());
-    gl.uniform1f(at("uDense"), dense);
-    gl.uniform2f(at("uBrush"), ...(P.state.brush || [-1, 1e9]));
-    gl.uniform1i(at("uThin"), thin ? 1 : 0);
-    gl.uniform1f(at("uNear"), near || 0);
-    gl.uniform3fv(at("uPlain"), plain);
-    gl.uniform3fv(at("uRapid"), P.colour.rapid.rgb);
-    gl.uniform3fv(at("uGround"), P.colour.scene.rgb);
+    put(made.line, { uClip: matrix, uSize: [w * dense, h * dense], uWidth: width * dense, uPerMm: P.camera.per_mm(), uDense: dense, uBrush: P.state.brush || [-1, 1e9], uThin: thin, uNear: near, uPlain: plain, uRapid: P.colour.rapid.rgb, uGround: P.colour.scene.rgb });
     gl.bindVertexArray(thin ? kept.thin : kept.wide);
     if (thin) {
-      gl.drawArrays(gl.LINE_STRIP, from, (to ?? kept.count) - from);
-      count((to ?? kept.count) - from);
+      gl.drawArrays(gl.LINE_STRIP, 0, kept.count);
+      count(kept.count);
     } else {
       gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, segments);
       count(segments * 4);
     }
   };
-  const body = (mesh_name, mode, bodies, clip, { plain, alpha, lit }) => {
+  const body = (mesh_name, mode, bodies, clip, { plain, alpha, lit = false }) => {
     const { vao, count: vertices } = made.meshes[mesh_name];
     if (!vertices) return;
-    const { built, at } = made.body;
-    gl.useProgram(built);
-    bodies.forEach((matrix, index) => gl.uniformMatrix4fv(at(`uBodies[${index}]`), false, matrix));
-    gl.uniformMatrix4fv(at("uClip"), false, clip);
-    gl.uniform3fv(at("uBack"), P.camera.rows()[2]);
-    gl.uniform1i(at("uLit"), lit ? 1 : 0);
-    gl.uniform3fv(at("uPlain"), plain);
-    gl.uniform1f(at("uAlpha"), alpha);
+    put(made.body, { uBodies: bodies.flat(), uClip: clip, uBack: P.camera.rows()[2], uLit: lit, uPlain: plain, uAlpha: alpha });
     gl.bindVertexArray(vao);
     gl.drawArrays(mode, 0, vertices);
     count(vertices);
   };
   const draw = ({ clip, matrix, bodies, moving }) => {
     if (made.lost) return stats;
-    const { scene, colour, camera } = P;
+    const { scene, colour } = P;
     stats.draws = stats.vertices = 0;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...colour.scene.rgb, 1);
@@ -190,10 +182,10 @@ P.webgl.start = (canvas, restored) => {
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, made.ramp);
     const many = !moving && scene.path.count > 250000;
-    if (scene.cl) line(moving ? "cl_moving" : "cl", matrix, { width: 1, plain: colour.cl.rgb, thin: true });
-    line(moving ? "path_moving" : "path", matrix, { width: 2 * camera.dense, plain: colour.quiet.rgb, thin: many, near: 0.0004 });
-    if (scene.vectors) line(moving ? "vectors_moving" : "vectors", matrix, { width: 1.2 * camera.dense, plain: colour.mark.rgb, near: 0.0006 });
-    line("chosen", matrix, { width: 5 * camera.dense, plain: colour.select.rgb, near: 0.002 });
+    if (scene.cl) line(moving ? "cl_moving" : "cl", matrix, { plain: colour.cl.rgb, thin: true });
+    line(moving ? "path_moving" : "path", matrix, { width: 2, plain: colour.quiet.rgb, thin: many, near: 0.0004 });
+    if (scene.vectors) line(moving ? "vectors_moving" : "vectors", matrix, { width: 1.2, plain: colour.mark.rgb, near: 0.0006 });
+    line("chosen", matrix, { width: 5, plain: colour.select.rgb, near: 0.002 });
     if (bodies && made.meshes) {
       body("boxes", gl.LINES, bodies, clip, { plain: colour.strong.rgb, alpha: 1 });
       gl.enable(gl.BLEND);

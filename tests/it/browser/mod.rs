@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::Duration;
 
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -102,18 +103,22 @@ impl Browser {
     pub fn open(&mut self, file: &Path) {
         let url = format!("file://{}", file.display());
         self.send("Page.navigate", &json!({"url": url}));
-        self.ready();
+        let look = "[document.querySelector('[role=alert]')?.textContent ?? null, document.documentElement?.dataset.ready ?? null]";
+        for _ in 0..3000 {
+            let seen = self.ask(look);
+            assert!(seen[0].is_null(), "{url}: {seen}");
+            if !seen[1].is_null() {
+                self.frames();
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        panic!("{url} is not ready after a minute");
     }
 
-    /// Waits until the report can be used.
-    pub fn ready(&mut self) {
-        let wait = "new Promise(done => { const look = () => {
-            const alert = document.querySelector('[role=alert]');
-            if (alert) done(alert.textContent);
-            else if (document.documentElement.dataset.ready) requestAnimationFrame(() => requestAnimationFrame(() => done('')));
-            else setTimeout(look, 20);
-        }; look(); })";
-        assert_eq!(self.ask(wait), "");
+    /// Lets the page draw what it has to.
+    pub fn frames(&mut self) {
+        self.ask("new Promise(done => setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(() => done(0))), 250))");
     }
 
     /// Presses a key and lets it go, with shift where `key` begins with it.

@@ -114,7 +114,97 @@ P.table = (meta, chunks) => {
   return { name: meta.name, rows: sum, columns };
 };
 
-// A text, chunk by chunk: the number of its lines (32 bits), how it is packed (0: as it is), and what is packed.
+// Columns of integers one behind the other: the next moves `at` behind it.
+P.Reader = class {
+  constructor(bytes, at) {
+    this.bytes = bytes;
+    this.at = at;
+  }
+
+  word() {
+    this.at += 4;
+    return P.uint32(this.bytes, this.at - 4);
+  }
+
+  integers(rows) {
+    const values = new Float64Array(rows);
+    P.integers(this.bytes, this.at, rows, values, 0);
+    this.at += 2 + this.bytes[this.at + 1] * rows;
+    return values;
+  }
+};
+
+// A number as its column writes it: `digits` over ten to the power of `most`, with `wanted` decimals; -1: without zeros at
+// its end.
+P.number = (digits, most, wanted) => {
+  const all = Math.abs(digits).toFixed(0).padStart(most + 1, "0");
+  const whole = all.slice(0, all.length - most);
+  let behind = all.slice(all.length - most);
+  if (wanted < 0) behind = behind.replace(/0+$/, "");
+  else behind = behind.slice(0, wanted);
+  return (digits < 0 ? "-" : "") + whole + (behind ? "." + behind : "");
+};
+
+// The bytes of a chunk of lines that was packed as templates, which core/report/src/template.rs explains.
+P.ofTemplates = (bytes, start, lines) => {
+  const reader = new P.Reader(bytes, start);
+  const count = reader.word();
+  const templates = [];
+  for (let i = 0; i < count; i += 1) {
+    const length = reader.word();
+    const pieces = [];
+    let from = reader.at;
+    for (let at = reader.at; at < reader.at + length; at += 1) {
+      if (bytes[at] === 0) {
+        pieces.push(bytes.subarray(from, at));
+        from = at + 1;
+      }
+    }
+    pieces.push(bytes.subarray(from, reader.at + length));
+    reader.at += length;
+    templates.push({ pieces, places: [] });
+  }
+  const columns = Array.from({ length: reader.word() });
+  for (const { pieces, places } of templates) for (let i = 1; i < pieces.length; i += 1) places.push(reader.word());
+  const order = reader.integers(lines);
+  for (let i = 0; i < columns.length; i += 1) {
+    const rows = reader.word();
+    const form = bytes[reader.at];
+    reader.at += 1;
+    const digits = reader.integers(rows);
+    columns[i] = { form, digits, each: form >= 64 ? reader.integers(rows) : null, row: 0 };
+  }
+  if (reader.at !== bytes.length) throw new Error("A text of the report is damaged.");
+  let out = new Uint8Array(lines * 48 + 1024);
+  let at = 0;
+  const room = (more) => {
+    if (at + more <= out.length) return;
+    const larger = new Uint8Array(2 * (at + more));
+    larger.set(out);
+    out = larger;
+  };
+  for (const place of order) {
+    const { pieces, places } = templates[place];
+    for (let i = 0; i < pieces.length; i += 1) {
+      room(pieces[i].length + 32);
+      out.set(pieces[i], at);
+      at += pieces[i].length;
+      if (i === places.length) continue;
+      const column = columns[places[i]];
+      const { form, digits, each, row } = column;
+      column.row += 1;
+      const most = form % 32;
+      const text = P.number(digits[row], most, each ? each[row] : form >= 32 ? -1 : most);
+      for (let letter = 0; letter < text.length; letter += 1) {
+        out[at] = text.charCodeAt(letter);
+        at += 1;
+      }
+    }
+  }
+  return out.subarray(0, at);
+};
+
+// A text, chunk by chunk: the number of its lines (32 bits), how it is packed (0: as it is, 1: templates), and what is packed.
 P.Text = class {
   constructor(meta, chunks) {
     this.name = meta.name;
@@ -132,7 +222,7 @@ P.Text = class {
   // The bytes of a chunk, as they stand in the file.
   bytesOf(chunk) {
     const bytes = this.chunks[chunk];
-    return bytes.subarray(5);
+    return bytes[4] === 1 ? P.ofTemplates(bytes, 5, P.uint32(bytes, 0)) : bytes.subarray(5);
   }
 
   // The lines of a chunk; those of the last few are kept.

@@ -21,4 +21,5 @@ mod page;
 mod part;
 mod sha256;
 pub mod table;
+mod template;
 pub mod text;

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use crate::deflate::Deflate;
 use crate::meta::TextMeta;
-use crate::part;
+use crate::{part, template};
 
 /// Lines of a chunk.
 const CHUNK: u64 = 1 << 14;
@@ -79,8 +79,21 @@ impl<W: Write> TextWriter<W> {
         self.lines += self.in_chunk;
         let lines = (self.in_chunk as u32).to_le_bytes();
         self.deflate.piece(&lines);
-        self.deflate.piece(&[PLAIN]);
-        self.deflate.piece(&self.chunk);
+        // What would not come back letter for letter goes as it is.
+        let templates = template::encode(&self.chunk).filter(|packed| {
+            let back = template::decode(packed, self.in_chunk as usize);
+            back.as_deref() == Some(self.chunk.as_slice())
+        });
+        match templates {
+            Some(packed) => {
+                self.deflate.piece(&[TEMPLATES]);
+                self.deflate.piece(&packed);
+            }
+            None => {
+                self.deflate.piece(&[PLAIN]);
+                self.deflate.piece(&self.chunk);
+            }
+        }
         self.deflate.take(&mut self.packed);
         // A table may have the same name.
         let name = format!("text.{}", self.name);
@@ -93,3 +106,6 @@ impl<W: Write> TextWriter<W> {
 
 /// The chunk is the text as it is.
 const PLAIN: u8 = 0;
+
+/// The chunk is templates and columns.
+const TEMPLATES: u8 = 1;

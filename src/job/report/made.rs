@@ -6,9 +6,10 @@ use post_posting::report::{Deviation, Report};
 use post_readback::verify::Verification;
 use post_report::meta::{AxisUsed, Maximum, Names, Verdict};
 
-use super::{BlockRows, Parts};
+use super::{BlockRows, Parts, PredictedLines};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
+use crate::job::predict::Prediction;
 
 /// What is known of a program that is made.
 pub struct Made<'a> {
@@ -17,6 +18,7 @@ pub struct Made<'a> {
     pub program: &'a PathArg,
     pub report: &'a Report,
     pub verification: Option<&'a Verification>,
+    pub prediction: Option<&'a Prediction>,
     pub findings: &'a [Diagnostic],
     /// What was done: `post`, `plan`, `convert`.
     pub job: &'static str,
@@ -31,7 +33,7 @@ impl Made<'_> {
     /// A text cannot be read again, or the report not be written.
     pub fn write(
         &self,
-        rows: BlockRows<'_>,
+        (rows, series): (BlockRows<'_>, Option<PredictedLines>),
         (source, program): (&mut ClSource, &mut AtomicFile),
         most: u64,
         page: &mut AtomicFile,
@@ -51,7 +53,16 @@ impl Made<'_> {
         meta.warnings = super::warnings(self.findings, program.name());
         meta.excludes = super::excludes();
         meta.tool_length = self.report.tools.first().map_or(0.0, |tool| tool.length_mm);
+        if let Some(found) = self.prediction {
+            meta.maxima
+                .extend(super::predicted_maxima(self.machine, found));
+            meta.facts.extend(super::predicted_facts(found));
+            meta.excludes.extend(found.assumed.iter().cloned());
+        }
         let mut parts = Parts::default();
+        if let Some(series) = series {
+            series.finish(None, &mut parts)?;
+        }
         rows.finish(&mut parts, &mut meta)?;
         let name = program.name().to_owned();
         parts.text("nc", &name, &mut program.reread()?)?;

@@ -298,12 +298,13 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
             program: &arguments.output,
             report: &report,
             verification: Some(&held.found),
+            prediction: None,
             findings: &notes,
             job: "convert",
             facts: summed,
         };
         made.write(
-            rows,
+            (rows, None),
             (&mut source, program),
             arguments.report.most(),
             &mut page,

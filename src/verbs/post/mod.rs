@@ -25,7 +25,7 @@ use crate::job::compensate::{self, Compensation, Moved};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::predict::{self, Against, Asked, Predicted, Prediction};
 use crate::job::read_back::{self, Held, Reading};
-use crate::job::report::{BlockRows, ClWindow, Made};
+use crate::job::report::{BlockRows, ClWindow, Made, PredictedLines};
 use crate::job::{self, plan_rounds, plugin_finder};
 use crate::terminal;
 use parts::Split;
@@ -258,8 +258,14 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             }
             verifications.push(held.found);
         }
+        let mut series = None;
         if arguments.predict.is_some() {
-            let predicted = predicted(arguments, part, &finder, &mut source, file)?;
+            if page.is_some() {
+                let period = part.machine.motion.period;
+                series = Some(PredictedLines::new(&part.machine, period)?);
+            }
+            let files = (&mut source, &mut *file);
+            let predicted = predicted(arguments, part, &finder, files, series.as_mut())?;
             findings.extend(predicted.findings);
             predictions.push(predicted.found);
         }
@@ -270,6 +276,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
                 program: &part.target,
                 report,
                 verification: verifications.last(),
+                prediction: predictions.last(),
                 findings: &findings,
                 job: match arguments.plan {
                     true => "plan",
@@ -277,6 +284,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
                 },
                 facts: summary::facts(report, verifications.last()),
             };
+            let rows = (rows, series);
             made.write(rows, (&mut source, file), arguments.report.most(), page)?;
         }
     }
@@ -478,8 +486,8 @@ fn predicted(
     arguments: &PostArguments,
     part: &Part,
     finder: &Finder,
-    source: &mut ClSource,
-    file: &mut AtomicFile,
+    (source, file): (&mut ClSource, &mut AtomicFile),
+    mut series: Option<&mut PredictedLines>,
 ) -> Result<Predicted, Failure> {
     let asked = Asked {
         arguments: &arguments.job,
@@ -492,7 +500,12 @@ fn predicted(
     };
     let name = file.name().to_owned();
     let text = file.reread()?;
-    predict::predict(&asked, Against::Cl(source), &name, text, &mut |_| Ok(()))
+    predict::predict(&asked, Against::Cl(source), &name, text, &mut |sample| {
+        if let Some(series) = &mut series {
+            series.take(sample, None);
+        }
+        Ok(())
+    })
 }
 
 /// What the summary tells as JSON.

@@ -84,8 +84,8 @@ P.views.foot = () => {
     const { row, playing } = P.state;
     const word = (name) => (m.column(name) ? `${told[name]} ${P.quantity(m.column(name)[row], m.unit(name))}` : null);
     const limit = m.column("limit") && m.meta.limits[m.column("limit")[row]];
-    const parts = [`Block ${row + 1}`, m.lineOf("nc", row) ? `NC ${m.lineOf("nc", row)}` : null, m.lineOf("cl", row) ? `CL ${m.lineOf("cl", row)}` : null, m.timed ? `${P.number(m.end(row), "s")} s` : null,
-      ...m.axes.map((name) => `${name} ${P.number(m.column("q." + name)[row], m.unit("q." + name), 3)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
+    const parts = [`Block ${row + 1}`, m.lineOf("nc", row) ? `NC ${m.lineOf("nc", row)}` : null, m.lineOf("cl", row) ? `CL ${m.lineOf("cl", row)}` : null, m.timed ? `${P.shown(m.end(row), "s")} s` : null,
+      ...m.axes.map((name) => `${name} ${P.shown(m.column("q." + name)[row], m.unit("q." + name), 3)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
     const event = (P.scene.marks || []).find((mark) => mark.row === row && !mark.quiet);
     if (event) parts.push(event.text);
     chosen.setAttribute("aria-live", playing ? "off" : "polite");

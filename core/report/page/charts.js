@@ -5,16 +5,16 @@ P.charts = { groups: [], from: 0, to: 1, left: 76, right: 10 };
 
 // What can be drawn with the columns at hand.
 P.charts.find = () => {
-  const { column, unit, axes, meta, tolerance, turn, axis_limits } = P.m;
-  const lane = (name, title, more) => (column(name) ? [{ name, title, unit: unit(name), values: column(name), ...more }] : []);
+  const { column, has, unit, axes, meta, tolerance, turn } = P.m;
+  const lane = (name, title, more) => (has(name) ? [{ title, unit: unit(name), get: (key) => column(key || name), ...more }] : []);
   // What the machine file allows an axis, in the unit of the column.
   const rate = (name, key, over) => {
     const found = meta.machine && meta.machine.axes.find((one) => one.name === name);
     return found && found[key] ? found[key] / over : null;
   };
   return [
-    { title: "Deviation", lanes: [lane("deviation", "tip", { limit: tolerance, limits: column("tolerance"), log: true }), lane("axis_deviation", "axis", { limit: turn, limits: axis_limits, log: true })] },
-    { title: "Feed", lanes: lane("feed", "feed", { other: column("asked"), bands: column("limit"), zero: true }) },
+    { title: "Deviation", lanes: [lane("deviation", "tip", { limit: tolerance, limits: "tolerance", log: true }), lane("axis_deviation", "axis", { limit: turn, limits: "axis", log: true })] },
+    { title: "Feed", lanes: lane("feed", "feed", { other: has("asked") && "asked", bands: has("limit") && "limit", zero: true }) },
     { title: "Positions", lanes: axes.map((name) => lane("q." + name, name)) },
     { title: "Velocities", lanes: axes.map((name) => lane("v." + name, name, { zero: true, limit: rate(name, "max_feed", 60) })) },
     { title: "Accelerations", lanes: axes.map((name) => lane("a." + name, name, { zero: true, limit: rate(name, "max_accel", 1) })) },
@@ -125,7 +125,7 @@ P.charts.cursor = () => {
   if (x < left - 1 || x > width - right + 1) return;
   P.stroke(paint, colour.select.css, 1.5, [x, 0, x, floor]);
   for (const { lane, top } of places || []) {
-    const text = P.quantity(lane.values[state.row], lane.unit);
+    const text = P.quantity(lane.get()[state.row], lane.unit);
     const wide = paint.measureText(text).width + 8;
     const to = x + wide + 8 > width - right ? x - wide - 5 : x + 5;
     paint.globalAlpha = 0.88;
@@ -172,7 +172,7 @@ P.charts.handle = () => {
 // Of the blocks under a pixel the one that stands out in the first lane.
 P.charts.click = (x) => {
   const { places, row_at } = P.charts;
-  const { values } = places[0].lane;
+  const values = places[0].lane.get();
   let best = row_at(x + 0.5);
   for (let row = row_at(x - 0.5), last = best; row <= last; row++) if (Math.abs(values[row]) > Math.abs(values[best])) best = row;
   P.select(best);

@@ -72,9 +72,9 @@ P.colour.refresh = () => {
   for (const name of names) P.colour[name] = P.colour.of(name);
   const [r, g, b] = P.colour.scene.rgb;
   P.colour.dark = 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.4;
-  const mode = P.colour.modes[P.state.colour];
+  const mode = P.colour.mode();
   for (let place = 0; place < 256; place++) {
-    const colour = mode && mode.kinds ? P.colour.kind(Math.floor(place / 12), P.colour.dark) : P.colour.scale(place, P.colour.dark);
+    const colour = mode.kinds ? P.colour.kind(Math.floor(place / 12), P.colour.dark) : P.colour.scale(place, P.colour.dark);
     colour.forEach((value, at) => (P.colour.ramp[place * 4 + at] = Math.round(value * 255)));
     P.colour.ramp[place * 4 + 3] = 255;
   }
@@ -97,32 +97,39 @@ P.colour.place = (mode, value) => {
 P.KINDS = ["position", "reference", "rapid", "line", "arc", "spline", "cycle"];
 P.REASONS = ["point", "eased", "put in", "leave", "stage", "rewind", "feed"];
 
-// The ways of colouring that the columns of this report allow.
+// The ways of colouring that the columns of this report allow; a column is unpacked when its way is chosen.
 P.colour.find = () => {
-  const { column, meta, unit } = P.m;
+  const { column, has, meta, unit } = P.m;
   const modes = [];
-  // Kinds without cutting are no measure of a path: values are shown as they are.
+  // As a share of a limit, one for all or one a block; else of the largest.
   const share = (name, title, limits) => {
-    const values = column(name);
-    if (!values) return;
-    const fixed = typeof limits === "number" ? limits : 0;
-    const top = limits ? null : P.largest(values);
-    const limit = limits && !fixed ? limits : null;
-    const value = (row) => values[row] / (limit ? limit[row] || Infinity : fixed || top || 1);
-    modes.push({ id: name, title, value, bad: name !== "feed", raw: values, unit: unit(name), limit, fixed, top });
+    if (!has(name)) return;
+    const make = () => {
+      const values = column(name);
+      const limit = limits && limits();
+      const fixed = typeof limit === "number" ? limit : 0;
+      const top = limit ? null : P.largest(values);
+      const value = limit && !fixed ? (row) => values[row] / (limit[row] || Infinity) : (row) => values[row] / (fixed || top || 1);
+      return { value, fixed, top };
+    };
+    modes.push({ id: name, title, unit: unit(name), bad: name !== "feed", make });
   };
   const kinds = (name, title, words) => {
-    const values = column(name);
-    if (values && words.length) modes.push({ id: name, title, value: (row) => values[row], kinds: words });
+    if (has(name) && words.length) modes.push({ id: name, title, kinds: words, make: () => ({ value: (row) => column(name)[row] }) });
   };
-  const tolerances = meta.tolerances || {};
-  share("deviation", "tip deviation", column("tolerance") || tolerances.tip);
-  share("axis_deviation", "tool axis deviation", P.m.axis_limits || tolerances.axis);
-  share("contour", "contour error", 0);
-  share("feed", "feed", 0);
+  share("deviation", "tip deviation", () => column("tolerance") || P.m.tolerance);
+  share("axis_deviation", "tool axis deviation", () => P.m.axis_limits || P.m.turn);
+  share("contour", "contour error");
+  share("feed", "feed");
   kinds("limit", "what limits the feed", meta.limits || []);
   kinds("kind", "kind of block", P.KINDS);
   kinds("reason", "why the block is there", P.REASONS);
-  if (!modes.length) modes.push({ id: "plain", title: "path", value: () => 0 });
+  if (!modes.length) modes.push({ id: "plain", title: "path", make: () => ({ value: () => 0 }) });
   P.colour.modes = modes;
+};
+
+// The way in use.
+P.colour.mode = () => {
+  const mode = P.colour.modes[P.state.colour];
+  return mode.value ? mode : Object.assign(mode, mode.make());
 };

@@ -20,9 +20,9 @@ P.lane.spans = (values, rows) => {
 P.lane.draw = (paint, { lane, top, bottom }, rows) => {
   const { left, width, right, room } = P.charts;
   const { colour } = P;
-  const { low, high, least, most } = P.lane.spans(lane.values, rows);
+  const { low, high, least, most } = P.lane.spans(lane.get(), rows);
   const { limit } = lane;
-  const other = lane.other ? P.lane.spans(lane.other, rows) : null;
+  const other = lane.other ? P.lane.spans(lane.get(lane.other), rows) : null;
   const band = lane.bands && P.m.meta.limits.length ? 7 : 0;
   const floor = bottom - (band ? band + 3 : 0);
   let from = lane.zero ? Math.min(0, least) : least;
@@ -57,14 +57,14 @@ P.lane.draw = (paint, { lane, top, bottom }, rows) => {
     P.lane.over(paint, lane, { low, high, rows }, y_of);
   }
   paint.restore();
-  if (band) P.lane.bands(paint, lane.bands, rows, bottom - band, band);
+  if (band) P.lane.bands(paint, lane.get(lane.bands), rows, bottom - band, band);
 };
 
 // A logarithm begins at the least value, but no more than three decades under the largest.
 P.lane.deepest = (lane, limit) => {
   if (lane.low) return lane.low;
-  const most = Math.max(P.largest(lane.values), limit || 0, 1e-9);
-  const least = lane.values.reduce((low, value) => (value > 0 && value < low ? value : low), most);
+  const most = Math.max(P.largest(lane.get()), limit || 0, 1e-9);
+  const least = lane.get().reduce((low, value) => (value > 0 && value < low ? value : low), most);
   lane.low = 10 ** Math.max(Math.floor(Math.log10(least)), Math.floor(Math.log10(most) - 3));
   return lane.low;
 };
@@ -90,7 +90,10 @@ P.lane.frame = (paint, lane, top, floor, ticks, y_of) => {
 };
 
 // Columns with a block above its own limit stand out, as far as they are above that of most.
-P.lane.over = (paint, { values, limit, limits }, { low, high, rows }, y_of) => {
+P.lane.over = (paint, lane, { low, high, rows }, y_of) => {
+  const { limit } = lane;
+  const values = lane.get();
+  const limits = lane.limits === "axis" ? P.m.axis_limits : lane.limits && lane.get(lane.limits);
   paint.fillStyle = P.colour.bad.css;
   for (let x = 0; x < high.length; x++) {
     let above = !limits && high[x] > limit;

@@ -240,7 +240,7 @@ P.path.click = (x, y) => {
 // Says what the colours mean.
 P.path.tell = () => {
   const { el, colour, scene, state, m } = P;
-  const mode = colour.modes[state.colour];
+  const mode = colour.mode();
   const strip = (width, place) => {
     const canvas = el("canvas", { width, height: 10 });
     const paint = canvas.getContext("2d");
@@ -258,7 +258,7 @@ P.path.tell = () => {
   if (mode.kinds) {
     const seen = mode.kinds.map((name, kind) => (has((row) => mode.value(row) === kind, m.rows) ? el("span", {}, strip(12, () => kind * 12 + 6), name) : null));
     told.push(el("div", { class: "kinds" }, seen));
-  } else if (mode.raw) {
+  } else if (mode.unit) {
     const limit = mode.fixed || (mode.id === "deviation" ? m.tolerance : m.turn);
     const ends = mode.top === null ? [`tolerance ${limit ? P.short(limit) + " " + P.unit(mode.unit) : ""}`, "above"] : [P.quantity(mode.top, mode.unit)];
     told.push(strip(170, (share) => share * (mode.top === null ? 255 : colour.top)), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));

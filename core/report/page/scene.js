@@ -155,7 +155,7 @@ P.scene.drawn_vectors = (budget) => {
 // Colours of the mode in use, for every point of the path.
 P.scene.recolour = () => {
   const { path } = P.scene;
-  const mode = P.colour.modes[P.state.colour];
+  const mode = P.colour.mode();
   for (let point = 0; point < path.count; point++) {
     path.look[point * 4] = P.colour.place(mode, mode.value(path.look[point * 4 + 2]));
   }

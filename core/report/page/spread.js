@@ -4,10 +4,10 @@ P.spread = { kind: 0, bins: [], BINS: 20, left: 58, right: 16, top: 34, bottom: 
 
 P.spread.build = (view) => {
   const { el, spread } = P;
-  const { column, unit, meta } = P.m;
+  const { column, has, unit, meta } = P.m;
   const { tip, axis } = meta.tolerances || {};
   const all = [["deviation", "Tip deviation", tip], ["axis_deviation", "Tool axis deviation", axis], ["contour", "Contour error", 0]];
-  spread.kinds = all.filter(([name]) => column(name)).map(([name, title, limit]) => ({ title, limit, values: column(name), unit: unit(name) }));
+  spread.kinds = all.filter(([name]) => has(name)).map(([name, title, limit]) => ({ title, limit, get: () => column(name), unit: unit(name) }));
   const tabs = P.tabs("Spread of", spread.kinds.map(({ title }) => title), (at) => {
     spread.kind = at;
     tabs.choose(at);
@@ -28,7 +28,8 @@ P.spread.build = (view) => {
 };
 
 // Four bins a power of ten; what is smaller than the first goes into it.
-P.spread.count = ({ values, limit }) => {
+P.spread.count = ({ get, limit }) => {
+  const values = get();
   const { BINS } = P.spread;
   const [first, last] = P.state.brush || [0, P.m.rows - 1];
   const most = Math.max(P.largest(values.subarray(first, last + 1)), limit || 0) || 1e-6;
@@ -61,7 +62,7 @@ P.spread.draw = () => {
   }
   P.spread.bins = Array.from(counts, (count, bin) => {
     const x = left + bin * step;
-    const over = chosen.limit > 0 && worst[bin] >= 0 && chosen.values[worst[bin]] > chosen.limit;
+    const over = chosen.limit > 0 && worst[bin] >= 0 && chosen.get()[worst[bin]] > chosen.limit;
     const text = count.toLocaleString("en");
     paint.fillStyle = over ? bad.css : accent.css;
     if (count) paint.fillRect(x + 1, y_of(count), step - 2, floor - y_of(count));

@@ -58,13 +58,13 @@ P.clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 P.digits = { mm: 4, "°": 4, deg: 4, degrees: 4, s: 3, "mm/min": 1, "deg/min": 1 };
 
 // A number with as many digits as its unit deserves.
-P.number = (value, unit, digits) => {
+P.shown = (value, unit, digits) => {
   if (!Number.isFinite(value)) return "–";
   const places = digits ?? P.digits[unit] ?? 3;
   const small = value !== 0 && Math.abs(value) < 0.5 * 10 ** -places;
   return small ? value.toExponential(1) : (value.toFixed(places) * 1 === 0 ? (0).toFixed(places) : value.toFixed(places));
 };
-P.quantity = (value, unit, digits) => P.number(value, unit, digits) + (unit ? " " + P.unit(unit) : "");
+P.quantity = (value, unit, digits) => P.shown(value, unit, digits) + (unit ? " " + P.unit(unit) : "");
 P.unit = (unit) => (unit === "deg" || unit === "degrees" ? "°" : unit);
 // Of a tick of a chart: no more digits than tell.
 P.short = (value) => {
@@ -80,6 +80,8 @@ P.model = (report) => {
     const found = blocks.columns.get(name);
     return found ? found.values : null;
   };
+  // Whether there is one; asking for it would unpack it.
+  const has = (name) => blocks.columns.has(name);
   const unit = (name) => (blocks.columns.get(name) || {}).unit || "";
   const rows = blocks.rows;
   const places = {};
@@ -131,12 +133,12 @@ P.model = (report) => {
   const axis_limits = kind && turn ? Float32Array.from(kind, (value) => (value <= 2 ? Infinity : turn)) : null;
   const names = [...blocks.columns.keys()];
   const axes = names.filter((name) => name.startsWith("q.")).map((name) => name.slice(2));
-  return { report, meta: report.meta, rows, blocks, column, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance, turn, axis_limits };
+  return { report, meta: report.meta, rows, blocks, column, has, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance, turn, axis_limits };
 };
 
 // Selects a block, and the machine stands at its end.
 P.select = (row, line) => {
-  const found = P.clamp(row, 0, P.m.rows - 1);
+  const found = P.clamp(row, 0, Math.max(P.m.rows - 1, 0));
   P.set({ row: found, share: 1, line: line || null });
   P.remember();
 };
@@ -178,8 +180,8 @@ P.select_line = (name, line) => {
 // What "worse" means: the part of its tolerance that a block takes, else what there is to compare.
 P.worth = () => {
   const { column, rows } = P.m;
-  const mode = P.colour.modes[P.state.colour];
-  if (mode && mode.bad) return mode.value;
+  const mode = P.colour.mode();
+  if (mode.bad) return mode.value;
   const deviation = column("deviation");
   const tolerance = column("tolerance");
   if (deviation) return (row) => (tolerance && tolerance[row] > 0 ? deviation[row] / tolerance[row] : deviation[row]);

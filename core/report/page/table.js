@@ -11,7 +11,7 @@ P.numbers.build = (view) => {
   const text = (one, row) => {
     const value = one.values[row];
     if (words[one.name]) return words[one.name][value] || "";
-    return one.values instanceof Int32Array ? String(value) : P.number(value, one.unit);
+    return one.values instanceof Int32Array ? String(value) : P.shown(value, one.unit);
   };
   const box = el("div", { class: "grid", role: "grid", tabindex: "0", "aria-label": "Blocks", "aria-rowcount": m.rows + 1, "aria-colcount": columns.length + 1 });
   box.append(el("div", { class: "row top", role: "row" }, cell("columnheader", "block"), columns.map((one) => cell("columnheader", title(one)))));

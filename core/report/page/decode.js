@@ -64,9 +64,103 @@ P.integers = (bytes, at, rows, out, start) => {
   }
 };
 
+// The tip (mm, part frame) and the tool axis by the chain, from axis values as the control shows them: one product from the
+// workpiece to the tool, as core/machine has it.
+P.poser = (machine) => {
+  const axes = machine.axes.map((axis) => ({ ...axis, turns: axis.kind === "rotary", unit: axis.kind === "rotary" ? Math.PI / 180 : 1 }));
+  const [mx, my, mz] = [machine.mount[0][3], machine.mount[1][3], machine.mount[2][3]];
+  // Into `pose`: x, y, z, i, j, k.
+  return (value, length, pose) => {
+    let [i, j, k] = machine.tool_axis;
+    let [x, y, z] = [machine.gauge[0] - i * length, machine.gauge[1] - j * length, machine.gauge[2] - k * length];
+    for (let place = axes.length - 1; place >= 0; place -= 1) {
+      const axis = axes[place];
+      const [a, b, c] = axis.direction;
+      const q = (value(place) - axis.zero) * axis.unit;
+      if (!axis.turns) {
+        x += a * q;
+        y += b * q;
+        z += c * q;
+        continue;
+      }
+      const sine = Math.sin(q);
+      const cosine = Math.cos(q);
+      const [px, py, pz] = axis.point;
+      const turn = (u, v, w) => {
+        const along = (a * u + b * v + c * w) * (1 - cosine);
+        return [
+          u * cosine + (b * w - c * v) * sine + a * along,
+          v * cosine + (c * u - a * w) * sine + b * along,
+          w * cosine + (a * v - b * u) * sine + c * along,
+        ];
+      };
+      [x, y, z] = turn(x - px, y - py, z - pz);
+      x += px;
+      y += py;
+      z += pz;
+      [i, j, k] = turn(i, j, k);
+    }
+    pose[0] = x - mx;
+    pose[1] = y - my;
+    pose[2] = z - mz;
+    pose[3] = i;
+    pose[4] = j;
+    pose[5] = k;
+  };
+};
+
+// Columns that are told against what follows from others, so that only what is left of them is packed: the sum is what Rust
+// has told, to its last decimal.
+P.derive = {
+  // Tip and tool axis, told against the chain.
+  chain: (report, columns) => {
+    const machine = report.meta.machine;
+    const axes = machine.axes.map((axis) => columns.get(`q.${axis.name}`).values);
+    const lengths = columns.get("tool_length").values;
+    const names = ["tip.x", "tip.y", "tip.z", "axis.i", "axis.j", "axis.k"];
+    const values = names.map((name) => columns.get(name).packed());
+    const pose = new Float64Array(6);
+    const into = P.poser(machine);
+    for (let row = 0; row < lengths.length; row += 1) {
+      into((place) => axes[place][row], lengths[row], pose);
+      for (let name = 0; name < 6; name += 1) values[name][row] += pose[name];
+    }
+    names.forEach((name, place) => { columns.get(name).unpacked = values[place]; });
+  },
+  // The beginning of a block, told against the end of the one before.
+  t1: (report, columns) => {
+    const ends = columns.get("t1").values;
+    const values = columns.get("t0").packed();
+    for (let row = 1; row < values.length; row += 1) values[row] += ends[row - 1];
+    columns.get("t0").unpacked = values;
+  },
+  // Places of a block, told against even steps from tip to tip.
+  tip: (report, columns) => {
+    const blocks = report.tables.blocks.columns;
+    const rows = columns.get("row").values;
+    for (const name of ["x", "y", "z"]) {
+      const tips = blocks.get(`tip.${name}`).values;
+      const values = columns.get(name).packed();
+      let first = 0;
+      while (first < rows.length) {
+        const row = rows[first];
+        let end = first + 1;
+        while (end < rows.length && rows[end] === row) end += 1;
+        const to = tips[row];
+        const from = row > 0 ? tips[row - 1] : to;
+        for (let place = first; place < end; place += 1) values[place] += from + (to - from) * ((place - first + 1) / (end - first));
+        first = end;
+      }
+      columns.get(name).unpacked = values;
+    }
+  },
+};
+
 // A column whose values are unpacked when somebody asks for them first.
 P.Column = class {
-  constructor(meta, rows, pieces) {
+  constructor(meta, rows, pieces, owner) {
+    this.owner = owner;
+    this.from = meta.from;
     this.name = meta.name;
     this.unit = meta.unit;
     this.decimals = meta.decimals;
@@ -76,7 +170,15 @@ P.Column = class {
   }
 
   get values() {
-    if (this.unpacked) return this.unpacked;
+    if (!this.unpacked) {
+      if (this.from) P.derive[this.from](this.owner.report, this.owner.columns);
+      else this.unpacked = this.packed();
+    }
+    return this.unpacked;
+  }
+
+  // What is packed, unpacked.
+  packed() {
     const values = new Float64Array(this.rows);
     let start = 0;
     for (const piece of this.pieces) {
@@ -84,18 +186,14 @@ P.Column = class {
       start += piece.rows;
     }
     this.pieces = null;
-    if (this.decimals === 0) {
-      this.unpacked = Int32Array.from(values);
-    } else {
-      const scale = 10 ** this.decimals;
-      for (let row = 0; row < values.length; row += 1) values[row] /= scale;
-      this.unpacked = values;
-    }
-    return this.unpacked;
+    if (this.decimals === 0) return Int32Array.from(values);
+    const scale = 10 ** this.decimals;
+    for (let row = 0; row < values.length; row += 1) values[row] /= scale;
+    return values;
   }
 };
 
-P.table = (meta, chunks) => {
+P.table = (meta, chunks, report) => {
   const pieces = meta.columns.map(() => []);
   let sum = 0;
   for (const bytes of chunks) {
@@ -110,7 +208,8 @@ P.table = (meta, chunks) => {
   }
   if (sum !== meta.rows) throw new Error(`The table ${meta.name} has ${sum} rows, and should have ${meta.rows}.`);
   const columns = new Map();
-  meta.columns.forEach((column, index) => columns.set(column.name, new P.Column(column, sum, pieces[index])));
+  const owner = { report, columns };
+  meta.columns.forEach((column, index) => columns.set(column.name, new P.Column(column, sum, pieces[index], owner)));
   return { name: meta.name, rows: sum, columns };
 };
 
@@ -273,7 +372,18 @@ P.load = async () => {
   const meta = JSON.parse(new TextDecoder().decode(bytes[0]));
   if (meta.format !== P.FORMAT) throw new Error(`The report has format ${meta.format}, and this page reads ${P.FORMAT}.`);
   const report = { meta, tables: {}, texts: {} };
-  for (const table of meta.tables) report.tables[table.name] = P.table(table, chunks.get(table.name) || []);
+  for (const table of meta.tables) report.tables[table.name] = P.table(table, chunks.get(table.name) || [], report);
   for (const text of meta.texts) report.texts[text.name] = new P.Text(text, chunks.get(`text.${text.name}`) || []);
+  P.check(report);
   return report;
+};
+
+// The chain of this page must be that of Rust: what follows from it is shown as if Rust had told it.
+P.check = ({ meta }) => {
+  const pose = new Float64Array(6);
+  for (const check of meta.checks) {
+    P.poser(meta.machine)((place) => check.joints[place], check.tool_length, pose);
+    const far = [...check.tip, ...check.axis].some((value, place) => !(Math.abs(value - pose[place]) < 1e-6));
+    if (far) throw new Error(`The chain of the page is not that of the machine: row ${check.row}.`);
+  }
 };

@@ -42,6 +42,8 @@ pub struct Meta {
     pub machine: Option<MachineMeta>,
     /// From the gauge point to the tip, mm; of several tools the first.
     pub tool_length: f64,
+    /// Poses with all their digits.
+    pub checks: Vec<Check>,
     /// What `--report-max` left out.
     pub parts_left_out: Vec<String>,
     /// The tables of the document.
@@ -196,6 +198,21 @@ pub struct AxisMeta {
     pub max_accel: Option<f64>,
 }
 
+/// A pose as it was reckoned here, for the page to hold its chain against.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Check {
+    /// Row of the table of blocks.
+    pub row: u64,
+    /// Axis values in chain order, as the control shows them.
+    pub joints: Vec<f64>,
+    /// From the gauge point to the tip.
+    pub tool_length: f64,
+    /// The tip, part frame.
+    pub tip: [f64; 3],
+    /// The tool axis, part frame.
+    pub axis: [f64; 3],
+}
+
 /// What the page must know of a table.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct TableMeta {
@@ -218,6 +235,10 @@ pub struct ColumnMeta {
     pub unit: &'static str,
     /// Decimals: a value is an integer over a power of ten.
     pub decimals: u8,
+    /// What it is told against: `chain`, where tip and tool axis are by the axis values of the row; `t1`, that of the row
+    /// before; `tip`, evenly between the tips of the block. None: it is told as it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<&'static str>,
 }
 
 /// What the page must know of a text.

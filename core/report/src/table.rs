@@ -18,6 +18,8 @@ pub struct Column {
     pub unit: &'static str,
     /// Decimals that are kept.
     pub decimals: u8,
+    /// What the rows tell it against ([`ColumnMeta::from`]).
+    pub from: Option<&'static str>,
 }
 
 impl Column {
@@ -27,7 +29,14 @@ impl Column {
             name: name.into(),
             unit,
             decimals,
+            from: None,
         }
+    }
+
+    /// The same, told against what the page derives.
+    pub fn from(mut self, what: &'static str) -> Self {
+        self.from = Some(what);
+        self
     }
 }
 
@@ -104,6 +113,7 @@ impl<W: Write> TableWriter<W> {
             name: column.name,
             unit: column.unit,
             decimals: column.decimals,
+            from: column.from,
         });
         let meta = TableMeta {
             name: self.name,

@@ -13,6 +13,7 @@ use post_machine::description::Tcp;
 use post_machine::kinematics::{Chain, Joints};
 
 use super::cl_window::ClWindow;
+use super::derived::{DECIMALS, Derived};
 use super::parts::{Parts, fault};
 use super::path_rows::PathRows;
 use crate::failure::Failure;
@@ -45,8 +46,10 @@ pub struct BlockRows<'m> {
     width: usize,
     /// Rows that came.
     came: u64,
-    /// End of the last block, s.
+    /// The time, s.
     time: f64,
+    /// End of the last block, s.
+    end: f64,
     hole: bool,
     reason: Reason,
     /// Decimals of deviations, and ten to that power.
@@ -60,10 +63,29 @@ pub struct BlockRows<'m> {
     fault: Option<Failure>,
     path: PathRows,
     cl: ClWindow,
+    derived: Derived<'m>,
     /// The chain of the head in use, its tool without a length.
     chain: Option<Chain>,
     /// Where the last block ended: its line, its axis values and its tip.
     last: Option<(u64, Joints, Vector3<f64>)>,
+}
+
+/// The columns of tip and tool axis.
+pub fn pose_columns(derived: bool) -> Vec<Column> {
+    let tip = ["x", "y", "z"].map(|name| Column::new(format!("tip.{name}"), "mm", 4));
+    let axis = ["i", "j", "k"].map(|name| Column::new(format!("axis.{name}"), "", 6));
+    let columns = tip.into_iter().chain(axis);
+    columns
+        .map(|column| match derived {
+            true => column.from("chain"),
+            false => column,
+        })
+        .collect()
+}
+
+/// A number as it is packed with four decimals.
+pub fn packed(value: f64) -> f64 {
+    (value * 1e4).round_ties_even() / 1e4
 }
 
 /// Decimals of which the last is at most a fiftieth of a tolerance.
@@ -117,20 +139,20 @@ impl<'m> BlockRows<'m> {
         let mut columns = vec![
             Column::new("nc", "", 0),
             Column::new("cl", "", 0),
-            Column::new("t0", "s", 4),
+            Column::new("t0", "s", 4).from("t1"),
             Column::new("t1", "s", 4),
             Column::new("kind", "", 0),
             Column::new("reason", "", 0),
         ];
         for (name, rotary) in &axes {
             let (unit, decimals) = match rotary {
-                true => ("deg", 5),
-                false => ("mm", 4),
+                true => ("deg", DECIMALS[1]),
+                false => ("mm", DECIMALS[0]),
             };
             columns.push(Column::new(format!("q.{name}"), unit, decimals));
         }
-        columns.extend(["x", "y", "z"].map(|name| Column::new(format!("tip.{name}"), "mm", 4)));
-        columns.extend(["i", "j", "k"].map(|name| Column::new(format!("axis.{name}"), "", 6)));
+        let derived = Derived::new(machine);
+        columns.extend(pose_columns(derived.is_known()));
         columns.extend([
             Column::new("deviation", "mm", tip),
             Column::new("axis_deviation", "deg", turn),
@@ -149,6 +171,7 @@ impl<'m> BlockRows<'m> {
             waiting: VecDeque::new(),
             came: 0,
             time: 0.0,
+            end: 0.0,
             hole: false,
             reason: Reason::Point,
             scale: power(tip),
@@ -159,6 +182,7 @@ impl<'m> BlockRows<'m> {
             largest: [Largest::default(); 3],
             fault: None,
             path: PathRows::new(machine)?,
+            derived,
             cl,
             chain: chain(machine),
             last: None,
@@ -183,6 +207,7 @@ impl<'m> BlockRows<'m> {
         }
         self.path.finish(parts)?;
         self.cl.finish(parts)?;
+        meta.checks = self.derived.checks();
         meta.limits = self.limits;
         meta.events = self.events;
         meta.events_left_out = self.left_out;
@@ -213,8 +238,10 @@ impl<'m> BlockRows<'m> {
     fn block(&mut self, block: &Block) {
         let row = self.came;
         self.came += 1;
-        let from = self.time;
+        // Told against the end of the block before.
+        let from = packed(self.time) - packed(self.end);
         self.time += block.time.minutes * 60.0;
+        self.end = self.time;
         let kind = match (self.hole, block.kind) {
             (true, _) => 6,
             (_, MotionKind::Position) => 0,
@@ -265,7 +292,14 @@ impl<'m> BlockRows<'m> {
             }
         }
         let length = self.length(block);
-        self.path(row, block, length);
+        let pose = self.derived.pose(&block.joints, length);
+        let [tip, axis] = match pose {
+            Some([tip, axis]) => [block.tip - tip, block.axis - axis],
+            None => [block.tip, block.axis],
+        };
+        let end = pose.map_or_else(Vector3::zeros, |[tip, _]| tip) + tip.map(packed);
+        self.derived.check(row, &block.joints, length);
+        self.path(row, block, length, end);
         let head = [
             0.0,
             block.line as f64,
@@ -282,8 +316,8 @@ impl<'m> BlockRows<'m> {
             let value = value.map_or(0.0, |(axis, value)| axis.reading(*value));
             self.waiting.push_back(value);
         }
-        self.waiting.extend(block.tip.iter());
-        self.waiting.extend(block.axis.iter());
+        self.waiting.extend(tip.iter());
+        self.waiting.extend(axis.iter());
         self.waiting.extend([
             up(block.deviation.tip, self.scale),
             up(block.deviation.axis.to_degrees(), self.axis_scale),
@@ -304,8 +338,9 @@ impl<'m> BlockRows<'m> {
     }
 
     /// Where the tip goes in a block, for the table of the path.
-    fn path(&mut self, row: u64, block: &Block, length: f64) {
+    fn path(&mut self, row: u64, block: &Block, length: f64, end: Vector3<f64>) {
         let last = self.last.replace((block.line, block.joints, block.tip));
+        let mut places = Vec::new();
         self.cl.advance(block.line);
         if let Some((line, joints, tip)) = last {
             self.cl.forget(line.min(block.line));
@@ -314,19 +349,20 @@ impl<'m> BlockRows<'m> {
                 MotionKind::Arc | MotionKind::Spline => {
                     // Certified to be that of the CL file within the tolerance: where on it nobody has held it.
                     for place in self.cl.between(tip, block.tip) {
-                        self.path.place(row, place, None);
+                        places.push((place, None));
                     }
                 }
                 MotionKind::Rapid | MotionKind::Linear => {
                     if let Some(middle) = self.middle(&joints, block, tip, length) {
                         let off = self.cl.off(middle);
-                        self.path.place(row, middle, off);
+                        places.push((middle, off));
                     }
                 }
             }
         }
         let off = self.cl.off(block.tip);
-        self.path.place(row, block.tip, off);
+        places.push((block.tip, off));
+        self.path.block(row, end, &places);
     }
 
     /// Where the tip stands in the middle of a block, where that is not the middle of a straight line.

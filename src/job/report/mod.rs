@@ -5,6 +5,7 @@
 
 mod block_rows;
 mod cl_window;
+mod derived;
 mod findings;
 mod machine;
 mod made;

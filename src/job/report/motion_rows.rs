@@ -12,8 +12,9 @@ use post_readback::{Done, Motion, MotionKind, Told};
 use post_report::meta::{AxisUsed, Event, Meta};
 use post_report::table::{Column, TableWriter};
 
-use super::block_rows::{MOST_EVENTS, decimals};
+use super::block_rows::{MOST_EVENTS, decimals, packed, pose_columns};
 use super::cl_window::ClWindow;
+use super::derived::{DECIMALS, Derived};
 use super::parts::{Parts, fault};
 use super::path_rows::PathRows;
 use crate::failure::Failure;
@@ -59,6 +60,8 @@ struct Waiting {
     nc: u64,
     kind: MotionKind,
     values: Vec<f64>,
+    /// The tip at the end, and as it is packed.
+    tips: [Vector3<f64>; 2],
     places: Vec<Vector3<f64>>,
 }
 
@@ -69,6 +72,9 @@ pub struct MotionRows<'m> {
     besides: Besides,
     table: TableWriter<Scratch>,
     path: PathRows,
+    derived: Derived<'m>,
+    /// End of the row before, s.
+    end: f64,
     cl: Option<ClWindow>,
     /// Line of the CL file of the row before.
     last_cl: u64,
@@ -104,19 +110,19 @@ impl<'m> MotionRows<'m> {
         let accuracy = &machine.accuracy;
         let mut columns = vec![
             Column::new("nc", "", 0),
-            Column::new("t0", "s", 4),
+            Column::new("t0", "s", 4).from("t1"),
             Column::new("t1", "s", 4),
             Column::new("kind", "", 0),
         ];
         for axis in &machine.axes {
             let (unit, decimals) = match axis.joint.rotary {
-                true => ("deg", 5),
-                false => ("mm", 4),
+                true => ("deg", DECIMALS[1]),
+                false => ("mm", DECIMALS[0]),
             };
             columns.push(Column::new(format!("q.{}", axis.name), unit, decimals));
         }
-        columns.extend(["x", "y", "z"].map(|name| Column::new(format!("tip.{name}"), "mm", 4)));
-        columns.extend(["i", "j", "k"].map(|name| Column::new(format!("axis.{name}"), "", 6)));
+        let derived = Derived::new(machine);
+        columns.extend(pose_columns(derived.is_known()));
         columns.extend([
             Column::new("feed", "mm/min", 1),
             Column::new("tool_length", "mm", 4),
@@ -146,6 +152,8 @@ impl<'m> MotionRows<'m> {
             besides,
             table: TableWriter::new("blocks", columns, Parts::scratch()?),
             path: PathRows::new(machine)?,
+            derived,
+            end: 0.0,
             cl,
             last_cl: 0,
             waiting: VecDeque::new(),
@@ -219,6 +227,7 @@ impl<'m> MotionRows<'m> {
             let known = known.find(|(value, _, nc)| *value > 0.0 && maximum.nc == Some(*nc));
             maximum.row = known.map(|(_, row, _)| *row);
         }
+        meta.checks = self.derived.checks();
         meta.axes_used = self.used;
         meta.limits = self.limits;
         meta.events = self.events;
@@ -267,18 +276,26 @@ impl<'m> MotionRows<'m> {
         let mut values = vec![motion.line as f64, from, self.time, f64::from(kind)];
         let axes = self.machine.axes.iter().zip(&motion.to.joints);
         values.extend(axes.map(|(axis, value)| axis.reading(*value)));
-        let pose = motion.to.pose;
-        values.extend(pose.tip.iter());
-        values.extend(pose.axis.iter());
         // The chain has the tool in it: where the gauge point is, is the same with every tool.
         let tip = motion.state.solver.chain().tip();
         let length = (self.machine.gauge - tip).dot(&self.machine.tool_axis);
         self.length.get_or_insert(length);
+        let pose = motion.to.pose;
+        let derived = self.derived.pose(&motion.to.joints, length);
+        let [left, axis] = match derived {
+            Some([tip, axis]) => [pose.tip - tip, pose.axis - axis],
+            None => [pose.tip, pose.axis],
+        };
+        let end = derived.map_or_else(Vector3::zeros, |[tip, _]| tip) + left.map(packed);
+        self.derived.check(self.came, &motion.to.joints, length);
+        values.extend(left.iter());
+        values.extend(axis.iter());
         values.extend([motion.feed, length]);
         self.waiting.push_back(Waiting {
             nc: motion.line,
             kind: motion.kind,
             values,
+            tips: [pose.tip, end],
             places: self.places(motion),
         });
         self.came += 1;
@@ -343,6 +360,7 @@ impl<'m> MotionRows<'m> {
             nc,
             kind,
             mut values,
+            tips: [tip, end],
             places,
         }) = self.waiting.pop_front()
         else {
@@ -354,6 +372,9 @@ impl<'m> MotionRows<'m> {
         if let Some([from, to]) = heard.times {
             (values[1], values[2]) = (from, to);
         }
+        let from = packed(values[1]) - packed(self.end);
+        self.end = values[2];
+        values[1] = from;
         let limit = heard.limit.as_deref();
         let limit = limit.map_or(-1.0, |limit| self.limit(limit));
         values.extend([heard.cl as f64, limit]);
@@ -372,8 +393,6 @@ impl<'m> MotionRows<'m> {
                 values.extend(axes.map(|(axis, peak)| peak / axis.unit()));
             }
         }
-        let place = 4 + self.machine.axes.len();
-        let tip = Vector3::new(values[place], values[place + 1], values[place + 2]);
         let off = |cl: &Option<ClWindow>, tip| match heard.cl {
             0 => None,
             _ => cl.as_ref().and_then(|cl| cl.off(tip)),
@@ -383,9 +402,12 @@ impl<'m> MotionRows<'m> {
             cl.forget(self.last_cl.min(heard.cl));
             self.last_cl = heard.cl;
         }
-        for place in places.into_iter().chain([tip]) {
-            self.path.place(row, place, off(&self.cl, place));
-        }
+        let places: Vec<_> = places
+            .into_iter()
+            .chain([tip])
+            .map(|place| (place, off(&self.cl, place)))
+            .collect();
+        self.path.block(row, end, &places);
         if kind != MotionKind::Rapid {
             let [tip, axis] = heard.deviation;
             for (largest, value) in self.largest.iter_mut().zip([tip, axis, heard.contour]) {

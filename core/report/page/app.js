@@ -145,6 +145,7 @@ P.views.start = (report) => {
 };
 
 P.load().then(P.views.start).catch((fault) => {
+  P.by("views").hidden = true;
   P.by("head").replaceChildren(P.el("p", { role: "alert", class: "bad" }, `The report cannot be shown: ${fault.message || fault}`));
   console.error(fault);
 });

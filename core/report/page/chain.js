@@ -1,4 +1,4 @@
-// The forward product, as the command has it: from the tool to the workpiece, joint by joint.
+// The chain as it is drawn: where its bodies stand. Tip and tool axis follow from the same product as in decode.js.
 
 P.chain = {};
 
@@ -24,10 +24,7 @@ P.chain.unit = (v) => {
 };
 
 // Where the part origin sits with all axes at zero, mm, machine frame.
-P.chain.mount = (machine) => {
-  const mount = machine.mount || [0, 0, 0];
-  return mount.length === 16 ? [mount[3], mount[7], mount[11]] : Array.isArray(mount[0]) ? [mount[0][3], mount[1][3], mount[2][3]] : mount;
-};
+P.chain.mount = ({ mount }) => mount.slice(0, 3).map((row) => row[3]);
 
 // The tip with all axes at zero for a tool of this length, mm, machine frame.
 P.chain.tip = (machine, length) => {
@@ -37,23 +34,9 @@ P.chain.tip = (machine, length) => {
 
 // Tip and tool axis in the part frame, from axis positions as the control shows them, mm and degrees, in the chain's order.
 P.chain.forward = (machine, values, length) => {
-  let tip = P.chain.tip(machine, length);
-  let axis = P.chain.unit(machine.tool_axis);
-  for (let at = machine.axes.length - 1; at >= 0; at--) {
-    const { kind, direction, point, zero } = machine.axes[at];
-    const k = P.chain.unit(direction);
-    const value = values[at] - (zero || 0);
-    if (kind === "rotary") {
-      const [sine, cosine] = P.chain.trig(value);
-      const arm = P.chain.turn([tip[0] - point[0], tip[1] - point[1], tip[2] - point[2]], k, sine, cosine);
-      tip = [point[0] + arm[0], point[1] + arm[1], point[2] + arm[2]];
-      axis = P.chain.turn(axis, k, sine, cosine);
-    } else {
-      tip = [tip[0] + k[0] * value, tip[1] + k[1] * value, tip[2] + k[2] * value];
-    }
-  }
-  const mount = P.chain.mount(machine);
-  return { tip: [tip[0] - mount[0], tip[1] - mount[1], tip[2] - mount[2]], axis };
+  const pose = new Float64Array(6);
+  P.poser(machine)((at) => values[at], length || 0, pose);
+  return { tip: [...pose.subarray(0, 3)], axis: [...pose.subarray(3)] };
 };
 
 // A rigid motion: three columns of a rotation and a shift, as sixteen numbers column by column.

@@ -40,7 +40,7 @@ P.colour.scale = (place, dark) => {
       : P.colour.rgb(0.76 - 0.3 * share, 0.1 + 0.08 * share, 205 + 65 * share);
   }
   const share = (place - top) / (255 - top);
-  return dark ? P.colour.rgb(0.8 + 0.12 * share, 0.17, 62 + 36 * share) : P.colour.rgb(0.44 - 0.08 * share, 0.19, 29 - 6 * share);
+  return dark ? P.colour.rgb(0.84 + 0.09 * share, 0.16, 72 + 26 * share) : P.colour.rgb(0.435 - 0.09 * share, 0.16 - 0.04 * share, 29);
 };
 
 // Kinds differ in lightness as well as in hue.

@@ -27,6 +27,7 @@ P.paint = (canvas, { width, height, dense }, ground) => {
   paint.fillStyle = ground || "transparent";
   paint.fillRect(0, 0, width, height);
   paint.font = P.FONT;
+  paint.lineJoin = "round";
   return paint;
 };
 

@@ -63,7 +63,6 @@ P.over.text = (paint, text, x, y, css) => {
   paint.textAlign = "center";
   paint.textBaseline = "middle";
   paint.lineWidth = 4;
-  paint.lineJoin = "round";
   paint.strokeStyle = P.colour.scene.css;
   paint.strokeText(text, x, y);
   P.write(paint, text, x, y, css);

@@ -175,7 +175,7 @@ P.path.matrices = () => {
 P.path.redraw = (moving) => {
   if (!P.path.renderer || !P.path.sized) return;
   clearTimeout(P.path.rest);
-  P.path.moving = P.path.moving || Boolean(moving);
+  P.path.moving = Boolean(moving);
   if (moving) P.path.rest = setTimeout(() => P.path.redraw(), 160);
   if (P.path.waiting) return;
   P.path.waiting = requestAnimationFrame(() => P.path.draw(P.path.moving));
@@ -184,7 +184,6 @@ P.path.redraw = (moving) => {
 P.path.draw = (moving) => {
   cancelAnimationFrame(P.path.waiting);
   P.path.waiting = null;
-  P.path.moving = false;
   const given = P.path.matrices();
   const shown = P.state.machine ? given.bodies : null;
   P.path.drawn = { ...P.path.renderer.draw({ ...given, bodies: shown, moving }), moving: Boolean(moving) };

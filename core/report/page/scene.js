@@ -3,7 +3,7 @@
 P.scene = { ready: false };
 
 // Segments that a moving frame draws of the path, of the CL path and of the deviation vectors.
-P.scene.budget = { path: 9000, cl: 3000, vectors: 1200, marks: 1500 };
+P.scene.budget = { path: 6500, cl: 3000, vectors: 1200, marks: 1500 };
 // Vectors that are kept at all: of every group of points, the largest.
 P.scene.most_vectors = 100000;
 
@@ -85,7 +85,7 @@ P.scene.thin = (line, budget) => {
   for (let point = 1; point < line.count; point++) {
     most = Math.max(most, line.look[point * 4]);
     const turns = point + 1 < line.count && line.look[point * 4 + 1] !== line.look[point * 4 + 5];
-    const room = kept.length < budget * 1.5;
+    const room = kept.length < budget * 0.4;
     if (point % step === 0 || point === line.count - 1 || (turns && room)) {
       kept.push(point);
       worst.push(most);

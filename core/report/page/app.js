@@ -3,7 +3,7 @@
 P.views = { names: ["verdict", "path", "nc", "cl", "charts", "spread", "table"] };
 
 // A button to another of the three views that share the place under the path.
-P.lower = (name) => P.button(name[0].toUpperCase() + name.slice(1), `Show the ${name} (${P.views.names.indexOf(name) + 1})`, () => P.views.show(name));
+P.lower = (name) => (P.by(name).hidden ? null : P.button(name[0].toUpperCase() + name.slice(1), `Show the ${name} (${P.views.names.indexOf(name) + 1})`, () => P.views.show(name)));
 
 // Shows a view and moves the focus into it.
 P.views.show = (name) => {
@@ -124,6 +124,7 @@ P.views.start = (report) => {
   P.scene.build();
   P.colour.refresh();
   P.by("views").dataset.lower = "charts";
+  P.by("spread").hidden = !["deviation", "axis_deviation", "contour"].some(P.m.has);
   P.verdict.build(P.by("verdict"));
   P.texts.build();
   P.path.build(P.by("path"));

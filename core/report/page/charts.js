@@ -18,7 +18,7 @@ P.charts.find = () => {
     { title: "Positions", lanes: axes.map((name) => lane("q." + name, name)) },
     { title: "Velocities", lanes: axes.map((name) => lane("v." + name, name, { zero: true, limit: rate(name, "max_feed", 60) })) },
     { title: "Accelerations", lanes: axes.map((name) => lane("a." + name, name, { zero: true, limit: rate(name, "max_accel", 1) })) },
-    { title: "Contour error", lanes: lane("contour", "contour", { zero: true }) },
+    { title: "Contour error", lanes: lane("contour", "contour", { zero: true, limit: tolerance }) },
   ]
     .map(({ title, lanes }) => ({ title, lanes: lanes.flat() }))
     .filter(({ lanes }) => lanes.length);
@@ -125,7 +125,8 @@ P.charts.cursor = () => {
   if (x < left - 1 || x > width - right + 1) return;
   P.stroke(paint, colour.select.css, 1.5, [x, 0, x, floor]);
   for (const { lane, top } of places || []) {
-    const text = P.quantity(lane.get()[state.row], lane.unit);
+    const limit = lane.bands && m.meta.limits[lane.get(lane.bands)[state.row]];
+    const text = P.quantity(lane.get()[state.row], lane.unit) + (limit ? ` by ${limit}` : "");
     const wide = paint.measureText(text).width + 8;
     const to = x + wide + 8 > width - right ? x - wide - 5 : x + 5;
     paint.globalAlpha = 0.88;

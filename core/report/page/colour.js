@@ -119,7 +119,7 @@ P.colour.find = () => {
   };
   share("deviation", "tip deviation", () => column("tolerance") || P.m.tolerance);
   share("axis_deviation", "tool axis deviation", () => P.m.axis_limits || P.m.turn);
-  share("contour", "contour error");
+  share("contour", "contour error", () => P.m.tolerance);
   share("feed", "feed");
   kinds("limit", "what limits the feed", meta.limits || []);
   kinds("kind", "kind of block", P.KINDS);

@@ -138,11 +138,11 @@ P.path.look = (at) => {
 
 P.path.fit = () => {
   if (!P.path.renderer) return;
-  const { low, high } = P.scene;
+  const { cuts } = P.scene;
   const bodies = P.path.bodies();
   const carry = P.path.carry(bodies);
   const points = [];
-  for (let bits = 0; bits < 8; bits++) points.push(P.chain.apply(carry, [0, 1, 2].map((at) => (bits & (1 << at) ? high[at] : low[at]) - P.scene.centre[at])));
+  for (let bits = 0; bits < 8; bits++) points.push(P.chain.apply(carry, [0, 1, 2].map((at) => cuts[(bits >> at) & 1][at])));
   if (bodies && P.state.machine) points.push(...P.parts.points(bodies));
   P.camera.fit(points);
   P.path.redraw();
@@ -258,7 +258,7 @@ P.path.tell = () => {
     const seen = mode.kinds.map((name, kind) => (has((row) => mode.value(row) === kind, m.rows) ? el("span", {}, strip(12, () => kind * 12 + 6), name) : null));
     told.push(el("div", { class: "kinds" }, seen));
   } else if (mode.unit) {
-    const limit = mode.fixed || (mode.id === "deviation" ? m.tolerance : m.turn);
+    const limit = mode.fixed || (mode.id === "axis_deviation" ? m.turn : m.tolerance);
     const ends = mode.top === null ? [`tolerance ${limit ? P.short(limit) + " " + P.unit(mode.unit) : ""}`, "above"] : [P.quantity(mode.top, mode.unit)];
     told.push(strip(170, (share) => share * (mode.top === null ? 255 : colour.top)), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));
   }

@@ -40,6 +40,7 @@ P.scene.build = () => {
   scene.radius = Math.max(Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2, 1e-3);
   const kind = column("kind");
   scene.path = P.scene.line(count, x, y, z, (point) => (row ? row[point] : point), (at) => (kind && kind[at] <= 2 ? scene.RAPID : scene.CUT));
+  scene.cuts = P.scene.cut_box();
   const points = report.tables.cl;
   const [line, cx, cy, cz, rapid] = given(points, ["line", "x", "y", "z", "rapid"]);
   if (cx && cy && cz) {
@@ -52,6 +53,21 @@ P.scene.build = () => {
   scene.marks = P.scene.find_marks();
   scene.ready = true;
   P.scene.recolour();
+};
+
+// The corners of what is cut, from the middle of the path; of all where nothing is. Rapids may go far away.
+P.scene.cut_box = () => {
+  const { low, high, centre, path, CUT } = P.scene;
+  const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (let point = 0; point < path.count; point++) {
+    if (path.look[point * 4 + 1] !== CUT) continue;
+    for (let at = 0; at < 3; at++) {
+      const value = path.pos[point * 3 + at];
+      if (value < box[0][at]) box[0][at] = value;
+      if (value > box[1][at]) box[1][at] = value;
+    }
+  }
+  return box[0][0] <= box[1][0] ? box : [low, high].map((corner) => corner.map((value, at) => value - centre[at]));
 };
 
 // A polyline: positions from the centre, and for each point place on the scale, kind, block and length so far of the

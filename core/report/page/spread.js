@@ -6,7 +6,7 @@ P.spread.build = (view) => {
   const { el, spread } = P;
   const { column, has, unit, meta } = P.m;
   const { tip, axis } = meta.tolerances || {};
-  const all = [["deviation", "Tip deviation", tip], ["axis_deviation", "Tool axis deviation", axis], ["contour", "Contour error", 0]];
+  const all = [["deviation", "Tip deviation", tip], ["axis_deviation", "Tool axis deviation", axis], ["contour", "Contour error", tip]];
   spread.kinds = all.filter(([name]) => has(name)).map(([name, title, limit]) => ({ title, limit, get: () => column(name), unit: unit(name) }));
   const tabs = P.tabs("Spread of", spread.kinds.map(({ title }) => title), (at) => {
     spread.kind = at;
@@ -27,17 +27,19 @@ P.spread.build = (view) => {
   P.listen("brush", spread.draw);
 };
 
-// Four bins a power of ten; what is smaller than the first goes into it.
+// Four bins a power of ten, one of which ends at the limit; what is smaller than the first goes into it.
 P.spread.count = ({ get, limit }) => {
   const values = get();
   const { BINS } = P.spread;
   const [first, last] = P.state.brush || [0, P.m.rows - 1];
   const most = Math.max(P.largest(values.subarray(first, last + 1)), limit || 0) || 1e-6;
-  const low = Math.ceil(Math.log10(most) * 4 + 1e-9) - BINS;
+  const place = (value) => Math.log10(Math.max(value, 1e-300)) * 4;
+  const shift = limit > 0 ? place(limit) : 0;
+  const low = Math.ceil(place(most) - shift - 1e-9) - BINS + shift;
   const counts = new Int32Array(BINS);
   const worst = new Int32Array(BINS).fill(-1);
   for (let row = first; row <= last; row++) {
-    const bin = P.clamp(Math.floor(Math.log10(Math.max(values[row], 1e-300)) * 4) - low, 0, BINS - 1);
+    const bin = P.clamp(Math.ceil(place(values[row]) - low - 1e-9) - 1, 0, BINS - 1);
     counts[bin] += 1;
     if (worst[bin] < 0 || values[row] > values[worst[bin]]) worst[bin] = row;
   }
@@ -67,12 +69,13 @@ P.spread.draw = () => {
     paint.fillStyle = over ? bad.css : accent.css;
     if (count) paint.fillRect(x + 1, y_of(count), step - 2, floor - y_of(count));
     if (count && paint.measureText(text).width < step + 6) P.write(paint, text, x + step / 2, y_of(count) - 8, quiet.css);
-    if ((bin + low) % 4 === 0) {
-      P.write(paint, P.short(Number((10 ** ((bin + low) / 4)).toPrecision(6))), x, floor + 11, quiet.css);
-      P.stroke(paint, quiet.css, 1, [Math.round(x) + 0.5, floor, Math.round(x) + 0.5, floor + 4]);
-    }
     return { from: x, to: x + step, worst: worst[bin], count };
   });
+  for (let power = Math.ceil(low / 4); power * 4 <= low + BINS; power++) {
+    const x = Math.round(left + (power * 4 - low) * step) + 0.5;
+    P.write(paint, P.short(Number(`1e${power}`)), x, floor + 11, quiet.css);
+    P.stroke(paint, quiet.css, 1, [x, floor, x, floor + 4]);
+  }
   P.stroke(paint, line.css, 1, [left, floor + 0.5, width - right, floor + 0.5]);
   P.write(paint, `${chosen.title.toLowerCase()}, ${P.unit(chosen.unit)}; bars: blocks; the first holds all that is smaller`, (left + width - right) / 2, height - 11, quiet.css);
   if (!(chosen.limit > 0)) return;

@@ -55,7 +55,7 @@ P.icon = (path) => {
 };
 
 P.clamp = (value, low, high) => Math.min(Math.max(value, low), high);
-P.digits = { mm: 4, "°": 4, deg: 4, degrees: 4, s: 3, "mm/min": 1, "deg/min": 1 };
+P.digits = { mm: 4, deg: 4, s: 3, "mm/min": 1, "deg/min": 1 };
 
 // A number with as many digits as its unit deserves.
 P.shown = (value, unit, digits) => {
@@ -65,7 +65,7 @@ P.shown = (value, unit, digits) => {
   return small ? value.toExponential(1) : (value.toFixed(places) * 1 === 0 ? (0).toFixed(places) : value.toFixed(places));
 };
 P.quantity = (value, unit, digits) => P.shown(value, unit, digits) + (unit ? " " + P.unit(unit) : "");
-P.unit = (unit) => (unit === "deg" || unit === "degrees" ? "°" : unit);
+P.unit = (unit) => unit.replace("deg", "°");
 // Of a tick of a chart: no more digits than tell.
 P.short = (value) => {
   const size = Math.abs(value);

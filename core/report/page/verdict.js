@@ -46,7 +46,7 @@ P.verdict.places = ({ nc, cl, row }) => {
 P.verdict.maxima = (maxima) => {
   const { el } = P;
   const rows = maxima.map((one) => {
-    const over = one.limit && one.value > one.limit;
+    const over = one.limit && one.value > one.limit * (1 + 1e-6);
     const bar = el("span", { class: `share${over ? " over" : ""}` }, el("i"));
     if (one.limit) bar.firstChild.style.width = `${P.clamp((one.value / one.limit) * 100, 0.5, 100)}%`;
     return [

@@ -43,6 +43,7 @@ mod predict_told;
 mod program_text;
 mod readiness;
 mod real_files;
+mod report;
 #[cfg(unix)]
 mod rights;
 mod schema;

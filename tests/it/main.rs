@@ -44,6 +44,7 @@ mod predict_told;
 mod program_text;
 mod readiness;
 mod real_files;
+mod report;
 mod report_page;
 #[cfg(unix)]
 mod rights;

@@ -1,7 +1,8 @@
 // Bytes become tables and texts: what core/report packs, and nothing else.
 //
 // A part is base64 of raw deflate. A chunk of a table is its number of rows (32 bits, least byte first), then its columns; a
-// column is the order of its differences (0, 1, 2), its number of byte planes, and the planes, the least bytes first.
+// column is the order of its differences (0, 1, 2), its number of byte planes, and the planes, the least bytes first; where the
+// order has 16 more, a first value (64 bits, float) and a step (32 bits) ahead of the planes, which are multiples of it.
 // Folded signs: 0, 1, 2, 3, … are 0, -1, 1, -2, … A value is the integer over ten to the power of its decimals.
 const P = {};
 
@@ -38,11 +39,14 @@ P.chunks = async (root) => {
 
 P.uint32 = (bytes, at) => (bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16)) + bytes[at + 3] * 16777216;
 
-// Integers of a column of a chunk that begins at `at`, into `out` from `start`.
+// Integers of a column of a chunk that begins at `at`, into `out` from `start`; where the next column begins.
 P.integers = (bytes, at, rows, out, start) => {
-  const order = bytes[at];
+  const order = bytes[at] & 15;
   const planes = bytes[at + 1];
-  const first = at + 2;
+  const steps = (bytes[at] & 16) !== 0;
+  const first = at + (steps ? 14 : 2);
+  const base = steps ? new DataView(bytes.buffer, bytes.byteOffset).getFloat64(at + 2, true) : 0;
+  const step = steps ? P.uint32(bytes, at + 10) : 1;
   let last = 0;
   let slope = 0;
   for (let row = 0; row < rows; row += 1) {
@@ -60,9 +64,13 @@ P.integers = (bytes, at, rows, out, start) => {
       slope += difference;
       last += slope;
     }
-    out[start + row] = last;
+    out[start + row] = base + step * last;
   }
+  return P.behind(bytes, at, rows);
 };
+
+// Where a column ends.
+P.behind = (bytes, at, rows) => at + (bytes[at] & 16 ? 14 : 2) + bytes[at + 1] * rows;
 
 // The tip (mm, part frame) and the tool axis by the chain, from axis values as the control shows them: one product from the
 // workpiece to the tool, as core/machine has it.
@@ -201,7 +209,7 @@ P.table = (meta, chunks, report) => {
     let at = 4;
     for (const column of pieces) {
       column.push({ bytes, at, rows });
-      at += 2 + bytes[at + 1] * rows;
+      at = P.behind(bytes, at, rows);
     }
     if (at !== bytes.length) throw new Error(`The table ${meta.name} is damaged.`);
     sum += rows;
@@ -227,8 +235,7 @@ P.Reader = class {
 
   integers(rows) {
     const values = new Float64Array(rows);
-    P.integers(this.bytes, this.at, rows, values, 0);
-    this.at += 2 + this.bytes[this.at + 1] * rows;
+    this.at = P.integers(this.bytes, this.at, rows, values, 0);
     return values;
   }
 };

@@ -1,18 +1,53 @@
 //! A column of integers as bytes: its differences, their signs folded in, byte plane by byte plane.
 //!
 //! A column is one byte for the order of the differences (0, 1 or 2), one for the number of planes, and the planes, the
-//! least bytes first, each as long as the column. Before the first value there are zeros.
+//! least bytes first, each as long as the column. Before the first value there are zeros. Where the order has 16 more, all
+//! values are a first one and multiples of a step besides (words that are printed with fewer decimals than the column has):
+//! behind the number of planes stand the first one as a float of 64 bits and the step as an integer of 32, least byte first,
+//! and the planes are those of the multiples.
+
+/// In the byte of the order: values are multiples of a step.
+const STEPS: u8 = 16;
 
 /// Adds `values` to `out` by the differences that are smallest. Values and their second differences keep within 2^53.
 pub fn encode(values: &[i64], out: &mut Vec<u8>) {
+    let first = values.first().copied().unwrap_or(0);
+    let step = step(values, first);
+    if step <= 1 {
+        return planes(values, 0, &[], out);
+    }
+    let multiples: Vec<i64> = values.iter().map(|value| (value - first) / step).collect();
+    let mut head = Vec::with_capacity(12);
+    head.extend((first as f64).to_le_bytes());
+    head.extend((step as u32).to_le_bytes());
+    planes(&multiples, STEPS, &head, out);
+}
+
+/// What all distances from `first` are multiples of; 0 where there are none.
+fn step(values: &[i64], first: i64) -> i64 {
+    let mut step = 0;
+    for value in values {
+        let mut rest = (value - first).abs();
+        while rest != 0 {
+            (step, rest) = (rest, step % rest);
+        }
+        if step == 1 {
+            break;
+        }
+    }
+    if step > i64::from(u32::MAX) { 1 } else { step }
+}
+
+fn planes(values: &[i64], form: u8, head: &[u8], out: &mut Vec<u8>) {
     let order = best_order(values);
-    out.push(order);
+    out.push(form | order);
     let mark = out.len();
     out.push(0);
     let mut all = 0;
     differences(values, order, |difference| all |= fold(difference));
     let planes = (8 - all.leading_zeros() / 8) as usize;
     out[mark] = planes as u8;
+    out.extend_from_slice(head);
     let start = out.len();
     let rows = values.len();
     out.resize(start + planes * rows, 0);
@@ -88,15 +123,24 @@ pub fn decode(bytes: &[u8], rows: usize, at: &mut usize) -> Option<Vec<i64>> {
         return None;
     };
     let planes = usize::from(planes);
-    let places = bytes.get(*at + 2..*at + 2 + planes * rows)?;
-    *at += 2 + planes * rows;
+    *at += 2;
+    let (mut base, mut step) = (0, 1);
+    if order & STEPS != 0 {
+        let first = bytes.get(*at..*at + 8)?.try_into().ok()?;
+        let size = bytes.get(*at + 8..*at + 12)?.try_into().ok()?;
+        base = f64::from_le_bytes(first) as i64;
+        step = i64::from(u32::from_le_bytes(size));
+        *at += 12;
+    }
+    let places = bytes.get(*at..*at + planes * rows)?;
+    *at += planes * rows;
     let (mut last, mut slope) = (0i64, 0i64);
     let values = (0..rows).map(|row| {
         let folded = (0..planes).rev().fold(0u64, |folded, plane| {
             folded << 8 | u64::from(places[plane * rows + row])
         });
         let difference = (folded >> 1) as i64 ^ -((folded & 1) as i64);
-        match order {
+        let multiple = match order & !STEPS {
             0 => difference,
             1 => {
                 last = last.wrapping_add(difference);
@@ -107,7 +151,8 @@ pub fn decode(bytes: &[u8], rows: usize, at: &mut usize) -> Option<Vec<i64>> {
                 last = last.wrapping_add(slope);
                 last
             }
-        }
+        };
+        base + step * multiple
     });
     Some(values.collect())
 }
@@ -139,6 +184,7 @@ mod tests {
         }
         let mut bytes = Vec::new();
         encode(&even, &mut bytes);
-        assert_eq!(bytes[0], 2, "an even slope has no second differences");
+        assert_eq!(bytes[0], STEPS | 2, "steps of ten, evenly");
+        assert_eq!(bytes[1], 1);
     }
 }

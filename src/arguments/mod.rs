@@ -3,6 +3,7 @@
 //! A flag becomes what it means to the core as it is parsed, and is not turned into text again.
 
 pub mod flag_values;
+mod report;
 
 use std::path::PathBuf;
 
@@ -17,6 +18,8 @@ use flag_values::{
     Msys, TcpWord, UnitsWord, UnknownWord, cl_word, feed, finite, length, point, positive, setting,
     spindle, word,
 };
+
+pub use report::ReportArguments;
 
 /// A CL file, how it is read, and the machine.
 #[derive(Debug, Args)]

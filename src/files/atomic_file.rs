@@ -140,6 +140,16 @@ impl AtomicFile {
     }
 }
 
+impl Write for AtomicFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
 impl Output for AtomicFile {
     fn write(&mut self, text: &[u8]) -> Result<(), String> {
         self.write_bytes(text).map_err(|fault| fault.to_string())

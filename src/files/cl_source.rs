@@ -68,6 +68,22 @@ impl ClSource {
         Ok((source, made))
     }
 
+    /// From its start, to be read beside another reader that is not done yet.
+    pub fn open_beside(&self) -> Result<ClInput, FileFault> {
+        let Some(copy) = &self.copy else {
+            return ClInput::open(&self.argument);
+        };
+        let name = self.name.clone();
+        match copy.reopen() {
+            Ok(bytes) => Ok(ClInput {
+                name,
+                bytes: Box::new(bytes),
+                length: None,
+            }),
+            Err(error) => Err(FileFault::Read { name, error }),
+        }
+    }
+
     /// From its start.
     pub fn open(&mut self) -> Result<ClInput, FileFault> {
         let Some(copy) = &mut self.copy else {

@@ -44,6 +44,16 @@ impl Output for Scratch {
     }
 }
 
+impl Write for Scratch {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.text.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.text.flush()
+    }
+}
+
 fn fault(name: &str, error: io::Error) -> FileFault {
     FileFault::NoWaiting {
         name: name.to_owned(),

@@ -35,6 +35,12 @@ impl Role {
         remedy: "name another file with --summary",
     };
 
+    /// What a run came to, as a page to look at.
+    pub const REPORT: Self = Self {
+        what: "report",
+        remedy: "name another file with --report",
+    };
+
     /// What is printed, as JSON.
     pub const JSON: Self = Self {
         what: "JSON",

@@ -67,6 +67,12 @@ impl Temporary {
         Ok(file.as_file())
     }
 
+    /// The file opened once more, from its start and with a place of its own in it.
+    pub fn reopen(&self) -> io::Result<File> {
+        let file = self.file.as_ref().ok_or(io::ErrorKind::NotFound)?;
+        file.reopen()
+    }
+
     /// Gives it its name, in the place of whatever has it. The guard keeps signals waiting.
     pub fn persist(&mut self, live: &mut Live, target: &Path) -> io::Result<()> {
         let file = self.file.take().ok_or(io::ErrorKind::NotFound)?;

@@ -14,6 +14,7 @@ pub mod plugin_finder;
 mod plugin_folders;
 pub mod predict;
 pub mod read_back;
+pub mod report;
 pub mod unused_options;
 
 use std::path::Path;

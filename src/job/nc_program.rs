@@ -172,6 +172,23 @@ pub fn again(name: &str, file: &File) -> Result<File, FileFault> {
     })
 }
 
+/// The open file `name` from its beginning, to be read beside another reader that is not done yet: its place in the file is
+/// its own.
+pub fn reopened(name: &str, file: &File) -> Result<File, FileFault> {
+    let copied = || -> io::Result<File> {
+        let mut from = file.try_clone()?;
+        let at = from.stream_position()?;
+        from.seek(SeekFrom::Start(0))?;
+        let copy = copied(&mut from);
+        from.seek(SeekFrom::Start(at))?;
+        copy
+    };
+    copied().map_err(|error| FileFault::Read {
+        name: name.to_owned(),
+        error,
+    })
+}
+
 /// What `input` gives, in a file without a name.
 fn copied(input: &mut impl io::Read) -> io::Result<File> {
     let mut file = tempfile::tempfile()?;

@@ -8,7 +8,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_posting::plan::PlanWatch;
 use post_posting::report::Report;
-use post_posting::{Job, JobFacts, LookedAhead, Output, PathShift, Post, Tightening};
+use post_posting::{Job, JobFacts, LookedAhead, Observer, Output, PathShift, Post, Tightening};
 
 use super::plugin_finder;
 use crate::arguments::JobArguments;
@@ -38,11 +38,13 @@ pub struct OneProgram<'a> {
 
 /// Who takes part while a program is written.
 #[derive(Default)]
-pub struct Beside<'s, 'w> {
+pub struct Beside<'s, 'w, 'o> {
     /// Moves the points of its path.
     pub shift: Option<&'s mut dyn PathShift>,
     /// Sees its plan.
     pub watch: Option<&'w mut dyn PlanWatch>,
+    /// Sees its blocks.
+    pub observer: Option<&'o mut dyn Observer>,
 }
 
 impl OneProgram<'_> {
@@ -53,7 +55,7 @@ impl OneProgram<'_> {
         ahead: Option<&LookedAhead>,
         source: &mut ClSource,
         file: &mut dyn Output,
-        beside: Beside<'_, '_>,
+        beside: Beside<'_, '_, '_>,
     ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
         let Self {
             arguments,
@@ -106,6 +108,9 @@ impl OneProgram<'_> {
         }
         if let Some(watch) = beside.watch {
             post.watch_plan(watch);
+        }
+        if let Some(observer) = beside.observer {
+            post.watch(observer);
         }
         super::read(input, &mut post)?;
         let (mut report, findings) = post.finish();

@@ -16,6 +16,7 @@ mod print_schema;
 mod read;
 mod study;
 mod verify;
+mod view;
 
 use std::path::Path;
 
@@ -39,6 +40,7 @@ use print_schema::SchemaArguments;
 use read::ReadArguments;
 use study::StudyArguments;
 use verify::VerifyArguments;
+use view::{View, ViewArguments};
 
 /// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
 ///
@@ -66,6 +68,7 @@ use verify::VerifyArguments;
   post diff old.nc new.nc --machine ac-trunnion
   post predict part.nc --machine ac-trunnion --pictures prediction
   post plan curve.json --pictures plan
+  post view part.cls --machine ac-trunnion
   post plugin show fanuc
   post plugin new mine --iso
   post plugin test target/release/libpost_mine.so
@@ -98,6 +101,7 @@ enum Verb {
     Verify(Box<VerifyArguments>),
     Plugin(PluginArguments),
     Read(Box<ReadArguments>),
+    View(ViewArguments),
 }
 
 impl CommandLine {
@@ -119,8 +123,20 @@ impl CommandLine {
             Some(Verb::Verify(arguments)) => verify::run(&arguments),
             Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
             Some(Verb::Read(arguments)) => read::run(&arguments),
+            Some(Verb::View(arguments)) => view(&arguments),
         }
     }
+}
+
+/// Runs another command line with a report, and opens that.
+fn view(arguments: &ViewArguments) -> Result<(), Failure> {
+    let view = View::new(arguments)?;
+    let done = CommandLine::try_parse_from(&view.line)
+        .map_err(Failure::Usage)
+        .and_then(CommandLine::run);
+    // A program that is not as it should be is worth a look too.
+    let shown = view.show();
+    done.and(shown)
 }
 
 /// What is wrong with a command line that begins with a misspelt verb: clap takes it for a CL file, and complains of what

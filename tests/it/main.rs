@@ -7,6 +7,7 @@
 mod axes;
 #[cfg(target_os = "linux")]
 mod bounds;
+mod browser;
 mod check;
 mod check_posts;
 mod command;
@@ -43,6 +44,8 @@ mod predict_told;
 mod program_text;
 mod readiness;
 mod real_files;
+mod report;
+mod report_page;
 #[cfg(unix)]
 mod rights;
 mod schema;

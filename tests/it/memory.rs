@@ -56,6 +56,25 @@ fn memory_does_not_grow_with_the_file() {
     assert!(large < 64 * 1024, "{large} kB");
 }
 
+#[test]
+fn memory_does_not_grow_with_the_report() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("report.html");
+    let flag = OsStr::new("--report");
+    let [small, large] = [100_000, 300_000].map(|points| {
+        peak(&[
+            wave(folder.path(), points).as_os_str(),
+            flag,
+            page.as_os_str(),
+        ])
+    });
+    assert!(
+        large < small + small / 10 + 1024,
+        "{small} kB for 100,000 points, {large} kB for 300,000"
+    );
+    assert!(large < 128 * 1024, "{large} kB");
+}
+
 /// Sixteen times the blocks, with pictures, percentiles and the CL path: what is drawn and counted has its size.
 #[test]
 fn memory_of_a_prediction_does_not_grow_with_the_program() {

@@ -27,6 +27,13 @@ pub trait Observer {
     fn blocks(&mut self, blocks: &[Flow<Block>]) {
         let _ = blocks;
     }
+
+    /// The lines of the program that the next blocks end on, counted from 1, in the order in which [`Observer::blocks`] has
+    /// told them: zero of a block that is not written. Of a hole that the control's own cycle makes they are all that of its
+    /// point. They come when the text is made, for holes a while after the blocks.
+    fn lines(&mut self, lines: &[u64]) {
+        let _ = lines;
+    }
 }
 
 /// All who look on.
@@ -46,9 +53,20 @@ impl<'a> Observers<'a> {
         }
     }
 
+    pub(crate) fn lines(&self, lines: &[u64]) {
+        for observer in self.all.borrow_mut().iter_mut() {
+            observer.lines(lines);
+        }
+    }
+
+    /// Somebody looks on.
+    pub(crate) fn any(&self) -> bool {
+        !self.all.borrow().is_empty()
+    }
+
     /// Those to be shown cuts; none if nobody looks on.
     pub(crate) fn audience(&self) -> Option<&dyn Audience> {
-        (!self.all.borrow().is_empty()).then_some(self)
+        self.any().then_some(self)
     }
 }
 

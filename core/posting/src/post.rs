@@ -112,6 +112,7 @@ impl Stages<'_> {
             timing.take(made, findings);
             observers.blocks(made);
             emit.take(made, findings);
+            emit.take_lines(|lines| observers.lines(lines));
         };
         let told = plan.as_ref().map(Plan::told);
         let mut planned = Outlet::new(planned, &mut to_emit);
@@ -155,6 +156,7 @@ impl Stages<'_> {
         planned.flush();
         if let Some(line) = last_line {
             emit.finish(line, findings);
+            emit.take_lines(|lines| observers.lines(lines));
         }
     }
 
@@ -235,6 +237,7 @@ impl<'a> Post<'a> {
     /// Shows what is made to `observer` from here on.
     pub fn watch(&mut self, observer: &'a mut dyn Observer) {
         self.stages.observers.add(observer);
+        self.stages.emit.watch();
     }
 
     /// Shows the planned feed to `watch`, where one is planned.

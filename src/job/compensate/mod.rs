@@ -207,7 +207,10 @@ impl Tried<'_, '_> {
             self.ahead,
             self.source,
             &mut text,
-            Beside { shift, watch: None },
+            Beside {
+                shift,
+                ..Beside::default()
+            },
         )?;
         match report {
             Some(_) => Ok(text),

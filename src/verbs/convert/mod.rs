@@ -16,13 +16,14 @@ use post_readback::verify::CutPath;
 use crate::arguments::flag_values::{
     Msys, TcpWord, feed, length, point, positive, setting, spindle, word,
 };
-use crate::arguments::{JobArguments, ProgramArguments};
+use crate::arguments::{JobArguments, ProgramArguments, ReportArguments};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg, Role};
 use crate::job::nc_program::{self, NcControl};
 use crate::job::nc_to_cl::{self, Tools};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::read_back::{self, Against, Held, Reading};
+use crate::job::report::{BlockRows, ClWindow, Made};
 use crate::job::{self, plugin_finder};
 use crate::terminal::{self, clock, number, table};
 
@@ -62,6 +63,9 @@ pub struct ConvertArguments {
     /// Writes the CL file too that stands between the two programs.
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
     cl: Option<PathArg>,
+
+    #[command(flatten)]
+    report: ReportArguments,
 
     /// No summary, warnings and errors alone.
     #[arg(short, long)]
@@ -172,7 +176,15 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
 
     let mut targets = vec![(Role::PROGRAM, &arguments.output)];
     targets.extend(arguments.cl.iter().map(|cl| (Role::CL, cl)));
+    targets.extend(
+        arguments
+            .report
+            .report
+            .iter()
+            .map(|page| (Role::REPORT, page)),
+    );
     let mut files = AtomicFile::create(&targets)?;
+    let page = arguments.report.report.as_ref().and_then(|_| files.pop());
     let (program, cl_file) = files.split_at_mut(1);
     let program = &mut program[0];
 
@@ -218,7 +230,20 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         plans: false,
         tightening: None,
     };
-    let (report, findings) = one.write(ahead.as_ref(), &mut source, program, Beside::default())?;
+    let mut rows = match page {
+        Some(page) => {
+            let input = source.open_beside()?;
+            let settings = Settings::of(&machine, &input.name);
+            let cl = ClWindow::new(&machine, settings, input.bytes)?;
+            Some((page, BlockRows::new(&machine, cl)?))
+        }
+        None => None,
+    };
+    let mut beside = Beside::default();
+    if let Some((_, rows)) = &mut rows {
+        beside.observer = Some(rows);
+    }
+    let (report, findings) = one.write(ahead.as_ref(), &mut source, program, beside)?;
     notes.extend(findings);
     let Some(report) = report else {
         return Err(notes.into());
@@ -258,6 +283,34 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         return Err(notes.into());
     }
     notes.extend(held.findings.iter().cloned());
+    if let Some((mut page, rows)) = rows {
+        let summed = summary(
+            &name,
+            &from.machine,
+            (&machine, &told),
+            &report,
+            &held,
+            &facts,
+        );
+        let made = Made {
+            machine: &machine,
+            cl: &arguments.input,
+            program: &arguments.output,
+            report: &report,
+            verification: Some(&held.found),
+            prediction: None,
+            findings: &notes,
+            job: "convert",
+            facts: summed,
+        };
+        made.write(
+            (rows, None),
+            (&mut source, program),
+            arguments.report.most(),
+            &mut page,
+        )?;
+        files.push(page);
+    }
     let taken = files.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(files)?;
     terminal::findings(&notes);
@@ -270,6 +323,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
             &held,
             &facts,
         );
+        let text = table(&text, 2);
         if taken {
             terminal::tell(&text);
         } else {
@@ -329,7 +383,7 @@ fn summary(
     report: &Report,
     held: &Held,
     facts: &CourseFacts,
-) -> String {
+) -> Vec<[String; 2]> {
     let found = &held.found;
     let mut rows: Vec<[String; 2]> = Vec::new();
     let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
@@ -368,5 +422,5 @@ fn summary(
         format!("within {}°", number(found.axis.value, 5)),
     );
     row("time", clock(report.time_s));
-    table(&rows, 2)
+    rows
 }

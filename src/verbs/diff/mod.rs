@@ -1,6 +1,7 @@
 //! `post diff`: what two NC programs make the machine do differently.
 
 mod along;
+mod diff_page;
 mod diff_picture;
 mod diff_text;
 
@@ -12,9 +13,9 @@ use post_machine::diagnostic::Diagnostic;
 use post_readback::diff::{Rules, Unread, compare};
 use post_readback::interpret::Interpreter;
 
-use crate::arguments::{ProgramArguments, flag_values};
+use crate::arguments::{ProgramArguments, ReportArguments, flag_values};
 use crate::failure::Failure;
-use crate::files::{self, FileFault, PathArg, Role};
+use crate::files::{self, AtomicFile, FileFault, PathArg, Role};
 use crate::job::nc_program::{self, NcControl};
 use crate::terminal;
 use along::Along;
@@ -85,6 +86,9 @@ pub struct DiffArguments {
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
     json: Option<PathArg>,
 
+    #[command(flatten)]
+    report: ReportArguments,
+
     /// Draws both paths, how far they are apart along the way, and their feeds.
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
     svg: Option<PathArg>,
@@ -100,6 +104,12 @@ impl Side {
     fn open(source: &PathArg) -> Result<Self, Failure> {
         let (name, file) = nc_program::open(source)?;
         Ok(Self { name, file })
+    }
+
+    /// From its beginning, beside whoever else reads it.
+    fn copied(&self, control: &NcControl) -> Result<Interpreter<File>, Failure> {
+        let file = nc_program::reopened(&self.name, &self.file)?;
+        control.run(&self.name, file)
     }
 
     /// From its beginning.
@@ -149,7 +159,40 @@ pub fn run(arguments: &DiffArguments) -> Result<(), Failure> {
     if let Some(target) = &arguments.svg {
         texts.push((Role::PICTURE, target, picture.as_str()));
     }
-    let taken = files::write(&texts)?;
+    let mut targets: Vec<(Role, &PathArg)> = texts
+        .iter()
+        .map(|(role, target, _)| (*role, *target))
+        .collect();
+    targets.extend(
+        arguments
+            .report
+            .report
+            .iter()
+            .map(|page| (Role::REPORT, page)),
+    );
+    let mut written = AtomicFile::create(&targets)?;
+    for (file, (_, _, text)) in written.iter_mut().zip(&texts) {
+        file.write_bytes(text.as_bytes())?;
+    }
+    if let (Some(_), Some(page)) = (&arguments.report.report, written.last_mut()) {
+        let shown = diff_page::Shown {
+            machine: &new.machine,
+            found: &found,
+            rules: &rules,
+            names: [&arguments.old, &arguments.new],
+        };
+        let programs = [sides[0].copied(old)?, sides[1].copied(new)?];
+        let texts = [&sides[0], &sides[1]].map(|side| -> Result<_, Failure> {
+            Ok((
+                side.name.as_str(),
+                nc_program::again(&side.name, &side.file)?,
+            ))
+        });
+        let [first, second] = texts;
+        shown.write(programs, [first?, second?], arguments.report.most(), page)?;
+    }
+    let taken = written.iter().any(AtomicFile::is_standard);
+    AtomicFile::finish(written)?;
     warn(&found.unknown);
     let text = diff_text::text(names, machines, &rules, &found);
     if taken {

@@ -13,19 +13,19 @@ use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::DialectSession;
 use post_posting::LookedAhead;
-use post_posting::plan::PlanWatch;
 use post_posting::report::Report;
 use post_readback::interpret::Limits;
 use post_readback::verify::Verification;
 use serde::Serialize;
 
-use crate::arguments::JobArguments;
+use crate::arguments::{JobArguments, ReportArguments};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
 use crate::job::compensate::{self, Compensation, Moved};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::predict::{self, Against, Asked, Predicted, Prediction};
 use crate::job::read_back::{self, Held, Reading};
+use crate::job::report::{BlockRows, ClWindow, Made, PredictedLines};
 use crate::job::{self, plan_rounds, plugin_finder};
 use crate::terminal;
 use parts::Split;
@@ -98,6 +98,9 @@ pub struct PostArguments {
     #[command(flatten)]
     shown: ShownArguments,
 
+    #[command(flatten)]
+    report: ReportArguments,
+
     /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axes, and how far the tool
     /// strays; with =FILE as JSON too, of several programs a list.
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, value_parser = PathArg::parser())]
@@ -133,6 +136,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         || looks_ahead
         || machine.control.planes
         || arguments.verify
+        || arguments.report.report.is_some()
         || arguments.predict.is_some();
     let mut source = ClSource::new(arguments.job.input(), twice)?;
     let ahead = match looks_ahead {
@@ -153,6 +157,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         .map(|part| (Role::PROGRAM, &part.target))
         .collect();
     targets.extend(places.maps.iter().map(|map| (shown::MAP, map)));
+    let pages = parts::each(&arguments.report.report, arguments.split, parts.len());
+    targets.extend(pages.iter().map(|page| (Role::REPORT, page)));
     targets.extend(
         arguments
             .summary
@@ -179,6 +185,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let (programs, others) = files.split_at_mut(parts.len());
     let (maps, others) = others.split_at_mut(places.maps.len());
     let mut maps = maps.iter_mut();
+    let (pages, others) = others.split_at_mut(pages.len());
+    let mut pages = pages.iter_mut();
     for (part, file) in parts.iter().zip(programs) {
         let mut program = OneProgram {
             arguments: &arguments.job,
@@ -206,9 +214,27 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             false => None,
         };
         let draws = !folders.is_empty();
+        let page = pages.next();
+        let mut rows = match page {
+            Some(_) => {
+                let input = source.open_beside()?;
+                let settings =
+                    read_back::course_settings(&arguments.job, &part.machine, &input.name);
+                let cl = ClWindow::new(&part.machine, settings, input.bytes)?;
+                Some(BlockRows::new(&part.machine, cl)?)
+            }
+            None => None,
+        };
         let wrote = shown::show(&part.machine, &part.target, maps.next(), draws, |watch| {
             let files = (&mut source, &mut *file);
-            write(program, compensated.as_ref(), ahead.as_ref(), files, watch)
+            let mut beside = Beside {
+                watch,
+                ..Beside::default()
+            };
+            if let Some(rows) = &mut rows {
+                beside.observer = Some(rows);
+            }
+            write(program, compensated.as_ref(), ahead.as_ref(), files, beside)
         })?;
         let ((report, found), pictures) = wrote;
         drawn.extend(pictures);
@@ -232,10 +258,34 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             }
             verifications.push(held.found);
         }
+        let mut series = None;
         if arguments.predict.is_some() {
-            let predicted = predicted(arguments, part, &finder, &mut source, file)?;
+            if page.is_some() {
+                let period = part.machine.motion.period;
+                series = Some(PredictedLines::new(&part.machine, period)?);
+            }
+            let files = (&mut source, &mut *file);
+            let predicted = predicted(arguments, part, &finder, files, series.as_mut())?;
             findings.extend(predicted.findings);
             predictions.push(predicted.found);
+        }
+        if let (Some(page), Some(rows), Some(report)) = (page, rows, reports.last()) {
+            let made = Made {
+                machine: &part.machine,
+                cl: arguments.job.input(),
+                program: &part.target,
+                report,
+                verification: verifications.last(),
+                prediction: predictions.last(),
+                findings: &findings,
+                job: match arguments.plan {
+                    true => "plan",
+                    false => "post",
+                },
+                facts: summary::facts(report, verifications.last()),
+            };
+            let rows = (rows, series);
+            made.write(rows, (&mut source, file), arguments.report.most(), page)?;
         }
     }
     let mut others = others.iter_mut();
@@ -323,24 +373,23 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes a program, its points moved where that helps; `watch` sees its plan.
+/// Writes a program, its points moved where that helps; `beside` sees its plan and its blocks.
 fn write(
     program: OneProgram<'_>,
     compensated: Option<&Compensation>,
     ahead: Option<&LookedAhead>,
     (source, file): (&mut ClSource, &mut AtomicFile),
-    watch: Option<&mut dyn PlanWatch>,
+    beside: Beside<'_, '_, '_>,
 ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
     let moved = compensated.and_then(|found| Some((&found.machine, found.moves.as_ref()?)));
     let Some((machine, moves)) = moved else {
-        let beside = Beside { shift: None, watch };
         return program.write(ahead, source, file, beside);
     };
     let program = OneProgram { machine, ..program };
     let mut moved = Moved::new(moves);
     let beside = Beside {
         shift: Some(&mut moved),
-        watch,
+        ..beside
     };
     program.write(ahead, source, file, beside)
 }
@@ -437,8 +486,8 @@ fn predicted(
     arguments: &PostArguments,
     part: &Part,
     finder: &Finder,
-    source: &mut ClSource,
-    file: &mut AtomicFile,
+    (source, file): (&mut ClSource, &mut AtomicFile),
+    mut series: Option<&mut PredictedLines>,
 ) -> Result<Predicted, Failure> {
     let asked = Asked {
         arguments: &arguments.job,
@@ -451,7 +500,12 @@ fn predicted(
     };
     let name = file.name().to_owned();
     let text = file.reread()?;
-    predict::predict(&asked, Against::Cl(source), &name, text, &mut |_| Ok(()))
+    predict::predict(&asked, Against::Cl(source), &name, text, &mut |sample| {
+        if let Some(series) = &mut series {
+            series.take(sample, None);
+        }
+        Ok(())
+    })
 }
 
 /// What the summary tells as JSON.

@@ -56,3 +56,15 @@ pub fn target(whole: &PathArg, number: usize, count: usize) -> PathArg {
         path.with_file_name(name)
     })
 }
+
+/// The targets of `count` programs for what is `named` for all of them; none where it is not asked for.
+pub fn each(named: &Option<PathArg>, split: Option<Split>, count: usize) -> Vec<PathArg> {
+    match (named, split) {
+        (None, _) => Vec::new(),
+        (Some(named), None) => vec![named.clone()],
+        (Some(named), Some(_)) => {
+            let numbers = 1..=count;
+            numbers.map(|number| target(named, number, count)).collect()
+        }
+    }
+}

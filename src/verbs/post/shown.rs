@@ -50,16 +50,7 @@ pub type Drawn = Vec<(&'static str, String)>;
 impl ShownArguments {
     /// For so many programs.
     pub fn places(&self, split: Option<Split>, count: usize) -> Places {
-        let each = |named: &Option<PathArg>| match (named, split) {
-            (None, _) => Vec::new(),
-            (Some(named), None) => vec![named.clone()],
-            (Some(named), Some(_)) => {
-                let numbers = 1..=count;
-                numbers
-                    .map(|number| parts::target(named, number, count))
-                    .collect()
-            }
-        };
+        let each = |named| parts::each(named, split, count);
         Places {
             maps: each(&self.map),
             folders: each(&self.plan_pictures),

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use post_posting::plan::PlanReport;
-use post_posting::report::{Deviation, LengthSource, Report};
+use post_posting::report::{Deviation, LengthSource, PluginUse, Report};
 use post_readback::verify::Verification;
 
 use crate::files::PathArg;
@@ -17,29 +17,52 @@ pub fn text(
     input: &str,
     target: &PathArg,
 ) -> String {
-    let mut text = String::new();
-    let mut row = |name: &str, value: String| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<16} {value}");
-    };
     let target = match target.path() {
         Some(path) => path.display().to_string(),
         None => "standard output".to_owned(),
     };
-    row("program", format!("{target}, from {input}"));
+    let mut text = String::new();
+    let program = ["program".to_owned(), format!("{target}, from {input}")];
+    for [name, value] in std::iter::once(program).chain(rows(report, read_back, origin)) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{name:<16} {value}");
+    }
+    text
+}
+
+/// The same for the report: without folders, which are others elsewhere.
+pub fn facts(report: &Report, read_back: Option<&Verification>) -> Vec<[String; 2]> {
+    rows(report, read_back, |plugin| match &plugin.hash {
+        Some(hash) => hash.clone(),
+        None => "built in".to_owned(),
+    })
+}
+
+/// Where a plugin comes from.
+fn origin(plugin: &PluginUse) -> String {
+    match (&plugin.path, &plugin.hash) {
+        (Some(path), Some(hash)) => format!("{path}, {hash}"),
+        (Some(path), None) => path.clone(),
+        _ => "built in".to_owned(),
+    }
+}
+
+/// What the summary tells of a program: names and values.
+fn rows(
+    report: &Report,
+    read_back: Option<&Verification>,
+    origin: impl Fn(&PluginUse) -> String,
+) -> Vec<[String; 2]> {
+    let mut rows = Vec::new();
+    let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
     row(
         "machine",
         format!("{}, the {} keeps the tip", report.machine, report.tcp),
     );
     for (plugin, kind) in report.plugins.iter().zip(["dialect", "error model"]) {
-        let origin = match (&plugin.path, &plugin.hash) {
-            (Some(path), Some(hash)) => format!("{path}, {hash}"),
-            (Some(path), None) => path.clone(),
-            _ => "built in".to_owned(),
-        };
         row(
             kind,
-            format!("{} {} ({origin})", plugin.name, plugin.version),
+            format!("{} {} ({})", plugin.name, plugin.version, origin(plugin)),
         );
     }
     row("records read", report.records.to_string());
@@ -190,7 +213,7 @@ pub fn text(
             count => format!("{count}, see above"),
         },
     );
-    text
+    rows
 }
 
 /// What a plan came to.

@@ -4,6 +4,7 @@ mod measured_arguments;
 mod measured_pictures;
 mod path_pictures;
 mod pictures;
+mod predict_page;
 mod set_points_csv;
 mod spectrum;
 mod trail;
@@ -12,12 +13,13 @@ use clap::Args;
 use post_machine::diagnostic::Diagnostic;
 use post_readback::interpret::Limits;
 
-use crate::arguments::JobArguments;
 use crate::arguments::flag_values;
+use crate::arguments::{JobArguments, ReportArguments};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
 use crate::job::predict::measured::MeasuredPoint;
 use crate::job::predict::{self, Against, Predicted, Sample};
+use crate::job::report::{Again, Besides, MotionRows, PredictedLines};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::terminal;
 use measured_arguments::MeasuredArguments;
@@ -86,6 +88,9 @@ pub struct PredictArguments {
     pictures: Option<PathArg>,
 
     #[command(flatten)]
+    report: ReportArguments,
+
+    #[command(flatten)]
     measured: MeasuredArguments,
 
     /// So many blocks are run once more, by loops, jumps and subprograms; more are refused.
@@ -146,7 +151,16 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
             .iter()
             .map(|target| (Role::SUMMARY, target)),
     );
+    targets.extend(
+        arguments
+            .report
+            .report
+            .iter()
+            .map(|page| (Role::REPORT, page)),
+    );
     let mut texts = AtomicFile::create(&targets)?;
+    let page = arguments.report.report.as_ref().and_then(|_| texts.pop());
+    let again = nc_program::again(&name, &program)?;
     let asked = predict::Asked {
         arguments: &arguments.job,
         machine: &machine,
@@ -161,6 +175,30 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     };
     let mut source = match against {
         Some(file) => Some(files::ClSource::new(file, true)?),
+        None => None,
+    };
+    let mut page = match page {
+        Some(page) => {
+            let once_more = Again {
+                arguments: &arguments.job,
+                machine: &machine,
+                finder: &finder,
+                offsets: asked.offsets.as_ref(),
+                limits: asked.limits,
+            };
+            let read = nc_program::reopened(&name, &program)?;
+            let read = once_more.program(source.as_ref(), &name, read)?;
+            let cl = match &source {
+                Some(source) => Some(once_more.cl(source)?),
+                None => None,
+            };
+            let besides = Besides {
+                deviations: false,
+                predicted: true,
+            };
+            let rows = MotionRows::new(&machine, read, cl, besides)?;
+            Some((page, rows, PredictedLines::new(&machine, period)?))
+        }
         None => None,
     };
     let against = match &mut source {
@@ -179,6 +217,9 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
             }
             if let Some(rooms) = &mut rooms {
                 rooms.take(sample);
+            }
+            if let Some((_, rows, lines)) = &mut page {
+                lines.take(sample, Some(rows));
             }
             match &mut csv {
                 Some(csv) => Ok(csv.take(sample)?),
@@ -208,6 +249,19 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     let json = files::json(&found);
     if let (Some(_), Some(file)) = (&arguments.summary, texts.last_mut()) {
         file.write_bytes(json.as_bytes())?;
+    }
+    if let Some((mut page, rows, lines)) = page {
+        let shown = predict_page::Shown {
+            machine: &machine,
+            found: &found,
+            findings: &findings,
+            program: named,
+            against: arguments.job.input.as_ref(),
+        };
+        let text = nc_program::again(&name, &again)?;
+        let texts_of = (source.as_mut(), name.as_str(), text);
+        shown.write((rows, lines), texts_of, arguments.report.most(), &mut page)?;
+        texts.push(page);
     }
     let taken = texts.iter().any(AtomicFile::is_standard);
     if let (Some(folder), Some(rooms)) = (&folder, &rooms) {

@@ -1,15 +1,17 @@
 //! `post verify`: an NC program held against the CL file that it was made from.
 
+mod verify_page;
 mod verify_text;
 
 use clap::Args;
 use post_readback::interpret::Limits;
 
-use crate::arguments::JobArguments;
 use crate::arguments::flag_values::positive;
+use crate::arguments::{JobArguments, ReportArguments};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::job::read_back::{self, Reading};
+use crate::job::report::{Again, Besides, MotionRows};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::terminal;
 
@@ -63,6 +65,9 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
     summary: Option<PathArg>,
 
+    #[command(flatten)]
+    report: ReportArguments,
+
     /// The feed was planned (`post --plan`): it may be below that of the CL file.
     #[arg(long)]
     planned: bool,
@@ -102,7 +107,16 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
             .iter()
             .map(|summary| (Role::SUMMARY, summary)),
     );
+    targets.extend(
+        arguments
+            .report
+            .report
+            .iter()
+            .map(|page| (Role::REPORT, page)),
+    );
     let mut texts = AtomicFile::create(&targets)?;
+    let page = arguments.report.report.as_ref().and_then(|_| texts.pop());
+    let again = nc_program::again(&name, &program)?;
     let reading = Reading {
         arguments: &arguments.job,
         machine: &machine,
@@ -117,6 +131,26 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         solutions: arguments.map.is_some(),
         lines: None,
     };
+    let once_more = Again {
+        arguments: &arguments.job,
+        machine: &machine,
+        finder: &finder,
+        offsets: reading.offsets.as_ref(),
+        limits: reading.limits,
+    };
+    let mut rows = match &page {
+        Some(_) => {
+            let read = nc_program::reopened(&name, &program)?;
+            let program = once_more.program(Some(&source), &name, read)?;
+            let cl = once_more.cl(&source)?;
+            let besides = Besides {
+                deviations: true,
+                predicted: false,
+            };
+            Some(MotionRows::new(&machine, program, Some(cl), besides)?)
+        }
+        None => None,
+    };
     let mut map = arguments.map.as_ref().map(|_| JsonRows::default());
     let held = {
         let file = map.is_some().then(|| &mut texts[0]);
@@ -124,6 +158,9 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         read_back::verify(&reading, &mut source, &name, program, &mut |row| {
             if let (Some(map), Some(file)) = (&mut map, &mut file) {
                 map.row(row, file);
+            }
+            if let Some(rows) = &mut rows {
+                rows.hear(row.nc_line, &verify_page::heard(row));
             }
         })?
     };
@@ -134,6 +171,22 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         && let Some(file) = texts.last_mut()
     {
         file.write_bytes(files::json(&held.found).as_bytes())?;
+    }
+    if let (Some(mut page), Some(rows)) = (page, rows) {
+        let shown = verify_page::Shown {
+            machine: &machine,
+            held: &held,
+            names: [named, arguments.job.input()],
+            tolerances: reading.tolerances,
+        };
+        let text = nc_program::again(&name, &again)?;
+        shown.write(
+            rows,
+            (&mut source, &name, text),
+            arguments.report.most(),
+            &mut page,
+        )?;
+        texts.push(page);
     }
     let taken = texts.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(texts)?;

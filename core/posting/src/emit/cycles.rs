@@ -146,7 +146,16 @@ impl Emit<'_> {
         }
         match native {
             None => self.replay(&hole.into, findings),
-            Some(native) => self.point(hole, &native, goes_on),
+            Some(native) => {
+                self.point(hole, &native, goes_on);
+                let made = match goes_on {
+                    true => points(&hole.above).count(),
+                    false => 0,
+                };
+                for _ in 0..made + points(&hole.into).count() {
+                    self.writer.place(0);
+                }
+            }
         }
     }
 
@@ -154,7 +163,7 @@ impl Emit<'_> {
     fn replay(&mut self, stream: &[Flow<Block>], findings: &Findings) {
         for next in stream {
             match next {
-                Flow::Point(block) => self.block(block, findings),
+                Flow::Point(block) => self.placed_block(block, findings),
                 Flow::Command { line, command } => self.command(*line, command, findings),
             }
             if self.writer.is_full() {

@@ -148,7 +148,7 @@ impl<'a> Emit<'a> {
                 _ if self.hole.is_some() || next.marks_hole() => self.drill(next, findings),
                 Flow::Point(block) => {
                     self.end_cycle(block.line);
-                    self.block(block, findings);
+                    self.placed_block(block, findings);
                 }
                 Flow::Command { line, command } => {
                     self.end_cycle(*line);
@@ -172,6 +172,24 @@ impl<'a> Emit<'a> {
     fn flush(&mut self, findings: &Findings) {
         self.texts.tell(findings);
         self.writer.flush(&mut self.extremes, findings);
+    }
+
+    /// From here on it is noted on which line each block ends.
+    pub(crate) fn watch(&mut self) {
+        self.writer.watch();
+    }
+
+    /// Hands over the lines on which blocks end, those of them that are written.
+    pub(crate) fn take_lines(&mut self, take: impl FnOnce(&[u64])) {
+        self.writer.take_lines(take);
+    }
+
+    /// Writes a block, and notes where it stands.
+    #[inline]
+    fn placed_block(&mut self, block: &Block, findings: &Findings) {
+        let before = self.writer.next();
+        self.block(block, findings);
+        self.writer.place(before);
     }
 
     #[inline]

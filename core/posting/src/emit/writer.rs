@@ -22,6 +22,17 @@ pub(super) struct Writer<'a> {
     tool_known: bool,
     /// The dialect refused an event, or the output text: no more is made.
     broken: bool,
+    /// Where the blocks stand, if somebody wants to know.
+    places: Option<Places>,
+}
+
+/// Where blocks stand in the program.
+#[derive(Default)]
+struct Places {
+    /// Of each block of the batch the index of the event that it ends on, if it has one.
+    events: Vec<Option<usize>>,
+    /// Of the blocks before them the line of the program; zero where there is none.
+    lines: Vec<u64>,
 }
 
 impl<'a> Writer<'a> {
@@ -36,6 +47,31 @@ impl<'a> Writer<'a> {
             lines: 0,
             tool_known: false,
             broken: false,
+            places: None,
+        }
+    }
+
+    /// From here on it is noted where the blocks stand.
+    pub(super) fn watch(&mut self) {
+        self.places.get_or_insert_default();
+    }
+
+    /// A block stands where the last event does, if there are more than `before`.
+    #[inline]
+    pub(super) fn place(&mut self, before: usize) {
+        if let Some(places) = &mut self.places {
+            let index = self.batch.len();
+            places.events.push((index > before).then(|| index - 1));
+        }
+    }
+
+    /// Hands over where the blocks stand that are written.
+    pub(super) fn take_lines(&mut self, take: impl FnOnce(&[u64])) {
+        if let Some(places) = &mut self.places
+            && !places.lines.is_empty()
+        {
+            take(&places.lines);
+            places.lines.clear();
         }
     }
 
@@ -91,6 +127,9 @@ impl<'a> Writer<'a> {
             batch, text, ends, ..
         } = self;
         if batch.is_empty() {
+            if let Some(Places { events, lines }) = &mut self.places {
+                lines.extend(events.drain(..).map(|_| 0));
+            }
             return;
         }
         text.clear();
@@ -100,6 +139,9 @@ impl<'a> Writer<'a> {
             let end = ends.get(index).copied().unwrap_or(text.len());
             self.lines + newlines(&text.as_bytes()[..end])
         });
+        if let Some(places) = &mut self.places {
+            places.written(self.lines, text.as_bytes(), ends);
+        }
         self.lines += newlines(text.as_bytes());
         match written {
             Err(refused) => {
@@ -121,6 +163,23 @@ impl<'a> Writer<'a> {
             }
         }
         batch.clear();
+    }
+}
+
+impl Places {
+    /// The batch is written as `text`, its events up to `ends`, behind `lines` lines.
+    fn written(&mut self, mut lines: u64, text: &[u8], ends: &[usize]) {
+        let mut counted = 0;
+        for event in self.events.drain(..) {
+            let line = event.map(|event| {
+                let end = ends.get(event).copied().unwrap_or(text.len());
+                // Events come in order: nothing is counted twice.
+                lines += newlines(text.get(counted..end).unwrap_or_default());
+                counted = counted.max(end);
+                lines
+            });
+            self.lines.push(line.unwrap_or(0));
+        }
     }
 }
 

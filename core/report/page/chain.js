@@ -1,0 +1,106 @@
+// The chain as it is drawn: where its bodies stand. Tip and tool axis follow from the same product as in decode.js.
+
+P.chain = {};
+
+// `vector` turned about the unit vector `k` (Rodrigues' formula).
+P.chain.turn = (v, k, sine, cosine) => {
+  const along = (k[0] * v[0] + k[1] * v[1] + k[2] * v[2]) * (1 - cosine);
+  return [
+    v[0] * cosine + (k[1] * v[2] - k[2] * v[1]) * sine + k[0] * along,
+    v[1] * cosine + (k[2] * v[0] - k[0] * v[2]) * sine + k[1] * along,
+    v[2] * cosine + (k[0] * v[1] - k[1] * v[0]) * sine + k[2] * along,
+  ];
+};
+
+// Sine and cosine of an angle in degrees, exact at the quarters.
+P.chain.trig = (degrees) => {
+  const turn = degrees - 360 * Math.floor(degrees / 360 + 0.5);
+  return [Math.sin((turn * Math.PI) / 180), Math.cos((turn * Math.PI) / 180)];
+};
+
+P.chain.unit = (v) => {
+  const length = Math.hypot(v[0], v[1], v[2]) || 1;
+  return [v[0] / length, v[1] / length, v[2] / length];
+};
+
+// Where the part origin sits with all axes at zero, mm, machine frame.
+P.chain.mount = ({ mount }) => mount.slice(0, 3).map((row) => row[3]);
+
+// The tip with all axes at zero for a tool of this length, mm, machine frame.
+P.chain.tip = (machine, length) => {
+  const axis = P.chain.unit(machine.tool_axis);
+  return machine.gauge.map((value, at) => value - axis[at] * (length || 0));
+};
+
+// Tip and tool axis in the part frame, from axis positions as the control shows them, mm and degrees, in the chain's order.
+P.chain.forward = (machine, values, length) => {
+  const pose = new Float64Array(6);
+  P.poser(machine)((at) => values[at], length || 0, pose);
+  return { tip: [...pose.subarray(0, 3)], axis: [...pose.subarray(3)] };
+};
+
+// A rigid motion: three columns of a rotation and a shift, as sixteen numbers column by column.
+P.chain.still = () => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+P.chain.times = (a, b) => {
+  const c = new Array(16).fill(0);
+  for (let column = 0; column < 4; column++)
+    for (let row = 0; row < 4; row++)
+      for (let at = 0; at < 4; at++) c[column * 4 + row] += a[at * 4 + row] * b[column * 4 + at];
+  return c;
+};
+P.chain.back = (m) => {
+  const r = [m[0], m[4], m[8], 0, m[1], m[5], m[9], 0, m[2], m[6], m[10], 0, 0, 0, 0, 1];
+  for (let row = 0; row < 3; row++) r[12 + row] = -(r[row] * m[12] + r[4 + row] * m[13] + r[8 + row] * m[14]);
+  return r;
+};
+P.chain.apply = (m, v) => [0, 1, 2].map((row) => m[row] * v[0] + m[4 + row] * v[1] + m[8 + row] * v[2] + m[12 + row]);
+
+// The motion of one joint that stands at a position.
+P.chain.motion = ({ kind, direction, point, zero }, position) => {
+  const value = position - (zero || 0);
+  const k = P.chain.unit(direction);
+  const m = P.chain.still();
+  if (kind !== "rotary") {
+    for (let row = 0; row < 3; row++) m[12 + row] = k[row] * value;
+    return m;
+  }
+  const [sine, cosine] = P.chain.trig(value);
+  for (let column = 0; column < 3; column++) {
+    const turned = P.chain.turn([0, 1, 2].map((at) => (at === column ? 1 : 0)), k, sine, cosine);
+    for (let row = 0; row < 3; row++) m[column * 4 + row] = turned[row];
+  }
+  const carried = P.chain.apply(m, point);
+  for (let row = 0; row < 3; row++) m[12 + row] = point[row] - carried[row];
+  return m;
+};
+
+// Where the bed is in the chain: the number of axes that carry the work.
+P.chain.bed = (machine) => machine.axes.filter((axis) => axis.carries === "work").length;
+
+// The motion of every body from where it stands with all axes at zero: the part, what each axis carries, the tool.
+// In the part frame the part stands still; in the machine frame the bed does.
+P.chain.bodies = (machine, values, frame) => {
+  const bodies = [P.chain.still()];
+  machine.axes.forEach((axis, at) => bodies.push(P.chain.times(bodies[at], P.chain.motion(axis, values[at]))));
+  if (frame !== "machine") return bodies;
+  const back = P.chain.back(bodies[P.chain.bed(machine)]);
+  return bodies.map((body) => P.chain.times(back, body));
+};
+
+// Axis values at a share of a block: the control moves all axes linearly between blocks.
+P.chain.values = (row, share) => {
+  const { report, column } = P.m;
+  return report.meta.machine.axes.map(({ name }) => {
+    const values = column("q." + name);
+    if (!values) return 0;
+    const to = values[row];
+    const from = row > 0 ? values[row - 1] : to;
+    return from + (to - from) * share;
+  });
+};
+
+// The length of the tool that is in use in a block, mm.
+P.chain.length = (row) => {
+  const lengths = P.m.column("tool_length");
+  return lengths ? lengths[row] : P.m.meta.tool_length;
+};

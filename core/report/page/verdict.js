@@ -1,0 +1,79 @@
+// The verdict: the word, the largest deviations with their places, travel, what was found, and what is left out.
+
+P.verdict = {
+  icons: {
+    good: "M4 10.5 8.2 15 16 5.5",
+    warn: "M10 3 18 16.5H2ZM10 8v4M10 14.4v.1",
+    bad: "M5 5l10 10M15 5 5 15",
+  },
+};
+
+P.verdict.badge = ({ kind, word }) => P.el("span", { class: `badge ${kind}` }, P.icon(P.verdict.icons[kind] || P.verdict.icons.warn), word);
+
+P.verdict.build = (view) => {
+  const { el, m } = P;
+  const { meta } = m;
+  const body = el("div", { class: "body", tabindex: "0", role: "group", "aria-label": "Verdict" });
+  const part = (title, ...children) => body.append(el("h3", {}, title), ...children);
+  view.append(el("div", { class: "bar" }, el("h2", { id: "verdict-title" }, "Verdict")), body);
+  body.append(P.verdict.badge(meta.verdict));
+  body.append(el("div", { class: "said" }, (meta.verdict.sentences || []).map((sentence) => el("p", {}, sentence))));
+  if ((meta.maxima || []).length) part("Largest", P.verdict.maxima(meta.maxima));
+  if ((meta.warnings || []).length) part(`Found (${meta.warnings.length})`, P.verdict.warnings(meta.warnings));
+  if ((meta.axes_used || []).length) part("Travel used", ...meta.axes_used.map(P.verdict.travel));
+  // What stands above is not said twice.
+  const above = [...(meta.maxima || []).map(({ name }) => name), ...(meta.axes_used || []).map(({ name }) => `axis ${name}`)];
+  const facts = (meta.facts || []).filter(([label]) => !above.includes(label));
+  if (facts.length) part("Job", el("dl", { class: "facts" }, facts.map(([label, text]) => [el("dt", {}, label), el("dd", {}, text)])));
+  if ((meta.excludes || []).length) part("What “certified” leaves out", el("ul", { class: "plain quiet" }, meta.excludes.map((sentence) => el("li", {}, sentence))));
+  const left = [...(meta.parts_left_out || [])];
+  if (meta.events_left_out > 0) left.push(`${meta.events_left_out} further marks are not listed.`);
+  if (left.length) part("Left out of this page", el("ul", { class: "plain" }, left.map((sentence) => el("li", {}, sentence))));
+};
+
+// Links to the places of something: the line of the program, that of the CL file, else the block.
+P.verdict.places = ({ nc, cl, row }) => {
+  const { el } = P;
+  const link = (text, title, run) => el("button", { class: "link number", title, onclick: run }, text);
+  const made = [];
+  const known = row !== null && row !== undefined;
+  if (nc) made.push(link(`NC ${nc}`, `Go to line ${nc} of the program`, () => (known ? P.select(row) : P.select_line("nc", nc - 1))));
+  if (cl) made.push(link(`CL ${cl}`, `Go to line ${cl} of the CL file`, () => (known ? P.select(row) : P.select_line("cl", cl - 1))));
+  if (!made.length && known) made.push(link(`block ${row + 1}`, "Go to the block", () => P.select(row)));
+  return made;
+};
+
+P.verdict.maxima = (maxima) => {
+  const { el } = P;
+  const rows = maxima.map((one) => {
+    const over = one.limit && one.value > one.limit * (1 + 1e-6);
+    const bar = el("span", { class: `share${over ? " over" : ""}` }, el("i"));
+    if (one.limit) bar.firstChild.style.width = `${P.clamp((one.value / one.limit) * 100, 0.5, 100)}%`;
+    return [
+      el("tr", {}, el("th", { scope: "row" }, one.name), el("td", { class: "number" }, P.quantity(one.value, one.unit))),
+      el("tr", {}, el("td", { colspan: "2" }, one.limit ? bar : null, el("span", { class: "quiet" }, one.limit ? `of ${P.short(one.limit)} ${P.unit(one.unit)}${over ? ", exceeded" : ""} ` : ""), el("span", { class: "where" }, P.verdict.places(one)))),
+    ];
+  });
+  return el("table", { class: "maxima" }, el("tbody", {}, rows.flat()));
+};
+
+P.verdict.warnings = (warnings) => {
+  const { el } = P;
+  return el("ul", { class: "warnings" }, warnings.map((one) => el("li", { class: one.severity }, el("b", {}, one.severity === "error" ? "Error: " : one.severity === "note" ? "Note: " : "Warning: "), one.text, one.help ? el("div", { class: "quiet" }, one.help) : null, el("div", {}, one.code ? el("code", {}, one.code) : null, " ", P.verdict.places(one)))));
+};
+
+// How much of its travel an axis uses.
+P.verdict.travel = ({ name, unit, min, max, travel, way }) => {
+  const { el } = P;
+  const [low, high] = travel || [min, max];
+  const room = high - low || 1;
+  const over = travel && (min < low - 1e-9 || max > high + 1e-9);
+  const bar = el("span", { class: `way${over ? " over" : ""}` }, el("i"));
+  const share = (value) => P.clamp(((value - low) / room) * 100, 0, 100);
+  bar.firstChild.style.left = travel ? `${share(min)}%` : "0";
+  bar.firstChild.style.width = travel ? `${Math.max(share(max) - share(min), 1)}%` : "100%";
+  const text = `${P.short(min)} … ${P.short(max)} ${P.unit(unit)}`;
+  const told = travel ? `of ${P.short(low)} … ${P.short(high)}${over ? ", exceeded" : ""}` : "endless";
+  const all = Number.isFinite(way) && way !== null ? `, ${P.short(way)} ${P.unit(unit)} in all` : "";
+  return el("div", { class: "travel", title: `${name}: ${text}, ${told}${all}` }, el("b", {}, name), bar, el("div", { class: "ends" }, el("span", {}, text), el("span", {}, told)));
+};

@@ -1,0 +1,148 @@
+//! What became of a program that was made, as a page.
+
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+use post_posting::report::{Deviation, Report};
+use post_readback::verify::Verification;
+use post_report::meta::{AxisUsed, Maximum, Names, Verdict};
+
+use super::{BlockRows, Parts, PredictedLines};
+use crate::failure::Failure;
+use crate::files::{AtomicFile, ClSource, PathArg};
+use crate::job::predict::Prediction;
+
+/// What is known of a program that is made.
+pub struct Made<'a> {
+    pub machine: &'a Machine,
+    pub cl: &'a PathArg,
+    pub program: &'a PathArg,
+    pub report: &'a Report,
+    pub verification: Option<&'a Verification>,
+    pub prediction: Option<&'a Prediction>,
+    pub findings: &'a [Diagnostic],
+    /// What was done: `post`, `plan`, `convert`.
+    pub job: &'static str,
+    /// What its summary tells: names and values.
+    pub facts: Vec<[String; 2]>,
+}
+
+impl Made<'_> {
+    /// Writes its report to `page`.
+    ///
+    /// # Errors
+    /// A text cannot be read again, or the report not be written.
+    pub fn write(
+        &self,
+        (rows, series): (BlockRows<'_>, Option<PredictedLines>),
+        (source, program): (&mut ClSource, &mut AtomicFile),
+        most: u64,
+        page: &mut AtomicFile,
+    ) -> Result<(), Failure> {
+        let names = Names {
+            nc: Some(super::name_of(self.program)),
+            cl: Some(super::name_of(self.cl)),
+            nc2: None,
+            machine: self.machine.name.clone(),
+        };
+        let title = format!("{} on {}", super::name_of(self.program), self.machine.name);
+        let mut meta = super::about(self.job, self.machine, title, names);
+        meta.verdict = self.verdict();
+        meta.maxima = self.maxima();
+        meta.facts = self.facts.clone();
+        meta.axes_used = self.axes_used();
+        meta.warnings = super::warnings(self.findings, program.name());
+        meta.excludes = super::excludes();
+        meta.tool_length = self.report.tools.first().map_or(0.0, |tool| tool.length_mm);
+        if let Some(found) = self.prediction {
+            meta.maxima
+                .extend(super::predicted_maxima(self.machine, found));
+            meta.facts.extend(super::predicted_facts(found));
+            meta.excludes.extend(found.assumed.iter().cloned());
+        }
+        let mut parts = Parts::default();
+        if let Some(series) = series {
+            series.finish(None, &mut parts)?;
+        }
+        rows.finish(&mut parts, &mut meta)?;
+        let name = program.name().to_owned();
+        parts.text("nc", &name, &mut program.reread()?)?;
+        let mut cl = source.open()?;
+        parts.text("cl", &cl.name, &mut cl.bytes)?;
+        parts.write(meta, most, page)
+    }
+
+    fn verdict(&self) -> Verdict {
+        let found = self.report;
+        let mut sentences = vec![format!(
+            "Every block of the program is certified to stay within {} mm of the CL path with the tip and within {}° with the tool axis.",
+            found.tolerance_mm, found.axis_tolerance_deg
+        )];
+        if let Some(held) = self.verification {
+            sentences.push(format!(
+                "It was read back: {} cuts and {} holes are as the CL file asks.",
+                held.cuts, held.holes
+            ));
+        }
+        let warned = self.findings.len();
+        let (kind, word) = match warned {
+            0 => ("good", "Within tolerance"),
+            _ => ("warn", "Within tolerance, with warnings"),
+        };
+        if warned > 0 {
+            let warnings = if warned == 1 { "warning" } else { "warnings" };
+            sentences.push(format!("{warned} {warnings}: look at them before it runs."));
+        }
+        Verdict {
+            kind,
+            word: word.to_owned(),
+            sentences,
+        }
+    }
+
+    fn maxima(&self) -> Vec<Maximum> {
+        let found = self.report;
+        let maximum = |name: &str, deviation: Deviation, unit, limit: f64| Maximum {
+            name: name.to_owned(),
+            value: deviation.value,
+            unit,
+            limit: Some(limit),
+            row: None,
+            nc: (deviation.block > 0).then_some(deviation.block),
+            cl: (deviation.line > 0).then_some(deviation.line),
+        };
+        let rapid = self.machine.accuracy.rapid_tolerance;
+        vec![
+            maximum(
+                "tip deviation",
+                found.tip_deviation_mm,
+                "mm",
+                found.tolerance_mm,
+            ),
+            maximum(
+                "axis deviation",
+                found.axis_deviation_deg,
+                "deg",
+                found.axis_tolerance_deg,
+            ),
+            maximum("rapid deviation", found.rapid_deviation_mm, "mm", rapid),
+        ]
+    }
+
+    fn axes_used(&self) -> Vec<AxisUsed> {
+        let used = self.report.axes.iter().filter(|axis| axis.min <= axis.max);
+        let told = used.map(|axis| {
+            let mut known = self.machine.axes.iter();
+            AxisUsed {
+                name: axis.name.clone(),
+                unit: known
+                    .find(|known| known.name == axis.name)
+                    .map_or("mm", |known| known.unit_name()),
+                min: axis.min,
+                max: axis.max,
+                travel: axis.travel,
+                way: Some(axis.way),
+            }
+        });
+        told.collect()
+    }
+}

@@ -1,0 +1,154 @@
+//! Tables and texts of a report, and the file that they become.
+
+use std::io::{self, Read};
+
+use post_report::document;
+use post_report::meta::{Meta, TableMeta, TextMeta};
+use post_report::table::TableWriter;
+use post_report::text::TextWriter;
+
+use crate::failure::Failure;
+use crate::files::{AtomicFile, FileFault, Scratch};
+
+/// What messages call a scratch file.
+const NAME: &str = "the report";
+
+/// Longest page without its parts, bytes, with room for what the meta tells: it is not known before what is left out is.
+const PAGE: u64 = 400_000;
+
+const TEXTS: &str = "texts";
+
+/// What is left out first, and how the page calls it.
+const ORDER: [(&str, &str); 6] = [
+    ("nc2", TEXTS),
+    ("nc", TEXTS),
+    ("cl", TEXTS),
+    ("series", "series over time"),
+    ("path", "interpolated path"),
+    ("cl", "CL path"),
+];
+
+/// Packed tables and texts.
+#[derive(Default)]
+pub struct Parts {
+    tables: Vec<(TableMeta, Scratch)>,
+    texts: Vec<(TextMeta, Scratch)>,
+}
+
+impl Parts {
+    /// An empty place for a part.
+    ///
+    /// # Errors
+    /// There is no place for it.
+    pub fn scratch() -> Result<Scratch, FileFault> {
+        Scratch::new(NAME)
+    }
+
+    /// Adds a table that is whole.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn table(&mut self, table: TableWriter<Scratch>) -> Result<(), Failure> {
+        self.tables.push(table.finish().map_err(fault)?);
+        Ok(())
+    }
+
+    /// Adds a text, read from its start.
+    ///
+    /// # Errors
+    /// It cannot be read, or not be written.
+    pub fn text(
+        &mut self,
+        name: &'static str,
+        file: &str,
+        text: &mut dyn Read,
+    ) -> Result<(), Failure> {
+        let mut writer = TextWriter::new(name, Self::scratch()?);
+        let mut buffer = vec![0; 1 << 16];
+        loop {
+            let length = text.read(&mut buffer).map_err(|error| FileFault::Read {
+                name: file.to_owned(),
+                error,
+            })?;
+            if length == 0 {
+                break;
+            }
+            writer.write(&buffer[..length]).map_err(fault)?;
+        }
+        self.texts.push(writer.finish().map_err(fault)?);
+        Ok(())
+    }
+
+    /// Writes the report; above `most` bytes parts are left out, the texts first, and the page says so.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write(
+        mut self,
+        mut meta: Meta,
+        most: u64,
+        file: &mut AtomicFile,
+    ) -> Result<(), Failure> {
+        let mut size = PAGE + self.bytes();
+        for (name, called) in ORDER {
+            if size <= most {
+                break;
+            }
+            let before = self.tables.len() + self.texts.len();
+            if called == TEXTS {
+                self.texts.retain(|(text, _)| text.name != name);
+            } else {
+                self.tables.retain(|(table, _)| table.name != name);
+            }
+            size = PAGE + self.bytes();
+            let left = before > self.tables.len() + self.texts.len();
+            if left && meta.parts_left_out.iter().all(|known| known != called) {
+                meta.parts_left_out.push(called.to_owned());
+            }
+        }
+        let mut files = Vec::new();
+        for (table, scratch) in self.tables {
+            meta.tables.push(table);
+            files.push(scratch.reread()?);
+        }
+        for (text, scratch) in self.texts {
+            meta.texts.push(text);
+            files.push(scratch.reread()?);
+        }
+        for file in &mut files {
+            io::Seek::rewind(file).map_err(fault)?;
+        }
+        let mut readers: Vec<&mut dyn Read> =
+            files.iter_mut().map(|file| file as &mut dyn Read).collect();
+        let written = document::write(&meta, &mut readers, file);
+        written.map_err(|error| FileFault::write_named(file.name(), error).into())
+    }
+
+    fn bytes(&self) -> u64 {
+        let tables = self.tables.iter().map(|(table, _)| table.bytes);
+        let texts = self.texts.iter().map(|(text, _)| text.bytes);
+        tables.chain(texts).sum()
+    }
+}
+
+/// What is packed cannot be kept.
+pub fn fault(error: io::Error) -> Failure {
+    FileFault::NoWaiting {
+        name: NAME.to_owned(),
+        folder: std::env::temp_dir(),
+        error,
+    }
+    .into()
+}
+
+/// What "certified" leaves out.
+pub fn excludes() -> Vec<String> {
+    [
+        "What a record of the CL file is taken to mean: README.md says how it is read.",
+        "What the control does between blocks: smoothing, look-ahead, servo lag. A prediction (--predict, post predict) tells of them.",
+        "The machine's own errors, as far as its file does not describe them.",
+        "Collisions: tool, holder, part and machine are not known as bodies.",
+    ]
+    .map(str::to_owned)
+    .to_vec()
+}

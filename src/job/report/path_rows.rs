@@ -1,0 +1,80 @@
+//! The interpolated path: where the tip goes between the ends of the blocks, and how far that is off the path of the CL
+//! file.
+
+use nalgebra::Vector3;
+use post_machine::description::Machine;
+use post_report::table::{Column, TableWriter};
+
+use super::block_rows::decimals;
+use super::parts::{Parts, fault};
+use crate::failure::Failure;
+use crate::files::Scratch;
+
+/// Packs the places of the path.
+pub struct PathRows {
+    table: TableWriter<Scratch>,
+    /// The end of the last block, as packed.
+    last: Option<Vector3<f64>>,
+    fault: Option<Failure>,
+}
+
+impl PathRows {
+    /// For a machine.
+    ///
+    /// # Errors
+    /// There is no place for them.
+    pub fn new(machine: &Machine) -> Result<Self, Failure> {
+        // A tenth of the decimals of the bounds: vectors are looked at.
+        let off = decimals(machine.accuracy.tolerance) - 1;
+        let columns = vec![
+            Column::new("row", "", 0),
+            Column::new("x", "mm", 4).from("tip"),
+            Column::new("y", "mm", 4).from("tip"),
+            Column::new("z", "mm", 4).from("tip"),
+            Column::new("d.x", "mm", off),
+            Column::new("d.y", "mm", off),
+            Column::new("d.z", "mm", off),
+            Column::new("held", "", 0),
+        ];
+        Ok(Self {
+            table: TableWriter::new("path", columns, Parts::scratch()?),
+            last: None,
+            fault: None,
+        })
+    }
+
+    /// Places of block `row`, in order, the last its end at `tip` (as packed), and how far each is off the CL path, if that
+    /// is known.
+    pub fn block(
+        &mut self,
+        row: u64,
+        tip: Vector3<f64>,
+        places: &[(Vector3<f64>, Option<Vector3<f64>>)],
+    ) {
+        let from = self.last.replace(tip).unwrap_or(tip);
+        let count = places.len() as f64;
+        for (place, (at, off)) in places.iter().enumerate() {
+            let share = (place + 1) as f64 / count;
+            let left = at - (from + (tip - from) * share);
+            let held = f64::from(u8::from(off.is_some()));
+            let off = off.unwrap_or_default();
+            let row = [
+                row as f64, left.x, left.y, left.z, off.x, off.y, off.z, held,
+            ];
+            if let Err(error) = self.table.row(&row) {
+                self.fault.get_or_insert(fault(error));
+            }
+        }
+    }
+
+    /// The table goes to `parts`.
+    ///
+    /// # Errors
+    /// It could not be kept.
+    pub fn finish(self, parts: &mut Parts) -> Result<(), Failure> {
+        match self.fault {
+            Some(fault) => Err(fault),
+            None => parts.table(self.table),
+        }
+    }
+}

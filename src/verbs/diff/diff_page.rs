@@ -1,0 +1,139 @@
+//! `--report`: what was compared, as a page: the new program in the place of the program, the path of the old one in the
+//! place of the CL path.
+
+use post_machine::description::Machine;
+use post_readback::diff::{Difference, Rules};
+use post_readback::interpret::Interpreter;
+use post_report::meta::{Maximum, Names, Tolerances, Verdict};
+use std::fs::File;
+
+use crate::failure::Failure;
+use crate::files::{AtomicFile, PathArg};
+use crate::job::report::{self, Besides, MotionRows, Parts};
+use crate::terminal::{clock, number};
+
+/// What was compared.
+pub struct Shown<'a> {
+    /// The machine of the new program.
+    pub machine: &'a Machine,
+    pub found: &'a Difference,
+    pub rules: &'a Rules,
+    /// The old program and the new one.
+    pub names: [&'a PathArg; 2],
+}
+
+impl Shown<'_> {
+    /// Writes its report to `page`.
+    ///
+    /// # Errors
+    /// A program cannot be read again, or the report not be written.
+    pub fn write(
+        &self,
+        [old, new]: [Interpreter<File>; 2],
+        mut texts: [(&str, File); 2],
+        most: u64,
+        page: &mut AtomicFile,
+    ) -> Result<(), Failure> {
+        let [old_name, new_name] = self.names.map(report::name_of);
+        let title = format!("{new_name} against {old_name}");
+        let names = Names {
+            nc: Some(new_name),
+            cl: None,
+            nc2: Some(old_name),
+            machine: self.machine.name.clone(),
+        };
+        let mut meta = report::about("diff", self.machine, title, names);
+        meta.tolerances = Tolerances {
+            tip: self.rules.tip,
+            axis: self.rules.axis.to_degrees(),
+            rapid: self.rules.tip,
+        };
+        meta.verdict = self.verdict();
+        meta.maxima = self.maxima();
+        meta.facts = self.facts();
+        let mut parts = Parts::default();
+        let rows = MotionRows::new(self.machine, new, None, Besides::default())?;
+        rows.finish(&mut parts, &mut meta)?;
+        report::path_table(old, &mut parts)?;
+        for (part, (name, text)) in ["nc2", "nc"].into_iter().zip(&mut texts) {
+            parts.text(part, name, text)?;
+        }
+        parts.write(meta, most, page)
+    }
+
+    fn verdict(&self) -> Verdict {
+        let operations = &self.found.operations;
+        let different = operations.iter().filter(|operation| !operation.same);
+        let (kind, word, sentence) = match self.found.same {
+            true => (
+                "good",
+                "The same",
+                "Both programs make the machine do the same.".to_owned(),
+            ),
+            false => (
+                "warn",
+                "Different",
+                format!(
+                    "{} of {} operations are different.",
+                    different.count(),
+                    operations.len()
+                ),
+            ),
+        };
+        Verdict {
+            kind,
+            word: word.to_owned(),
+            sentences: vec![sentence],
+        }
+    }
+
+    fn maxima(&self) -> Vec<Maximum> {
+        let mut maxima = Vec::new();
+        for (index, operation) in self.found.operations.iter().enumerate() {
+            let name = operation.name.clone();
+            let name = name.unwrap_or_else(|| format!("operation {}", index + 1));
+            for (what, worst, unit, limit) in [
+                ("tip", &operation.tip, "mm", self.rules.tip),
+                (
+                    "tool axis",
+                    &operation.axis,
+                    "deg",
+                    self.rules.axis.to_degrees(),
+                ),
+            ] {
+                if worst.value > 0.0 {
+                    maxima.push(Maximum {
+                        name: format!("{what} apart in {name}"),
+                        value: worst.value,
+                        unit,
+                        limit: Some(limit),
+                        row: None,
+                        nc: Some(worst.lines[1]),
+                        cl: None,
+                    });
+                }
+            }
+        }
+        maxima
+    }
+
+    fn facts(&self) -> Vec<[String; 2]> {
+        let sides = ["old", "new"].into_iter().zip(&self.found.sides);
+        let mut facts: Vec<[String; 2]> = sides
+            .map(|(name, side)| {
+                let value = format!(
+                    "{} motions, {} mm at feed, {}",
+                    side.motions,
+                    number(side.cut_mm, 1),
+                    clock(side.seconds)
+                );
+                [name.to_owned(), value]
+            })
+            .collect();
+        let unknown: Vec<String> = self.found.unknown.iter().flatten().cloned().collect();
+        if !unknown.is_empty() {
+            facts.push(["not compared".to_owned(), unknown.join(", ")]);
+        }
+        facts
+    }
+}

@@ -1,0 +1,86 @@
+//! `--report`: what is predicted, as a page.
+
+use std::fs::File;
+
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+use post_report::meta::{Names, Verdict};
+
+use crate::failure::Failure;
+use crate::files::{AtomicFile, ClSource, PathArg};
+use crate::job::predict::Prediction;
+use crate::job::report::{self, MotionRows, Parts, PredictedLines};
+use crate::terminal::clock;
+
+/// What is known of a program that was predicted.
+pub struct Shown<'a> {
+    pub machine: &'a Machine,
+    pub found: &'a Prediction,
+    pub findings: &'a [Diagnostic],
+    /// The program, and the CL file if there is one.
+    pub program: &'a PathArg,
+    pub against: Option<&'a PathArg>,
+}
+
+impl Shown<'_> {
+    /// Writes its report to `page`.
+    ///
+    /// # Errors
+    /// A text cannot be read again, or the report not be written.
+    pub fn write(
+        &self,
+        (mut rows, lines): (MotionRows<'_>, PredictedLines),
+        (source, name, program): (Option<&mut ClSource>, &str, File),
+        most: u64,
+        page: &mut AtomicFile,
+    ) -> Result<(), Failure> {
+        let nc = report::name_of(self.program);
+        let title = format!("{nc} on {}", self.machine.name);
+        let names = Names {
+            nc: Some(nc),
+            cl: self.against.map(report::name_of),
+            nc2: None,
+            machine: self.machine.name.clone(),
+        };
+        let mut meta = report::about("predict", self.machine, title, names);
+        meta.verdict = self.verdict();
+        meta.maxima = report::predicted_maxima(self.machine, self.found);
+        meta.facts = report::predicted_facts(self.found);
+        meta.warnings = report::warnings(self.findings, name);
+        meta.excludes.clone_from(&self.found.assumed);
+        let mut parts = Parts::default();
+        lines.finish(Some(&mut rows), &mut parts)?;
+        rows.finish(&mut parts, &mut meta)?;
+        parts.text("nc", name, &mut { program })?;
+        if let Some(source) = source {
+            let mut cl = source.open()?;
+            parts.text("cl", &cl.name, &mut cl.bytes)?;
+        }
+        parts.write(meta, most, page)
+    }
+
+    fn verdict(&self) -> Verdict {
+        let found = self.found;
+        let tip = &found.contour.tip_mm;
+        let path = match &found.against {
+            Some(_) => "the path of the CL file",
+            None => "the commanded path",
+        };
+        let far = tip.largest > self.machine.accuracy.tolerance;
+        let (kind, word) = match (far, self.findings.is_empty()) {
+            (true, _) => ("warn", "Predicted, beyond the tolerance"),
+            (false, false) => ("warn", "Predicted, with warnings"),
+            (false, true) => ("good", "Predicted, within the tolerance"),
+        };
+        Verdict {
+            kind,
+            word: word.to_owned(),
+            sentences: vec![format!(
+                "The program takes {}; in cuts the tip strays from {path} by {:.4} mm at most, {:.4} mm RMS.",
+                clock(found.time.cycle_s),
+                tip.largest,
+                tip.rms
+            )],
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! `--report`: what was found, as a page.
+
+use std::fs::File;
+
+use post_machine::description::Machine;
+use post_readback::verify::{BlockReport, Worst};
+use post_report::meta::{Maximum, Names, Verdict};
+
+use crate::failure::Failure;
+use crate::files::{AtomicFile, ClSource, PathArg};
+use crate::job::read_back::Held;
+use crate::job::report::{self, Heard, MotionRows, Parts};
+use crate::terminal::clock;
+
+/// What was found of a line.
+pub fn heard(row: &BlockReport) -> Heard {
+    Heard {
+        cl: row.cl_line.unwrap_or(0),
+        deviation: [row.tip_deviation_mm, row.axis_deviation_deg],
+        limit: row.limited_by.clone(),
+        ..Heard::default()
+    }
+}
+
+/// What is known of a program that was held against its CL file.
+pub struct Shown<'a> {
+    pub machine: &'a Machine,
+    pub held: &'a Held,
+    /// The program and the CL file.
+    pub names: [&'a PathArg; 2],
+    /// Over the machine's: mm, radians.
+    pub tolerances: [Option<f64>; 2],
+}
+
+impl Shown<'_> {
+    /// Writes its report to `page`.
+    ///
+    /// # Errors
+    /// A text cannot be read again, or the report not be written.
+    pub fn write(
+        &self,
+        rows: MotionRows<'_>,
+        (source, name, program): (&mut ClSource, &str, File),
+        most: u64,
+        page: &mut AtomicFile,
+    ) -> Result<(), Failure> {
+        let [nc, cl] = self.names.map(report::name_of);
+        let title = format!("{nc} against {cl}");
+        let names = Names {
+            nc: Some(nc),
+            cl: Some(cl),
+            nc2: None,
+            machine: self.machine.name.clone(),
+        };
+        let mut meta = report::about("verify", self.machine, title, names);
+        let [tip, axis] = self.tolerances;
+        if let Some(tip) = tip {
+            meta.tolerances.tip = tip;
+        }
+        if let Some(axis) = axis {
+            meta.tolerances.axis = axis.to_degrees();
+        }
+        let found = &self.held.found;
+        let maximum = |name: &str, worst: &Worst, unit, limit| Maximum {
+            name: name.to_owned(),
+            value: worst.value,
+            unit,
+            limit: Some(limit),
+            row: None,
+            nc: (worst.nc_line > 0).then_some(worst.nc_line),
+            cl: (worst.cl_line > 0).then_some(worst.cl_line),
+        };
+        meta.maxima = vec![
+            maximum("tip deviation", &found.tip, "mm", meta.tolerances.tip),
+            maximum("axis deviation", &found.axis, "deg", meta.tolerances.axis),
+        ];
+        meta.verdict = self.verdict();
+        let fact = |name: &str, value: String| [name.to_owned(), value];
+        meta.facts = vec![
+            fact("machine", self.machine.name.clone()),
+            fact("motions", found.motions.to_string()),
+            fact("cuts", found.cuts.to_string()),
+            fact("rapids", found.rapids.to_string()),
+            fact("holes", found.holes.to_string()),
+            fact(
+                "times a cut is left and gone on with",
+                found.excursions.to_string(),
+            ),
+            fact("rapids made at feed", found.rapids_at_feed.to_string()),
+            fact("time", clock(found.time_s)),
+        ];
+        meta.warnings = report::warnings(&self.held.findings, name);
+        meta.excludes = report::excludes();
+        let mut parts = Parts::default();
+        rows.finish(&mut parts, &mut meta)?;
+        parts.text("nc", name, &mut { program })?;
+        let mut cl = source.open()?;
+        parts.text("cl", &cl.name, &mut cl.bytes)?;
+        parts.write(meta, most, page)
+    }
+
+    fn verdict(&self) -> Verdict {
+        let found = &self.held.found;
+        let faults = found.faults.len();
+        let (kind, word) = match (self.held.is_wrong(), self.held.findings.is_empty()) {
+            (true, _) => ("bad", "Not what the CL file asks for"),
+            (false, false) => ("warn", "As the CL file asks, with warnings"),
+            (false, true) => ("good", "As the CL file asks"),
+        };
+        let mut sentences = vec![format!(
+            "{} cuts and {} holes were run as the control runs them and held against the CL file.",
+            found.cuts, found.holes
+        )];
+        if faults > 0 {
+            let more = if found.gave_up { " and more" } else { "" };
+            sentences.push(format!(
+                "{faults}{more} faults were found: they are listed below."
+            ));
+        }
+        Verdict {
+            kind,
+            word: word.to_owned(),
+            sentences,
+        }
+    }
+}

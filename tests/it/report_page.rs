@@ -1,0 +1,738 @@
+//! The page of the report in a real browser: what it shows is what the command has said, every key does what its help
+//! says, and nothing is loaded.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use post_machine::description::{Machine, Source, load};
+use post_machine::kinematics::Joints;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::browser::Browser;
+use crate::common::{Run, post, read_json, root, sample};
+use crate::library::LIBRARY;
+
+/// A run with its report.
+struct Made {
+    folder: TempDir,
+    page: PathBuf,
+    nc: PathBuf,
+    summary: Value,
+}
+
+/// Posts a file with a report; must succeed.
+fn made(machine: &str, file: &Path, more: &[&str]) -> Made {
+    let folder = tempfile::tempdir().unwrap();
+    let [nc, page, summary] =
+        ["part.nc", "part.html", "part.json"].map(|name| folder.path().join(name));
+    let mut arguments = vec!["-q", "--machine", machine, file.to_str().unwrap()];
+    arguments.extend(["--output", nc.to_str().unwrap()]);
+    arguments.extend(["--report", page.to_str().unwrap()]);
+    arguments.extend(["--summary", summary.to_str().unwrap()]);
+    arguments.extend(more);
+    let Run { code, err, .. } = post(&arguments);
+    assert_eq!(code, 0, "{machine}, {}:\n{err}", file.display());
+    let summary = read_json(&summary);
+    Made {
+        folder,
+        page,
+        nc,
+        summary,
+    }
+}
+
+/// A cut of a blade on a trunnion machine: five axes, a tool, rapids.
+fn blade() -> Made {
+    made("ac-trunnion", &sample("blade.cls"), &["--tool-length", "0"])
+}
+
+/// The state of the page.
+fn state(browser: &mut Browser, name: &str) -> Value {
+    browser.ask(&format!("P.state.{name}"))
+}
+
+#[test]
+fn the_worst_block_is_the_summarys() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    for (machine, name) in [
+        ("ac-trunnion", "blade.cls"),
+        ("dmu50", "facets.apt"),
+        ("head-head", "blade.cls"),
+    ] {
+        let made = made(machine, &sample(name), &["--tool-length", "120"]);
+        browser.open(&made.page);
+        browser.press("Home");
+        let worst = &made.summary["tip_deviation_mm"];
+        let from_maxima = browser.ask("P.m.meta.maxima[0]");
+        let cl = browser.ask(&format!("P.m.lineOf('cl', {})", from_maxima["row"]));
+        assert_eq!(cl, worst["line"], "{machine} {name}");
+        let value = from_maxima["value"].as_f64().unwrap();
+        let told = worst["value"].as_f64().unwrap();
+        assert!(
+            value >= told - 1e-9 && value < told + 1e-4,
+            "{value} against {told}"
+        );
+        // Of all blocks none deviates more than the one that the page goes to.
+        browser.press("x");
+        let row = state(&mut browser, "row");
+        let held = browser
+            .ask("P.m.column('deviation')[P.state.row] / P.m.column('tolerance')[P.state.row]");
+        let most = browser.ask("Math.max(...P.m.column('deviation').map((value, row) => value / P.m.column('tolerance')[row]))");
+        assert_eq!(held, most, "{machine} {name} row {row}");
+    }
+    browser.assert_quiet();
+}
+
+#[test]
+fn the_address_leads_to_a_line() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let made = blade();
+    browser.open(&made.page);
+    browser.ask("location.hash = '#nc=100'; new Promise(done => setTimeout(done, 50))");
+    assert_eq!(browser.ask("P.m.lineOf('nc', P.state.row)"), 100);
+    assert_eq!(
+        browser.ask("P.by('nc').querySelector('[aria-selected=true] .at').textContent"),
+        "100"
+    );
+    // One selection everywhere: the CL line, the words at the foot, the machine.
+    let cl = browser.ask("P.m.lineOf('cl', P.state.row)");
+    assert_eq!(
+        browser.ask("Number(P.by('cl').querySelector('[aria-selected=true] .at').textContent)"),
+        cl
+    );
+    let foot = browser.ask("P.by('foot').textContent");
+    assert!(foot.as_str().unwrap().contains("NC 100"), "{foot}");
+    browser.press("ArrowRight");
+    assert_eq!(browser.ask("location.hash"), "#nc=101");
+    browser.assert_quiet();
+}
+
+#[test]
+fn a_click_selects_a_block_within_eight_pixels() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let made = blade();
+    browser.open(&made.page);
+    let rows = browser.ask("P.m.rows").as_u64().unwrap();
+    for row in (5..rows).step_by(17) {
+        // The middle of the block's last piece, and from there some pixels aside.
+        let place = browser.ask(&format!(
+            "(() => {{ const [, last] = P.scene.points_of({row}); const m = P.path.matrices().matrix; const p = P.scene.path.pos;
+               const at = n => P.camera.pixel(m, p[n * 3], p[n * 3 + 1], p[n * 3 + 2]);
+               const [a, b] = [at(last - 1), at(last)]; const box = P.path.canvas.getBoundingClientRect();
+               return [(a[0] + b[0]) / 2 + box.left + 4, (a[1] + b[1]) / 2 + box.top - 3]; }})()"
+        ));
+        let [x, y] = [0, 1].map(|at| place[at].as_f64().unwrap().round());
+        browser.ask("P.select(0)");
+        browser.click(x, y);
+        // By the page's own drawing the chosen block passes the pointer within eight pixels.
+        let apart = browser.ask(&format!(
+            "(() => {{ const [first, last] = P.scene.points_of(P.state.row); const m = P.path.matrices().matrix; const p = P.scene.path.pos;
+               const box = P.path.canvas.getBoundingClientRect(); let best = Infinity;
+               for (let n = first; n < last; n++) for (let t = 0; t <= 1; t += 0.01) {{
+                 const [x, y] = P.camera.pixel(m, ...[0, 1, 2].map(k => p[n * 3 + k] * (1 - t) + p[n * 3 + 3 + k] * t));
+                 best = Math.min(best, Math.hypot(x + box.left - {x}, y + box.top - {y})); }}
+               return best; }})()"
+        ));
+        let apart = apart.as_f64().unwrap();
+        assert!(apart <= 8.0, "row {row}: {apart} pixels");
+        assert_ne!(
+            state(&mut browser, "row"),
+            0,
+            "row {row}: nothing was selected"
+        );
+    }
+    browser.ask("P.select(3)");
+    // Far from the path nothing is selected.
+    let corner = browser.ask("(() => { const box = P.path.canvas.getBoundingClientRect(); return [box.left + 3, box.top + 3]; })()");
+    browser.click(corner[0].as_f64().unwrap(), corner[1].as_f64().unwrap());
+    assert_eq!(state(&mut browser, "row"), 3);
+    browser.assert_quiet();
+}
+
+/// A machine of the library.
+fn machine(name: &str) -> Machine {
+    let find = |name: &str| {
+        let text = fs::read_to_string(root().join("machines").join(format!("{name}.toml")));
+        text.map(|text| Source {
+            name: name.to_owned(),
+            text,
+        })
+    };
+    load(find(name).unwrap(), &[], &mut |name| {
+        find(name).map_err(|error| error.to_string())
+    })
+    .unwrap()
+}
+
+/// The page's product from the workpiece to the tool against the command's, at the axis values of every block.
+#[test]
+fn the_chain_is_the_commands_for_every_machine() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let mut places = 0;
+    for row in LIBRARY {
+        let file = Path::new("tests/machines").join(format!("{}.{}", row.machine, row.ending));
+        let made = made(
+            row.machine,
+            &file,
+            &["--tool-length", &row.length.to_string()],
+        );
+        browser.open(&made.page);
+        let asked = browser.ask(
+            "(() => { const m = P.m.meta.machine; const out = [];
+               for (let row = 0; row < P.m.rows; row += 1) {
+                 const values = P.chain.values(row, 1); const length = P.chain.length(row);
+                 const { tip, axis } = P.chain.forward(m, values, length);
+                 out.push({ values, length, tip, axis, told: ['tip.x', 'tip.y', 'tip.z'].map(name => P.m.column(name)[row]) });
+               } return { out, name: m.axes.map(axis => axis.name) }; })()",
+        );
+        let machine = machine(row.machine);
+        let names: Vec<&str> = machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+        assert_eq!(asked["name"], json!(names), "{}", row.machine);
+        for (index, place) in asked["out"].as_array().unwrap().iter().enumerate() {
+            let number = |value: &Value| value.as_f64().unwrap();
+            let solver = machine.solver(number(&place["length"])).unwrap();
+            let mut joints = Joints::default();
+            for (at, axis) in machine.axes.iter().enumerate() {
+                joints[at] = number(&place["values"][at]) * axis.unit() - axis.zero;
+            }
+            let pose = solver.chain().forward(&joints);
+            for at in 0..3 {
+                let tip = (number(&place["tip"][at]) - pose.tip[at]).abs();
+                assert!(tip < 1e-6, "{} block {}: {tip} mm", row.machine, index + 1);
+                let axis = (number(&place["axis"][at]) - pose.axis[at]).abs();
+                assert!(axis < 1e-9, "{} block {}: {axis}", row.machine, index + 1);
+            }
+            places += 1;
+        }
+        drop(made.folder);
+    }
+    assert!(places > 1000, "{places}");
+    browser.assert_quiet();
+}
+
+/// The lines of a text of the page.
+fn lines(browser: &mut Browser, name: &str) -> Vec<String> {
+    let told = browser.ask(&format!(
+        "(() => {{ const text = P.m.report.texts.{name}; return Array.from({{ length: text.lines }}, (_, at) => text.line(at)); }})()"
+    ));
+    serde_json::from_value(told).unwrap()
+}
+
+#[test]
+fn the_texts_are_the_files() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    for (machine, name) in [("ac-trunnion", "blade.cls"), ("vmc", "plate.ncl")] {
+        let made = made(machine, &sample(name), &["--tool-length", "0"]);
+        browser.open(&made.page);
+        let cl = fs::read_to_string(root().join(sample(name))).unwrap();
+        assert_eq!(lines(&mut browser, "cl"), cl.lines().collect::<Vec<_>>());
+        let nc = fs::read_to_string(&made.nc).unwrap();
+        assert_eq!(lines(&mut browser, "nc"), nc.lines().collect::<Vec<_>>());
+    }
+    browser.assert_quiet();
+}
+
+#[test]
+fn hostile_texts_stay_text() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let hostile = "</script><img src=x onerror=alert(1)><b>";
+    let name = "a<img src=x onerror=alert(2)>b.cls";
+    let text = format!(
+        "PARTNO/{hostile}\n$$ {hostile}\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nPPRINT/{hostile}\nFEDRAT/100,MMPM\nGOTO/0,0,50\nGOTO/20,0,50\n$$ <!-- <script>\nFINI\n"
+    );
+    let file = folder.path().join(name);
+    fs::write(&file, &text).unwrap();
+    let made = made("vmc", &file, &["--tool-length", "0"]);
+    browser.open(&made.page);
+    assert_eq!(lines(&mut browser, "cl"), text.lines().collect::<Vec<_>>());
+    assert_eq!(
+        browser.ask("document.querySelectorAll('img, b b, iframe, object').length"),
+        0
+    );
+    assert_eq!(browser.ask("document.querySelectorAll('script').length"), 1);
+    let shown = browser.ask("P.by('cl').textContent");
+    assert!(shown.as_str().unwrap().contains(hostile), "{shown}");
+    browser.assert_quiet();
+}
+
+/// What holds before a key, the key, and what must hold after it.
+const KEYS: &[(&str, &str, &str)] = &[
+    ("P.select(40)", "ArrowLeft", "P.state.row === 39"),
+    ("P.select(40)", "ArrowRight", "P.state.row === 41"),
+    ("P.select(150)", "Shift+ArrowLeft", "P.state.row === 50"),
+    ("P.select(40)", "Shift+ArrowRight", "P.state.row === 140"),
+    ("P.select(40)", "Home", "P.state.row === 0"),
+    ("P.select(40)", "End", "P.state.row === P.m.rows - 1"),
+    (
+        "window.before = P.worth()(40); P.select(40)",
+        "w",
+        "P.worth()(P.state.row) >= before && P.state.row !== 40",
+    ),
+    (
+        "window.before = P.worth()(40); P.select(40)",
+        "W",
+        "P.worth()(P.state.row) <= before && P.state.row !== 40",
+    ),
+    ("P.select(40)", "x", "P.state.row === P.worst()"),
+    (
+        "P.select(0); P.scene.marks = [...P.scene.marks, { row: 70, kind: 'stop', text: 'stop', point: 1 }]",
+        "e",
+        "P.state.row === 70",
+    ),
+    (
+        "P.select(P.m.rows - 1); window.mark = P.scene.marks.findLast(mark => mark.row < P.m.rows - 1)",
+        "E",
+        "P.state.row === mark.row",
+    ),
+    ("P.set({ colour: 0 })", "c", "P.state.colour === 1"),
+    (
+        "P.set({ colour: 0 })",
+        "C",
+        "P.state.colour === P.colour.modes.length - 1",
+    ),
+    ("P.set({ machine: false })", "m", "P.state.machine === true"),
+    (
+        "P.set({ frame: 'part' })",
+        "f",
+        "P.state.frame === 'machine'",
+    ),
+    ("P.set({ playing: false })", " ", "P.state.playing === true"),
+    (
+        "P.set({ playing: false, speed: 10 })",
+        "<",
+        "P.state.speed === 5",
+    ),
+    ("P.set({ speed: 10 })", ">", "P.state.speed === 25"),
+    ("P.set({ by: 'time' })", "b", "P.state.by === 'block'"),
+    (
+        "P.by('nc').querySelector('.lines').focus()",
+        "/",
+        "document.activeElement === P.texts.panes.nc.find",
+    ),
+    (
+        "P.by('cl').querySelector('.lines').focus()",
+        "g",
+        "document.activeElement === P.texts.panes.cl.go",
+    ),
+    ("", "1", "P.by('verdict').contains(document.activeElement)"),
+    ("", "2", "P.by('path').contains(document.activeElement)"),
+    ("", "3", "P.by('nc').contains(document.activeElement)"),
+    ("", "4", "P.by('cl').contains(document.activeElement)"),
+    ("", "5", "P.by('charts').contains(document.activeElement)"),
+    (
+        "",
+        "6",
+        "P.by('spread').contains(document.activeElement) && P.by('spread').clientHeight > 0",
+    ),
+    (
+        "",
+        "7",
+        "P.by('table').contains(document.activeElement) && P.by('table').clientHeight > 0",
+    ),
+    ("P.set({ chart: 0 })", "q", "P.state.chart === 1"),
+    (
+        "P.select(40)",
+        "[",
+        "String(P.state.brush) === '40,' + (P.m.rows - 1)",
+    ),
+    (
+        "P.set({ brush: null }); P.select(40)",
+        "]",
+        "String(P.state.brush) === '0,40'",
+    ),
+    ("P.set({ scale: 100 })", "d", "P.state.scale === 1000"),
+    ("P.set({ scale: 100 })", "D", "P.state.scale === 10"),
+    (
+        "P.path.look(0)",
+        "v",
+        "P.camera.looked === 1 && P.camera.tilt > 1.5",
+    ),
+    (
+        "window.before = P.camera.span",
+        "+",
+        "P.camera.span < before",
+    ),
+    (
+        "window.before = P.camera.span",
+        "-",
+        "P.camera.span > before",
+    ),
+    (
+        "P.path.look(0); window.before = P.camera.tilt",
+        "i",
+        "P.camera.tilt > before",
+    ),
+    (
+        "window.before = P.camera.tilt",
+        "k",
+        "P.camera.tilt < before",
+    ),
+    (
+        "window.before = P.camera.turn",
+        "j",
+        "P.camera.turn > before",
+    ),
+    (
+        "window.before = P.camera.turn",
+        "l",
+        "P.camera.turn < before",
+    ),
+    ("P.camera.span = 7", "0", "P.camera.span !== 7"),
+    (
+        "delete document.documentElement.dataset.theme",
+        "t",
+        "document.documentElement.dataset.theme === 'light'",
+    ),
+    (
+        "P.set({ brush: [3, 5] })",
+        "Escape",
+        "P.state.brush === null",
+    ),
+    ("", "?", "P.by('help').open"),
+];
+
+#[test]
+fn every_key_does_what_the_help_says() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let made = blade();
+    browser.open(&made.page);
+    let told: Vec<String> =
+        serde_json::from_value(browser.ask("P.keys.list.flatMap(({ keys }) => keys)")).unwrap();
+    for key in &told {
+        assert!(
+            KEYS.iter().any(|(_, known, _)| known == key),
+            "no test presses {key:?}"
+        );
+    }
+    let settle = "P.set({ playing: false, brush: null }); delete P.by('views').dataset.solo; if (document.activeElement) document.activeElement.blur();";
+    for (before, key, after) in KEYS {
+        assert!(
+            told.iter().any(|known| known == key),
+            "the help does not tell {key:?}"
+        );
+        browser.ask(&format!("{settle} {before}; 0"));
+        let held = !before.is_empty() && browser.ask(after) == true;
+        assert!(!held, "{key:?} has nothing to do");
+        browser.press(key);
+        assert_eq!(browser.ask(after), true, "{key:?}: {after}");
+    }
+    // In the help every key stands; Esc closes it, and the keys are keys again.
+    let help = browser.ask("P.by('help').querySelectorAll('dt').length");
+    assert_eq!(help, browser.ask("P.keys.list.length"));
+    browser.ask("P.by('help').close()");
+    // Where something is typed, letters are letters.
+    browser.press("/");
+    browser.press("w");
+    browser.press("x");
+    assert_eq!(browser.ask("P.keys.pane().find.value"), "wx");
+    browser.assert_quiet();
+}
+
+#[test]
+fn a_view_stands_alone_when_it_is_asked_for_again() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let made = blade();
+    browser.open(&made.page);
+    for (at, name) in ["verdict", "path", "nc", "cl", "charts", "spread", "table"]
+        .iter()
+        .enumerate()
+    {
+        let key = (at + 1).to_string();
+        for (solo, seen) in [
+            (Value::Null, true),
+            (json!(name), false),
+            (Value::Null, true),
+        ] {
+            browser.press(&key);
+            assert_eq!(
+                browser.ask("P.by('views').dataset.solo || null"),
+                solo,
+                "{name}"
+            );
+            let other = if *name == "verdict" {
+                "path"
+            } else {
+                "verdict"
+            };
+            assert_eq!(
+                browser.ask(&format!("P.by('{other}').clientHeight > 0")),
+                seen,
+                "{name}"
+            );
+        }
+    }
+    browser.assert_quiet();
+}
+
+#[test]
+fn what_is_looked_for_is_found_and_told_when_it_is_not() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let made = blade();
+    browser.open(&made.page);
+    let program = fs::read_to_string(&made.nc).unwrap();
+    assert!(program.contains("M5"), "{program}");
+    browser.ask("P.by('nc').querySelector('.lines').focus()");
+    browser.press("/");
+    for key in ["M", "5", "Enter"] {
+        browser.press(key);
+    }
+    let at =
+        browser.ask("Number(P.by('nc').querySelector('[aria-selected=true] .at').textContent)");
+    let found = program
+        .lines()
+        .nth(at.as_u64().unwrap() as usize - 1)
+        .unwrap();
+    assert!(found.contains("M5"), "line {at}: {found}");
+    browser.ask("P.texts.find(P.texts.panes.nc, 'no such words', false, P.by('nc').querySelector('output'))");
+    assert_eq!(
+        browser.ask("P.by('nc').querySelector('output').textContent"),
+        "not found"
+    );
+    browser.assert_quiet();
+}
+
+#[test]
+fn the_same_page_looks_the_same() {
+    let made = blade();
+    let mut pictures = Vec::new();
+    for _ in 0..2 {
+        let Some(mut browser) = Browser::start() else {
+            return;
+        };
+        browser.open(&made.page);
+        browser.press("x");
+        browser.press("m");
+        browser.frames();
+        pictures.push(browser.picture());
+        browser.press("c");
+        browser.frames();
+        assert_ne!(
+            pictures.last(),
+            Some(&browser.picture()),
+            "the colour changes nothing"
+        );
+        browser.assert_quiet();
+    }
+    assert!(
+        pictures[0] == pictures[1],
+        "two runs differ in their pixels"
+    );
+}
+
+#[test]
+fn a_lost_context_comes_back() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let made = blade();
+    browser.open(&made.page);
+    browser.frames();
+    assert_eq!(browser.ask("P.path.renderer.kind"), "WebGL2");
+    let before = browser.picture();
+    browser.ask("window.lose = P.path.renderer.gl.getExtension('WEBGL_lose_context'); lose.loseContext(); 0");
+    browser.frames();
+    assert_eq!(browser.ask("P.path.renderer.lost()"), true);
+    browser.ask("lose.restoreContext(); 0");
+    browser.frames();
+    assert_eq!(browser.ask("P.path.renderer.lost()"), false);
+    assert!(browser.picture() == before, "not what it was");
+    assert!(browser.ask("P.path.drawn.vertices").as_u64().unwrap() > 100);
+}
+
+#[test]
+fn less_is_drawn_where_less_can_be() {
+    let made = blade();
+    for (gone, kind) in [
+        ("['webgl2']", json!("Canvas2D")),
+        ("['webgl2', '2d']", Value::Null),
+    ] {
+        let Some(mut browser) = Browser::start() else {
+            return;
+        };
+        // Contexts of canvases in the page, not of the one that looks colours up.
+        let source = format!(
+            "const given = HTMLCanvasElement.prototype.getContext;
+             HTMLCanvasElement.prototype.getContext = function (kind, ...more) {{
+               return this.closest('.stage') && !this.classList.contains('over') && {gone}.includes(kind) ? null : given.call(this, kind, ...more); }};"
+        );
+        browser.send(
+            "Page.addScriptToEvaluateOnNewDocument",
+            &json!({"source": source}),
+        );
+        browser.open(&made.page);
+        assert_eq!(
+            browser.ask("P.path.renderer ? P.path.renderer.kind : null"),
+            kind
+        );
+        assert_eq!(browser.ask("P.path.notice.hidden"), false);
+        if kind.is_null() {
+            assert_eq!(browser.ask("P.by('views').dataset.lower"), "table");
+        } else {
+            assert!(browser.ask("P.path.drawn.vertices").as_u64().unwrap() > 100);
+        }
+        for key in ["x", "ArrowRight", "c", "m", "f", "v", "0", "6", "7", "t"] {
+            browser.press(key);
+        }
+        browser.assert_quiet();
+    }
+}
+
+/// Lightness by OKLab, and as eyes without one kind of cones see it (Machado 2009).
+const LIGHTNESS: &str = "(() => {
+  const linear = v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
+  const eyes = [[1,0,0,0,1,0,0,0,1], [0.152286,1.052583,-0.204868,0.114503,0.786281,0.099216,-0.003882,-0.048116,1.051998],
+    [0.367322,0.860646,-0.227968,0.280085,0.672501,0.047413,-0.011820,0.042940,0.968881],
+    [1.255528,-0.076749,-0.178779,-0.078411,0.930809,0.147602,0.004733,0.691367,0.303900]];
+  const light = (rgb, e) => { const c = rgb.map(linear); const [r, g, b] = [0, 1, 2].map(k => Math.max(0, e[k*3]*c[0] + e[k*3+1]*c[1] + e[k*3+2]*c[2]));
+    const l = Math.cbrt(0.4122214708*r + 0.5363325363*g + 0.0514459929*b), m = Math.cbrt(0.2119034982*r + 0.6806995451*g + 0.1073969566*b), s = Math.cbrt(0.0883024619*r + 0.2817188376*g + 0.6299787005*b);
+    return 0.2104542553*l + 0.7936177850*m - 0.0040720468*s; };
+  return [false, true].map(dark => eyes.map(e => Array.from({ length: 256 }, (_, at) => light(P.colour.scale(at, dark), e)))); })()";
+
+#[test]
+fn the_lightness_of_the_scale_rises_or_falls_alone() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let made = blade();
+    browser.open(&made.page);
+    let scales: Vec<Vec<Vec<f64>>> = serde_json::from_value(browser.ask(LIGHTNESS)).unwrap();
+    for (dark, eyes) in scales.iter().enumerate() {
+        let sign = if dark == 1 { 1.0 } else { -1.0 };
+        for (eye, scale) in eyes.iter().enumerate() {
+            for (at, pair) in scale.windows(2).enumerate() {
+                assert!(
+                    (pair[1] - pair[0]) * sign > -1e-3,
+                    "dark {dark} eyes {eye} at {at}: {pair:?}"
+                );
+            }
+            assert!(
+                (scale[191] - scale[0]).abs() > 0.15,
+                "dark {dark} eyes {eye}"
+            );
+        }
+    }
+}
+
+/// Contrast of what is read, by WCAG 2.2, in both themes.
+#[test]
+fn text_is_readable_and_everything_has_a_name() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let made = blade();
+    browser.open(&made.page);
+    for theme in ["light", "dark"] {
+        browser.ask(&format!(
+            "document.documentElement.dataset.theme = '{theme}'; P.views.repaint()"
+        ));
+        let pairs = browser.ask(
+            "(() => { const linear = v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
+               const luma = name => { const c = P.colour.of(name).rgb.map(linear); return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; };
+               const ratio = (a, b) => { const [x, y] = [luma(a), luma(b)]; return (Math.max(x, y) + 0.05) / (Math.min(x, y) + 0.05); };
+               return [['text','panel'],['quiet','panel'],['quiet','raised'],['accent','panel'],['on-accent','accent'],['good','good-ground'],['warn','warn-ground'],['bad','bad-ground'],['bad','panel'],
+                 ['quiet','warn-ground'],['text','chosen'],['word','panel'],['number','panel'],['remark','panel'],['word','chosen'],['number','chosen'],['remark','chosen']].map(pair => [pair.join(' on '), ratio(...pair)]); })()",
+        );
+        for pair in pairs.as_array().unwrap() {
+            assert!(pair[1].as_f64().unwrap() >= 4.5, "{theme}: {pair}");
+        }
+    }
+    let nameless = browser.ask(
+        "[...document.querySelectorAll('button, input, select, [role=listbox], [role=grid], canvas[role], section')].filter(one => !(one.getAttribute('aria-label') || one.textContent.trim() || (one.getAttribute('aria-labelledby') && P.by(one.getAttribute('aria-labelledby'))))).map(one => one.outerHTML)",
+    );
+    assert_eq!(nameless, json!([]));
+    let small = browser.ask(
+        "[...document.querySelectorAll('button, input, select')].filter(one => one.clientHeight && one.getBoundingClientRect().height < 24 && !one.closest('p')).map(one => one.outerHTML)",
+    );
+    assert_eq!(small, json!([]));
+}
+
+/// A moving frame draws a bounded part, whatever the program's length.
+#[test]
+fn a_moving_frame_is_small() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let made = made(
+        "ac-trunnion",
+        &sample("s-piece.cls"),
+        &["--tcp", "control", "--tool-length", "0"],
+    );
+    browser.open(&made.page);
+    browser.press("m");
+    browser.ask("P.path.draw(true)");
+    let drawn = browser.ask("P.path.drawn");
+    assert!(drawn["draws"].as_u64().unwrap() <= 40, "{drawn}");
+    assert!(drawn["vertices"].as_u64().unwrap() <= 60_000, "{drawn}");
+    // The same of a million points, kinds of block in turn.
+    let kept = browser.ask(
+        "(() => { const count = 1e6, values = Float64Array.from({ length: count }, (_, at) => Math.sin(at));
+           const line = P.scene.line(count, values, values, values, at => at, at => at % 7 ? 0 : 1);
+           return P.scene.thin(line, P.scene.budget.path).count * 4 + P.scene.thin(line, P.scene.budget.cl).count + P.scene.budget.vectors * 4; })()",
+    );
+    let machine = browser.ask("P.parts.made.faces.length / 8 + P.parts.made.edges.length / 4 + P.parts.made.boxes.length / 4");
+    let all = kept.as_f64().unwrap() + machine.as_f64().unwrap();
+    assert!(all <= 60_000.0, "{all}");
+    browser.assert_quiet();
+}
+
+#[test]
+fn the_page_is_small_and_its_files_too() {
+    let folder = root().join("core/report/page");
+    let order = fs::read_to_string(folder.join("order.txt")).unwrap();
+    for entry in fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if !name.ends_with(".js") {
+            continue;
+        }
+        assert!(
+            order.lines().any(|line| line == name),
+            "{name} is not in order.txt"
+        );
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.lines().count() < 400, "{name} is long");
+        for word in [
+            "innerHTML",
+            "outerHTML",
+            "insertAdjacent",
+            "document.write",
+            "eval(",
+            "fetch(",
+            "http:",
+            "https:",
+        ] {
+            let own = word == "http:"
+                && text.matches(word).count() == text.matches("http://www.w3.org/2000/svg").count();
+            assert!(own || !text.contains(word), "{name} has {word}");
+        }
+    }
+    // What a report carries besides its data.
+    let made = blade();
+    let page = fs::read_to_string(&made.page).unwrap();
+    let between = |from: &str, to: &str| {
+        let from = page.rfind(from).unwrap() + from.len();
+        page[from..].find(to).unwrap()
+    };
+    let all = between("<style>", "</style>") + between("<script>", "</script>");
+    assert!(all <= 131_072, "{all} bytes");
+}

@@ -24,6 +24,7 @@ mod languages;
 mod library;
 #[cfg(target_os = "linux")]
 mod linuxcnc;
+mod lsp;
 #[cfg(target_os = "linux")]
 mod memory;
 mod messages;
@@ -47,6 +48,7 @@ mod real_files;
 mod rights;
 mod schema;
 mod settings;
+mod shells;
 #[cfg(unix)]
 mod signals;
 mod snapshots;

@@ -29,14 +29,25 @@ pub struct LspArguments {
     /// its code.
     #[arg(long, value_name = "FOLDER")]
     plugins: Vec<PathBuf>,
+
+    /// Speaks on standard input and output, as it does anyway: many editors say it.
+    #[arg(long)]
+    stdio: bool,
 }
 
 /// Serves.
 pub fn run(arguments: LspArguments) -> Result<(), Failure> {
+    let LspArguments {
+        machine,
+        tool_length,
+        machines,
+        plugins,
+        stdio: _,
+    } = arguments;
     editor::serve(Options {
-        machine: arguments.machine,
-        tool_length: arguments.tool_length,
-        machines: arguments.machines,
-        plugins: arguments.plugins,
+        machine,
+        tool_length,
+        machines,
+        plugins,
     })
 }

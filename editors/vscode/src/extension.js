@@ -6,7 +6,7 @@ const { mkdtemp, readFile, rm } = require("node:fs/promises");
 const os = require("node:os");
 const path = require("node:path");
 const vscode = require("vscode");
-const { LanguageClient, TransportKind } = require("vscode-languageclient/node");
+const { LanguageClient } = require("vscode-languageclient/node");
 
 let client;
 
@@ -78,7 +78,6 @@ async function activate(context) {
     {
       command: settings().get("command"),
       args: ["lsp", ...settings().get("arguments")],
-      transport: TransportKind.stdio,
     },
     {
       documentSelector: [{ language: "toml" }, { language: "post-cl" }, { language: "post-nc" }],

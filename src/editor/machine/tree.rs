@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use post_machine::description::readable;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -31,7 +32,8 @@ impl Tree {
     /// Of a text.
     pub fn of(text: &str) -> Self {
         let mut tree = Self::default();
-        let (table, _) = DeTable::parse_recoverable(text);
+        let readable = readable(text);
+        let (table, _) = DeTable::parse_recoverable(&readable);
         tree.table(table.get_ref(), &mut Vec::new());
         // What could not be read may stand anywhere.
         let sound = |span: &Range<usize>| text.get(span.clone()).is_some();

@@ -93,6 +93,12 @@ impl Readable {
     }
 }
 
+/// The text of a machine file with blanks in the place of lines that no TOML can hold: a line that is being written does not
+/// take the rest away.
+pub fn readable(text: &str) -> String {
+    Readable::of(text).text
+}
+
 /// The line begins a table.
 fn is_header(line: &str) -> bool {
     line.trim_ascii_start().starts_with('[')

@@ -44,7 +44,7 @@ pub use file::{
     ToolLength,
 };
 pub use frame::Frame;
-pub use layers::Source;
+pub use layers::{Source, readable};
 pub use limits::MOST_BYTES;
 pub use motion::MotionRules;
 pub use motion_file::{BlendRule, CornerRule, LimitsActOn, RapidRule};

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use gen_lsp_types::{Diagnostic as LspDiagnostic, PublishDiagnosticsParams};
 use lsp_server::{Message, Notification};
+use post_machine::diagnostic::Diagnostic;
 
 use super::cl::Posted;
 use super::document::Snapshot;
@@ -160,6 +161,10 @@ impl Slow {
         to.publish(of, all);
     }
 }
+
+/// What slow work on a machine comes to: what it found out, and what is told beside it; or why it cannot be done. None if
+/// it was given up.
+pub type Worked<T> = Option<Result<(T, Vec<Diagnostic>), Vec<Diagnostic>>>;
 
 /// What is kept of slow work.
 pub enum Keep {

@@ -2,13 +2,12 @@
 
 use post_grammar::{ReadError, Reader};
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_posting::program::{Reading, ToldSpindle};
 use post_posting::{Block, Flow, Job, Observer, Post};
 
 use super::EVERY;
-use crate::editor::background::Token;
+use crate::editor::background::{Token, Worked};
 use crate::editor::document::Snapshot;
 use crate::files::NullSink;
 use crate::job::plugin_finder;
@@ -57,7 +56,7 @@ pub fn post(
     tool_length: Option<f64>,
     plugins: &[std::path::PathBuf],
     token: &Token,
-) -> Option<Result<(Posted, Vec<Diagnostic>), Vec<Diagnostic>>> {
+) -> Worked<Posted> {
     let finder = match plugin_finder::finder(plugins) {
         Ok(finder) => finder,
         Err(faults) => return Some(Err(faults)),

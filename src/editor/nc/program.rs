@@ -5,14 +5,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::VocabularyWord;
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
 use post_readback::{Done, MotionKind, Offsets, State, Told};
 
-use crate::editor::background::Token;
+use crate::editor::background::{Token, Worked};
 use crate::editor::document::Snapshot;
 use crate::job::{nc_program, plugin_finder};
 
@@ -70,7 +69,7 @@ pub fn read(
     tool_length: Option<f64>,
     plugins: &[PathBuf],
     token: &Token,
-) -> Option<Result<(Program, Vec<Diagnostic>), Vec<Diagnostic>>> {
+) -> Worked<Program> {
     let finder = match plugin_finder::finder(plugins) {
         Ok(finder) => finder,
         Err(faults) => return Some(Err(faults)),

@@ -135,8 +135,7 @@ fn take(table: &mut DeTable<'_>, span: &Range<usize>) -> Option<String> {
     table.remove(name.as_str()).map(|_| name)
 }
 
-/// Puts what was likely meant in the place of a misspelt key or word at `span`; whether there is anything near that does
-/// not stand there already.
+/// Puts what was likely meant in the place of a misspelt key or word at `span`; whether there is anything near.
 fn put_right(table: &mut DeTable<'_>, span: &Range<usize>, message: &str) -> bool {
     if let Some((word, names)) = expected(message, FIELD) {
         let Some(meant) = nearest(word, names) else {
@@ -146,8 +145,12 @@ fn put_right(table: &mut DeTable<'_>, span: &Range<usize>, message: &str) -> boo
             let Some(value) = table.remove(key) else {
                 return false;
             };
-            let name = Spanned::new(span.clone(), meant.to_owned().into());
-            !table.contains_key(meant) && table.insert(name, value).is_none()
+            // Where it stands already, nothing is missing without the slip.
+            if !table.contains_key(meant) {
+                let name = Spanned::new(span.clone(), meant.to_owned().into());
+                table.insert(name, value);
+            }
+            true
         });
     }
     let Some((word, names)) = expected(message, VARIANT) else {

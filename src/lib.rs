@@ -1,6 +1,7 @@
 //! What the command `post` does. The binary runs it; the Python package does the same jobs through it.
 
 mod arguments;
+mod editor;
 mod failure;
 mod files;
 mod job;

@@ -27,6 +27,11 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(Op::infix(Rule::power, Assoc::Right))
 });
 
+/// The functions that an expression may call.
+pub const FUNCTIONS: [&str; 11] = [
+    "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "abs", "min", "max",
+];
+
 /// A number, written as a formula of named numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
@@ -193,7 +198,7 @@ fn call(text: &str, pair: Pair<'_, Rule>) -> Result<Expression, SyntaxFault> {
     let Some(function) = Function::named(name.as_str()) else {
         let message = format!("there is no function `{}`", name.as_str());
         return Err(SyntaxFault::new(text, name_span, message)
-            .help("there are sqrt sin cos tan asin acos atan atan2 abs min max"));
+            .help(format!("there are {}", FUNCTIONS.join(" "))));
     };
     let (fits, wanted) = match function {
         Function::Atan2 => (arguments.len() == 2, "two arguments, y and x"),
@@ -271,30 +276,41 @@ impl Expression {
         }
     }
 
-    /// The names it needs, each once, in the order written.
-    pub fn names(&self) -> Vec<&str> {
-        let mut names = Vec::new();
-        self.collect_names(&mut names);
-        names
+    /// Where each name stands that it needs, bytes of the text, in the order written: a name as often as it is written.
+    pub fn references(&self) -> Vec<(Range<usize>, &str)> {
+        let mut references = Vec::new();
+        self.collect_references(&mut references);
+        references
     }
 
-    fn collect_names<'a>(&'a self, names: &mut Vec<&'a str>) {
+    fn collect_references<'a>(&'a self, references: &mut Vec<(Range<usize>, &'a str)>) {
         match &self.term {
             Term::Number(_) => {}
             Term::Name(name) => {
-                if name != "pi" && !names.contains(&name.as_str()) {
-                    names.push(name);
+                if name != "pi" {
+                    references.push((self.span.clone(), name));
                 }
             }
-            Term::Negative(operand) => operand.collect_names(names),
+            Term::Negative(operand) => operand.collect_references(references),
             Term::Binary(left, _, right) => {
-                left.collect_names(names);
-                right.collect_names(names);
+                left.collect_references(references);
+                right.collect_references(references);
             }
             Term::Call(_, arguments) => arguments
                 .iter()
-                .for_each(|argument| argument.collect_names(names)),
+                .for_each(|argument| argument.collect_references(references)),
         }
+    }
+
+    /// The names it needs, each once, in the order written.
+    pub fn names(&self) -> Vec<&str> {
+        let mut names = Vec::new();
+        for (_, name) in self.references() {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
     }
 
     fn fault(&self, message: String) -> EvaluationFault {

@@ -18,6 +18,6 @@ pub mod text;
 
 pub use chain::{Link, LinkKind, parse_chain};
 pub use cl::*;
-pub use expression::{EvaluationFault, Expression, parse_expression};
+pub use expression::{EvaluationFault, Expression, FUNCTIONS, parse_expression};
 pub use fault::{ReadError, SyntaxFault};
 pub use template::{FillFault, Template};

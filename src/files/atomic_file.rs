@@ -262,6 +262,6 @@ fn copy(from: &mut Temporary, to: &mut dyn Write, begun: &mut bool) -> io::Resul
 fn open(path: Option<&Path>) -> io::Result<Box<dyn Write>> {
     match path {
         Some(path) => Ok(Box::new(OpenOptions::new().write(true).open(path)?)),
-        None => standard::open(),
+        None => Ok(standard::open()?),
     }
 }

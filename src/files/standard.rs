@@ -22,7 +22,7 @@ fn kept() -> Option<&'static File> {
 
 /// Opens it without a buffer, in which a text would seem to have got through.
 #[cfg(unix)]
-pub fn open() -> io::Result<Box<dyn Write>> {
+pub fn open() -> io::Result<Box<dyn Write + Send>> {
     use std::os::fd::AsFd;
     let own = match kept() {
         Some(file) => file.try_clone()?,
@@ -33,7 +33,7 @@ pub fn open() -> io::Result<Box<dyn Write>> {
 
 /// Opens it.
 #[cfg(not(unix))]
-pub fn open() -> io::Result<Box<dyn Write>> {
+pub fn open() -> io::Result<Box<dyn Write + Send>> {
     match kept() {
         Some(file) => Ok(Box::new(file.try_clone()?)),
         None => Ok(Box::new(io::stdout())),

@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
-use post_machine::description::{self, MOST_BYTES, Machine, Setting, Source};
+use post_machine::description::{self, MOST_BYTES, Machine, Reading, Setting, Source};
 use post_machine::diagnostic::{Diagnostic, nearest};
 
 use crate::failure::Failure;
@@ -18,24 +18,70 @@ const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.r
 /// Loads the machine `name` from the folders that the user `named`, the usual ones, or those built in, with
 /// `settings` over it.
 pub fn load(name: &str, named: &[PathBuf], settings: &[Setting]) -> Result<Machine, Failure> {
-    let folders = folders(named)?;
-    let source = find(name, &folders).map_err(Diagnostic::from)?;
-    // A machine extends its neighbours first.
-    let mut near: Vec<PathBuf> = Path::new(&source.name)
+    let source = source(name, named, &read)?;
+    Ok(examine(source, named, settings, &read)?.machine?)
+}
+
+/// Reads the text of a file, which may be open in an editor and differ there.
+pub type ReadText<'r> = &'r dyn Fn(&Path) -> Result<Source, Missing>;
+
+/// The text of the machine `name`.
+///
+/// # Errors
+/// There is no such machine, or its file cannot be read.
+pub fn source(name: &str, named: &[PathBuf], read: ReadText<'_>) -> Result<Source, Failure> {
+    let found = find_reading(name, &folders(named)?, read);
+    Ok(found.map_err(Diagnostic::from)?)
+}
+
+/// What a text means as a machine; what it extends is looked for beside it first.
+///
+/// # Errors
+/// A folder that is not there.
+pub fn examine(
+    source: Source,
+    named: &[PathBuf],
+    settings: &[Setting],
+    read: ReadText<'_>,
+) -> Result<Reading, Failure> {
+    let near = near(&source.name, named)?;
+    Ok(description::examine(source, settings, &mut |parent| {
+        extended(parent, &near, read)
+    }))
+}
+
+/// The text of the machine that the file `child` extends by the name `parent`.
+///
+/// # Errors
+/// There is none, as a message.
+pub fn parent(
+    child: &str,
+    parent: &str,
+    named: &[PathBuf],
+    read: ReadText<'_>,
+) -> Result<Source, String> {
+    let near = near(child, named).map_err(|_| "a folder of machines is not there".to_owned())?;
+    extended(parent, &near, read)
+}
+
+/// Where the machines are that the file called `name` may extend: its neighbours first.
+fn near(name: &str, named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut near: Vec<PathBuf> = Path::new(name)
         .parent()
         .filter(|folder| folder.is_dir())
         .map(Path::to_owned)
         .into_iter()
         .collect();
-    near.extend(folders);
-    let machine = description::load(source, settings, &mut |parent| {
-        check_extended(parent, &near)?;
-        find(parent, &near).map_err(|missing| match missing.help {
-            Some(help) => format!("{}; {help}", missing.message),
-            None => missing.message,
-        })
-    })?;
-    Ok(machine)
+    near.extend(folders(named)?);
+    Ok(near)
+}
+
+fn extended(parent: &str, near: &[PathBuf], read: ReadText<'_>) -> Result<Source, String> {
+    check_extended(parent, near)?;
+    find_reading(parent, near, read).map_err(|missing| match missing.help {
+        Some(help) => format!("{}; {help}", missing.message),
+        None => missing.message,
+    })
 }
 
 /// The folders of machines: those of the command line, of the environment, and `machines` here.
@@ -64,7 +110,7 @@ fn folders(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// A machine that is not found or not readable.
-struct Missing {
+pub struct Missing {
     message: String,
     help: Option<String>,
 }
@@ -92,6 +138,10 @@ fn located(name: &str, folders: &[PathBuf]) -> Option<PathBuf> {
 }
 
 fn find(name: &str, folders: &[PathBuf]) -> Result<Source, Missing> {
+    find_reading(name, folders, &read)
+}
+
+fn find_reading(name: &str, folders: &[PathBuf], read: ReadText<'_>) -> Result<Source, Missing> {
     if is_file(name) {
         return read(&located(name, folders).unwrap_or_else(|| name.into()));
     }
@@ -136,7 +186,8 @@ fn check_extended(name: &str, folders: &[PathBuf]) -> Result<(), String> {
     }
 }
 
-fn read(path: &Path) -> Result<Source, Missing> {
+/// Reads a machine file from the disk.
+pub fn read(path: &Path) -> Result<Source, Missing> {
     let fault = |why: String| Missing {
         message: format!("{}: {why}", path.display()),
         help: None,
@@ -199,6 +250,11 @@ pub fn text(name: &str, named: &[PathBuf]) -> Result<String, Failure> {
         return Err(Diagnostic::error("machine", message).into());
     }
     Ok(find(name, &folders(named)?).map_err(Diagnostic::from)?.text)
+}
+
+/// The bare names that find a machine from the folder of the file `beside`, and the files of those that are not built in.
+pub fn known(beside: &str, named: &[PathBuf]) -> Vec<(String, Option<PathBuf>)> {
+    near(beside, named).map_or_else(|_| Vec::new(), |near| names(&near))
 }
 
 /// The names that find a machine, each with the file that it finds; none for one that is built in.

@@ -4,6 +4,7 @@ pub mod compensate;
 mod dry_run;
 mod look_ahead;
 pub mod machine_files;
+pub mod machine_schema;
 pub mod nc_program;
 pub mod nc_to_cl;
 pub mod one_program;

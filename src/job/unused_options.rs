@@ -10,6 +10,11 @@ use crate::terminal;
 
 /// Warns of tables whose plugin is not there, and of options that a plugin of the command does not have.
 pub fn warn(machine: &Machine, finder: &Finder) {
+    terminal::findings(&found(machine, finder));
+}
+
+/// What is warned of.
+pub fn found(machine: &Machine, finder: &Finder) -> Vec<Diagnostic> {
     let mut warnings = Vec::new();
     for table in &machine.unused_options {
         let is_model = table.section == "accuracy";
@@ -22,7 +27,7 @@ pub fn warn(machine: &Machine, finder: &Finder) {
             None => warnings.push(no_plugin(table, is_model)),
         }
     }
-    terminal::findings(&warnings);
+    warnings
 }
 
 /// The options that a plugin does not have.

@@ -89,6 +89,7 @@ fn legible(place: &Place) -> Place {
         file: plain(&place.file),
         line: place.line,
         text: plain(&place.text),
+        offset: place.offset,
         span: start..start + plain(&place.text[span.clone()]).len(),
     }
 }

@@ -2,10 +2,13 @@
 //! below, `job`, `files`, `terminal` and `arguments`.
 
 mod check;
+mod complete;
 mod convert;
 mod diff;
 mod list_machines;
 mod list_words;
+mod lsp;
+mod man;
 mod new;
 mod place;
 mod plan;
@@ -26,10 +29,13 @@ use post_machine::diagnostic::nearest;
 
 use crate::failure::Failure;
 use check::CheckArguments;
+use complete::CompletionsArguments;
 use convert::ConvertArguments;
 use diff::DiffArguments;
 use list_machines::MachinesArguments;
 use list_words::WordsArguments;
+use lsp::LspArguments;
+use man::ManArguments;
 use new::NewArguments;
 use place::PlaceArguments;
 use plan::PlanArguments;
@@ -102,6 +108,9 @@ enum Verb {
     Plugin(PluginArguments),
     Read(Box<ReadArguments>),
     View(ViewArguments),
+    Lsp(LspArguments),
+    Completions(CompletionsArguments),
+    Man(ManArguments),
 }
 
 impl CommandLine {
@@ -124,6 +133,9 @@ impl CommandLine {
             Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
             Some(Verb::Read(arguments)) => read::run(&arguments),
             Some(Verb::View(arguments)) => view(&arguments),
+            Some(Verb::Lsp(arguments)) => lsp::run(arguments),
+            Some(Verb::Completions(arguments)) => complete::run(&arguments, Self::command()),
+            Some(Verb::Man(arguments)) => man::run(&arguments, Self::command()),
         }
     }
 }

@@ -25,6 +25,7 @@ mod languages;
 mod library;
 #[cfg(target_os = "linux")]
 mod linuxcnc;
+mod lsp;
 #[cfg(target_os = "linux")]
 mod memory;
 mod messages;
@@ -50,6 +51,7 @@ mod report_page;
 mod rights;
 mod schema;
 mod settings;
+mod shells;
 #[cfg(unix)]
 mod signals;
 mod snapshots;

@@ -65,6 +65,8 @@ pub struct Place {
     pub line: u64,
     /// The line's text; of a long one the part around `span`.
     pub text: String,
+    /// Bytes of the line before `text`.
+    pub offset: usize,
     /// What to underline, bytes of `text`.
     pub span: Range<usize>,
 }
@@ -135,6 +137,7 @@ impl Place {
             file: file.to_owned(),
             line,
             text: text[from..to].to_owned(),
+            offset: from,
             span: start - from..end.min(to) - from,
         }
     }

@@ -8,17 +8,39 @@ use nalgebra::Vector3;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::echoes;
 use super::file::{MachineFile, Rapid, Tcp};
 use super::keys::typed;
-use super::layers::{Source, Sources, overlay};
+use super::layers::{Merged, Source, Sources, overlay};
 use super::limits::{
     MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_PARAMETERS, MOST_TURNS,
 };
+use super::numbers::EvaluatedAt;
 use super::options::take_options;
 use super::quantity::Quantity;
 use super::setting::Setting;
 use super::{Axis, Control, Frame, GivenOption, Head, Machine, UnusedOptions};
 use crate::diagnostic::{Diagnostic, Place, Short};
+
+/// The value of an expression of a machine file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evaluated {
+    /// The file that it stands in, as the user named it.
+    pub file: String,
+    /// Where, bytes of the file's text, its quotes with it.
+    pub span: Range<usize>,
+    /// Its value, in the file's units.
+    pub value: f64,
+}
+
+/// What a machine file was read as.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// The machine; or everything that is wrong with its file, each with its place and a remedy.
+    pub machine: Result<Machine, Vec<Diagnostic>>,
+    /// The expressions that have a value, in the order read; one that several machines share (heads) stands there for each.
+    pub values: Vec<Evaluated>,
+}
 
 /// Loads a machine: `source`, what it extends (found by `find`), and `settings`, the last of
 /// which wins.
@@ -30,14 +52,56 @@ pub fn load(
     settings: &[Setting],
     find: &mut dyn FnMut(&str) -> Result<Source, String>,
 ) -> Result<Machine, Vec<Diagnostic>> {
-    let sources = Sources::collect(source, settings, find)?;
-    let mut table = sources.merge()?;
-    let heads = take_heads(&mut table, &sources)?;
-    let mut machine = read(table.clone(), &sources)?;
+    examine(source, settings, find).machine
+}
+
+/// Loads a machine as [`load`] does, and tells the values of its expressions too, those of a file with faults as well.
+pub fn examine(
+    source: Source,
+    settings: &[Setting],
+    find: &mut dyn FnMut(&str) -> Result<Source, String>,
+) -> Reading {
+    let mut evaluated = Vec::new();
+    let sources = match Sources::collect(source, settings, find) {
+        Ok(sources) => sources,
+        Err(faults) => {
+            return Reading {
+                machine: Err(faults),
+                values: Vec::new(),
+            };
+        }
+    };
+    let machine = with_heads(&sources, &mut evaluated);
+    let values = evaluated.into_iter();
+    let values = values.filter_map(|(span, value)| {
+        let (file, span) = sources.local(span)?;
+        Some(Evaluated {
+            file: file.to_owned(),
+            span,
+            value,
+        })
+    });
+    Reading {
+        machine,
+        values: values.collect(),
+    }
+}
+
+/// The machine with all its heads.
+fn with_heads(
+    sources: &Sources,
+    evaluated: &mut Vec<EvaluatedAt>,
+) -> Result<Machine, Vec<Diagnostic>> {
+    let Merged { mut table, faults } = sources.merge()?;
+    let heads = match take_heads(&mut table, sources) {
+        Ok(heads) => heads,
+        Err(found) => return Err([faults, found].concat()),
+    };
+    let mut machine = read(table.clone(), sources, faults, evaluated)?;
     for head in heads {
         let mut layered = table.clone();
         overlay(layered.get_mut(), head.overrides);
-        let mut other = read(layered, &sources)?;
+        let mut other = read(layered, sources, Vec::new(), evaluated)?;
         other.keep_frame_of(&machine);
         if !other
             .axes
@@ -140,28 +204,43 @@ fn take_heads<'i>(
     Ok(taken)
 }
 
-/// What a merged table means.
-fn read(mut table: Spanned<DeTable<'_>>, sources: &Sources) -> Result<Machine, Vec<Diagnostic>> {
-    let mut faults = Vec::new();
+/// What a merged table means. `unread` says what of the texts could not be read; what is said of the rest is said beside
+/// it.
+fn read(
+    mut table: Spanned<DeTable<'_>>,
+    sources: &Sources,
+    unread: Vec<Diagnostic>,
+    evaluated: &mut Vec<EvaluatedAt>,
+) -> Result<Machine, Vec<Diagnostic>> {
+    let mut hiding = unread.clone();
+    let mut faults = unread;
     let control_options = take_options(&mut table, "control", sources, &mut faults);
     let model_options = take_options(&mut table, "accuracy", sources, &mut faults);
-    let file = match typed(table, sources) {
-        Ok(file) => file,
-        Err(mut keys) => {
-            faults.append(&mut keys);
-            return Err(faults);
-        }
+    let mut typed = typed(table, sources, hiding.is_empty());
+    faults.append(&mut typed.faults);
+    hiding.append(&mut typed.hiding);
+    let Some(file) = typed.file else {
+        return Err(faults);
     };
+    let told = faults.len();
     let mut builder = Builder {
         sources,
         parameters: &file.parameters,
         values: BTreeMap::new(),
+        without: BTreeSet::new(),
+        evaluated: Vec::new(),
         faults,
     };
     let machine = builder.machine(&file, control_options, model_options);
+    evaluated.append(&mut builder.evaluated);
+    let mut faults = builder.faults;
+    if !hiding.is_empty() {
+        let found = faults.split_off(told);
+        faults.extend(echoes::own(found, &hiding, sources));
+    }
     match machine {
-        Some(machine) if builder.faults.is_empty() => Ok(machine),
-        _ => Err(builder.faults),
+        Some(machine) if faults.is_empty() => Ok(machine),
+        _ => Err(faults),
     }
 }
 
@@ -170,6 +249,10 @@ pub(super) struct Builder<'a> {
     pub(super) parameters: &'a BTreeMap<String, Quantity>,
     /// The parameters that have a value.
     pub(super) values: BTreeMap<&'a str, f64>,
+    /// The parameters that have none, which is said.
+    pub(super) without: BTreeSet<&'a str>,
+    /// The expressions that have a value.
+    pub(super) evaluated: Vec<EvaluatedAt>,
     pub(super) faults: Vec<Diagnostic>,
 }
 
@@ -198,16 +281,16 @@ impl Builder<'_> {
         mut control_options: BTreeMap<String, Vec<GivenOption>>,
         mut model_options: BTreeMap<String, Vec<GivenOption>>,
     ) -> Option<Machine> {
+        let before = self.faults.len();
         self.check_sizes(file);
-        if !self.faults.is_empty() {
+        if self.faults.len() > before {
             return None;
         }
         self.evaluate_parameters();
-        if !self.faults.is_empty() {
-            // Whatever uses them would only repeat it.
+        let Some(mut axes) = self.axes(file) else {
+            self.without_axes(file, &mut model_options);
             return None;
-        }
-        let mut axes = self.axes(file)?;
+        };
         self.seconds(file, &mut axes);
         self.servos(file, &mut axes);
         let mount = match &file.workpiece.mount {
@@ -218,7 +301,10 @@ impl Builder<'_> {
         let turn = turn.map_or(0.0, |turn| self.number(turn)).to_radians();
         let gauge = self.vector(&file.tool.gauge);
         let tool_axis = match &file.tool.axis {
-            Some(axis) => self.direction("the tool axis", axis)?,
+            // One that is null was told, and no machine comes of it.
+            Some(axis) => self
+                .direction("the tool axis", axis)
+                .unwrap_or_else(Vector3::z),
             None => Vector3::z(),
         };
         let edge = match &file.tool.edge {
@@ -346,6 +432,36 @@ impl Builder<'_> {
             self.check_chain(&machine, file.chain.span());
         }
         Some(machine)
+    }
+
+    /// What is wrong with the tables that say nothing of axes.
+    fn without_axes(
+        &mut self,
+        file: &MachineFile,
+        model_options: &mut BTreeMap<String, Vec<GivenOption>>,
+    ) {
+        for vector in [file.workpiece.mount.as_ref(), Some(&file.tool.gauge)] {
+            vector.map(|vector| self.vector(vector));
+        }
+        file.workpiece.turn.as_ref().map(|turn| self.number(turn));
+        if let Some(axis) = &file.tool.axis {
+            self.direction("the tool axis", axis);
+        }
+        if let Some(rewind) = &file.rewind {
+            self.rewind(rewind);
+        }
+        self.tools(file);
+        let accuracy = self.accuracy(&file.accuracy, model_options);
+        self.control_point(&file.tool.control_point);
+        self.spindle(&file.spindle);
+        self.arcs(&file.control.get_ref().arcs);
+        self.word_rules(&file.cl);
+        self.program(&file.program);
+        if let Some(smoothing) = &file.program.smoothing {
+            self.smoothing(smoothing);
+        }
+        let motion = self.motion(&file.motion);
+        self.plan(&file.plan, &motion, accuracy.tolerance);
     }
 
     /// Tables that are gone through entry by entry have an end.

@@ -22,6 +22,88 @@ pub struct Source {
     pub text: String,
 }
 
+/// All layers as one table, and what could not be read of them.
+pub(crate) struct Merged<'s> {
+    /// What could be read.
+    pub(crate) table: Spanned<DeTable<'s>>,
+    /// What could not.
+    pub(crate) faults: Vec<Diagnostic>,
+}
+
+/// A text without the lines that no TOML can hold.
+#[derive(Debug)]
+struct Readable {
+    /// The text, blanks in the place of those lines.
+    text: String,
+    /// What is wrong with them, and where.
+    faults: Vec<(Option<Range<usize>>, String)>,
+    /// What follows a line cannot be told from its echo.
+    lost: bool,
+}
+
+/// Lines that cannot be read of one text that are told.
+const MOST_UNREADABLE: usize = 10;
+
+impl Readable {
+    /// Reading ends at its first fault: the line is taken out, and the rest read again.
+    fn of(text: &str) -> Self {
+        let mut readable = Self {
+            text: text.to_owned(),
+            faults: Vec::new(),
+            lost: false,
+        };
+        let mut last: Option<Range<usize>> = None;
+        while readable.faults.len() < MOST_UNREADABLE {
+            let (_, faults) = DeTable::parse_recoverable(&readable.text);
+            let Some(fault) = faults.first() else {
+                return readable;
+            };
+            let Some(span) = fault.span().filter(|span| span.start < text.len()) else {
+                if last.is_none() {
+                    readable
+                        .faults
+                        .push((fault.span(), fault.message().to_owned()));
+                }
+                break;
+            };
+            let begin = text[..span.start].rfind('\n').map_or(0, |at| at + 1);
+            let end = text[span.start..]
+                .find('\n')
+                .map_or(text.len(), |at| span.start + at);
+            // A bracket that nothing closes spoils line after line.
+            let echo = last.is_some_and(|last| {
+                begin < last.end || text[last.end..begin].trim_ascii().is_empty()
+            });
+            if echo {
+                break;
+            }
+            readable
+                .faults
+                .push((Some(span), fault.message().to_owned()));
+            // Under which table the following keys stand is not known.
+            if is_header(&text[begin..end]) {
+                break;
+            }
+            let blanks = " ".repeat(end - begin);
+            readable.text.replace_range(begin..end, &blanks);
+            last = Some(begin..end);
+        }
+        readable.lost = true;
+        readable
+    }
+}
+
+/// The text of a machine file with blanks in the place of lines that no TOML can hold: a line that is being written does not
+/// take the rest away.
+pub fn readable(text: &str) -> String {
+    Readable::of(text).text
+}
+
+/// The line begins a table.
+fn is_header(line: &str) -> bool {
+    line.trim_ascii_start().starts_with('[')
+}
+
 /// A file that extends another may do so over so many steps.
 const DEPTH: usize = 8;
 
@@ -29,10 +111,14 @@ const DEPTH: usize = 8;
 #[derive(Debug)]
 pub(crate) struct Sources {
     sources: Vec<(usize, Source)>,
+    /// Of each source what can be read of it.
+    readable: Vec<Readable>,
     /// Of each source where its lines begin: a finding is placed without a walk through the text.
     lines: Vec<Vec<usize>>,
     /// So many of them are files; the rest are settings.
     files: usize,
+    /// The machine that the last file extends is not there.
+    orphan: Option<Diagnostic>,
 }
 
 impl Sources {
@@ -47,27 +133,34 @@ impl Sources {
     ) -> Result<Self, Vec<Diagnostic>> {
         let mut all = Self {
             sources: Vec::new(),
+            readable: Vec::new(),
             lines: Vec::new(),
             files: 1,
+            orphan: None,
         };
         all.push(source)?;
         while let Some(name) = all.extends() {
             let place = all.place(name.span());
-            let fault = |message: String| {
-                vec![Diagnostic::error("machine-extends", message).at(place.clone())]
-            };
             if all.files > DEPTH {
-                return Err(fault(format!(
+                let message = format!(
                     "more than {DEPTH} machines extend one another: do they go in a circle?"
-                )));
+                );
+                return Err(vec![
+                    Diagnostic::error("machine-extends", message).at(place),
+                ]);
             }
-            let parent = find(name.get_ref()).map_err(fault)?;
             // A stranger's file may name any file of the user's: nothing of what is no machine is shown.
-            if !is_machine(&parent.text) {
-                let message = format!("{} is no machine file", parent.name);
-                return Err(fault(message));
+            let parent = find(name.get_ref()).and_then(|parent| match is_machine(&parent.text) {
+                true => Ok(parent),
+                false => Err(format!("{} is no machine file", parent.name)),
+            });
+            match parent {
+                Ok(parent) => all.push(parent)?,
+                Err(message) => {
+                    all.orphan = Some(Diagnostic::error("machine-extends", message).at(place));
+                    break;
+                }
             }
-            all.push(parent)?;
             all.files += 1;
         }
         for setting in settings {
@@ -94,6 +187,7 @@ impl Sources {
             .last()
             .map_or(0, |(start, last)| start + last.text.len() + 1);
         let ends = source.text.match_indices('\n').map(|(end, _)| end + 1);
+        self.readable.push(Readable::of(&source.text));
         self.lines.push(std::iter::once(0).chain(ends).collect());
         self.sources.push((start, source));
         Ok(())
@@ -108,38 +202,62 @@ impl Sources {
         Some(Spanned::new(shifted(value.span(), *start), name))
     }
 
-    /// The merged table.
+    /// The merged table of what can be read, and beside it what cannot: all syntax errors of all layers, a machine that is
+    /// not there, settings of parameters that do not exist.
     ///
     /// # Errors
-    /// All syntax errors of all layers, and settings of parameters that do not exist.
-    pub(crate) fn merge(&self) -> Result<Spanned<DeTable<'_>>, Vec<Diagnostic>> {
-        let mut errors = Vec::new();
+    /// The same, where so little can be read that nothing is known of the rest.
+    pub(crate) fn merge(&self) -> Result<Merged<'_>, Vec<Diagnostic>> {
+        let mut errors: Vec<Diagnostic> = self.orphan.iter().cloned().collect();
         let mut merged = DeTable::new();
-        let files = self.sources[..self.files].iter().rev();
-        let settings = &self.sources[self.files..];
-        let layers = files.map(|file| (file, false));
-        for ((start, source), is_setting) in layers.chain(settings.iter().map(|set| (set, true))) {
-            let (table, faults) = DeTable::parse_recoverable(&source.text);
-            // What follows the first fault of a text is mostly its echo.
-            errors.extend(faults.iter().take(1).map(|fault| {
-                let place = fault
-                    .span()
-                    .and_then(|span| self.place(shifted(span, *start)));
-                Diagnostic::error("machine-syntax", fault.message()).at(place)
+        let mut lost = false;
+        let layers = (0..self.files).rev().chain(self.files..self.sources.len());
+        for index in layers {
+            let (start, readable) = (self.sources[index].0, &self.readable[index]);
+            lost |= readable.lost;
+            errors.extend(readable.faults.iter().map(|(span, message)| {
+                let place = span
+                    .clone()
+                    .and_then(|span| self.place(shifted(span, start)));
+                Diagnostic::error("machine-syntax", message).at(place)
             }));
-            let layer = moved_table(table.into_inner(), *start);
+            let (table, _) = DeTable::parse_recoverable(&readable.text);
+            let layer = moved_table(table.into_inner(), start);
             self.check_texts(&layer, &mut errors);
+            let is_setting = index >= self.files;
             if is_setting && let Err(error) = check_parameters(&layer, &merged) {
                 errors.push(*error);
             }
             overlay(&mut merged, layer);
         }
         merged.remove("extends");
-        if errors.is_empty() {
-            Ok(Spanned::new(0..0, merged))
-        } else {
-            Err(errors)
+        if lost {
+            return Err(errors);
         }
+        Ok(Merged {
+            table: Spanned::new(0..0, merged),
+            faults: errors,
+        })
+    }
+
+    /// The file of a finding, and number and text of the header that it stands under; 0 above all tables.
+    pub(crate) fn table_of(&self, finding: &Diagnostic) -> Option<(&str, u64, &str)> {
+        let place = finding.place.as_ref()?;
+        let files = &self.sources[..self.files];
+        let (_, source) = files.iter().find(|(_, file)| file.name == place.file)?;
+        let lines = source.text.lines().take(usize::try_from(place.line).ok()?);
+        let header = lines.zip(1..).filter(|(line, _)| is_header(line)).last();
+        let (text, number) = header.unwrap_or_default();
+        Some((&source.name, number, text))
+    }
+
+    /// The file that a span stands in, and where there; none in a setting.
+    pub(crate) fn local(&self, span: Range<usize>) -> Option<(&str, Range<usize>)> {
+        let files = &self.sources[..self.files];
+        let index = files.iter().rposition(|(start, _)| *start <= span.start)?;
+        let (start, source) = &files[index];
+        let end = span.end.checked_sub(*start)?;
+        (end <= source.text.len()).then(|| (source.name.as_str(), span.start - start..end))
     }
 
     /// The line that a span begins in.

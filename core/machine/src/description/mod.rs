@@ -6,6 +6,7 @@ mod axes;
 mod build;
 mod choice;
 mod cl_words;
+mod echoes;
 mod file;
 mod frame;
 mod keys;
@@ -34,7 +35,7 @@ use nalgebra::Vector3;
 
 pub use accuracy::{Accuracy, ControlPoint, SHARE_AT_POLES};
 pub use arcs::Arcs;
-pub use build::load;
+pub use build::{Evaluated, Reading, examine, load};
 pub use choice::{Retract, Rewind, Rule, Solution};
 pub use cl_words::WordRule;
 pub use file::{
@@ -43,7 +44,7 @@ pub use file::{
     ToolLength,
 };
 pub use frame::Frame;
-pub use layers::Source;
+pub use layers::{Source, readable};
 pub use limits::MOST_BYTES;
 pub use motion::MotionRules;
 pub use motion_file::{BlendRule, CornerRule, LimitsActOn, RapidRule};

@@ -1,5 +1,7 @@
 //! Numbers, vectors and directions of a machine file; any number may be an expression of its parameters.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 use post_grammar::text::excerpt;
 use post_grammar::{Expression, parse_expression};
@@ -43,8 +45,16 @@ impl Builder<'_> {
 
     /// The value; no number and a fault if it has none, so that what is said of numbers is not said of it too.
     pub(super) fn number(&mut self, quantity: &Quantity) -> f64 {
+        if self.leans_on_a_fault(quantity.get_ref()) {
+            return f64::NAN;
+        }
         match self.evaluate(quantity.get_ref()) {
-            Ok(value) if value.abs() <= MOST_NUMBER => value,
+            Ok(value) if value.abs() <= MOST_NUMBER => {
+                if matches!(quantity.get_ref(), Number::Expression(_)) {
+                    self.evaluated.push((quantity.span(), value));
+                }
+                value
+            }
             Ok(value) => {
                 let message = if value.is_finite() {
                     format!(
@@ -73,21 +83,42 @@ impl Builder<'_> {
         self.fault("machine-expression", quantity.span(), message, &help);
     }
 
+    /// It is worked out from a parameter that has no value, which is said where that one stands.
+    fn leans_on_a_fault(&self, number: &Number) -> bool {
+        let Number::Expression(text) = number else {
+            return false;
+        };
+        !self.without.is_empty()
+            && parsed(text).is_ok_and(|expression| {
+                let names = expression.names();
+                names.iter().any(|name| self.without.contains(*name))
+            })
+    }
+
     /// Gives each parameter its value, once, those first that others are defined by. One that nothing uses is checked
     /// too: it may be used tomorrow.
     pub(super) fn evaluate_parameters(&mut self) {
         let parameters = self.parameters;
         for (name, quantity) in parameters {
-            if let Err(message) = self.settle(name, quantity.get_ref(), 0) {
-                self.without_value(quantity, message);
-            } else {
-                self.number(quantity);
+            match self.settle(name, quantity.get_ref(), 0) {
+                Ok(()) => {
+                    if self.number(quantity).is_nan() {
+                        self.without.insert(name);
+                    }
+                }
+                Err(Unsettled::Own(message) | Unsettled::Circle(message)) => {
+                    self.without.insert(name);
+                    self.without_value(quantity, message);
+                }
+                Err(Unsettled::Told) => {
+                    self.without.insert(name);
+                }
             }
         }
     }
 
     /// Gives a parameter its value, and before that those that it is defined by; `depth` of them wait for it.
-    fn settle(&mut self, name: &str, number: &Number, depth: usize) -> Result<(), String> {
+    fn settle(&mut self, name: &str, number: &Number, depth: usize) -> Result<(), Unsettled> {
         let parameters = self.parameters;
         let Some((name, _)) = parameters.get_key_value(name) else {
             return Ok(());
@@ -95,21 +126,33 @@ impl Builder<'_> {
         if self.values.contains_key(name.as_str()) {
             return Ok(());
         }
+        if self.without.contains(name.as_str()) {
+            return Err(Unsettled::Told);
+        }
         if depth > parameters.len() {
             let name = excerpt(name, SHOWN);
-            return Err(format!(
+            return Err(Unsettled::Circle(format!(
                 "{name}: parameters that are defined by one another in a circle"
-            ));
+            )));
         }
         if let Number::Expression(text) = number {
-            let expression = parsed(text)?;
+            let expression = parsed(text).map_err(Unsettled::Own)?;
             for other in expression.names() {
-                if let Some(quantity) = parameters.get(other) {
-                    self.settle(other, quantity.get_ref(), depth + 1)?;
+                let Some((other, quantity)) = parameters.get_key_value(other) else {
+                    continue;
+                };
+                match self.settle(other, quantity.get_ref(), depth + 1) {
+                    Ok(()) => {}
+                    Err(Unsettled::Own(message)) => {
+                        self.without.insert(other);
+                        self.without_value(quantity, message);
+                        return Err(Unsettled::Told);
+                    }
+                    Err(unsettled) => return Err(unsettled),
                 }
             }
         }
-        let value = self.evaluate(number)?;
+        let value = self.evaluate(number).map_err(Unsettled::Own)?;
         self.values.insert(name, value);
         Ok(())
     }
@@ -125,6 +168,19 @@ impl Builder<'_> {
             .map_err(|fault| format!("{}: {}", excerpt(text, SHOWN), fault.message))
     }
 }
+
+/// Why a parameter has no value.
+enum Unsettled {
+    /// Its own expression has none.
+    Own(String),
+    /// It is defined by itself.
+    Circle(String),
+    /// One that it is defined by has none, which is said there.
+    Told,
+}
+
+/// The value of an expression, and where it stands in all layers.
+pub(super) type EvaluatedAt = (Range<usize>, f64);
 
 /// The first name of an expression that is none of the `known` parameters; empty if there is none.
 fn unknown(quantity: &Quantity, known: &[&str]) -> String {

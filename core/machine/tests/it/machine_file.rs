@@ -763,3 +763,71 @@ fn no_text_makes_it_stumble() {
     }
     assert!(refused > 1_000, "{refused}");
 }
+
+/// Several slips in one text: each is told where it stands, and nothing repeats another.
+#[track_caller]
+fn assert_all(slips: &[(&str, &str)], told: &[&str]) {
+    let mut text = GOOD.to_owned();
+    for (from, to) in slips {
+        assert!(text.contains(from), "{from}");
+        text = text.replacen(from, to, 1);
+    }
+    let found = try_load(&text, &[]).unwrap_err();
+    let mut places: Vec<String> = found.iter().map(underlined).collect();
+    places.sort();
+    let mut told: Vec<String> = told.iter().map(|&place| place.to_owned()).collect();
+    told.sort();
+    assert_eq!(places, told, "{found:#?}");
+}
+
+#[test]
+fn no_independent_fault_hides_another() {
+    // A misspelt key, a misspelt word, a null direction, an unknown parameter, a travel the wrong way round in the table of
+    // the misspelt key, a limit below zero.
+    assert_all(
+        &[
+            ("max_feed = 9000", "max_fed = 9000"),
+            ("tcp = \"post\"", "tcp = \"pots\""),
+            ("axis = [0, 0, 1]", "axis = [0, 0, 0]"),
+            ("mount = [0, 0, \"half\"]", "mount = [0, 0, \"hlf\"]"),
+            (
+                "point = [0, 0, 0]\ncyclic = true",
+                "point = [0, 0, 0]\ntravel = [9, -9]",
+            ),
+            ("tolerance = 0.005", "tolerance = -1"),
+        ],
+        &[
+            "22 max_fed",
+            "43 \"pots\"",
+            "13 0, 0, 0",
+            "9 \"hlf\"",
+            "21 [9, -9]",
+            "49 -1",
+        ],
+    );
+    // Lines that are no TOML, apart from one another, and what else is wrong.
+    assert_all(
+        &[
+            ("half = \"Zc / 2\"", "half = = 2"),
+            ("axis = [0, 0, 1]", "axis = (0, 0, 1)"),
+            ("tolerance = 0.005", "tolerance = -1"),
+        ],
+        &["6 =", "13 ", "49 -1"],
+    );
+    // A parameter without a value is told once, whatever uses it, and hides nothing.
+    assert_all(
+        &[
+            ("Zc = 50.5", "Zc = \"1 / 0\""),
+            ("travel = [-450, 200]", "travel = [200, -450]"),
+        ],
+        &["5 \"1 / 0\"", "39 [200, -450]"],
+    );
+    // A table that is missing, and a value of another kind.
+    assert_all(
+        &[
+            ("gauge = [0, 0, 400]", "gauge = true"),
+            ("dialect = \"fanuc\"\n", ""),
+        ],
+        &["12 true", "41 [control]"],
+    );
+}

@@ -1,0 +1,31 @@
+//! Faults of a machine file that only repeat another one.
+
+use super::layers::Sources;
+use crate::diagnostic::Diagnostic;
+
+/// Of the faults that were `found` without what is wrong where `hiding` says the ones that stand on their own.
+///
+/// What could not be read is missing where it stands: whatever is said of its table may be its echo, and what is said of
+/// the chain, which all tables make together, too.
+pub(super) fn own(
+    found: Vec<Diagnostic>,
+    hiding: &[Diagnostic],
+    sources: &Sources,
+) -> Vec<Diagnostic> {
+    let tables: Vec<_> = hiding.iter().map(|fault| sources.table_of(fault)).collect();
+    // A parameter may be missing, so that an expression that names one says nothing.
+    let parameters = tables.iter().flatten();
+    let mut parameters = parameters.filter(|(_, _, header)| header.contains("parameters"));
+    let lacks_parameters = parameters.next().is_some();
+    let own = found.into_iter().filter(|fault| {
+        let table = sources.table_of(fault);
+        let in_a_table = table.is_some_and(|(_, header, _)| header > 0);
+        let echoes = match fault.code {
+            "machine-chain" => true,
+            "machine-expression" => lacks_parameters,
+            _ => false,
+        };
+        in_a_table && !echoes && !tables.contains(&table)
+    });
+    own.collect()
+}

@@ -1,0 +1,18 @@
+//! What is told of NC programs.
+//!
+//! | file | does |
+//! |---|---|
+//! | `program` | the program read back on the chosen machine: what holds at each line |
+//! | `hover` | what is said of a line |
+//! | `map` | the CL line that a line came from, as `post verify --map` tells it |
+
+pub mod hover;
+pub mod map;
+mod program;
+
+pub use program::{Program, read};
+
+/// Endings of NC programs.
+pub const ENDINGS: &[&str] = &[
+    "nc", "h", "mpf", "spf", "ngc", "gcode", "tap", "eia", "min", "iso", "cnc",
+];

@@ -1,0 +1,200 @@
+//! A program read back on the chosen machine: what each line does, and what holds there.
+
+use std::io::Cursor;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use post_machine::description::Machine;
+use post_machine::kinematics::Joints;
+use post_plugin::VocabularyWord;
+use post_readback::interpret::{Interpreter, Limits};
+use post_readback::lexicon::Lexicon;
+use post_readback::{Done, MotionKind, Offsets, State, Told};
+
+use crate::editor::background::{Token, Worked};
+use crate::editor::document::Snapshot;
+use crate::job::{nc_program, plugin_finder};
+
+/// Blocks between two looks whether the work is given up.
+const EVERY: u64 = 256;
+
+/// Lines that are kept.
+const MOST_LINES: usize = 500_000;
+
+/// Faults that are told.
+const MOST_FAULTS: usize = 100;
+
+/// Blocks that are run once more: an editor does not wait for a loop.
+const MOST_BLOCKS: u64 = 100_000;
+
+/// What each line of a program does.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// The machine.
+    pub machine: Box<Machine>,
+    /// The words of its control.
+    pub words: Vec<VocabularyWord>,
+    lines: Vec<ProgramLine>,
+}
+
+/// What a line does.
+#[derive(Clone, Debug)]
+pub struct ProgramLine {
+    line: u64,
+    /// How its last motion goes; none if nothing moves.
+    pub kind: Option<MotionKind>,
+    /// Axis values behind it, mm and radians.
+    pub joints: Joints,
+    /// The feed of its last motion, mm/min.
+    pub feed: f64,
+    /// What holds behind it.
+    pub state: Option<Arc<State>>,
+    /// Remarks and operations that it holds.
+    pub told: Vec<String>,
+}
+
+impl Program {
+    /// The last line up to this one, counted from 1, that was run; and whether it is that line itself.
+    pub fn line(&self, line: u64) -> Option<(&ProgramLine, bool)> {
+        let behind = self.lines.partition_point(|run| run.line <= line);
+        let run = self.lines.get(behind.checked_sub(1)?)?;
+        Some((run, run.line == line))
+    }
+}
+
+/// Reads a program back. None if the work is given up.
+pub fn read(
+    of: &Snapshot,
+    machine: Machine,
+    tool_length: Option<f64>,
+    plugins: &[PathBuf],
+    token: &Token,
+) -> Worked<Program> {
+    let finder = match plugin_finder::finder(plugins) {
+        Ok(finder) => finder,
+        Err(faults) => return Some(Err(faults)),
+    };
+    let spoken = match nc_program::spoken(&finder, &machine) {
+        Ok(spoken) => spoken,
+        Err(refused) => return Some(Err(refused.findings())),
+    };
+    let lexicon = Lexicon::new(&spoken.words);
+    let offsets = Offsets {
+        length: tool_length,
+        ..Offsets::default()
+    };
+    let limits = Limits {
+        blocks: MOST_BLOCKS,
+        ..Limits::default()
+    };
+    let input = Cursor::new(of.text.as_bytes());
+    let opened = Interpreter::new(&machine, &lexicon, &offsets, limits, &of.name, input);
+    let mut program = match opened {
+        Ok(program) => program,
+        Err(fault) => return Some(Err(vec![*fault])),
+    };
+    let mut found = Vec::new();
+    let mut done = Vec::new();
+    let mut lines = Lines::default();
+    let mut blocks = 0_u64;
+    while found.len() < MOST_FAULTS {
+        blocks += 1;
+        if blocks.is_multiple_of(EVERY) && token.is_given_up() {
+            return None;
+        }
+        match program.next(&mut done) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(fault) => {
+                // Beyond the limits the same fault would come without end.
+                let again = found.last() == Some(&*fault);
+                found.push(*fault);
+                if again {
+                    break;
+                }
+            }
+        }
+        for one in done.drain(..) {
+            lines.take(one);
+        }
+    }
+    found.extend(program.report().notes.iter().cloned());
+    let mut lines = lines.run;
+    // A loop runs its lines again: the last time counts.
+    lines.sort_by_key(|run| run.line);
+    lines.reverse();
+    lines.dedup_by_key(|run| run.line);
+    lines.reverse();
+    let program = Program {
+        machine: Box::new(machine),
+        words: spoken.words,
+        lines,
+    };
+    Some(Ok((program, found)))
+}
+
+/// What is done, line by line.
+#[derive(Default)]
+struct Lines {
+    run: Vec<ProgramLine>,
+    state: Option<Arc<State>>,
+}
+
+impl Lines {
+    fn at(&mut self, line: u64) -> Option<&mut ProgramLine> {
+        let last = self.run.last();
+        if last.is_none_or(|last| last.line != line) {
+            if self.run.len() == MOST_LINES {
+                return None;
+            }
+            let joints = last.map(|last| last.joints).unwrap_or_default();
+            self.run.push(ProgramLine {
+                line,
+                kind: None,
+                joints,
+                feed: last.map_or(0.0, |last| last.feed),
+                state: self.state.clone(),
+                told: Vec::new(),
+            });
+        }
+        self.run.last_mut()
+    }
+
+    fn take(&mut self, done: Done) {
+        match done {
+            Done::State(state) => {
+                if let Some(last) = self.run.last_mut() {
+                    // It was set by the words that were read last.
+                    last.state = Some(state.clone());
+                }
+                self.state = Some(state);
+            }
+            Done::Motion(motion) => {
+                if let Some(line) = self.at(motion.line) {
+                    line.kind = Some(motion.kind);
+                    line.joints = motion.to.joints;
+                    if motion.kind != MotionKind::Rapid {
+                        line.feed = motion.feed;
+                    }
+                    line.state = Some(motion.state);
+                }
+            }
+            Done::Told { line, told } => {
+                let text = match told {
+                    Told::Operation(name) => format!("operation {name}"),
+                    Told::Remark(text) | Told::Message(text) => text,
+                    Told::ToolChange { number, name } => {
+                        let number = number.map(|number| number.to_string());
+                        format!("tool {}", name.or(number).unwrap_or_default())
+                    }
+                    Told::Dwell { time, .. } => format!("waits {time}"),
+                    Told::End => "the program ends".to_owned(),
+                    _ => return self.at(line).map_or((), |_| ()),
+                };
+                if let Some(line) = self.at(line) {
+                    line.told.push(text);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! `post lsp`: the language server.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::arguments::flag_values::length;
+use crate::editor::{self, Options};
+use crate::failure::Failure;
+
+/// Serves an editor: faults, completion and explanations in machine files, axis values in CL files and programs.
+///
+/// It is started by an editor and speaks the Language Server Protocol on standard input and output.
+#[derive(Debug, Args)]
+pub struct LspArguments {
+    /// The machine that CL files and programs are shown on, until the editor's setting post.machine names another.
+    #[arg(short, long, value_name = "MACHINE")]
+    machine: Option<String>,
+
+    /// Length of every tool from the gauge point to the tip, mm.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    tool_length: Option<f64>,
+
+    /// A further folder of machine files; the environment variable POST_MACHINES adds more.
+    #[arg(long, value_name = "FOLDER")]
+    machines: Vec<PathBuf>,
+
+    /// A folder of plugin libraries; POST_PLUGINS adds more. No setting of an editor can name one: opening a library runs
+    /// its code.
+    #[arg(long, value_name = "FOLDER")]
+    plugins: Vec<PathBuf>,
+
+    /// Speaks on standard input and output, as it does anyway: many editors say it.
+    #[arg(long)]
+    stdio: bool,
+}
+
+/// Serves.
+pub fn run(arguments: LspArguments) -> Result<(), Failure> {
+    let LspArguments {
+        machine,
+        tool_length,
+        machines,
+        plugins,
+        stdio: _,
+    } = arguments;
+    editor::serve(Options {
+        machine,
+        tool_length,
+        machines,
+        plugins,
+    })
+}

@@ -1,0 +1,98 @@
+//! NC programs.
+
+use std::fs;
+use std::thread;
+use std::time::Duration;
+
+use serde_json::json;
+
+use super::client::{Client, place, uri};
+use crate::common::{assert_contains, post_in, with_file};
+
+const PART: &str = "UNITS/MM
+LOADTL/1
+SPINDL/RPM,3000,CLW
+COOLNT/FLOOD
+RAPID
+GOTO/0,0,50
+FEDRAT/100,MMPM
+GOTO/0,0,10
+GOTO/20,5,10
+FINI
+";
+
+#[test]
+fn what_holds_at_a_line_and_the_cl_line_it_came_from_are_told() {
+    let folder = with_file("part.cls", PART);
+    let run = |arguments: &[&str]| {
+        let run = post_in(folder.path(), arguments);
+        assert_eq!(run.code, 0, "{}", run.err);
+    };
+    let length = ["--tool-length", "100"];
+    run(&[
+        &["--machine", "vmc", "part.cls", "-o", "part.nc"],
+        &length[..],
+    ]
+    .concat());
+    run(&[
+        &[
+            "verify",
+            "part.nc",
+            "--machine",
+            "vmc",
+            "--against",
+            "part.cls",
+            "--map",
+            "part.map.json",
+        ],
+        &length[..],
+    ]
+    .concat());
+    let path = folder.path().join("part.nc");
+    let text = fs::read_to_string(&path).unwrap();
+    let program = uri(&path);
+    let mut client = Client::new(&["--machine", "vmc"], &json!({ "toolLength": 100 }));
+    client.open(&program, "plaintext", &text);
+    let (line, column) = place(&text, "X20.", 1);
+    let mut said = String::new();
+    for _ in 0..600 {
+        said = client.hover(&program, line, column);
+        if !said.contains("not read yet") {
+            break;
+        }
+        thread::sleep(Duration::from_millis(50));
+    }
+    assert_contains(
+        &said,
+        &[
+            "X 20.000 Y 5.000",
+            "feed 100 mm/min",
+            "tool 1",
+            "spindle 3000 rpm clockwise",
+            "flood",
+            "From line 9 of part.cls",
+        ],
+    );
+    let asked = client.at("definition", &program, line, column);
+    assert_eq!(asked[0]["uri"], json!(uri(&folder.path().join("part.cls"))));
+    assert_eq!(asked[0]["range"]["start"]["line"], 8);
+    // Words say what they mean, however they are joined.
+    let (line, column) = place(&text, "G21", 1);
+    assert_contains(
+        &client.hover(&program, line, column),
+        &["`G21`: millimetre"],
+    );
+}
+
+#[test]
+fn a_program_that_cannot_be_read_says_where_and_loops_end() {
+    let uri = "file:///nowhere/part.nc";
+    let mut client = Client::new(&["--machine", "vmc"], &json!({}));
+    client.open(uri, "plaintext", "%\nO1\nG21 G90\nG1 X1. Y[ F100\nM30\n%\n");
+    let found = client.findings(uri, 1);
+    assert_eq!(found[0]["range"]["start"]["line"], 3, "{found:#?}");
+    client.open(uri, "plaintext", "%\nO1\nN1 G21\nGOTO1\nM30\n%\n");
+    let found = client.findings_if(uri, 1, |found| !found.is_empty());
+    assert!(!found.is_empty());
+    assert_eq!(client.end().0, 0);
+}

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use crate::common::command;
+use crate::common::{command, root};
 
 /// So long an answer is waited for.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -29,7 +29,16 @@ pub struct Client {
 impl Client {
     /// Started with `arguments`, with these options of the editor.
     pub fn new(arguments: &[&str], options: &Value) -> Self {
-        let mut client = Self::silent(arguments);
+        Self::silent(root(), arguments).greeted(options)
+    }
+
+    /// Started in a folder that has no machines, and greeted.
+    pub fn new_in(folder: &Path) -> Self {
+        Self::silent(folder, &[]).greeted(&json!({}))
+    }
+
+    fn greeted(self, options: &Value) -> Self {
+        let mut client = self;
         let about = client.ask(
             "initialize",
             json!({ "processId": null, "rootUri": null, "capabilities": {}, "initializationOptions": options }),
@@ -42,9 +51,10 @@ impl Client {
         client
     }
 
-    /// Started, and not yet spoken to.
-    pub fn silent(arguments: &[&str]) -> Self {
+    /// Started in a folder, and not yet spoken to.
+    pub fn silent(folder: &Path, arguments: &[&str]) -> Self {
         let mut child = command()
+            .current_dir(folder)
             .arg("lsp")
             .args(arguments)
             .stdin(Stdio::piped())

@@ -6,7 +6,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use super::client::{Client, told};
-use crate::common::assert_contains;
+use crate::common::{assert_contains, root};
 
 const MACHINE: &str = "name = \"𝄞 mill\"
 chain = \"[w b X Y Z (S) t]\"
@@ -244,14 +244,14 @@ fn what_is_no_protocol_ends_it_with_a_message() {
         "Content-Length: 99999999999999\r\n\r\n{}",
         "Content-Length: 99\r\n\r\n{}",
     ] {
-        let mut client = Client::silent(&[]);
+        let mut client = Client::silent(root(), &[]);
         client.raw(garbage.as_bytes());
         let (code, said) = client.gone();
         assert_eq!(code, 1, "{garbage}: {said}");
         assert_contains(&said, &["error[lsp]", "Language Server Protocol"]);
     }
     // An editor that is gone without a word.
-    let client = Client::silent(&[]);
+    let client = Client::silent(root(), &[]);
     let (code, said) = client.gone();
     assert_eq!(code, 1, "{said}");
 }

@@ -56,9 +56,10 @@ P.path.say = (text) => {
   P.path.notice.hidden = !text;
 };
 
-// A power of ten by which the largest vector is well seen.
+// A power of ten by which the largest vector is well seen; none where so many would hide the path.
 P.path.fitting_scale = () => {
   const { vectors, radius } = P.scene;
+  if (vectors.count > 20000) return 0;
   let most = 0;
   for (let at = 0; at < vectors.count; at++) most = Math.max(most, Math.hypot(...vectors.vector.subarray(at * 3, at * 3 + 3)));
   return most > 0 ? P.clamp(10 ** Math.floor(Math.log10((radius * 0.12) / most)), 1, 10000) : 1000;

@@ -51,6 +51,9 @@ P.scene.build = () => {
   const [dx, dy, dz] = given(table, ["d.x", "d.y", "d.z"]);
   if (dx && dy && dz) scene.vectors = P.scene.comb(count, [dx, dy, dz]);
   scene.marks = P.scene.find_marks();
+  // What is drawn is held in single precision now; the tables of it would lie in memory twice.
+  delete report.tables.path;
+  delete report.tables.cl;
   scene.ready = true;
   P.scene.recolour();
 };

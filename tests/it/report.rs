@@ -104,7 +104,8 @@ impl Page {
             for column in columns {
                 let read = integers(chunk, rows, &mut at);
                 if column["name"] == wanted {
-                    let scale = 10f64.powi(column["decimals"].as_i64().unwrap() as i32);
+                    let decimals = column["decimals"].as_u64().unwrap();
+                    let scale = (0..decimals).fold(1.0, |scale, _| 10.0 * scale);
                     values.extend(read.iter().map(|value| *value as f64 / scale));
                 }
             }

@@ -45,11 +45,12 @@ mod tests {
     #[test]
     fn a_quintic_is_found_again() {
         let at = |s: f64| -> Jet<2> {
-            let third = 60.0 * s * s - 24.0 * s + 6.0;
+            let [square, cube, fourth] = [s * s, s * s * s, s * s * s * s];
+            let third = 60.0 * square - 24.0 * s + 6.0;
             [
-                [s.powi(5) - s.powi(4) + s.powi(3) + 2.0, 3.0 - s],
-                [5.0 * s.powi(4) - 4.0 * s.powi(3) + 3.0 * s * s, -1.0],
-                [20.0 * s.powi(3) - 12.0 * s * s + 6.0 * s, 0.0],
+                [s * fourth - fourth + cube + 2.0, 3.0 - s],
+                [5.0 * fourth - 4.0 * cube + 3.0 * square, -1.0],
+                [20.0 * cube - 12.0 * square + 6.0 * s, 0.0],
                 [third, 0.0],
             ]
         };

@@ -138,10 +138,11 @@ mod tests {
     fn fifth(at: f64) -> Sample {
         let mut values = [[0.0; fit::MOST]; 4];
         (values[0][0], values[1][0]) = (at, 1.0);
-        values[0][1] = at.powi(5) / 20.0;
-        values[1][1] = at.powi(4) / 4.0;
-        values[2][1] = at.powi(3);
-        values[3][1] = 3.0 * at.powi(2);
+        let [square, cube] = [at * at, at * at * at];
+        values[0][1] = cube * square / 20.0;
+        values[1][1] = square * square / 4.0;
+        values[2][1] = cube;
+        values[3][1] = 3.0 * square;
         Sample { at, values }
     }
 

@@ -88,8 +88,7 @@ impl<W: Write> TableWriter<W> {
         let places = self.values.iter_mut().zip(&self.scales);
         for (index, ((column, scale), value)) in places.zip(row).enumerate() {
             let scaled = value * scale;
-            // No number fails this too.
-            if !(scaled.abs() < LARGEST) {
+            if scaled.is_nan() || scaled.abs() >= LARGEST {
                 let name = &self.columns[index].name;
                 let message = format!("{value} cannot stand in the column {name} of the report");
                 return Err(io::Error::new(io::ErrorKind::InvalidData, message));

@@ -8,8 +8,13 @@ use std::path::{Path, PathBuf};
 use miniz_oxide::inflate::decompress_to_vec;
 use serde_json::Value;
 
-use crate::common::{assert_contains, command, post, post_in, run, sample};
+use crate::common::{assert_contains, command, post, post_in, root, run};
 use crate::generate;
+
+/// A sample by its whole path: the command runs in a folder of its own.
+fn sample_file(name: &str) -> PathBuf {
+    root().join("tests/samples").join(name)
+}
 
 /// A report, unpacked.
 struct Page {
@@ -199,7 +204,7 @@ fn of_templates(chunk: &[u8], text: &mut Vec<u8>) {
 /// A sample posted on `ac-trunnion` (or so) with a report, in a folder of its own.
 fn posted(file: &str, machine: &str, more: &[&str]) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
-    let cl = sample(file).display().to_string();
+    let cl = sample_file(file).display().to_string();
     let job = [
         &cl,
         "-m",
@@ -233,7 +238,11 @@ fn texts_come_back_letter_for_letter() {
             fs::read(folder.path().join("part.nc")).unwrap(),
             "{file}"
         );
-        assert_eq!(page.text("cl"), fs::read(sample(file)).unwrap(), "{file}");
+        assert_eq!(
+            page.text("cl"),
+            fs::read(sample_file(file)).unwrap(),
+            "{file}"
+        );
     }
 }
 
@@ -301,7 +310,7 @@ fn the_same_job_gives_the_same_bytes_wherever_it_lies() {
 fn hostile_texts_stay_texts() {
     let hostile = "</script><img src=x onerror=alert(1)>";
     let folder = tempfile::tempdir().unwrap();
-    let text = fs::read_to_string(sample("blade.cls")).unwrap();
+    let text = fs::read_to_string(sample_file("blade.cls")).unwrap();
     let text = format!("PPRINT/{hostile}\n{text}");
     let file = folder.path().join("part.cls");
     fs::write(&file, &text).unwrap();
@@ -332,7 +341,7 @@ fn hostile_texts_stay_texts() {
 fn texts_go_first_above_the_largest_size() {
     let folder = tempfile::tempdir().unwrap();
     let mut text = Vec::new();
-    generate::write_file(&mut text, 60_000).unwrap();
+    generate::write_file(&mut text, 250_000).unwrap();
     fs::write(folder.path().join("wave.cls"), text).unwrap();
     let job = [
         "wave.cls",
@@ -349,11 +358,16 @@ fn texts_go_first_above_the_largest_size() {
     let page = folder.path().join("wave.html");
     let all = Page::read(&page);
     assert_eq!(all.meta["parts_left_out"], serde_json::json!([]));
+    let size = fs::metadata(&page).unwrap().len();
+    assert!(size > 1_000_000, "{size}");
     let done = post_in(folder.path(), &[&job[..], &["--report-max", "1"]].concat());
     assert_eq!(done.code, 0, "{}", done.err);
     let less = Page::read(&page);
     assert_eq!(less.meta["parts_left_out"][0], "texts");
     assert!(less.html.len() < all.html.len());
+    assert!(
+        less.html.len() < 1_000_000 || less.meta["parts_left_out"].as_array().unwrap().len() == 3
+    );
     assert!(!less.parts.contains_key("text.cl"));
     assert_eq!(
         less.meta["tables"].as_array().unwrap().last(),
@@ -364,7 +378,7 @@ fn texts_go_first_above_the_largest_size() {
 #[test]
 fn every_job_has_its_report() {
     let (folder, _) = posted("blade.cls", "ac-trunnion", &[]);
-    let cl = sample("blade.cls").display().to_string();
+    let cl = sample_file("blade.cls").display().to_string();
     let nc = folder.path().join("part.nc");
     let other = fs::read_to_string(&nc).unwrap().replacen("X1", "X2", 1);
     fs::write(folder.path().join("other.nc"), other).unwrap();
@@ -463,7 +477,7 @@ fn every_job_has_its_report() {
 #[test]
 fn nothing_is_written_of_a_refused_run_and_no_file_is_lost() {
     let folder = tempfile::tempdir().unwrap();
-    let cl = sample("blade.cls").display().to_string();
+    let cl = sample_file("blade.cls").display().to_string();
     let refused = post_in(
         folder.path(),
         &[
@@ -506,7 +520,7 @@ fn nothing_is_written_of_a_refused_run_and_no_file_is_lost() {
 #[test]
 fn view_names_a_report_of_any_job() {
     let folder = tempfile::tempdir().unwrap();
-    let cl = sample("blade.cls").display().to_string();
+    let cl = sample_file("blade.cls").display().to_string();
     let viewed = |line: &[&str]| {
         let mut command = command();
         let job = ["view", "--no-open"];

@@ -12,7 +12,7 @@
 //! most so many, without zeros at the end; 64 more: each has its own, in a column behind. Numbers are then those of the most
 //! decimals. Integers lie as in [`crate::integers`], 32 bits with the least byte first.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use crate::integers;
 
@@ -53,7 +53,8 @@ pub fn encode(text: &[u8]) -> Option<Vec<u8>> {
     }
     let count = text.split_inclusive(|byte| *byte == b'\n').count();
     let most = count / SHARE + 16;
-    let mut places: BTreeMap<Vec<u8>, usize> = BTreeMap::new();
+    // Looked up and never gone over: no order comes of it.
+    let mut places: HashMap<Vec<u8>, usize> = HashMap::new();
     // Of each template its bytes and the columns of its numbers.
     let mut templates: Vec<(Vec<u8>, Vec<u32>)> = Vec::new();
     let mut addresses: BTreeMap<Vec<u8>, usize> = BTreeMap::new();
@@ -289,25 +290,30 @@ pub fn decode(bytes: &[u8], lines: usize) -> Option<Vec<u8>> {
 /// Writes a number as its column says.
 fn write(text: &mut Vec<u8>, digits: i64, form: u8, own: Option<u8>) {
     let most = usize::from(form % TRIMMED);
-    let mut wanted = own.map_or(most, usize::from);
-    let unsigned = digits.unsigned_abs();
-    let all = format!("{unsigned:0width$}", width = most + 1);
-    if form / TRIMMED == 1 {
-        let zeros = all
-            .bytes()
-            .rev()
-            .take(most)
-            .take_while(|digit| *digit == b'0');
-        wanted = most - zeros.count();
+    // The digits, the last first, and zeros up to one ahead of the point.
+    let mut all = [b'0'; 40];
+    let mut count = 0;
+    let mut rest = digits.unsigned_abs();
+    while rest > 0 || count <= most {
+        all[count] = b'0' + (rest % 10) as u8;
+        rest /= 10;
+        count += 1;
     }
+    let unwanted = match (own, form / TRIMMED) {
+        (Some(own), _) => most - usize::from(own).min(most),
+        (None, 1) => {
+            let zeros = all[..most].iter().take_while(|digit| **digit == b'0');
+            zeros.count()
+        }
+        _ => 0,
+    };
     if digits < 0 {
         text.push(b'-');
     }
-    let (whole, behind) = all.split_at(all.len() - most);
-    text.extend_from_slice(whole.as_bytes());
-    if wanted > 0 {
+    text.extend(all[most..count].iter().rev());
+    if unwanted < most {
         text.push(b'.');
-        text.extend_from_slice(&behind.as_bytes()[..wanted.min(most)]);
+        text.extend(all[unwanted..most].iter().rev());
     }
 }
 

@@ -19,7 +19,9 @@ pub struct TextWriter<W> {
     in_chunk: u64,
     chunk: Vec<u8>,
     bytes: u64,
+    /// For chunks that go as they are, and for templates.
     deflate: Deflate,
+    numbers: Deflate,
     packed: Vec<u8>,
     out: W,
 }
@@ -34,6 +36,7 @@ impl<W: Write> TextWriter<W> {
             chunk: Vec::new(),
             bytes: 0,
             deflate: Deflate::of_texts(),
+            numbers: Deflate::of_numbers(),
             packed: Vec::new(),
             out,
         }
@@ -78,7 +81,6 @@ impl<W: Write> TextWriter<W> {
     fn flush(&mut self) -> io::Result<()> {
         self.lines += self.in_chunk;
         let lines = (self.in_chunk as u32).to_le_bytes();
-        self.deflate.piece(&lines);
         // What would not come back letter for letter goes as it is.
         let templates = template::encode(&self.chunk).filter(|packed| {
             let back = template::decode(packed, self.in_chunk as usize);
@@ -86,15 +88,18 @@ impl<W: Write> TextWriter<W> {
         });
         match templates {
             Some(packed) => {
-                self.deflate.piece(&[TEMPLATES]);
-                self.deflate.piece(&packed);
+                self.numbers.piece(&lines);
+                self.numbers.piece(&[TEMPLATES]);
+                self.numbers.piece(&packed);
+                self.numbers.take(&mut self.packed);
             }
             None => {
+                self.deflate.piece(&lines);
                 self.deflate.piece(&[PLAIN]);
                 self.deflate.piece(&self.chunk);
+                self.deflate.take(&mut self.packed);
             }
         }
-        self.deflate.take(&mut self.packed);
         // A table may have the same name.
         let name = format!("text.{}", self.name);
         self.bytes += part::write(&mut self.out, &name, &self.packed)?;

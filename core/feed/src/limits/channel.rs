@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 use super::first_derivative;
+use crate::quintic::{self, bernstein};
 use crate::samples::{Samples, dot};
 
 /// Which derivative by time is limited.
@@ -38,39 +39,29 @@ impl Channel {
     /// where `q`, its slope and its second derivative by the parameter are these.
     #[must_use]
     pub fn used(&self, share: f64, step: f64, [q, slope, bend]: [f64; 3]) -> f64 {
-        let mix = |[a, b]: [f64; 2]| a + (b - a) * share;
-        let quadratic = |[a, b, c]: [f64; 3]| mix([mix([a, b]), mix([b, c])]);
         let value = match self.order {
             Order::Acceleration => {
-                let first = quadratic(first_derivative(self.first, self.second, step));
-                0.5 * first * slope + mix(self.second) * q
+                let hull = first_derivative(self.first, self.second, step);
+                0.5 * bernstein(hull, share) * slope + bernstein(self.second, share) * q
             }
             Order::Jerk => {
-                let cubic =
-                    |[a, b, c, d]: [f64; 4]| mix([quadratic([a, b, c]), quadratic([b, c, d])]);
-                let [a, b, c, d, e] = self.first(step);
-                let first = mix([cubic([a, b, c, d]), cubic([b, c, d, e])]);
-                let (second, third) = (cubic(self.second(step)), quadratic(self.third));
+                let first = bernstein(self.first(step), share);
+                let second = bernstein(self.second(step), share);
+                let third = bernstein(self.third, share);
                 q.sqrt() * (0.5 * first * bend + 1.5 * second * slope + third * q)
             }
         };
         value / self.limit
     }
 
-    /// Bernstein coefficients of the second derivative, a cubic whose derivative is the third.
+    /// Bernstein coefficients of the second derivative, whose derivative is the third.
     pub(crate) fn second(&self, step: f64) -> [f64; 4] {
-        let ([c0, c1], [t0, _, t2]) = (self.second, self.third);
-        [c0, c0 + step * t0 / 3.0, c1 - step * t2 / 3.0, c1]
+        quintic::second(self.second, self.third, step)
     }
 
-    /// Bernstein coefficients of the first derivative, a quartic whose derivative is the second; where its ends ask for
-    /// two middles, the one between them.
+    /// Bernstein coefficients of the first derivative, whose derivative is the second.
     pub(crate) fn first(&self, step: f64) -> [f64; 5] {
-        let ([f0, f1], [c0, up, down, c1]) = (self.first, self.second(step));
-        let quarter = 0.25 * step;
-        let (low, high) = (f0 + quarter * c0, f1 - quarter * c1);
-        let middle = (low + quarter * up).midpoint(high - quarter * down);
-        [f0, low, middle, high, f1]
+        quintic::first(self.first, self.second(step), step)
     }
 
     /// Of the derivatives at two samples, the second one `step` behind the first, on a path whose third derivative is
@@ -84,12 +75,13 @@ impl Channel {
         order: Order,
         limit: f64,
     ) -> Self {
-        let mean = (second[1] - second[0]) / step;
-        let [t0, t2] = third;
         let third = match smooth {
-            true => [t0, 3.0 * mean - t0 - t2, t2],
+            true => quintic::third(second, third, step),
             // The second sample has the one behind it: what it is ahead of it follows.
-            false => [t0, mean, 2.0 * mean - t0],
+            false => {
+                let mean = (second[1] - second[0]) / step;
+                [third[0], mean, 2.0 * mean - third[0]]
+            }
         };
         Self {
             first,

@@ -13,7 +13,7 @@ use post_grammar::text::escaped;
 
 pub use findings::findings;
 pub use progress::{Progress, Watched};
-pub use quantity::{clock, number};
+pub use quantity::{at_most, clock, number};
 pub use table::table;
 
 use crate::failure::Failure;

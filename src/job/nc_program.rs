@@ -95,7 +95,7 @@ pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
             "dialect {} tells no vocabulary, so that its programs cannot be read back",
             machine.control.dialect
         );
-        let help = "a dialect of your own tells it by `vocabulary` (plugins/README.md)";
+        let help = "a dialect of your own tells it by `vocabulary` (docs/src/plugin-author)";
         return Err(Diagnostic::error("vocabulary", message).help(help).into());
     }
     Ok(Spoken {

@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use crate::common::{Run, check_numbers, command, post, root, run};
 
-const GUIDE: &str = include_str!("../../plugins/README.md");
+const GUIDE: &str = include_str!("../../docs/src/plugin-author/dialect-in-rust.md");
 
 fn in_folder(folder: &Path, arguments: &[&str]) -> Run {
     run(command().current_dir(folder).args(arguments), b"")

@@ -1,6 +1,6 @@
 //! Fanuc 30i, 31i: G-code with modal words, a point in every number, remarks in capitals.
 //!
-//! What it assumes about the control stands in `plugins/README.md`.
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
     Control, Iso, Offset, Plane, Rigid, Splines, Subprogram, SurfaceSpeed, Table, Tcp,

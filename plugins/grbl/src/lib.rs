@@ -1,6 +1,6 @@
 //! GRBL 1.1: three axes, no cycles, no changer, no length; grblHAL, by an option, has more of them.
 //!
-//! What it assumes about the control stands in `plugins/README.md`.
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
     Codes, Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, offset_of_six,

@@ -1,6 +1,6 @@
 //! Haas NGC: Fanuc's words, G234 for the tool centre point, G254 for the dynamic work offset.
 //!
-//! What it assumes about the control stands in `plugins/README.md`.
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
     Control, CycleCode, Iso, Offset, Plane, Subprogram, Table, Tcp, is_offset_beyond_six,

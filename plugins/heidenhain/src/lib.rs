@@ -1,6 +1,6 @@
 //! Heidenhain TNC640, conversational: numbered blocks, `L` moves, a sign on every coordinate.
 //!
-//! What it assumes about the control stands in `plugins/README.md`.
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 mod coolant;
 mod curves;

@@ -1,6 +1,6 @@
 //! Hurco WinMax in its ISNC dialect (the other one, BNC, differs): Fanuc's words, M128 for the tool centre point.
 //!
-//! What it assumes about the control stands in `plugins/README.md`.
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{Control, Iso, Leave, Subprogram, Table, Tcp, iso_options, options, words};
 use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};

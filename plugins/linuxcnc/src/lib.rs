@@ -1,6 +1,6 @@
 //! LinuxCNC: G-code with modal words, remarks in parentheses.
 //!
-//! What it assumes about the control stands in `plugins/README.md`.
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
     Control, CycleCode, Dwell, Engine, Iso, Leave, Length, Offset, Rigid, Splines, Stops,

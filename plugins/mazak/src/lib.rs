@@ -1,6 +1,6 @@
 //! Mazak Smooth, EIA/ISO: Fanuc's words for the most part, no `%`, files that end in `.EIA`.
 //!
-//! What it assumes about the control stands in `plugins/README.md`.
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
     Control, Iso, Offset, Plane, Rigid, Subprogram, Table, Tcp, is_offset_beyond_six, iso_options,

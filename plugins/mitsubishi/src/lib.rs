@@ -1,6 +1,6 @@
 //! Mitsubishi M800, M80 and M700V: tool centre point and inclined surface as the maker has them, the rest as Fanuc's.
 //!
-//! What it assumes about the control stands in `plugins/README.md`.
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
     Control, Iso, Offset, Plane, Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six,

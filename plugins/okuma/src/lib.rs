@@ -1,6 +1,6 @@
 //! Okuma OSP, machining centres: work offsets by G15 H, length by G56 H, positions of the machine by G16 H0.
 //!
-//! What it assumes about the control stands in `plugins/README.md`.
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
     Codes, Control, Dwell, Iso, Leave, Length, Offset, Subprogram, Table, Tcp, iso_options, options,

@@ -1,6 +1,6 @@
 //! Siemens SINUMERIK 840D sl: G-code with its own words for tools, arcs, cycles, planes and transformations.
 //!
-//! What it assumes about the control stands in `plugins/README.md`.
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 mod capabilities;
 mod cycles;

@@ -5,49 +5,36 @@
 
 use std::path::Path;
 
-use post_host::{Plugin, default_of, takes};
 use post_kit::ORDER;
 use post_plugin::{CAPABILITIES, Capabilities, EVENTS, Event};
 
-const GUIDE: &str = include_str!("../../../README.md");
+/// A page of the guide for authors.
+macro_rules! page {
+    ($name:literal) => {
+        include_str!(concat!("../../../../docs/src/plugin-author/", $name, ".md"))
+    };
+}
 
 #[test]
 fn the_guide_shows_the_examples() {
     let model = include_str!("../../../parabolic/src/lib.rs");
     let model = model.split("\n#[cfg(test)]").next().unwrap();
-    assert!(
-        GUIDE.contains(model),
-        "plugins/README.md must show parabolic/src/lib.rs as it is"
-    );
-    for (name, example) in [
-        ("tiny", include_str!("../../examples/post_tiny.rs")),
-        ("gcode", include_str!("../../examples/post_gcode.rs")),
+    for (name, page, source) in [
+        ("error-model", page!("error-model"), model),
+        (
+            "dialect-in-rust",
+            page!("dialect-in-rust"),
+            include_str!("../../examples/post_tiny.rs"),
+        ),
+        (
+            "iso-table",
+            page!("iso-table"),
+            include_str!("../../examples/post_gcode.rs"),
+        ),
     ] {
         assert!(
-            GUIDE.contains(example),
-            "plugins/README.md must show examples/post_{name}.rs as it is"
-        );
-    }
-}
-
-#[test]
-fn the_guide_lists_the_options_of_the_stock_plugins() {
-    for linked in post_stock::plugins() {
-        let plugin = Plugin::linked(*linked).unwrap();
-        if plugin.options().is_empty() {
-            continue;
-        }
-        let mut table =
-            String::from("| option | takes | default | what it does |\n|---|---|---|---|\n");
-        for spec in plugin.options() {
-            let (takes, default) = (takes(spec.kind), default_of(spec));
-            let (key, help) = (spec.key, spec.help);
-            table.push_str(&format!("| `{key}` | {takes} | {default} | {help} |\n"));
-        }
-        let name = plugin.name();
-        assert!(
-            GUIDE.contains(&table),
-            "plugins/README.md must list the options of `{name}`:\n\n{table}"
+            page.contains(source),
+            "{name}.md must show its example as it is"
         );
     }
 }
@@ -89,25 +76,64 @@ fn capabilities() -> String {
     table
 }
 
+/// The fields of the table that a control of the G-code family fills in, from their documentation.
+fn fields() -> String {
+    let source = include_str!("../../../iso/src/table.rs");
+    let table = source.split_once("pub struct Table {\n").unwrap().1;
+    let table = table.split_once("\n}\n").unwrap().0;
+    let mut fields = String::from("| field | what it is |\n|---|---|\n");
+    let mut doc: Vec<&str> = Vec::new();
+    for line in table.lines().map(str::trim) {
+        if let Some(text) = line.strip_prefix("/// ") {
+            doc.push(text);
+        } else if let Some((name, _)) = line
+            .strip_prefix("pub ")
+            .and_then(|rest| rest.split_once(':'))
+        {
+            let doc = doc.drain(..).collect::<Vec<_>>().join(" ");
+            // Links of rustdoc lead nowhere here.
+            let doc = doc.replace("[`", "`").replace("`]", "`");
+            fields.push_str(&format!("| `{name}` | {doc} |\n"));
+        }
+    }
+    fields
+}
+
 #[test]
-fn the_guide_has_all_events_and_capabilities() {
-    let mut guide = GUIDE.to_owned();
-    for (mark, table) in [("events", events()), ("capabilities", capabilities())] {
-        let (begin, end) = (
-            format!("<!-- {mark}: begin -->\n"),
-            format!("<!-- {mark}: end -->"),
+fn the_guide_has_all_events_capabilities_and_fields_of_the_table() {
+    for (name, page, marks) in [
+        (
+            "events",
+            page!("events"),
+            vec![("events", events()), ("capabilities", capabilities())],
+        ),
+        (
+            "iso-table",
+            page!("iso-table"),
+            vec![("iso-table", fields())],
+        ),
+    ] {
+        let mut guide = page.to_owned();
+        for (mark, table) in marks {
+            let (begin, end) = (
+                format!("<!-- {mark}: begin -->\n"),
+                format!("<!-- {mark}: end -->"),
+            );
+            let (before, rest) = guide.split_once(&begin).unwrap();
+            let (_, after) = rest.split_once(&end).unwrap();
+            guide = format!("{before}{begin}{table}{end}{after}");
+        }
+        if std::env::var_os("UPDATE_GUIDE").is_some() {
+            let pages = "../../docs/src/plugin-author";
+            let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+                .join(pages)
+                .join(format!("{name}.md"));
+            std::fs::write(path, guide).unwrap();
+            continue;
+        }
+        assert!(
+            guide == page,
+            "{name}.md is stale: run UPDATE_GUIDE=1 cargo test -p post-host --test it guide"
         );
-        let (before, rest) = guide.split_once(&begin).unwrap();
-        let (_, after) = rest.split_once(&end).unwrap();
-        guide = format!("{before}{begin}{table}{end}{after}");
     }
-    if std::env::var_os("UPDATE_GUIDE").is_some() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
-        std::fs::write(path, guide).unwrap();
-        return;
-    }
-    assert!(
-        guide == GUIDE,
-        "plugins/README.md is stale: run UPDATE_GUIDE=1 cargo test -p post-host --test it guide"
-    );
 }

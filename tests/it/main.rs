@@ -21,6 +21,7 @@ mod diff;
 mod files;
 mod frame;
 mod guide;
+mod guides;
 mod languages;
 mod library;
 #[cfg(target_os = "linux")]

@@ -58,9 +58,8 @@ fn every_key_of_the_summary_is_explained_and_the_table_says_the_same() {
     let run = post(&[&["predict", &program], FIVE, &more].concat());
     assert_eq!((run.code, run.err.as_str()), (0, ""));
     let found = read_json(&summary);
-    let read_me = text(&root().join("README.md"));
-    let section = read_me.split("### Predicting a program").nth(1).unwrap();
-    let section = section.split("\n## ").next().unwrap();
+    let page = text(&root().join("docs/src/nc-programmer/predict.md"));
+    let section = page.split("\n## ").next().unwrap();
     let mut all = Vec::new();
     keys(&found, &mut all);
     for key in &all {

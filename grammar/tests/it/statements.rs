@@ -810,10 +810,10 @@ fn the_classic_words_are_judged() {
     assert_eq!(of(Usage::Ignored), without_effect);
 }
 
-/// The README lists the words by what becomes of them.
+/// The book lists the words by what becomes of them.
 #[test]
-fn the_readme_lists_the_words_of_the_table() {
-    let readme = include_str!("../../../README.md");
+fn the_book_lists_the_words_of_the_table() {
+    let page = include_str!("../../../docs/src/nc-programmer/cl-files.md");
     for usage in [
         Usage::Used,
         Usage::Passed,
@@ -826,7 +826,7 @@ fn the_readme_lists_the_words_of_the_table() {
             .map(|word| format!("`{}`", word.spellings.join("` = `")))
             .collect();
         let row = format!("| {} | {} |", usage.name(), listed.join(", "));
-        assert!(readme.contains(&row), "README.md lacks this line:\n{row}");
+        assert!(page.contains(&row), "the page lacks this line:\n{row}");
     }
 }
 

@@ -144,7 +144,7 @@ pub fn fault(error: io::Error) -> Failure {
 /// What "certified" leaves out.
 pub fn excludes() -> Vec<String> {
     [
-        "What a record of the CL file is taken to mean: README.md says how it is read.",
+        "What a record of the CL file is taken to mean: the book says how it is read (CL files).",
         "What the control does between blocks: smoothing, look-ahead, servo lag. A prediction (--predict, post predict) tells of them.",
         "The machine's own errors, as far as its file does not describe them.",
         "Collisions: tool, holder, part and machine are not known as bodies.",

@@ -84,7 +84,7 @@ const EXACT: &str = "pole = \"exact\"";
 const GREEDY: &str = "pole = \"exact\"\nlook_ahead = 1";
 
 /// Through the pole, beside it and round it: what blending costs and saves against meeting every point exactly and
-/// against taking the nearest solution each time. Prints the table of the README.
+/// against taking the nearest solution each time. Prints the table of the book (`nc-programmer/solutions.md`).
 #[test]
 fn close_to_the_pole_axes_are_spared_within_tolerance() {
     let mut paths: Vec<(String, f64, Vec<Point>)> = Vec::new();

@@ -92,7 +92,10 @@ fn fields() -> String {
         {
             let doc = doc.drain(..).collect::<Vec<_>>().join(" ");
             // Links of rustdoc lead nowhere here.
-            let doc = doc.replace("[`", "`").replace("`]", "`");
+            let doc = doc
+                .replace("[`", "`")
+                .replace("`]", "`")
+                .replace("crate::", "post_iso::");
             fields.push_str(&format!("| `{name}` | {doc} |\n"));
         }
     }

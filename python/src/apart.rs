@@ -5,7 +5,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use post_command::library::Refused;
 use post_machine::diagnostic::Diagnostic;
-use pyo3::marker::Ungil;
 use pyo3::prelude::*;
 
 use crate::refusal;
@@ -13,7 +12,7 @@ use crate::refusal;
 /// Does `job` while other threads run Python.
 pub fn apart<T: Send>(
     py: Python<'_>,
-    job: impl FnOnce() -> Result<T, Refused> + Ungil,
+    job: impl FnOnce() -> Result<T, Refused> + Send,
 ) -> PyResult<T> {
     let done = py.detach(|| catch_unwind(AssertUnwindSafe(job)));
     match done {

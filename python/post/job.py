@@ -88,9 +88,9 @@ class Job:
     """A CL file that was posted; :meth:`post.Machine.post` makes one. The CL file and the machine file must still be as
     they were when more is asked of it."""
 
-    def __init__(self, native: _native.Job, again: Callable[..., Job]) -> None:
+    def __init__(self, native: _native.Job, planned: Callable[[int | None], Job]) -> None:
         self._native = native
-        self._again = again
+        self._planned = planned
 
     def __repr__(self) -> str:
         return f"<post.Job {self.name!r}, {self.summary['blocks']} blocks>"
@@ -144,7 +144,7 @@ class Job:
 
     def plan(self, rounds: int | None = None) -> Job:
         """The same job with its feed planned (``--plan``, ``--plan-rounds``)."""
-        return self._again(plan=True, plan_rounds=rounds)
+        return self._planned(rounds)
 
     def report(
         self,

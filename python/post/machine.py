@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypedDict
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Path = str | os.PathLike[str]
-Value = str | bool | int | float | Sequence[float]
+Value = str | bool | int | float | np.integer[Any] | np.floating[Any] | Sequence[float]
 """What a setting can be: as in a machine file; a text may be an expression."""
 
 
@@ -58,9 +58,6 @@ class Axis:
 
 class Machine:
     """A machine with its settings and a tool in it; :meth:`load` makes one. It never changes, and threads may share it."""
-
-    _native: _native.Machine
-    _axes: tuple[Axis, ...]
 
     def __init__(self, native: _native.Machine) -> None:
         self._native = native
@@ -194,10 +191,11 @@ class Machine:
             told.append(("output", os.fspath(output)))
         native = self._native.post(os.fspath(path), told, blocks)
 
-        def again(**more: object) -> Job:
-            return self.post(path, blocks=blocks, **{**options, **more})  # type: ignore[typeddict-item]
+        def planned(rounds: int | None) -> Job:
+            more: Options = {**options, "plan": True, "plan_rounds": rounds}
+            return self.post(path, blocks=blocks, **more)
 
-        return Job(native, again)
+        return Job(native, planned)
 
     def _values(self, name: str, q: ArrayLike) -> Floats:
         return rows(name, q, len(self.axes))

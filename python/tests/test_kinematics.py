@@ -34,13 +34,12 @@ def turned(difference: np.ndarray, machine: post.Machine) -> np.ndarray:
     return np.where(rotary, (difference + 180.0) % 360.0 - 180.0, difference)
 
 
-def test_forward_is_the_product_of_the_chain() -> None:
-    """By hand, of the trunnion: C carries the part on A, and the point of A's line stands 50.004 above the table."""
+def test_slides_take_the_tip_along() -> None:
+    """By hand: of three slides the tip goes along with them, and the tool stays upright."""
     machine = post.Machine.load("vmc", tool_length=50)
     assert [axis.name for axis in machine.axes if axis.rotary] == []
     q = values(machine, 10)
     tip, axis = machine.forward(q)
-    # Three slides: the tip goes along with them, and the tool stays upright.
     order = [[axis.name for axis in machine.axes].index(name) for name in "XYZ"]
     np.testing.assert_allclose(tip - tip[0], (q - q[0])[:, order], atol=1e-9)
     np.testing.assert_array_equal(axis, np.tile([0.0, 0.0, 1.0], (10, 1)))

@@ -12,7 +12,7 @@ use std::sync::{Mutex, PoisonError};
 use post_grammar::text::escaped;
 
 pub use findings::findings;
-pub use progress::{Progress, Watched};
+pub use progress::{JobsProgress, Progress, Watched, hide_progress_of_thread};
 pub use quantity::{clock, number};
 pub use table::table;
 

@@ -9,6 +9,16 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 /// Records, blocks or batches between two looks at the clock.
 const EVERY: u64 = 4096;
 
+thread_local! {
+    /// Nobody is shown how far this thread has come.
+    static HIDDEN: Cell<bool> = const { Cell::new(false) };
+}
+
+/// From here on no bar is shown of what this thread reads: others read beside it.
+pub fn hide_progress_of_thread() {
+    HIDDEN.set(true);
+}
+
 /// How far reading has come.
 pub struct Progress {
     bar: ProgressBar,
@@ -24,7 +34,7 @@ impl Progress {
         };
         // What cannot be read ends it too.
         let bar = bar.with_finish(ProgressFinish::AndClear);
-        if !std::io::stderr().is_terminal() {
+        if HIDDEN.get() || !std::io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
         let style = "{bar:40} {percent}% of {total_bytes}, {eta} left";
@@ -40,6 +50,40 @@ impl Progress {
         self.records += 1;
         if self.records.is_multiple_of(EVERY) {
             self.bar.set_position(position());
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// How many of so many jobs are done.
+pub struct JobsProgress {
+    bar: ProgressBar,
+}
+
+impl JobsProgress {
+    /// A bar over so many jobs.
+    pub fn new(jobs: u64) -> Self {
+        let bar = ProgressBar::new(jobs).with_finish(ProgressFinish::AndClear);
+        if !std::io::stderr().is_terminal() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:40} {pos} of {len} jobs, {eta} left{msg}")
+        {
+            bar.set_style(style);
+        }
+        Self { bar }
+    }
+
+    /// So many are done, so many of them refused.
+    pub fn at(&self, done: u64, refused: u64) {
+        self.bar.set_position(done);
+        if refused > 0 {
+            self.bar.set_message(format!(", {refused} refused"));
         }
     }
 

@@ -57,6 +57,15 @@ pub fn write(texts: &[(Role, &PathArg, &str)]) -> Result<bool, FileFault> {
     Ok(taken)
 }
 
+/// Writes bytes whole, or not at all.
+pub fn write_bytes(role: Role, target: &PathArg, bytes: &[u8]) -> Result<(), FileFault> {
+    let mut files = AtomicFile::create(&[(role, target)])?;
+    for file in &mut files {
+        file.write_bytes(bytes)?;
+    }
+    AtomicFile::finish(files)
+}
+
 /// Refuses targets that are files which the run reads, or one another, or that cannot be written to.
 pub fn check_targets(targets: &[(Role, &PathArg)]) -> Result<(), FileFault> {
     let targets = targets.iter();

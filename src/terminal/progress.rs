@@ -4,20 +4,11 @@ use std::cell::Cell;
 use std::io::{self, IsTerminal, Read, Seek, SeekFrom};
 use std::rc::Rc;
 
+use super::gathering::is_gathering;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
 /// Records, blocks or batches between two looks at the clock.
 const EVERY: u64 = 4096;
-
-thread_local! {
-    /// Nobody is shown how far this thread has come.
-    static HIDDEN: Cell<bool> = const { Cell::new(false) };
-}
-
-/// From here on no bar is shown of what this thread reads: others read beside it.
-pub fn hide_progress_of_thread() {
-    HIDDEN.set(true);
-}
 
 /// How far reading has come.
 pub struct Progress {
@@ -34,7 +25,7 @@ impl Progress {
         };
         // What cannot be read ends it too.
         let bar = bar.with_finish(ProgressFinish::AndClear);
-        if HIDDEN.get() || !std::io::stderr().is_terminal() {
+        if is_gathering() || !std::io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
         let style = "{bar:40} {percent}% of {total_bytes}, {eta} left";

@@ -36,8 +36,9 @@ impl Grid {
         jobs = lay(jobs, &machines, |job| &mut job.machine)?;
         if let Some(job) = jobs.iter().find(|job| job.machine.is_none()) {
             let message = format!("no machine is named for {}", job.file);
-            return Err(Diagnostic::error("machine", message)
-                .help("--machine names one for all jobs, `\"machine\"` in a list that of one job"));
+            return Err(Diagnostic::error("machine", message).help(
+                "--machine names one for all jobs, `\"machine\"` in a list that of one job",
+            ));
         }
         for (key, values) in &self.set {
             jobs = multiplied(jobs, values, |job, value| {

@@ -88,16 +88,18 @@ impl MachineTexts {
                 return Err(told.collect());
             }
         };
-        load(Source { name, text }, settings, &mut |parent| {
-            match parents.get(parent) {
+        load(
+            Source { name, text },
+            settings,
+            &mut |parent| match parents.get(parent) {
                 Some(Ok((name, text))) => Ok(Source {
                     name: name.clone(),
                     text: text.clone(),
                 }),
                 Some(Err(why)) => Err(why.clone()),
                 None => Err(format!("there is no machine {parent}")),
-            }
-        })
+            },
+        )
     }
 }
 

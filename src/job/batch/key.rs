@@ -44,8 +44,7 @@ pub fn key(
     add(study.options_text().as_bytes());
     for name in [&machine.control.dialect, &machine.accuracy.model] {
         let plugin = study.finder.find(name);
-        let plugin =
-            plugin.map_err(|fault| vec![plugin_finder::diagnostic(&fault, &[], None)])?;
+        let plugin = plugin.map_err(|fault| vec![plugin_finder::diagnostic(&fault, &[], None)])?;
         add(plugin.name().as_bytes());
         add(plugin.version().as_bytes());
         add(plugin.hash().unwrap_or("linked").as_bytes());

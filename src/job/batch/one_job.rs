@@ -74,6 +74,39 @@ pub fn run(
     })
 }
 
+/// A job with all that it reads.
+struct Prepared {
+    arguments: JobArguments,
+    machine: Machine,
+    cl: Arc<ClText>,
+    key: Option<String>,
+}
+
+impl Prepared {
+    fn new(study: &Study, job: &JobLine, inputs: &Inputs) -> Result<Self, Failure> {
+        let arguments = job
+            .arguments(&study.options.reading)
+            .map_err(|fault| Diagnostic::error("job", fault))?;
+        let cl = inputs.cl(&job.file)?;
+        let texts = inputs.machine(arguments.machine());
+        let machine = texts.load(&arguments.settings())?;
+        Ok(Self {
+            // Of a plugin that cannot be opened posting tells more.
+            key: key::key(study, job, &cl, &texts, &machine).ok(),
+            arguments,
+            machine,
+            cl,
+        })
+    }
+}
+
+/// What the journal knows of a job.
+pub fn known(study: &Study, job: &JobLine, inputs: &Inputs, journal: &Journal) -> Option<Outcome> {
+    // What is wrong with the job is found again when it is done.
+    let prepared = catch_unwind(AssertUnwindSafe(|| Prepared::new(study, job, inputs)));
+    journal.known(prepared.ok()?.ok()?.key.as_ref()?)
+}
+
 /// Does a job, or takes from the journal what came of it before.
 fn attempt(
     study: &Study,
@@ -82,14 +115,12 @@ fn attempt(
     journal: Option<&Journal>,
     stop: &Arc<AtomicBool>,
 ) -> Result<Did, Failure> {
-    let arguments = job
-        .arguments(&study.options.reading)
-        .map_err(|fault| Diagnostic::error("job", fault))?;
-    let cl = inputs.cl(&job.file)?;
-    let texts = inputs.machine(arguments.machine());
-    let machine = texts.load(&arguments.settings())?;
-    // Of a plugin that cannot be opened posting tells more.
-    let key = key::key(study, job, &cl, &texts, &machine).ok();
+    let Prepared {
+        arguments,
+        machine,
+        cl,
+        key,
+    } = Prepared::new(study, job, inputs)?;
     let known = journal
         .zip(key.as_ref())
         .and_then(|(journal, key)| journal.known(key));

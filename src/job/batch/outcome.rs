@@ -55,7 +55,8 @@ impl Outcome {
     pub fn number(&mut self, column: impl Into<String>, value: f64) {
         if value.is_finite() {
             // Adding zero turns -0 into 0.
-            self.values.insert(column.into(), Value::Number(value + 0.0));
+            self.values
+                .insert(column.into(), Value::Number(value + 0.0));
         }
     }
 
@@ -85,6 +86,16 @@ impl Outcome {
             }
         }
         outcome.warnings(findings);
+        outcome
+    }
+
+    /// Failed where nobody could say why.
+    pub fn lost(code: &str, message: &str) -> Self {
+        let mut outcome = Self::default();
+        outcome.text("state", FAILED);
+        outcome.text("codes", code);
+        outcome.text("message", message);
+        outcome.text("warnings", "");
         outcome
     }
 

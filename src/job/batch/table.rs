@@ -8,22 +8,29 @@ use crate::files::parquet;
 /// The results of a study, a row a job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
+    /// How many rows it has.
     pub rows: usize,
+    /// Its columns, in their order.
     pub columns: Vec<Column>,
 }
 
 /// One column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
+    /// Its name, which carries the unit.
     pub name: String,
+    /// A value for each row.
     pub values: Values,
 }
 
 /// The values of a column; none where a row has none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
+    /// In the unit of the column's name.
     Numbers(Vec<Option<f64>>),
+    /// How often, or a place.
     Counts(Vec<Option<i64>>),
+    /// Words and sentences.
     Texts(Vec<Option<String>>),
 }
 

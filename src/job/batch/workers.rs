@@ -15,7 +15,8 @@ use super::one_job::{self, Did};
 use super::outcome::Outcome;
 use super::study::Study;
 use crate::failure::Failure;
-use crate::terminal::hide_progress_of_thread;
+use crate::files::read_files;
+use crate::terminal;
 
 /// As much as the first thread of a process mostly has.
 const STACK: usize = 8 << 20;
@@ -64,8 +65,7 @@ pub fn run(
         for _ in 0..threads {
             let send = send.clone();
             let (next, stop) = (&next, &stop);
-            let work = move || {
-                hide_progress_of_thread();
+            let jobs = move || {
                 while !stop.load(Ordering::Relaxed) {
                     let place = next.fetch_add(1, Ordering::Relaxed);
                     let Some(number) = numbers.get(place) else {
@@ -80,10 +80,12 @@ pub fn run(
                     }
                 }
             };
+            // What a job would print beside its row is in the row; bars of several threads would cross each other.
+            let work = || read_files::apart(|| terminal::gathered(jobs));
             let thread = thread::Builder::new()
                 .name("batch".to_owned())
                 .stack_size(STACK);
-            if let Err(error) = thread.spawn_scoped(scope, work) {
+            if let Err(error) = thread.spawn_scoped(scope, move || drop(work())) {
                 let message = format!("no thread can be started: {error}");
                 fault = Some(Failure::from(
                     Diagnostic::error("batch", message).help("fewer --jobs"),

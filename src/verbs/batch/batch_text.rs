@@ -93,7 +93,9 @@ fn codes(table: &Table, state: &str) -> String {
     }
     counts.sort_by(|one, other| other.1.cmp(&one.1).then_with(|| one.0.cmp(&other.0)));
     let told = counts.iter().take(MOST_CODES);
-    let mut told: Vec<String> = told.map(|(code, count)| format!("{code} {count}")).collect();
+    let mut told: Vec<String> = told
+        .map(|(code, count)| format!("{code} {count}"))
+        .collect();
     if counts.len() > MOST_CODES {
         told.push("…".to_owned());
     }

@@ -54,10 +54,7 @@ impl Map {
             (SPAN[side] / count).clamp(CELL[side][0], CELL[side][1])
         });
         let size = [xs.len() as f64 * cell[0], ys.len() as f64 * cell[1]];
-        let pitch = [
-            (LEFT + size[0] + RIGHT).max(300.0),
-            TOP + size[1] + BELOW,
-        ];
+        let pitch = [(LEFT + size[0] + RIGHT).max(300.0), TOP + size[1] + BELOW];
         let across = panels.len().clamp(1, ACROSS);
         let down = panels.len().div_ceil(across).max(1);
         let mut svg = svg::open(pitch[0] * across as f64, 44.0 + pitch[1] * down as f64);
@@ -195,11 +192,14 @@ fn draw_cells(
                 let grey = libm::rint(GREYS[0] + share * (GREYS[1] - GREYS[0])) as u8;
                 let width = if value == least { 3.0 } else { 0.5 };
                 let inner = width / 2.0;
-                let (at, size) = (
-                    [x + inner, y + inner],
-                    [cell[0] - width, cell[1] - width],
+                let (at, size) = ([x + inner, y + inner], [cell[0] - width, cell[1] - width]);
+                rect(
+                    svg,
+                    at,
+                    size,
+                    &format!("#{grey:02x}{grey:02x}{grey:02x}"),
+                    width,
                 );
-                rect(svg, at, size, &format!("#{grey:02x}{grey:02x}{grey:02x}"), width);
                 if cell[0] >= TOLD && cell[1] >= 16.0 {
                     let middle = [x + cell[0] / 2.0, y + cell[1] / 2.0 + 4.5];
                     label(svg, middle, "middle", &short(value));

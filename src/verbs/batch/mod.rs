@@ -12,7 +12,9 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, FileFault, PathArg, Role, read_files};
-use crate::job::batch::{self, Grid, JobLine, Journal, Shard, Study, StudyArguments, Table, Written};
+use crate::job::batch::{
+    self, Grid, JobLine, Journal, Shard, Study, StudyArguments, Table, Written,
+};
 use crate::terminal::{self, JobsProgress};
 use map_picture::Map;
 
@@ -301,7 +303,11 @@ fn map(arguments: &BatchArguments, study: &Study) -> Result<Option<Map>, Failure
     };
     for name in [x, y, &arguments.value] {
         if study.columns.iter().all(|head| head.name != *name) {
-            let names: Vec<&str> = study.columns.iter().map(|head| head.name.as_str()).collect();
+            let names: Vec<&str> = study
+                .columns
+                .iter()
+                .map(|head| head.name.as_str())
+                .collect();
             let message = format!("there is no column {name} to draw");
             return Err(Diagnostic::error("map", message)
                 .help(post_machine::diagnostic::meant(

@@ -6,5 +6,6 @@ are float64, one row a point, axis values in the order of :attr:`Machine.axes`.
 
 from post.machine import Axis, Machine
 from post.refusal import Diagnostic, PostError
+from post.studies import Study, study
 
-__all__ = ["Axis", "Diagnostic", "Machine", "PostError"]
+__all__ = ["Axis", "Diagnostic", "Machine", "PostError", "Study", "study"]

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::files::svg::{self, label, line, upright};
-use crate::job::batch::{Table, Values};
+use crate::job::batch::{Table, Values, WRITTEN};
 use crate::terminal::number;
 
 /// Room for the numbers beside and below a map, px.
@@ -27,6 +27,8 @@ pub struct Map {
     pub x: String,
     pub y: String,
     pub value: String,
+    /// Large values are the good ones.
+    pub most: bool,
 }
 
 /// One cell: written with a value, or refused.
@@ -45,7 +47,7 @@ struct Panel {
 }
 
 impl Map {
-    /// The picture. Of several rows in one cell the least value is drawn.
+    /// The picture. Of several rows in one cell the best value is drawn.
     pub fn draw(&self, table: &Table) -> String {
         let (xs, ys) = (places(table, &self.x), places(table, &self.y));
         let panels = self.panels(table, [&xs, &ys]);
@@ -71,9 +73,14 @@ impl Map {
         let note = match values.is_empty() {
             true => "nothing was written".to_owned(),
             false => format!(
-                "from {} (light) to {} (dark); bold frame: least of all; cross: refused",
+                "from {} (light) to {} (dark); bold frame: {}; cross: refused",
                 short(least),
-                short(most)
+                short(most),
+                if self.most {
+                    "largest of all"
+                } else {
+                    "least of all"
+                }
             ),
         };
         label(&mut svg, [middle, 20.0], "middle", &self.value);
@@ -85,7 +92,9 @@ impl Map {
             ];
             let middle = corner[0] + size[0] / 2.0;
             label(&mut svg, [middle, corner[1] - 12.0], "middle", &panel.title);
-            draw_cells(&mut svg, panel, [corner, cell], xs.len(), [least, most]);
+            let best = if self.most { most } else { least };
+            let shades = [least, most, best];
+            draw_cells(&mut svg, panel, [corner, cell], xs.len(), shades);
             draw_axes(&mut svg, [corner, cell], [&xs, &ys]);
             label(
                 &mut svg,
@@ -131,7 +140,9 @@ impl Map {
             };
             let cell = &mut panels[place].cells[y * xs.len() + x];
             let value = table.column(&self.value).and_then(|all| all.number(row));
+            let value = value.filter(|_| text("state", row) == WRITTEN);
             *cell = match (*cell, value) {
+                (Cell::Value(known), Some(value)) if self.most => Cell::Value(known.max(value)),
                 (Cell::Value(known), Some(value)) => Cell::Value(known.min(value)),
                 (_, Some(value)) => Cell::Value(value),
                 (Cell::Value(known), None) => Cell::Value(known),
@@ -167,7 +178,7 @@ fn draw_cells(
     panel: &Panel,
     [corner, cell]: [[f64; 2]; 2],
     across: usize,
-    [least, most]: [f64; 2],
+    [least, most, best]: [f64; 3],
 ) {
     let rows = panel.cells.len() / across.max(1);
     for (index, value) in panel.cells.iter().enumerate() {
@@ -190,7 +201,7 @@ fn draw_cells(
                     false => 0.0,
                 };
                 let grey = libm::rint(GREYS[0] + share * (GREYS[1] - GREYS[0])) as u8;
-                let width = if value == least { 3.0 } else { 0.5 };
+                let width = if value == best { 3.0 } else { 0.5 };
                 let inner = width / 2.0;
                 let (at, size) = ([x + inner, y + inner], [cell[0] - width, cell[1] - width]);
                 rect(

@@ -122,6 +122,10 @@ pub struct BatchArguments {
     #[arg(long, value_name = "COLUMN", default_value = "cycle_time_s")]
     value: String,
 
+    /// Large values of it are the good ones.
+    #[arg(long, requires = "svg")]
+    most: bool,
+
     /// Says nothing but messages.
     #[arg(short, long)]
     quiet: bool,
@@ -322,5 +326,6 @@ fn map(arguments: &BatchArguments, study: &Study) -> Result<Option<Map>, Failure
         x: x.clone(),
         y: y.clone(),
         value: arguments.value.clone(),
+        most: arguments.most,
     }))
 }

@@ -11,6 +11,7 @@ use post_command::library::{Deviations, LoadedMachine, MachineTold, Solutions, W
 use pyo3::prelude::*;
 
 use crate::apart::apart;
+use crate::job::Job;
 
 /// A machine with its settings, a tool in it.
 #[pyclass(frozen, module = "post._native")]
@@ -146,6 +147,18 @@ impl Machine {
         let q = apart(py, || self.loaded.route(&wanted, cut))?;
         let count = self.loaded.kinematics().count();
         Ok(shaped(Array2::from_shape_vec((points, count), q))?.into_pyarray(py))
+    }
+
+    /// Posts a CL file.
+    fn post(
+        &self,
+        py: Python<'_>,
+        input: PathBuf,
+        options: Vec<(String, Option<String>)>,
+        keep_blocks: bool,
+    ) -> PyResult<Job> {
+        let made = apart(py, || self.loaded.post(&input, &options, keep_blocks))?;
+        Ok(Job { made })
     }
 
     /// How far the tool strays from the straight line between axis values, at shares of the way.

@@ -3,6 +3,7 @@
 //! A flag becomes what it means to the core as it is parsed, and is not turned into text again.
 
 pub mod flag_values;
+mod making;
 mod report;
 
 use std::path::PathBuf;
@@ -19,6 +20,7 @@ use flag_values::{
     spindle, word,
 };
 
+pub use making::MakingArguments;
 pub use report::ReportArguments;
 
 /// How a CL file is read.

@@ -9,6 +9,7 @@ mod cl_input;
 mod cl_source;
 mod file_fault;
 mod file_id;
+pub mod interruption;
 mod json_rows;
 mod naming;
 pub mod outcome;

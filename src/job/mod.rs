@@ -6,6 +6,7 @@ mod dry_run;
 mod look_ahead;
 pub mod machine_files;
 pub mod machine_schema;
+pub mod making;
 pub mod nc_program;
 pub mod nc_to_cl;
 pub mod one_program;
@@ -17,6 +18,7 @@ mod plugin_folders;
 pub mod predict;
 pub mod read_back;
 pub mod report;
+pub mod summary;
 pub mod unused_options;
 
 use std::path::Path;

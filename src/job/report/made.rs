@@ -1,5 +1,7 @@
 //! What became of a program that was made, as a page.
 
+use std::io::Read;
+
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_posting::report::{Deviation, Report};
@@ -34,7 +36,7 @@ impl Made<'_> {
     pub fn write(
         &self,
         (rows, series): (BlockRows<'_>, Option<PredictedLines>),
-        (source, program): (&mut ClSource, &mut AtomicFile),
+        (source, name, text): (&mut ClSource, &str, &mut dyn Read),
         most: u64,
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {
@@ -50,7 +52,7 @@ impl Made<'_> {
         meta.maxima = self.maxima();
         meta.facts = self.facts.clone();
         meta.axes_used = self.axes_used();
-        meta.warnings = super::warnings(self.findings, program.name());
+        meta.warnings = super::warnings(self.findings, name);
         meta.excludes = super::excludes();
         meta.tool_length = self.report.tools.first().map_or(0.0, |tool| tool.length_mm);
         if let Some(found) = self.prediction {
@@ -64,8 +66,7 @@ impl Made<'_> {
             series.finish(None, &mut parts)?;
         }
         rows.finish(&mut parts, &mut meta)?;
-        let name = program.name().to_owned();
-        parts.text("nc", &name, &mut program.reread()?)?;
+        parts.text("nc", name, text)?;
         let mut cl = source.open()?;
         parts.text("cl", &cl.name, &mut cl.bytes)?;
         parts.write(meta, most, page)

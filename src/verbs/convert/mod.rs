@@ -303,9 +303,10 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
             job: "convert",
             facts: summed,
         };
+        let (named, mut text) = (program.name().to_owned(), program.reread()?);
         made.write(
             (rows, None),
-            (&mut source, program),
+            (&mut source, &named, &mut text),
             arguments.report.most(),
             &mut page,
         )?;

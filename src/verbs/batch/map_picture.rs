@@ -14,7 +14,7 @@ const RIGHT: f64 = 24.0;
 /// Maps beside one another.
 const ACROSS: usize = 3;
 /// Least width of a cell with a number in it, px.
-const TOLD: f64 = 52.0;
+const TOLD: f64 = 44.0;
 /// A map is about this wide and high, px.
 const SPAN: [f64; 2] = [330.0, 230.0];
 /// Sizes of a cell, px.

@@ -5,6 +5,7 @@ mod apart;
 mod job;
 mod machine;
 mod refusal;
+mod study;
 
 use pyo3::prelude::*;
 
@@ -16,4 +17,6 @@ mod _native {
     use super::job::Job;
     #[pymodule_export]
     use super::machine::Machine;
+    #[pymodule_export]
+    use super::study::{Study, run_part};
 }

@@ -8,6 +8,7 @@ mod blocks;
 mod kinematics;
 mod loaded_machine;
 mod program;
+mod study;
 
 use post_machine::diagnostic::Diagnostic;
 
@@ -20,6 +21,7 @@ pub use blocks::{Blocks, KINDS, REASONS};
 pub use kinematics::{AxisFacts, Deviations, Kinematics, Solutions, Wanted};
 pub use loaded_machine::{LoadedMachine, MachineTold};
 pub use program::{Found, MadeProgram, OptionTold, ReportTold};
+pub use study::{Column, Progressed, StudyJobs, StudyPart, StudyTable, Values};
 
 /// Why a job was not done: findings, an error among them.
 pub type Refused = Vec<Diagnostic>;
@@ -54,4 +56,9 @@ fn usage(fault: &clap::Error) -> Diagnostic {
         Some(tip) => finding.help(tip),
         None => finding,
     }
+}
+
+/// An argument that cannot be used.
+fn option(message: String) -> Refused {
+    vec![Diagnostic::error("option", message)]
 }

@@ -14,7 +14,7 @@ use post_grammar::text::escaped;
 
 pub use findings::findings;
 pub use gathering::{gathered, is_gathering};
-pub use progress::{Progress, Watched};
+pub use progress::{JobsProgress, Progress, Watched};
 pub use quantity::{at_most, clock, number};
 pub use table::table;
 

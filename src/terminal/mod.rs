@@ -1,5 +1,6 @@
 //! What the user sees: results on standard output; questions, progress and messages on standard error.
 
+mod codes;
 mod findings;
 mod progress;
 mod quantity;
@@ -11,6 +12,7 @@ use std::sync::{Mutex, PoisonError};
 
 use post_grammar::text::escaped;
 
+pub use codes::{CODES, Code, CodeGroup};
 pub use findings::findings;
 pub use progress::{Progress, Watched};
 pub use quantity::{clock, number};

@@ -1,7 +1,7 @@
 //! `--report` and `post view`: what is packed comes back, letter for letter and number for number, by a decoder of the
 //! tests' own.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -96,6 +96,13 @@ impl Page {
         let tables = self.meta["tables"].as_array().unwrap();
         let table = tables.iter().find(|table| table["name"] == name);
         table.unwrap_or_else(|| panic!("no table {name}"))
+    }
+
+    /// The page derives a part of the column from others.
+    fn is_derived(&self, table: &str, wanted: &str) -> bool {
+        let columns = self.table(table)["columns"].as_array().unwrap();
+        let column = columns.iter().find(|column| column["name"] == wanted);
+        column.unwrap().get("from").is_some()
     }
 
     /// The values of a column as they are packed.
@@ -287,6 +294,10 @@ fn rows_are_the_blocks_of_the_program() {
         let axes = page.meta["machine"]["axes"].as_array().unwrap();
         for (axis, value) in axes.iter().zip(check["joints"].as_array().unwrap()) {
             let name = format!("q.{}", axis["name"].as_str().unwrap());
+            // Where the control keeps the tip, the linear axes are told against it.
+            if page.is_derived("blocks", &name) {
+                continue;
+            }
             let packed = page.column("blocks", &name)[row];
             assert!(
                 (packed - value.as_f64().unwrap()).abs() < 6e-5,
@@ -538,4 +549,118 @@ fn view_names_a_report_of_any_job() {
     let refused = viewed(&[&cl, "-m", "ac-trunnion", "--tool-length", "2000", "-q"]);
     assert_eq!(refused.code, 1);
     assert!(!refused.err.contains("report.html"), "{}", refused.err);
+}
+
+/// Names of the columns of a table.
+fn names(page: &Page, table: &str) -> BTreeSet<String> {
+    let columns = page.table(table)["columns"].as_array().unwrap().iter();
+    columns
+        .map(|column| column["name"].as_str().unwrap().to_owned())
+        .collect()
+}
+
+#[test]
+fn what_is_predicted_stands_beside_the_blocks() {
+    let (folder, page) = posted("blade.cls", "ac-trunnion", &["--predict", "s.json"]);
+    let made = Page::read(&page);
+    let cl = sample_file("blade.cls").display().to_string();
+    let job = [
+        "predict",
+        "part.nc",
+        "--against",
+        &cl,
+        "-q",
+        "-m",
+        "ac-trunnion",
+        "--tool-length",
+        "100",
+        "--report",
+        "p.html",
+    ];
+    let done = post_in(folder.path(), &job);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let alone = Page::read(&folder.path().join("p.html"));
+    let told = names(&made, "predicted");
+    assert!(told.contains("contour") && told.contains("v.C") && told.contains("a.X"));
+    assert!(told.is_subset(&names(&alone, "blocks")), "{told:?}");
+    let rows = |page: &Page, table: &str| page.table(table)["rows"].as_u64().unwrap();
+    assert_eq!(rows(&made, "predicted"), rows(&made, "blocks"));
+    let largest = |page: &Page, table: &str, name: &str| {
+        let values = page.column(table, name).into_iter();
+        values.fold(0.0, f64::max)
+    };
+    for name in &told {
+        if name.starts_with("t") {
+            continue;
+        }
+        // What is largest in one is so in the other: both have every line.
+        let [here, there] = [
+            largest(&made, "predicted", name),
+            largest(&alone, "blocks", name),
+        ];
+        assert!(
+            (here - there).abs() < 1e-9 && here > 0.0,
+            "{name}: {here} {there}"
+        );
+    }
+    let ends = made.column("predicted", "t1");
+    assert!(ends.is_sorted());
+    let summary = fs::read_to_string(folder.path().join("s.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    let cycle = summary["time"]["cycle_s"].as_f64().unwrap();
+    let last = *ends.last().unwrap();
+    assert!(
+        last <= cycle + 0.1 && last > 0.8 * cycle,
+        "{last} of {cycle}"
+    );
+}
+
+#[test]
+fn changes_of_the_solution_are_events() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = String::from(
+        "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,-40,80,0,-0.19866933,0.98006658\nFEDRAT/500,MMPM\n",
+    );
+    // Through the pole and on: the tool leans to the one side, and then to the other.
+    for step in -20..=20 {
+        let angle = 0.01 * f64::from(step);
+        let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
+        text.push_str(&format!("GOTO/0,{},30,0,{sine:.8},{cosine:.8}\n", 2 * step));
+    }
+    text.push_str("FINI\n");
+    fs::write(folder.path().join("pole.cls"), text).unwrap();
+    let job = [
+        "pole.cls",
+        "-m",
+        "ac-trunnion",
+        "--tool-length",
+        "100",
+        "-q",
+        "-o",
+        "pole.nc",
+        "--report",
+        "pole.html",
+    ];
+    let done = post_in(folder.path(), &job);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let page = Page::read(&folder.path().join("pole.html"));
+    let a = page.column("blocks", "q.A");
+    let sides = |row: usize| a[row].signum() * f64::from(u8::from(a[row] != 0.0));
+    let mut asked = Vec::new();
+    let mut side = 0.0;
+    for row in 0..a.len() {
+        if sides(row) != 0.0 && side != 0.0 && sides(row) != side {
+            asked.push(row as u64);
+        }
+        if sides(row) != 0.0 {
+            side = sides(row);
+        }
+    }
+    let events = page.meta["events"].as_array().unwrap().iter();
+    let told: Vec<u64> = events
+        .filter(|event| event["kind"] == "branch")
+        .map(|event| event["row"].as_u64().unwrap())
+        .collect();
+    assert!(!asked.is_empty(), "the pole is not passed: {a:?}");
+    assert_eq!(told, asked);
 }

@@ -83,9 +83,11 @@ P.views.foot = () => {
   const tell = () => {
     const { row, playing } = P.state;
     const word = (name) => (m.column(name) ? `${told[name]} ${P.quantity(m.column(name)[row], m.unit(name))}` : null);
+    const machine = P.chain.at(row);
+    const own = (name) => !machine || machine.axes.some((axis) => axis.name === name);
     const limit = m.column("limit") && m.meta.limits[m.column("limit")[row]];
-    const parts = [`Block ${row + 1}`, m.lineOf("nc", row) ? `NC ${m.lineOf("nc", row)}` : null, m.lineOf("cl", row) ? `CL ${m.lineOf("cl", row)}` : null, m.timed ? `${P.shown(m.end(row), "s")} s` : null,
-      ...m.axes.map((name) => `${name} ${P.shown(m.column("q." + name)[row], m.unit("q." + name), 3)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
+    const parts = [`Block ${row + 1}`, m.lineOf("nc", row) ? `NC ${m.lineOf("nc", row)}` : null, m.lineOf("cl", row) ? `CL ${m.lineOf("cl", row)}` : null, m.lineOf("nc2", row) ? `old NC ${m.lineOf("nc2", row)}` : null, m.timed ? `${P.shown(m.end(row), "s")} s` : null,
+      ...m.axes.filter(own).map((name) => `${name} ${P.shown(m.column("q." + name)[row], m.unit("q." + name), 3)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
     const event = (P.scene.marks || []).find((mark) => mark.row === row && !mark.quiet);
     if (event) parts.push(event.text);
     chosen.setAttribute("aria-live", playing ? "off" : "polite");
@@ -139,8 +141,11 @@ P.views.start = (report) => {
   for (const query of ["(prefers-color-scheme: dark)", "(forced-colors: active)"]) matchMedia(query).addEventListener("change", () => P.views.repaint());
   window.addEventListener("hashchange", () => P.follow());
   if (!P.follow()) {
-    const worst = ((report.meta.maxima || [])[0] || {}).row;
-    if (worst !== null && worst !== undefined && P.m.rows) P.select(worst);
+    const [worst] = report.meta.maxima;
+    if (worst && P.m.rows) {
+      if (worst.row !== null) P.select(worst.row);
+      else if (worst.nc) P.select_line("nc", worst.nc - 1);
+    }
   }
   document.documentElement.dataset.ready = String(Math.round(performance.now()));
 };

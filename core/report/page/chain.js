@@ -27,10 +27,7 @@ P.chain.unit = (v) => {
 P.chain.mount = ({ mount }) => mount.slice(0, 3).map((row) => row[3]);
 
 // The tip with all axes at zero for a tool of this length, mm, machine frame.
-P.chain.tip = (machine, length) => {
-  const axis = P.chain.unit(machine.tool_axis);
-  return machine.gauge.map((value, at) => value - axis[at] * (length || 0));
-};
+P.chain.tip = ({ gauge, tool_axis }, length) => gauge.map((value, at) => value - tool_axis[at] * (length || 0));
 
 // Tip and tool axis in the part frame, from axis positions as the control shows them, mm and degrees, in the chain's order.
 P.chain.forward = (machine, values, length) => {
@@ -87,14 +84,22 @@ P.chain.bodies = (machine, values, frame) => {
   return bodies.map((body) => P.chain.times(back, body));
 };
 
-// Axis values at a share of a block: the control moves all axes linearly between blocks.
+// The machine with the head that is in use in a block; null where no machine is known.
+P.chain.at = (row) => {
+  const { machine, heads, head_rows } = P.m.meta;
+  const [, head] = head_rows.findLast(([from]) => from <= row) || [0, 0];
+  return head ? heads[head - 1] : machine;
+};
+
+// Axis values at a share of a block: the control moves all axes linearly between blocks. Where a head was swapped they begin.
 P.chain.values = (row, share) => {
-  const { report, column } = P.m;
-  return report.meta.machine.axes.map(({ name }) => {
-    const values = column("q." + name);
+  const machine = P.chain.at(row);
+  const first = row === 0 || P.chain.at(row - 1) !== machine;
+  return machine.axes.map(({ name }) => {
+    const values = P.m.column("q." + name);
     if (!values) return 0;
     const to = values[row];
-    const from = row > 0 ? values[row - 1] : to;
+    const from = first ? to : values[row - 1];
     return from + (to - from) * share;
   });
 };

@@ -1,12 +1,18 @@
 // Charts over time or block, one lane a quantity: each column of pixels holds the least and the largest, so that no peak
 // is lost. Dragging chooses a part of the program, which the path shows alone.
 
-P.charts = { groups: [], from: 0, to: 1, left: 76, right: 10 };
+P.charts = { groups: [], from: 0, to: 1, left: 88, right: 10 };
 
 // What can be drawn with the columns at hand.
 P.charts.find = () => {
-  const { column, has, unit, axes, meta, tolerance, turn } = P.m;
+  const { column, has, unit, axes, meta, tolerance, turn, report } = P.m;
   const lane = (name, title, more) => (has(name) ? [{ title, unit: unit(name), get: (key) => column(key || name), ...more }] : []);
+  // What is predicted of every set-point, over its time.
+  const { series } = report.tables;
+  const timed = (name, title, more) => {
+    const values = (of) => series.columns.get(of).values;
+    return series ? [{ title, unit: series.columns.get(name).unit, get: () => values(name), times: () => values("t"), zero: true, ...more }] : [];
+  };
   // What the machine file allows an axis, in the unit of the column.
   const rate = (name, key, over) => {
     const found = meta.machine && meta.machine.axes.find((one) => one.name === name);
@@ -18,7 +24,7 @@ P.charts.find = () => {
     { title: "Positions", lanes: axes.map((name) => lane("q." + name, name)) },
     { title: "Velocities", lanes: axes.map((name) => lane("v." + name, name, { zero: true, limit: rate(name, "max_feed", 60) })) },
     { title: "Accelerations", lanes: axes.map((name) => lane("a." + name, name, { zero: true, limit: rate(name, "max_accel", 1) })) },
-    { title: "Contour error", lanes: lane("contour", "contour", { zero: true, limit: tolerance }) },
+    { title: "Prediction", lanes: [series ? timed("contour", "contour", { limit: tolerance }) : lane("contour", "contour", { zero: true, limit: tolerance }), timed("feed", "feed")] },
   ]
     .map(({ title, lanes }) => ({ title, lanes: lanes.flat() }))
     .filter(({ lanes }) => lanes.length);
@@ -64,6 +70,31 @@ P.charts.row_at = (x) => {
   return P.state.by === "time" ? P.m.rowAt(P.clamp(place, 0, P.m.total)) : P.clamp(Math.floor(place), 0, P.m.rows - 1);
 };
 
+// The place in the values of a lane under a pixel: a block, or the set-point of that time.
+P.charts.index = ({ times }, x) => {
+  const { left, from, to, whole, room, row_at } = P.charts;
+  if (!times) return row_at(x);
+  const { start, end, rows } = P.m;
+  let time = (from + ((x - left) / room()) * (to - from)) * whole();
+  if (P.state.by === "block") {
+    const row = P.clamp(Math.floor(time), 0, rows - 1);
+    time = start(row) + (end(row) - start(row)) * P.clamp(time - row, 0, 1);
+  }
+  return P.charts.sample(times(), time);
+};
+
+// The last set-point that is not after a time.
+P.charts.sample = (times, time) => {
+  let low = 0;
+  let high = times.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (times[middle] <= time) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+};
+
 // Ticks of an axis: round numbers, few.
 P.charts.ticks = (low, high, most) => {
   const raw = (high - low) / Math.max(most, 1);
@@ -83,11 +114,12 @@ P.charts.draw = () => {
   const { lanes } = groups[P.state.chart];
   // The first block of every column of pixels; the last entry ends the last column.
   const count = Math.max(1, Math.floor(charts.room()));
-  const rows = Int32Array.from({ length: count + 1 }, (_, x) => charts.row_at(left + x));
+  const under = (lane) => Int32Array.from({ length: count + 1 }, (_, x) => charts.index(lane, left + x));
+  const rows = under({});
   const room = (height - 28) / lanes.length;
   charts.places = lanes.map((lane, at) => ({ lane, top: 9 + at * room, bottom: (at + 1) * room - 1 }));
   charts.along(paint);
-  for (const place of charts.places) P.lane.draw(paint, place, rows);
+  for (const place of charts.places) P.lane.draw(paint, place, place.lane.times ? under(place.lane) : rows);
   charts.cursor();
 };
 
@@ -126,7 +158,9 @@ P.charts.cursor = () => {
   P.stroke(paint, colour.select.css, 1.5, [x, 0, x, floor]);
   for (const { lane, top } of places || []) {
     const limit = lane.bands && m.meta.limits[lane.get(lane.bands)[state.row]];
-    const text = P.quantity(lane.get()[state.row], lane.unit) + (limit ? ` by ${limit}` : "");
+    const { start, end } = m;
+    const at = lane.times ? P.charts.sample(lane.times(), start(state.row) + (end(state.row) - start(state.row)) * state.share) : state.row;
+    const text = P.quantity(lane.get()[at], lane.unit) + (limit ? ` by ${limit}` : "");
     const wide = paint.measureText(text).width + 8;
     const to = x + wide + 8 > width - right ? x - wide - 5 : x + 5;
     paint.globalAlpha = 0.88;
@@ -172,11 +206,12 @@ P.charts.handle = () => {
 
 // Of the blocks under a pixel the one that stands out in the first lane.
 P.charts.click = (x) => {
-  const { places, row_at } = P.charts;
-  const values = places[0].lane.get();
-  let best = row_at(x + 0.5);
-  for (let row = row_at(x - 0.5), last = best; row <= last; row++) if (Math.abs(values[row]) > Math.abs(values[best])) best = row;
-  P.select(best);
+  const { places, index } = P.charts;
+  const { lane } = places[0];
+  const values = lane.get();
+  let best = index(lane, x + 0.5);
+  for (let at = index(lane, x - 0.5), last = best; at <= last; at++) if (Math.abs(values[at]) > Math.abs(values[best])) best = at;
+  P.select(lane.times ? P.m.rowAt(lane.times()[best]) : best);
 };
 
 P.charts.range = (from, size) => {

@@ -73,67 +73,117 @@ P.integers = (bytes, at, rows, out, start) => {
 P.behind = (bytes, at, rows) => at + (bytes[at] & 16 ? 14 : 2) + bytes[at + 1] * rows;
 
 // The tip (mm, part frame) and the tool axis by the chain, from axis values as the control shows them: one product from the
-// workpiece to the tool, as core/machine has it.
-P.poser = (machine) => {
-  const axes = machine.axes.map((axis) => ({ ...axis, turns: axis.kind === "rotary", unit: axis.kind === "rotary" ? Math.PI / 180 : 1 }));
-  const [mx, my, mz] = [machine.mount[0][3], machine.mount[1][3], machine.mount[2][3]];
-  // Into `pose`: x, y, z, i, j, k.
-  return (value, length, pose) => {
-    let [i, j, k] = machine.tool_axis;
-    let [x, y, z] = [machine.gauge[0] - i * length, machine.gauge[1] - j * length, machine.gauge[2] - k * length];
-    for (let place = axes.length - 1; place >= 0; place -= 1) {
-      const axis = axes[place];
-      const [a, b, c] = axis.direction;
-      const q = (value(place) - axis.zero) * axis.unit;
-      if (!axis.turns) {
-        x += a * q;
-        y += b * q;
-        z += c * q;
+// workpiece to the tool, as core/machine has it. Into `pose`: x, y, z, i, j, k. With `slides` the linear axes stand at zero,
+// and their ways follow behind, the last axis first.
+P.poser = ({ axes, mount, gauge, tool_axis }) => {
+  const all = new Float64Array(6 + axes.length * 3);
+  return (value, length, pose, slides) => {
+    let end = 6;
+    for (let at = 0; at < 3; at++) {
+      all[at] = gauge[at] - tool_axis[at] * length;
+      all[at + 3] = tool_axis[at];
+    }
+    for (let place = axes.length - 1; place >= 0; place--) {
+      const { kind, direction, point, zero } = axes[place];
+      const [a, b, c] = direction;
+      if (kind !== "rotary") {
+        const q = slides ? 0 : value(place) - zero;
+        for (let at = 0; at < 3; at++) {
+          all[at] += direction[at] * q;
+          if (slides) all[end++] = direction[at];
+        }
         continue;
       }
+      const q = ((value(place) - zero) * Math.PI) / 180;
       const sine = Math.sin(q);
       const cosine = Math.cos(q);
-      const [px, py, pz] = axis.point;
-      const turn = (u, v, w) => {
+      for (let at = 0; at < 3; at++) all[at] -= point[at];
+      for (let at = 0; at < end; at += 3) {
+        const u = all[at];
+        const v = all[at + 1];
+        const w = all[at + 2];
         const along = (a * u + b * v + c * w) * (1 - cosine);
-        return [
-          u * cosine + (b * w - c * v) * sine + a * along,
-          v * cosine + (c * u - a * w) * sine + b * along,
-          w * cosine + (a * v - b * u) * sine + c * along,
-        ];
-      };
-      [x, y, z] = turn(x - px, y - py, z - pz);
-      x += px;
-      y += py;
-      z += pz;
-      [i, j, k] = turn(i, j, k);
+        all[at] = u * cosine + (b * w - c * v) * sine + a * along;
+        all[at + 1] = v * cosine + (c * u - a * w) * sine + b * along;
+        all[at + 2] = w * cosine + (a * v - b * u) * sine + c * along;
+      }
+      for (let at = 0; at < 3; at++) all[at] += point[at];
     }
-    pose[0] = x - mx;
-    pose[1] = y - my;
-    pose[2] = z - mz;
-    pose[3] = i;
-    pose[4] = j;
-    pose[5] = k;
+    for (let at = 0; at < end; at++) pose[at] = all[at] - (at < 3 ? mount[at][3] : 0);
   };
 };
 
 // Columns that are told against what follows from others, so that only what is left of them is packed: the sum is what Rust
 // has told, to its last decimal.
 P.derive = {
-  // Tip and tool axis, told against the chain.
-  chain: (report, columns) => {
-    const machine = report.meta.machine;
-    const axes = machine.axes.map((axis) => columns.get(`q.${axis.name}`).values);
-    const lengths = columns.get("tool_length").values;
+  // Tip and tool axis, told against the chain; or the tool axis alone, which the rotary axes turn.
+  chain: ({ meta }, columns) => {
+    const { machine } = meta;
+    const bare = columns.get("tip.x").from !== "chain";
     const names = ["tip.x", "tip.y", "tip.z", "axis.i", "axis.j", "axis.k"];
-    const values = names.map((name) => columns.get(name).packed());
-    const pose = new Float64Array(6);
+    const axes = machine.axes.map(({ name, kind }) => (bare && kind !== "rotary" ? null : columns.get(`q.${name}`).values));
+    const lengths = columns.get("tool_length").values;
+    const values = names.map((name, at) => (bare && at < 3 ? null : columns.get(name).packed()));
+    const pose = new Float64Array(6 + machine.axes.length * 3);
     const into = P.poser(machine);
-    for (let row = 0; row < lengths.length; row += 1) {
-      into((place) => axes[place][row], lengths[row], pose);
-      for (let name = 0; name < 6; name += 1) values[name][row] += pose[name];
+    let row = 0;
+    const value = (place) => axes[place][row];
+    for (; row < lengths.length; row++) {
+      into(value, lengths[row], pose, bare);
+      for (let name = bare ? 3 : 0; name < 6; name++) values[name][row] += pose[name];
     }
-    names.forEach((name, place) => { columns.get(name).unpacked = values[place]; });
+    values.forEach((told, at) => told && (columns.get(names[at]).unpacked = told));
+  },
+  // The linear axes, told against those that bring the tip where it is, the rotary axes being as they are.
+  tips: ({ meta }, columns) => {
+    const { machine } = meta;
+    const axes = machine.axes.map(({ name, kind }) => (kind === "rotary" ? columns.get(`q.${name}`).values : null));
+    const slides = machine.axes.filter(({ kind }) => kind !== "rotary").reverse();
+    const told = slides.map(({ name }) => columns.get(`q.${name}`).packed());
+    const lengths = columns.get("tool_length").values;
+    const [x, y, z] = ["tip.x", "tip.y", "tip.z"].map((name) => columns.get(name).values);
+    const m = new Float64Array(15);
+    const far = new Float64Array(3);
+    const into = P.poser(machine);
+    let row = 0;
+    const value = (place) => axes[place][row];
+    // The volume of three of the vectors in m; one of them may be the way that is left.
+    const volume = (a, p, b, q, c, r) => a[p] * (b[q + 1] * c[r + 2] - b[q + 2] * c[r + 1]) + a[p + 1] * (b[q + 2] * c[r] - b[q] * c[r + 2]) + a[p + 2] * (b[q] * c[r + 1] - b[q + 1] * c[r]);
+    for (; row < lengths.length; row++) {
+      into(value, lengths[row], m, true);
+      far[0] = x[row] - m[0];
+      far[1] = y[row] - m[1];
+      far[2] = z[row] - m[2];
+      const whole = volume(m, 6, m, 9, m, 12);
+      if (Math.abs(whole) < 1e-3) continue;
+      told[0][row] += volume(far, 0, m, 9, m, 12) / whole + slides[0].zero;
+      told[1][row] += volume(m, 6, far, 0, m, 12) / whole + slides[1].zero;
+      told[2][row] += volume(m, 6, m, 9, far, 0) / whole + slides[2].zero;
+    }
+    slides.forEach(({ name }, at) => { columns.get(`q.${name}`).unpacked = told[at]; });
+  },
+  // Points of the CL path, told against the tip of the last of the next blocks that come from the same line.
+  blocks: (report, columns) => {
+    const { rows, columns: of } = report.tables.blocks;
+    const lines = columns.get("line").values;
+    const from = of.get("cl").values;
+    const names = ["x", "y", "z"];
+    const tips = names.map((name) => of.get(`tip.${name}`).values);
+    const values = names.map((name) => columns.get(name).packed());
+    let block = 0;
+    for (let point = 0; rows && point < lines.length; point++) {
+      const line = lines[point];
+      if (point === 0 || line !== lines[point - 1]) {
+        let found = block;
+        while (found < rows && found < block + 64 && from[found] !== line) found++;
+        if (from[found] === line && found < block + 64) {
+          while (found + 1 < rows && from[found + 1] === line) found++;
+          block = found;
+        }
+      }
+      for (let at = 0; at < 3; at++) values[at][point] += tips[at][block];
+    }
+    names.forEach((name, at) => { columns.get(name).unpacked = values[at]; });
   },
   // The beginning of a block, told against the end of the one before.
   t1: (report, columns) => {
@@ -141,6 +191,17 @@ P.derive = {
     const values = columns.get("t0").packed();
     for (let row = 1; row < values.length; row += 1) values[row] += ends[row - 1];
     columns.get("t0").unpacked = values;
+  },
+  // The end of a block, told against that of the one before and what a straight way takes at the feed.
+  way: (report, columns) => {
+    const [x, y, z, feed] = ["tip.x", "tip.y", "tip.z", "feed"].map((name) => columns.get(name).values);
+    const values = columns.get("t1").packed();
+    for (let row = 0; row < values.length; row++) {
+      const from = row ? row - 1 : 0;
+      const way = row ? Math.sqrt((x[row] - x[from]) ** 2 + (y[row] - y[from]) ** 2 + (z[row] - z[from]) ** 2) : Math.hypot(x[0], y[0], z[0]);
+      values[row] += (row ? values[row - 1] : 0) + (feed[row] > 0 ? (60 * way) / feed[row] : 0);
+    }
+    columns.get("t1").unpacked = values;
   },
   // Places of a block, told against even steps from tip to tip.
   tip: (report, columns) => {
@@ -240,15 +301,29 @@ P.Reader = class {
   }
 };
 
-// A number as its column writes it: `digits` over ten to the power of `most`, with `wanted` decimals; -1: without zeros at
-// its end.
-P.number = (digits, most, wanted) => {
-  const all = Math.abs(digits).toFixed(0).padStart(most + 1, "0");
-  const whole = all.slice(0, all.length - most);
-  let behind = all.slice(all.length - most);
-  if (wanted < 0) behind = behind.replace(/0+$/, "");
-  else behind = behind.slice(0, wanted);
-  return (digits < 0 ? "-" : "") + whole + (behind ? "." + behind : "");
+// Writes a number as its column does into `out` from `at`: `digits` over ten to the power of `most`, with `wanted`
+// decimals; below 0: without zeros at its end. Answers where it ends.
+P.number = (out, at, digits, most, wanted) => {
+  let rest = Math.abs(digits);
+  let end = at;
+  if (digits < 0) out[end++] = 45;
+  let count = 1;
+  for (let power = 10; power <= rest; power *= 10) count++;
+  const whole = Math.max(count - most, 1);
+  const last = end + whole + (most ? most : -1);
+  for (let place = last; place >= end; place--) {
+    if (most && place === end + whole) {
+      out[place] = 46;
+      continue;
+    }
+    const tenth = Math.floor(rest / 10);
+    out[place] = 48 + rest - tenth * 10;
+    rest = tenth;
+  }
+  if (!most) return last + 1;
+  let kept = wanted;
+  if (wanted < 0) for (kept = most; kept && out[end + whole + kept] === 48;) kept--;
+  return end + whole + (kept ? kept + 1 : 0);
 };
 
 // The bytes of a chunk of lines that was packed as templates, which core/report/src/template.rs explains.
@@ -292,19 +367,15 @@ P.ofTemplates = (bytes, start, lines) => {
   for (const place of order) {
     const { pieces, places } = templates[place];
     for (let i = 0; i < pieces.length; i += 1) {
-      room(pieces[i].length + 32);
-      out.set(pieces[i], at);
-      at += pieces[i].length;
+      const piece = pieces[i];
+      room(piece.length + 40);
+      for (let letter = 0; letter < piece.length; letter++) out[at++] = piece[letter];
       if (i === places.length) continue;
       const column = columns[places[i]];
       const { form, digits, each, row } = column;
       column.row += 1;
       const most = form % 32;
-      const text = P.number(digits[row], most, each ? each[row] : form >= 32 ? -1 : most);
-      for (let letter = 0; letter < text.length; letter += 1) {
-        out[at] = text.charCodeAt(letter);
-        at += 1;
-      }
+      at = P.number(out, at, digits[row], most, each ? each[row] : form >= 32 ? -1 : most);
     }
   }
   return out.subarray(0, at);
@@ -381,6 +452,9 @@ P.load = async () => {
   const report = { meta, tables: {}, texts: {} };
   for (const table of meta.tables) report.tables[table.name] = P.table(table, chunks.get(table.name) || [], report);
   for (const text of meta.texts) report.texts[text.name] = new P.Text(text, chunks.get(`text.${text.name}`) || []);
+  // What is predicted of the blocks stands beside them, and for their times.
+  const { blocks, predicted } = report.tables;
+  if (predicted) for (const [name, column] of predicted.columns) blocks.columns.set(name, column);
   P.check(report);
   return report;
 };

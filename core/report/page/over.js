@@ -71,7 +71,7 @@ P.over.text = (paint, text, x, y, css) => {
 // Where the tip stands, part frame, mm, and the tool axis.
 P.over.tip_at = () => {
   const { state, scene, m } = P;
-  const { machine } = m.meta;
+  const machine = P.chain.at(state.row);
   if (machine && m.axes.length) return P.chain.forward(machine, P.chain.values(state.row, state.share), P.chain.length(state.row));
   const point = scene.points_of(state.row)[1] * 3;
   return { tip: [0, 1, 2].map((at) => scene.path.pos[point + at] + scene.centre[at]), axis: null };

@@ -64,9 +64,8 @@ P.shapes = (made) => {
 
 P.parts = {};
 
-P.parts.build = () => {
+P.parts.build = (machine) => {
   const { meta } = P.m;
-  const { machine } = meta;
   const made = { faces: [], edges: [], boxes: [], labels: [] };
   const { across, round, box, bar } = P.shapes(made);
   const { add, dot, times } = P.vec;
@@ -183,7 +182,7 @@ P.parts.build = () => {
   travel(machine.axes.slice(bed), tip, 1);
   travel(machine.axes.slice(0, bed), mount, -1);
   for (const name of ["faces", "edges", "boxes"]) made[name] = new Float32Array(made[name]);
-  P.parts.made = { ...made, size };
+  P.parts.made = { ...made, size, machine };
 };
 
 // Points that the machine takes up, for fitting the view: scene coordinates under the bodies given.

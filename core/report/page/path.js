@@ -30,7 +30,7 @@ P.path.build = (view) => {
     return;
   }
   if (machine) bar.append(toggle("Machine", "Show the machine (m)", "machine", true, false), toggle("Bed", "Machine frame: the bed stands still, the part moves (f)", "frame", "machine", "part"));
-  if (machine) P.parts.build();
+  if (machine) P.parts.build(P.chain.at(P.state.row));
   P.path.start();
   view.append(P.play.build());
   P.path.handle();
@@ -151,14 +151,14 @@ P.path.fit = () => {
 
 // The bodies of the machine at the place that is selected; null where no machine is known.
 P.path.bodies = () => {
-  const { machine } = P.m.meta;
+  const machine = P.chain.at(P.state.row);
   if (!machine) return null;
   return P.chain.bodies(machine, P.chain.values(P.state.row, P.state.share), P.state.frame);
 };
 
 // From the middle of the path to the scene.
 P.path.carry = (bodies) => {
-  const { machine } = P.m.meta;
+  const machine = P.chain.at(P.state.row);
   const shift = P.chain.still();
   const mount = machine ? P.chain.mount(machine) : [0, 0, 0];
   for (let at = 0; at < 3; at++) shift[12 + at] = mount[at] + P.scene.centre[at];
@@ -185,6 +185,11 @@ P.path.redraw = (moving) => {
 P.path.draw = (moving) => {
   cancelAnimationFrame(P.path.waiting);
   P.path.waiting = null;
+  const machine = P.chain.at(P.state.row);
+  if (machine && P.parts.made.machine !== machine) {
+    P.parts.build(machine);
+    P.path.renderer.mesh();
+  }
   const given = P.path.matrices();
   const shown = P.state.machine ? given.bodies : null;
   P.path.drawn = { ...P.path.renderer.draw({ ...given, bodies: shown, moving }), moving: Boolean(moving) };
@@ -265,7 +270,7 @@ P.path.tell = () => {
   }
   const { vectors, path } = scene;
   const notes = [];
-  if (scene.cl) notes.push("thin: CL path");
+  if (scene.cl) notes.push(m.meta.names.nc2 ? "thin: old program" : "thin: CL path");
   if (has((point) => path.look[point * 4 + 1] === scene.RAPID, path.count)) notes.push("dashed: rapid");
   if (vectors && state.scale) notes.push(`vectors × ${state.scale.toLocaleString("en")}${vectors.step > 1 ? `, the largest of every ${vectors.step} points` : ""}`);
   P.path.legend.replaceChildren(...told, el("div", { class: "quiet" }, notes.join(" · ")));

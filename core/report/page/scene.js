@@ -44,7 +44,8 @@ P.scene.build = () => {
   const points = report.tables.cl;
   const [line, cx, cy, cz, rapid] = given(points, ["line", "x", "y", "z", "rapid"]);
   if (cx && cy && cz) {
-    const start = (point) => (line ? P.m.rowOf("cl", line[point]) : point);
+    const from = P.m.has("nc2") ? "nc2" : "cl";
+    const start = (point) => (line ? P.m.rowOf(from, line[point]) : point);
     scene.cl = P.scene.line(points.rows, cx, cy, cz, start, (_, point) => (rapid && rapid[point] ? scene.RAPID : scene.CUT));
     scene.cl.look.forEach((_, at) => at % 4 === 0 && (scene.cl.look[at] = -1));
   }

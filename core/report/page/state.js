@@ -168,7 +168,7 @@ P.follow = () => {
 
 // Selects a line of a text, from 0, and the block that belongs to it.
 P.select_line = (name, line) => {
-  const row = P.m.rowOf(name === "nc2" ? "nc" : name, line + 1);
+  const row = P.m.rowOf(name, line + 1);
   const own = row >= 0 && P.m.lineOf(name, row) === line + 1;
   if (row >= 0) P.select(row, own ? null : { text: name, line });
   else {

@@ -23,6 +23,6 @@ P.numbers.build = (view) => {
   P.steps(box, (step) => P.select(P.state.row + step));
   view.append(el("div", { class: "bar" }, el("h2", { id: "table-title" }, "Table"), P.lower("charts"), P.lower("spread")), box);
   // Out of sight nothing is shown: the columns are not even unpacked.
-  P.numbers.follow = () => box.clientHeight > 0 && list.show(P.state.row);
+  P.numbers.follow = () => !view.classList.contains("away") && list.show(P.state.row);
   P.listen("row", P.numbers.follow);
 };

@@ -9,7 +9,7 @@ P.texts.build = () => {
   P.by("views").dataset.texts = String((texts.nc ? 1 : 0) + (second ? 1 : 0));
   if (texts.nc) P.texts.pane(P.by("nc"), "nc", "NC program", names.nc);
   else P.by("nc").hidden = true;
-  if (second) P.texts.pane(P.by("cl"), second, second === "cl" ? "CL file" : "Other NC program", names[second]);
+  if (second) P.texts.pane(P.by("cl"), second, second === "cl" ? "CL file" : "Old NC program", names[second]);
   else P.by("cl").hidden = true;
   if (!texts.nc && second) P.by("cl").style.gridArea = "nc";
 };

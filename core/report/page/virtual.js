@@ -17,7 +17,9 @@ P.virtual = (box, { count, height, make, top = 0 }) => {
   page.style.height = `${Math.min(full, LIMIT) + top}px`;
   box.append(page);
   const list = { first: 0, page };
-  const room = () => Math.max(box.clientHeight - top, height);
+  // Its height is told when it changes: asking for it would lay the page out anew.
+  let tall = box.clientHeight;
+  const room = () => Math.max(tall - top, height);
   const scaled = full > LIMIT;
   // From where the bar stands to the place of the first line, and back.
   const ratio = () => (scaled ? (full - room()) / (LIMIT - room()) : 1);
@@ -51,6 +53,9 @@ P.virtual = (box, { count, height, make, top = 0 }) => {
     list.draw();
   };
   box.addEventListener("scroll", later);
-  new ResizeObserver(later).observe(box);
+  new ResizeObserver(() => {
+    tall = box.clientHeight;
+    later();
+  }).observe(box);
   return list;
 };

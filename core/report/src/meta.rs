@@ -40,6 +40,10 @@ pub struct Meta {
     pub tolerances: Tolerances,
     /// The chain, to draw and to move.
     pub machine: Option<MachineMeta>,
+    /// The chains of the heads that are swapped.
+    pub heads: Vec<MachineMeta>,
+    /// Row of the table of blocks from which another head is in use, and its number in [`Meta::heads`] from 1; 0: none.
+    pub head_rows: Vec<[u64; 2]>,
     /// From the gauge point to the tip, mm; of several tools the first.
     pub tool_length: f64,
     /// Poses with all their digits.
@@ -235,8 +239,10 @@ pub struct ColumnMeta {
     pub unit: &'static str,
     /// Decimals: a value is an integer over a power of ten.
     pub decimals: u8,
-    /// What it is told against: `chain`, where tip and tool axis are by the axis values of the row; `t1`, that of the row
-    /// before; `tip`, evenly between the tips of the block. None: it is told as it is.
+    /// What it is told against: `chain`, where tip and tool axis are by the axis values of the row; `tips`, where the
+    /// linear axes are by its tip and its rotary axes; `t1`, that of the row before; `way`, that of the row before and what a straight
+    /// way takes at the feed; `tip`, evenly between the tips of the
+    /// block; `blocks`, the tip of the block that comes from the same line. None: it is told as it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<&'static str>,
 }

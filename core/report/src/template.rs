@@ -59,15 +59,20 @@ pub fn encode(text: &[u8]) -> Option<Vec<u8>> {
     let mut templates: Vec<(Vec<u8>, Vec<u32>)> = Vec::new();
     let mut addresses: BTreeMap<Vec<u8>, usize> = BTreeMap::new();
     let mut columns: Vec<Column> = Vec::new();
-    let mut lines = Vec::with_capacity(count);
+    let mut lines: Vec<i64> = Vec::with_capacity(count);
     let mut template = Vec::new();
     let mut numbers = Vec::new();
     for line in text.split_inclusive(|byte| *byte == b'\n') {
         template.clear();
         numbers.clear();
         take_apart(line, &mut template, &mut numbers);
-        let place = match places.get(&template) {
-            Some(place) => *place,
+        // Lines of one kind mostly come together.
+        let known = match lines.last() {
+            Some(last) if templates[*last as usize].0 == template => Some(*last as usize),
+            _ => places.get(&template).copied(),
+        };
+        let place = match known {
+            Some(place) => place,
             None => {
                 if templates.len() >= most {
                     return None;

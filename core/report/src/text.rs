@@ -6,8 +6,8 @@ use crate::deflate::Deflate;
 use crate::meta::TextMeta;
 use crate::{part, template};
 
-/// Lines of a chunk.
-const CHUNK: u64 = 1 << 14;
+/// Lines of a chunk: few enough that the page shows a far one at once.
+const CHUNK: u64 = 1 << 12;
 
 /// Bytes of a chunk, whatever its lines.
 const MOST: usize = 1 << 20;

@@ -1,6 +1,7 @@
 //! The blocks of a program that is posted, row by row.
 
 use std::collections::VecDeque;
+use std::io::{self, BufReader, Read, Write as _};
 
 use post_machine::description::Machine;
 use post_posting::program::{Command, HoleMark, Pace};
@@ -12,8 +13,11 @@ use nalgebra::Vector3;
 use post_machine::description::Tcp;
 use post_machine::kinematics::{Chain, Joints};
 
+use super::axes;
+use super::branch::{self, Branch};
+use super::cl_points::Points;
 use super::cl_window::ClWindow;
-use super::derived::{DECIMALS, Derived};
+use super::derived::{Derived, Left};
 use super::parts::{Parts, fault};
 use super::path_rows::PathRows;
 use crate::failure::Failure;
@@ -48,8 +52,9 @@ pub struct BlockRows<'m> {
     came: u64,
     /// The time, s.
     time: f64,
-    /// End of the last block, s.
+    /// End of the last block, s, and its tip, as the page will have them.
     end: f64,
+    tip: Vector3<f64>,
     hole: bool,
     reason: Reason,
     /// Decimals of deviations, and ten to that power.
@@ -64,23 +69,17 @@ pub struct BlockRows<'m> {
     path: PathRows,
     cl: ClWindow,
     derived: Derived<'m>,
+    branch: Branch,
+    /// Rows from which another head is in use, with its number from 1; 0: none.
+    heads: Vec<[u64; 2]>,
+    /// Where the blocks end, for the path of the CL file.
+    ends: Points,
+    /// Lines of the program of the rows, for who predicts it: 32 bits each.
+    lines: Option<Scratch>,
     /// The chain of the head in use, its tool without a length.
     chain: Option<Chain>,
     /// Where the last block ended: its line, its axis values and its tip.
     last: Option<(u64, Joints, Vector3<f64>)>,
-}
-
-/// The columns of tip and tool axis.
-pub fn pose_columns(derived: bool) -> Vec<Column> {
-    let tip = ["x", "y", "z"].map(|name| Column::new(format!("tip.{name}"), "mm", 4));
-    let axis = ["i", "j", "k"].map(|name| Column::new(format!("axis.{name}"), "", 6));
-    let columns = tip.into_iter().chain(axis);
-    columns
-        .map(|column| match derived {
-            true => column.from("chain"),
-            false => column,
-        })
-        .collect()
 }
 
 /// A number as it is packed with four decimals.
@@ -116,21 +115,12 @@ fn up(value: f64, scale: f64) -> f64 {
 }
 
 impl<'m> BlockRows<'m> {
-    /// For blocks of a machine.
+    /// For blocks of a machine, of which something is predicted later on or not.
     ///
     /// # Errors
     /// There is no place for them.
-    pub fn new(machine: &'m Machine, cl: ClWindow) -> Result<Self, Failure> {
-        let mut axes: Vec<(String, bool)> = Vec::new();
-        let heads = machine.heads.iter().map(|head| &head.machine);
-        for axis in std::iter::once(machine)
-            .chain(heads)
-            .flat_map(|machine| &machine.axes)
-        {
-            if axes.iter().all(|(name, _)| *name != axis.name) {
-                axes.push((axis.name.clone(), axis.joint.rotary));
-            }
-        }
+    pub fn new(machine: &'m Machine, cl: ClWindow, predicted: bool) -> Result<Self, Failure> {
+        let axes = axes::of_all_heads(machine);
         let accuracy = &machine.accuracy;
         let [tip, turn] = [
             decimals(accuracy.tolerance),
@@ -140,19 +130,12 @@ impl<'m> BlockRows<'m> {
             Column::new("nc", "", 0),
             Column::new("cl", "", 0),
             Column::new("t0", "s", 4).from("t1"),
-            Column::new("t1", "s", 4),
+            Column::new("t1", "s", 4).from("way"),
             Column::new("kind", "", 0),
             Column::new("reason", "", 0),
         ];
-        for (name, rotary) in &axes {
-            let (unit, decimals) = match rotary {
-                true => ("deg", DECIMALS[1]),
-                false => ("mm", DECIMALS[0]),
-            };
-            columns.push(Column::new(format!("q.{name}"), unit, decimals));
-        }
         let derived = Derived::new(machine);
-        columns.extend(pose_columns(derived.is_known()));
+        columns.extend(derived.columns(&axes));
         columns.extend([
             Column::new("deviation", "mm", tip),
             Column::new("axis_deviation", "deg", turn),
@@ -172,6 +155,7 @@ impl<'m> BlockRows<'m> {
             came: 0,
             time: 0.0,
             end: 0.0,
+            tip: Vector3::zeros(),
             hole: false,
             reason: Reason::Point,
             scale: power(tip),
@@ -183,10 +167,37 @@ impl<'m> BlockRows<'m> {
             fault: None,
             path: PathRows::new(machine)?,
             derived,
+            branch: Branch::new(machine),
+            heads: Vec::new(),
+            ends: Points::new()?,
+            lines: match predicted {
+                true => Some(Parts::scratch()?),
+                false => None,
+            },
             cl,
             chain: chain(machine),
             last: None,
         })
+    }
+
+    /// All blocks have come: the lines of the program of all rows, if something is predicted of them.
+    ///
+    /// # Errors
+    /// They could not be kept.
+    pub fn lines(&mut self) -> Result<Option<Box<dyn Read>>, Failure> {
+        self.settle();
+        let Some(lines) = self.lines.take() else {
+            return Ok(None);
+        };
+        let mut lines = lines.reread()?;
+        io::Seek::rewind(&mut lines).map_err(fault)?;
+        Ok(Some(Box::new(BufReader::new(lines))))
+    }
+
+    /// Rows that still wait stand on no line.
+    fn settle(&mut self) {
+        let waiting = self.waiting.len() / self.width;
+        self.written(std::iter::repeat_n(0, waiting));
     }
 
     /// All blocks have come: their table goes to `parts`, and what was seen to `meta`.
@@ -194,8 +205,7 @@ impl<'m> BlockRows<'m> {
     /// # Errors
     /// They could not be kept.
     pub fn finish(mut self, parts: &mut Parts, meta: &mut Meta) -> Result<(), Failure> {
-        let waiting = self.waiting.len() / self.width;
-        self.written(std::iter::repeat_n(0, waiting));
+        self.settle();
         if let Some(fault) = self.fault {
             return Err(fault);
         }
@@ -206,7 +216,8 @@ impl<'m> BlockRows<'m> {
             }
         }
         self.path.finish(parts)?;
-        self.cl.finish(parts)?;
+        self.cl.finish(self.base, self.ends, parts)?;
+        meta.head_rows = self.heads;
         meta.checks = self.derived.checks();
         meta.limits = self.limits;
         meta.events = self.events;
@@ -228,7 +239,11 @@ impl<'m> BlockRows<'m> {
                     largest.nc = line;
                 }
             }
-            if let Err(error) = self.table.row(values) {
+            let mut kept = self.table.row(values);
+            if let (Some(lines), true) = (&mut self.lines, kept.is_ok()) {
+                kept = lines.write_all(&(line as u32).to_le_bytes());
+            }
+            if let Err(error) = kept {
                 self.fault.get_or_insert(fault(error));
             }
             self.waiting.drain(..self.width);
@@ -239,9 +254,8 @@ impl<'m> BlockRows<'m> {
         let row = self.came;
         self.came += 1;
         // Told against the end of the block before.
-        let from = packed(self.time) - packed(self.end);
+        let from = self.time - self.end;
         self.time += block.time.minutes * 60.0;
-        self.end = self.time;
         let kind = match (self.hole, block.kind) {
             (true, _) => 6,
             (_, MotionKind::Position) => 0,
@@ -255,6 +269,9 @@ impl<'m> BlockRows<'m> {
             self.event(row, "rewind", "the tool is drawn back to turn".to_owned());
         }
         self.reason = block.reason;
+        if self.branch.changes(&block.joints) {
+            self.event(row, "branch", branch::CHANGED.to_owned());
+        }
         let reason = match block.reason {
             Reason::Point => 0,
             Reason::Eased => 1,
@@ -292,32 +309,37 @@ impl<'m> BlockRows<'m> {
             }
         }
         let length = self.length(block);
-        let pose = self.derived.pose(&block.joints, length);
-        let [tip, axis] = match pose {
-            Some([tip, axis]) => [block.tip - tip, block.axis - axis],
-            None => [block.tip, block.axis],
-        };
-        let end = pose.map_or_else(Vector3::zeros, |[tip, _]| tip) + tip.map(packed);
+        let Left { axes, pose, tip } =
+            self.derived
+                .left(self.machine, &block.joints, [block.tip, block.axis], length);
         self.derived.check(row, &block.joints, length);
-        self.path(row, block, length, end);
+        self.path(row, block, length, tip);
+        self.ends.push(block.line, tip, 0.0);
+        // Told against what a straight way takes at the feed.
+        let told = (feed * 10.0).round_ties_even() / 10.0;
+        let took = match told > 0.0 {
+            true => 60.0 * (tip - self.tip).norm() / told,
+            false => 0.0,
+        };
+        let left = packed(self.time - self.end - took);
+        self.end += took + left;
+        self.tip = tip;
         let head = [
             0.0,
             block.line as f64,
             from,
-            self.time,
+            left,
             f64::from(kind),
             f64::from(reason),
         ];
         self.waiting.extend(head);
-        let machine = self.machine;
         for name in &self.axes {
-            let mut axes = machine.axes.iter().zip(&block.joints);
-            let value = axes.find(|(axis, _)| axis.name == *name);
-            let value = value.map_or(0.0, |(axis, value)| axis.reading(*value));
-            self.waiting.push_back(value);
+            let mut known = self.machine.axes.iter().zip(axes);
+            let value = known.find(|(axis, _)| axis.name == *name);
+            self.waiting
+                .push_back(value.map_or(0.0, |(_, value)| value));
         }
-        self.waiting.extend(tip.iter());
-        self.waiting.extend(axis.iter());
+        self.waiting.extend(pose.iter().flatten());
         self.waiting.extend([
             up(block.deviation.tip, self.scale),
             up(block.deviation.axis.to_degrees(), self.axis_scale),
@@ -416,9 +438,11 @@ impl<'m> BlockRows<'m> {
             }
             Command::Operation(name) => self.event(row, "operation", name.clone()),
             Command::Head(name) => {
-                let head = self.base.heads.iter().find(|head| head.name == *name);
-                self.machine = head.map_or(self.base, |head| &head.machine);
-                self.chain = chain(self.machine);
+                let (machine, number) = axes::with_head(self.base, name);
+                self.machine = machine;
+                self.chain = chain(machine);
+                self.branch = Branch::new(machine);
+                self.heads.push([row, number]);
                 self.event(row, "head", format!("head {name}"));
             }
             Command::Stop => self.event(row, "stop", "stop".to_owned()),

@@ -9,11 +9,10 @@ use post_machine::description::Machine;
 use post_readback::MotionKind;
 use post_readback::course::cl::{ClCourse, Settings};
 use post_readback::course::{Course, Curve, Item, Piece};
-use post_report::table::{Column, TableWriter};
 
-use super::parts::{Parts, fault};
+use super::cl_points::{self, Points};
+use super::parts::Parts;
 use crate::failure::Failure;
-use crate::files::Scratch;
 
 /// Chords of a curve at most.
 const MOST_CHORDS: f64 = 4096.0;
@@ -29,16 +28,19 @@ const MOST_KEPT: usize = 100_000;
 
 /// A straight piece of the path.
 #[derive(Clone, Copy, Debug)]
-struct Segment {
-    line: u64,
-    from: Vector3<f64>,
-    to: Vector3<f64>,
+pub struct Segment {
+    /// Line that it comes from.
+    pub line: u64,
+    /// Where it begins, mm, part frame.
+    pub from: Vector3<f64>,
+    /// Where it ends.
+    pub to: Vector3<f64>,
 }
 
 /// Reads the path as far as it is asked for.
 pub struct ClWindow {
     course: ClCourse<Box<dyn Read>>,
-    table: TableWriter<Scratch>,
+    points: Points,
     /// How far chords may stray from curves, mm.
     chord: f64,
     along: f64,
@@ -49,7 +51,6 @@ pub struct ClWindow {
     at: Option<Vector3<f64>>,
     faults: u32,
     ended: bool,
-    fault: Option<Failure>,
 }
 
 impl ClWindow {
@@ -64,7 +65,7 @@ impl ClWindow {
     ) -> Result<Self, Failure> {
         Ok(Self {
             course: ClCourse::new(settings, input),
-            table: TableWriter::new("cl", Self::columns(), Parts::scratch()?),
+            points: Points::new()?,
             chord: machine.accuracy.tolerance / 10.0,
             along: machine.control_point.along,
             next: None,
@@ -72,19 +73,7 @@ impl ClWindow {
             at: None,
             faults: 0,
             ended: false,
-            fault: None,
         })
-    }
-
-    /// The columns of its table.
-    pub fn columns() -> Vec<Column> {
-        vec![
-            Column::new("line", "", 0),
-            Column::new("x", "mm", 4),
-            Column::new("y", "mm", 4),
-            Column::new("z", "mm", 4),
-            Column::new("rapid", "", 0),
-        ]
     }
 
     /// Reads to the end of `line`.
@@ -149,20 +138,22 @@ impl ClWindow {
         inner.map(|segment| segment.to).collect()
     }
 
-    /// Reads the rest; the table goes to `parts`.
+    /// Reads the rest; the table goes to `parts`, told against the ends of these blocks.
     ///
     /// # Errors
     /// It could not be kept.
-    pub fn finish(mut self, parts: &mut Parts) -> Result<(), Failure> {
+    pub fn finish(
+        mut self,
+        machine: &Machine,
+        blocks: Points,
+        parts: &mut Parts,
+    ) -> Result<(), Failure> {
         while !self.ended || self.next.is_some() {
             self.forget(u64::MAX);
             let line = self.next.as_ref().map_or(0, |piece| piece.line);
             self.advance(line);
         }
-        match self.fault {
-            Some(fault) => Err(fault),
-            None => parts.table(self.table),
-        }
+        cl_points::pack(machine, self.points, blocks, parts)
     }
 
     fn piece(&mut self, piece: &Piece) {
@@ -206,15 +197,13 @@ impl ClWindow {
     }
 
     fn point(&mut self, line: u64, tip: Vector3<f64>, rapid: f64) {
-        let row = [line as f64, tip.x, tip.y, tip.z, rapid];
-        if let Err(error) = self.table.row(&row) {
-            self.fault.get_or_insert(fault(error));
-        }
+        self.points.push(line, tip, rapid);
     }
 }
 
 impl Segment {
-    fn nearest(&self, tip: Vector3<f64>) -> Vector3<f64> {
+    /// Its point that is nearest to `tip`.
+    pub fn nearest(&self, tip: Vector3<f64>) -> Vector3<f64> {
         let way = self.to - self.from;
         let square = way.norm_squared();
         if square <= 0.0 {

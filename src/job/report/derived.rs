@@ -1,12 +1,16 @@
 //! What the page derives from other columns, so that only what is left of it need be packed.
 //!
-//! Tip and tool axis follow from the axis values by the chain. What is packed is how far the values told by posting or
-//! reading are from that: nothing, where the chain is the whole story, and never nothing where it is not.
+//! Where the program has axis positions, tip and tool axis follow from them by the chain. Where the control keeps the tip,
+//! the program has the tip and the rotary axes: the tool axis follows from these, and the linear axes from both. What is
+//! packed is how far the values told by posting or reading are from that: nothing, where the chain is the whole story, and
+//! never nothing where it is not.
 
-use nalgebra::Vector3;
-use post_machine::description::Machine;
+use nalgebra::{Matrix3, Vector3};
+use post_machine::description::{Machine, Tcp};
+use post_machine::kinematics::chain::turn;
 use post_machine::kinematics::{Chain, Joints, Pose};
 use post_report::meta::Check;
+use post_report::table::Column;
 
 /// Decimals of linear and rotary axis values: mm, degrees.
 pub const DECIMALS: [u8; 2] = [4, 5];
@@ -14,45 +18,188 @@ pub const DECIMALS: [u8; 2] = [4, 5];
 /// So many poses are told with all their digits, for the page to hold its own chain against.
 const MOST_CHECKS: usize = 12;
 
+/// Slides nearer to a plane than this do not reach all of space: nothing is derived by them. The page has the same number.
+const FLAT: f64 = 1e-3;
+
+/// Which columns follow from which.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    /// Tip and tool axis from the axes.
+    FromAxes,
+    /// The tool axis from the rotary axes, the linear axes from these and the tip.
+    FromTip,
+    /// None: heads are swapped, or the machine cannot be solved.
+    Nothing,
+}
+
 /// The chain of a machine whose tool has no length.
 pub struct Derived<'m> {
     machine: &'m Machine,
     chain: Option<Chain>,
+    way: Way,
     checks: Vec<Check>,
     /// Rows to the next check.
     next: u64,
 }
 
+/// Values of a row as they are packed.
+pub struct Left {
+    /// Those of the axes of the machine, as the control shows them.
+    pub axes: Joints,
+    /// Tip and tool axis.
+    pub pose: [Vector3<f64>; 2],
+    /// The tip as the page will have it.
+    pub tip: Vector3<f64>,
+}
+
+fn rounded(value: f64, scale: f64) -> f64 {
+    (value * scale).round_ties_even() / scale
+}
+
 impl<'m> Derived<'m> {
-    /// Of a machine. What it cannot solve, and heads that are swapped, goes as it is.
+    /// Of a machine.
     pub fn new(machine: &'m Machine) -> Self {
         let solver = machine.solver(0.0).ok();
         let solver = solver.filter(|_| machine.heads.is_empty());
+        let linear = machine.axes.iter().filter(|axis| !axis.joint.rotary);
+        let way = match (&solver, machine.control.tcp) {
+            (None, _) => Way::Nothing,
+            (_, Tcp::Control) if linear.count() == 3 => Way::FromTip,
+            _ => Way::FromAxes,
+        };
         Self {
             machine,
             chain: solver.map(|solver| solver.chain().clone()),
+            way,
             checks: Vec::new(),
             next: 0,
         }
     }
 
-    /// Columns are derived.
-    pub fn is_known(&self) -> bool {
-        self.chain.is_some()
+    /// The columns of axes with these names (true where it turns), of the tip and of the tool axis.
+    pub fn columns(&self, axes: &[(String, bool)]) -> Vec<Column> {
+        let axes = axes.iter().map(|(name, rotary)| {
+            let (unit, decimals) = match rotary {
+                true => ("deg", DECIMALS[1]),
+                false => ("mm", DECIMALS[0]),
+            };
+            let column = Column::new(format!("q.{name}"), unit, decimals);
+            match (self.way, rotary) {
+                (Way::FromTip, false) => column.from("tips"),
+                _ => column,
+            }
+        });
+        let tip = ["x", "y", "z"].map(|name| Column::new(format!("tip.{name}"), "mm", 4));
+        let tip = tip.into_iter().map(|column| match self.way {
+            Way::FromAxes => column.from("chain"),
+            _ => column,
+        });
+        let axis = ["i", "j", "k"].map(|name| Column::new(format!("axis.{name}"), "", 6));
+        let axis = axis.into_iter().map(|column| match self.way {
+            Way::Nothing => column,
+            _ => column.from("chain"),
+        });
+        axes.chain(tip).chain(axis).collect()
     }
 
-    /// Tip and tool axis by the chain, from axis values as they are packed; none where they are not derived.
-    pub fn pose(&self, joints: &Joints, length: f64) -> Option<[Vector3<f64>; 2]> {
-        let chain = self.chain.as_ref()?;
+    /// What is left of a row to pack. `machine` is that with the head in use.
+    pub fn left(
+        &self,
+        machine: &Machine,
+        joints: &Joints,
+        [tip, axis]: [Vector3<f64>; 2],
+        length: f64,
+    ) -> Left {
+        let mut readings = Joints::default();
+        for ((reading, value), axis) in readings.iter_mut().zip(joints).zip(&machine.axes) {
+            *reading = axis.reading(*value);
+        }
+        let whole = Left {
+            axes: readings,
+            pose: [tip, axis],
+            tip: tip.map(|value| rounded(value, 1e4)),
+        };
+        let Some(chain) = &self.chain else {
+            return whole;
+        };
         let mut packed = *joints;
         for (value, axis) in packed.iter_mut().zip(&self.machine.axes) {
             let scale = [1e4, 1e5][usize::from(axis.joint.rotary)];
-            let reading = (axis.reading(*value) * scale).round_ties_even() / scale;
+            let reading = rounded(axis.reading(*value), scale);
             *value = (reading - axis.zero / axis.unit()) * axis.unit();
         }
-        let length = (length * 1e4).round_ties_even() / 1e4;
-        let Pose { tip, axis, .. } = chain.forward(&packed);
-        Some([tip - axis * length, axis])
+        let length = rounded(length, 1e4);
+        let pose = chain.forward(&packed);
+        match self.way {
+            Way::FromAxes => {
+                let from = pose.tip - pose.axis * length;
+                let left = tip - from;
+                Left {
+                    pose: [left, axis - pose.axis],
+                    tip: from + left.map(|value| rounded(value, 1e4)),
+                    ..whole
+                }
+            }
+            _ => {
+                let mut axes = readings;
+                if let Some(linear) = self.linear(chain, &packed, whole.tip, length) {
+                    for (reading, (axis, value)) in
+                        axes.iter_mut().zip(self.machine.axes.iter().zip(linear))
+                    {
+                        if !axis.joint.rotary {
+                            *reading -= value + axis.zero / axis.unit();
+                        }
+                    }
+                }
+                Left {
+                    axes,
+                    pose: [tip, axis - pose.axis],
+                    ..whole
+                }
+            }
+        }
+    }
+
+    /// The positions of the linear axes that bring the tip there, the rotary ones standing as they are; of those zero.
+    fn linear(
+        &self,
+        chain: &Chain,
+        joints: &Joints,
+        tip: Vector3<f64>,
+        length: f64,
+    ) -> Option<Joints> {
+        let mut at = chain.tip() - chain.axis() * length;
+        let mut slides: Vec<(usize, Vector3<f64>)> = Vec::with_capacity(3);
+        for (place, joint) in chain.joints().iter().enumerate().rev() {
+            if !joint.rotary {
+                slides.push((place, joint.direction));
+                continue;
+            }
+            let (sine, cosine) = libm::sincos(joints[place]);
+            at = joint.point + turn(at - joint.point, joint.direction, sine, cosine);
+            for (_, slide) in &mut slides {
+                *slide = turn(*slide, joint.direction, sine, cosine);
+            }
+        }
+        let columns: Vec<Vector3<f64>> = slides.iter().map(|(_, slide)| *slide).collect();
+        let far = tip - (at - chain.mount());
+        let [one, two, three] = columns.as_slice() else {
+            return None;
+        };
+        let volume = Matrix3::from_columns(&columns).determinant();
+        if libm::fabs(volume) < FLAT {
+            return None;
+        }
+        let ways = [
+            far.dot(&two.cross(three)),
+            one.dot(&far.cross(three)),
+            one.dot(&two.cross(&far)),
+        ];
+        let mut found = Joints::default();
+        for ((place, _), way) in slides.iter().zip(ways) {
+            found[*place] = way / volume;
+        }
+        Some(found)
     }
 
     /// Keeps a pose with all its digits, now and then.

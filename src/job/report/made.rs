@@ -6,7 +6,7 @@ use post_posting::report::{Deviation, Report};
 use post_readback::verify::Verification;
 use post_report::meta::{AxisUsed, Maximum, Names, Verdict};
 
-use super::{BlockRows, Parts, PredictedLines};
+use super::{BlockRows, Parts, PredictedLines, PredictedRows};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::job::predict::Prediction;
@@ -14,7 +14,8 @@ use crate::job::predict::Prediction;
 /// What is known of a program that is made.
 pub struct Made<'a> {
     pub machine: &'a Machine,
-    pub cl: &'a PathArg,
+    /// What the CL file is called.
+    pub cl: String,
     pub program: &'a PathArg,
     pub report: &'a Report,
     pub verification: Option<&'a Verification>,
@@ -33,14 +34,14 @@ impl Made<'_> {
     /// A text cannot be read again, or the report not be written.
     pub fn write(
         &self,
-        (rows, series): (BlockRows<'_>, Option<PredictedLines>),
+        (rows, predicted): (BlockRows<'_>, Option<(PredictedLines, PredictedRows<'_>)>),
         (source, program): (&mut ClSource, &mut AtomicFile),
         most: u64,
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {
         let names = Names {
             nc: Some(super::name_of(self.program)),
-            cl: Some(super::name_of(self.cl)),
+            cl: Some(self.cl.clone()),
             nc2: None,
             machine: self.machine.name.clone(),
         };
@@ -60,8 +61,9 @@ impl Made<'_> {
             meta.excludes.extend(found.assumed.iter().cloned());
         }
         let mut parts = Parts::default();
-        if let Some(series) = series {
-            series.finish(None, &mut parts)?;
+        if let Some((series, mut rows)) = predicted {
+            series.finish(&mut rows, &mut parts)?;
+            rows.finish(&mut parts)?;
         }
         rows.finish(&mut parts, &mut meta)?;
         let name = program.name().to_owned();
@@ -75,7 +77,8 @@ impl Made<'_> {
         let found = self.report;
         let mut sentences = vec![format!(
             "Every block of the program is certified to stay within {} mm of the CL path with the tip and within {}° with the tool axis.",
-            found.tolerance_mm, found.axis_tolerance_deg
+            shown(found.tolerance_mm),
+            shown(found.axis_tolerance_deg)
         )];
         if let Some(held) = self.verification {
             sentences.push(format!(
@@ -145,4 +148,9 @@ impl Made<'_> {
         });
         told.collect()
     }
+}
+
+/// A tolerance without the last digits of what was reckoned.
+fn shown(tolerance: f64) -> f64 {
+    (tolerance * 1e9).round() / 1e9
 }

@@ -3,16 +3,21 @@
 //! Tables and texts are packed as they come, into scratch files, and put together at the end: memory does not grow with the
 //! program, and what does not fit is left out as a whole.
 
+mod axes;
 mod block_rows;
+mod branch;
+mod cl_points;
 mod cl_window;
 mod derived;
 mod findings;
 mod machine;
 mod made;
 mod motion_rows;
+mod old_path;
 mod parts;
 mod path_rows;
 mod predicted_lines;
+mod predicted_rows;
 mod told_by_prediction;
 
 pub use block_rows::BlockRows;
@@ -20,9 +25,11 @@ pub use cl_window::ClWindow;
 pub use findings::warnings;
 pub use machine::machine;
 pub use made::Made;
-pub use motion_rows::{Besides, Heard, MotionRows, path_table};
+pub use motion_rows::{Besides, Heard, Hears, MotionRows};
+pub use old_path::OldPath;
 pub use parts::{Parts, excludes};
 pub use predicted_lines::PredictedLines;
+pub use predicted_rows::PredictedRows;
 pub use told_by_prediction::{predicted_facts, predicted_maxima};
 
 use std::fs::File;
@@ -65,6 +72,11 @@ pub fn about(job: &'static str, machine: &Machine, title: String, names: Names) 
             rapid: accuracy.rapid_tolerance,
         },
         machine: Some(self::machine(machine)),
+        heads: machine
+            .heads
+            .iter()
+            .map(|head| self::machine(&head.machine))
+            .collect(),
         ..Meta::default()
     }
 }

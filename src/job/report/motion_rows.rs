@@ -12,11 +12,16 @@ use post_readback::{Done, Motion, MotionKind, Told};
 use post_report::meta::{AxisUsed, Event, Meta};
 use post_report::table::{Column, TableWriter};
 
-use super::block_rows::{MOST_EVENTS, decimals, packed, pose_columns};
+use super::axes;
+use super::block_rows::{MOST_EVENTS, decimals, packed};
+use super::branch::{self, Branch};
+use super::cl_points::Points;
 use super::cl_window::ClWindow;
-use super::derived::{DECIMALS, Derived};
+use super::derived::{Derived, Left};
+use super::old_path::OldPath;
 use super::parts::{Parts, fault};
 use super::path_rows::PathRows;
+use super::predicted_rows;
 use crate::failure::Failure;
 use crate::files::Scratch;
 
@@ -46,6 +51,12 @@ pub struct Heard {
     pub contour: f64,
 }
 
+/// Somebody who is told what is known of the lines of a program, in the order in which they are carried out.
+pub trait Hears {
+    /// All rows of `line` get what was heard of it; those before it that nobody told of stay as they are.
+    fn hear(&mut self, line: u64, heard: &Heard);
+}
+
 /// What rows tell besides.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Besides {
@@ -53,6 +64,8 @@ pub struct Besides {
     pub deviations: bool,
     /// It is predicted.
     pub predicted: bool,
+    /// It is held against another program.
+    pub other: bool,
 }
 
 /// A row that waits for what is known of its line.
@@ -67,7 +80,11 @@ struct Waiting {
 
 /// Reads a program and packs a row of each motion.
 pub struct MotionRows<'m> {
+    /// The machine with the head in use.
     machine: &'m Machine,
+    base: &'m Machine,
+    /// Names of the axes of all heads, in the order of their columns.
+    axes: Vec<(String, bool)>,
     program: Interpreter<File>,
     besides: Besides,
     table: TableWriter<Scratch>,
@@ -75,7 +92,14 @@ pub struct MotionRows<'m> {
     derived: Derived<'m>,
     /// End of the row before, s.
     end: f64,
+    branch: Branch,
+    /// Rows from which another head is in use, with its number.
+    heads: Vec<[u64; 2]>,
     cl: Option<ClWindow>,
+    /// The path of the program that it is held against.
+    old: Option<OldPath>,
+    /// Where the rows end, for the path of the CL file.
+    ends: Points,
     /// Line of the CL file of the row before.
     last_cl: u64,
     waiting: VecDeque<Waiting>,
@@ -114,15 +138,9 @@ impl<'m> MotionRows<'m> {
             Column::new("t1", "s", 4),
             Column::new("kind", "", 0),
         ];
-        for axis in &machine.axes {
-            let (unit, decimals) = match axis.joint.rotary {
-                true => ("deg", DECIMALS[1]),
-                false => ("mm", DECIMALS[0]),
-            };
-            columns.push(Column::new(format!("q.{}", axis.name), unit, decimals));
-        }
+        let axes = axes::of_all_heads(machine);
         let derived = Derived::new(machine);
-        columns.extend(pose_columns(derived.is_known()));
+        columns.extend(derived.columns(&axes));
         columns.extend([
             Column::new("feed", "mm/min", 1),
             Column::new("tool_length", "mm", 4),
@@ -138,23 +156,26 @@ impl<'m> MotionRows<'m> {
             ]);
         }
         if besides.predicted {
-            columns.push(Column::new("contour", "mm", decimals(accuracy.tolerance)));
-            for (letter, units) in [("v", ["mm/s", "deg/s"]), ("a", ["mm/s²", "deg/s²"])] {
-                for axis in &machine.axes {
-                    let unit = units[usize::from(axis.joint.rotary)];
-                    columns.push(Column::new(format!("{letter}.{}", axis.name), unit, 3));
-                }
-            }
+            columns.extend(predicted_rows::columns(machine));
+        }
+        if besides.other {
+            columns.push(Column::new("nc2", "", 0));
         }
         Ok(Self {
             machine,
+            base: machine,
+            axes,
             program,
             besides,
             table: TableWriter::new("blocks", columns, Parts::scratch()?),
             path: PathRows::new(machine)?,
             derived,
             end: 0.0,
+            branch: Branch::new(machine),
+            heads: Vec::new(),
             cl,
+            old: None,
+            ends: Points::new()?,
             last_cl: 0,
             waiting: VecDeque::new(),
             done: Vec::new(),
@@ -174,30 +195,11 @@ impl<'m> MotionRows<'m> {
         })
     }
 
-    /// Rows of all motions to the end of `line` get what was heard of it; those before it that nobody told of stay as they
-    /// are.
-    pub fn hear(&mut self, line: u64, heard: &Heard) {
-        let at = |waiting: &VecDeque<Waiting>| waiting.iter().position(|row| row.nc == line);
-        let mut place = at(&self.waiting);
-        while place.is_none() && !self.ended && self.waiting.len() < AHEAD {
-            self.read();
-            place = at(&self.waiting);
-        }
-        let Some(place) = place else {
-            return;
-        };
-        for _ in 0..place {
-            self.write(None);
-        }
-        // All motions of the line: a hole has many.
-        loop {
-            while self.waiting.len() < 2 && !self.ended {
-                self.read();
-            }
-            match self.waiting.front() {
-                Some(first) if first.nc == line => self.write(Some(heard)),
-                _ => return,
-            }
+    /// The same, held against the path of another program.
+    pub fn against(self, old: OldPath) -> Self {
+        Self {
+            old: Some(old),
+            ..self
         }
     }
 
@@ -219,7 +221,10 @@ impl<'m> MotionRows<'m> {
             return Err(fault);
         }
         if let Some(cl) = self.cl {
-            cl.finish(parts)?;
+            cl.finish(self.base, self.ends, parts)?;
+        }
+        if let Some(old) = self.old {
+            old.finish(parts)?;
         }
         self.path.finish(parts)?;
         for maximum in &mut meta.maxima {
@@ -227,6 +232,7 @@ impl<'m> MotionRows<'m> {
             let known = known.find(|(value, _, nc)| *value > 0.0 && maximum.nc == Some(*nc));
             maximum.row = known.map(|(_, row, _)| *row);
         }
+        meta.head_rows = self.heads;
         meta.checks = self.derived.checks();
         meta.axes_used = self.used;
         meta.limits = self.limits;
@@ -274,22 +280,29 @@ impl<'m> MotionRows<'m> {
             _ => 3,
         };
         let mut values = vec![motion.line as f64, from, self.time, f64::from(kind)];
-        let axes = self.machine.axes.iter().zip(&motion.to.joints);
-        values.extend(axes.map(|(axis, value)| axis.reading(*value)));
         // The chain has the tool in it: where the gauge point is, is the same with every tool.
         let tip = motion.state.solver.chain().tip();
         let length = (self.machine.gauge - tip).dot(&self.machine.tool_axis);
         self.length.get_or_insert(length);
+        if self.branch.changes(&motion.to.joints) {
+            self.event("branch", branch::CHANGED.to_owned());
+        }
         let pose = motion.to.pose;
-        let derived = self.derived.pose(&motion.to.joints, length);
-        let [left, axis] = match derived {
-            Some([tip, axis]) => [pose.tip - tip, pose.axis - axis],
-            None => [pose.tip, pose.axis],
-        };
-        let end = derived.map_or_else(Vector3::zeros, |[tip, _]| tip) + left.map(packed);
-        self.derived.check(self.came, &motion.to.joints, length);
-        values.extend(left.iter());
-        values.extend(axis.iter());
+        let joints = &motion.to.joints;
+        let Left {
+            axes,
+            pose: left,
+            tip: end,
+        } = self
+            .derived
+            .left(self.machine, joints, [pose.tip, pose.axis], length);
+        self.derived.check(self.came, joints, length);
+        for (name, _) in &self.axes {
+            let mut known = self.machine.axes.iter().zip(axes);
+            let value = known.find(|(axis, _)| axis.name == *name);
+            values.push(value.map_or(0.0, |(_, value)| value));
+        }
+        values.extend(left.iter().flatten());
         values.extend([motion.feed, length]);
         self.waiting.push_back(Waiting {
             nc: motion.line,
@@ -304,23 +317,23 @@ impl<'m> MotionRows<'m> {
 
     /// The axes come to both ends of a motion.
     fn cover(&mut self, motion: &Motion) {
-        if self.used.is_empty() {
-            let axes = self.machine.axes.iter();
-            let used = axes.map(|axis| AxisUsed {
-                name: axis.name.clone(),
-                unit: axis.unit_name(),
-                min: f64::INFINITY,
-                max: f64::NEG_INFINITY,
-                travel: axis
-                    .travel
-                    .map(|travel| travel.map(|end| axis.reading(end))),
-                way: Some(0.0),
-            });
-            self.used = used.collect();
-        }
         let ends = motion.from.joints.iter().zip(&motion.to.joints);
-        let axes = self.used.iter_mut().zip(&self.machine.axes);
-        for ((used, axis), (from, to)) in axes.zip(ends) {
+        for (axis, (from, to)) in self.machine.axes.iter().zip(ends) {
+            let known = self.used.iter().position(|used| used.name == axis.name);
+            let place = known.unwrap_or_else(|| {
+                self.used.push(AxisUsed {
+                    name: axis.name.clone(),
+                    unit: axis.unit_name(),
+                    min: f64::INFINITY,
+                    max: f64::NEG_INFINITY,
+                    travel: axis
+                        .travel
+                        .map(|travel| travel.map(|end| axis.reading(end))),
+                    way: Some(0.0),
+                });
+                self.used.len() - 1
+            });
+            let used = &mut self.used[place];
             for end in [from, to] {
                 let reading = axis.reading(*end);
                 used.min = used.min.min(reading);
@@ -387,14 +400,15 @@ impl<'m> MotionRows<'m> {
             });
         }
         if self.besides.predicted {
-            values.push(heard.contour);
-            for peaks in &heard.peaks {
-                let axes = self.machine.axes.iter().zip(peaks);
-                values.extend(axes.map(|(axis, peak)| peak / axis.unit()));
-            }
+            values.extend(predicted_rows::values(self.base, heard));
         }
+        if self.besides.other {
+            let line = self.old.as_mut().and_then(|old| old.advance(tip));
+            values.push(line.map_or(0.0, |line| line as f64));
+        }
+        let old = self.old.as_ref();
         let off = |cl: &Option<ClWindow>, tip| match heard.cl {
-            0 => None,
+            0 => old.and_then(|old| old.off(tip)),
             _ => cl.as_ref().and_then(|cl| cl.off(tip)),
         };
         if let (Some(cl), true) = (&mut self.cl, heard.cl > 0) {
@@ -408,6 +422,9 @@ impl<'m> MotionRows<'m> {
             .map(|place| (place, off(&self.cl, place)))
             .collect();
         self.path.block(row, end, &places);
+        if self.cl.is_some() {
+            self.ends.push(heard.cl, end, 0.0);
+        }
         if kind != MotionKind::Rapid {
             let [tip, axis] = heard.deviation;
             for (largest, value) in self.largest.iter_mut().zip([tip, axis, heard.contour]) {
@@ -451,7 +468,13 @@ impl<'m> MotionRows<'m> {
             }
             Told::Stop => self.event("stop", "stop".to_owned()),
             Told::OptionalStop => self.event("stop", "optional stop".to_owned()),
-            Told::Head(name) => self.event("head", format!("head {name}")),
+            Told::Head(name) => {
+                let (machine, number) = axes::with_head(self.base, name);
+                self.machine = machine;
+                self.branch = Branch::new(machine);
+                self.heads.push([self.came, number]);
+                self.event("head", format!("head {name}"));
+            }
             Told::Cycle(_) => self.event("cycle", "hole".to_owned()),
             _ => {}
         }
@@ -467,53 +490,29 @@ impl<'m> MotionRows<'m> {
     }
 }
 
-/// The path of a program as the table that else has the path of a CL file, for who compares two programs.
-///
-/// # Errors
-/// It could not be kept.
-pub fn path_table(mut program: Interpreter<File>, parts: &mut Parts) -> Result<(), Failure> {
-    let mut table = TableWriter::new("cl", ClWindow::columns(), Parts::scratch()?);
-    let mut done = Vec::new();
-    let mut faults = 0;
-    let mut last: Option<Vector3<f64>> = None;
-    while faults <= MOST_FAULTS {
-        done.clear();
-        match program.next(&mut done) {
-            Ok(true) => {}
-            Ok(false) => break,
-            Err(_) => faults += 1,
+impl Hears for MotionRows<'_> {
+    fn hear(&mut self, line: u64, heard: &Heard) {
+        let at = |waiting: &VecDeque<Waiting>| waiting.iter().position(|row| row.nc == line);
+        let mut place = at(&self.waiting);
+        while place.is_none() && !self.ended && self.waiting.len() < AHEAD {
+            self.read();
+            place = at(&self.waiting);
         }
-        for next in &done {
-            let Done::Motion(motion) = next else {
-                continue;
-            };
-            let line = motion.line as f64;
-            let mut point = |tip: Vector3<f64>, rapid: f64| {
-                table
-                    .row(&[line, tip.x, tip.y, tip.z, rapid])
-                    .map_err(fault)
-            };
-            let from = motion.from.pose.tip;
-            if last.is_none_or(|last| (last - from).norm() > 1e-6) {
-                point(from, 2.0)?;
+        let Some(place) = place else {
+            return;
+        };
+        for _ in 0..place {
+            self.write(None);
+        }
+        // All motions of the line: a hole has many.
+        loop {
+            while self.waiting.len() < 2 && !self.ended {
+                self.read();
             }
-            let rapid = match motion.kind {
-                MotionKind::Rapid => 1.0,
-                _ => 0.0,
-            };
-            let chords = match &motion.way {
-                Way::Arc { .. } | Way::Spline(_) => 64,
-                _ => motion.pieces(CHORD, 1.0).min(64),
-            };
-            for chord in 1..chords {
-                point(motion.at(chord as f64 / chords as f64).tip, rapid)?;
+            match self.waiting.front() {
+                Some(first) if first.nc == line => self.write(Some(heard)),
+                _ => return,
             }
-            point(motion.to.pose.tip, rapid)?;
-            last = Some(motion.to.pose.tip);
         }
     }
-    parts.table(table)
 }
-
-/// How far chords of a path may stray that is only looked at, mm.
-const CHORD: f64 = 0.001;

@@ -5,7 +5,7 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 use post_report::table::{Column, TableWriter};
 
 use super::block_rows::decimals;
-use super::motion_rows::{Heard, MotionRows};
+use super::motion_rows::{Heard, Hears};
 use super::parts::{Parts, fault};
 use crate::failure::Failure;
 use crate::files::Scratch;
@@ -32,10 +32,7 @@ impl PredictedLines {
         let error = decimals(machine.accuracy.tolerance);
         let columns = vec![
             Column::new("t", "s", 6),
-            Column::new("nc", "", 0),
-            Column::new("cl", "", 0),
             Column::new("feed", "mm/min", 1),
-            Column::new("asked", "mm/min", 1),
             Column::new("contour", "mm", error),
         ];
         Ok(Self {
@@ -49,7 +46,7 @@ impl PredictedLines {
     }
 
     /// The next set-point; what is known of the line before goes to `rows`.
-    pub fn take(&mut self, sample: &Sample, rows: Option<&mut MotionRows<'_>>) {
+    pub fn take(&mut self, sample: &Sample, rows: &mut dyn Hears) {
         let point = &sample.point;
         let time = point.time;
         let cl = sample.cl_line().unwrap_or(0);
@@ -57,15 +54,7 @@ impl PredictedLines {
             true => sample.size(),
             false => 0.0,
         };
-        let row = [
-            time,
-            sample.at.line as f64,
-            cl as f64,
-            sample.feed,
-            sample.programmed,
-            error,
-        ];
-        if let Err(error) = self.table.row(&row) {
+        if let Err(error) = self.table.row(&[time, sample.feed, error]) {
             self.fault.get_or_insert(fault(error));
         }
         if sample.at.line != self.line {
@@ -102,11 +91,7 @@ impl PredictedLines {
     ///
     /// # Errors
     /// It could not be kept.
-    pub fn finish(
-        mut self,
-        rows: Option<&mut MotionRows<'_>>,
-        parts: &mut Parts,
-    ) -> Result<(), Failure> {
+    pub fn finish(mut self, rows: &mut dyn Hears, parts: &mut Parts) -> Result<(), Failure> {
         self.end(rows);
         match self.fault {
             Some(fault) => Err(fault),
@@ -114,8 +99,8 @@ impl PredictedLines {
         }
     }
 
-    fn end(&mut self, rows: Option<&mut MotionRows<'_>>) {
-        if let (Some(rows), true) = (rows, self.line > 0) {
+    fn end(&mut self, rows: &mut dyn Hears) {
+        if self.line > 0 {
             rows.hear(self.line, &self.heard);
         }
     }

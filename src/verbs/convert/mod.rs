@@ -23,7 +23,7 @@ use crate::job::nc_program::{self, NcControl};
 use crate::job::nc_to_cl::{self, Tools};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::read_back::{self, Against, Held, Reading};
-use crate::job::report::{BlockRows, ClWindow, Made};
+use crate::job::report::{self, BlockRows, ClWindow, Made};
 use crate::job::{self, plugin_finder};
 use crate::terminal::{self, clock, number, table};
 
@@ -235,7 +235,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
             let input = source.open_beside()?;
             let settings = Settings::of(&machine, &input.name);
             let cl = ClWindow::new(&machine, settings, input.bytes)?;
-            Some((page, BlockRows::new(&machine, cl)?))
+            Some((page, BlockRows::new(&machine, cl, false)?))
         }
         None => None,
     };
@@ -294,7 +294,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         );
         let made = Made {
             machine: &machine,
-            cl: &arguments.input,
+            cl: format!("{} as CL file", report::name_of(&arguments.input)),
             program: &arguments.output,
             report: &report,
             verification: Some(&held.found),

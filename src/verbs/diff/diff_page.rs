@@ -9,7 +9,7 @@ use std::fs::File;
 
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg};
-use crate::job::report::{self, Besides, MotionRows, Parts};
+use crate::job::report::{self, Besides, MotionRows, OldPath, Parts};
 use crate::terminal::{clock, number};
 
 /// What was compared.
@@ -52,9 +52,13 @@ impl Shown<'_> {
         meta.maxima = self.maxima();
         meta.facts = self.facts();
         let mut parts = Parts::default();
-        let rows = MotionRows::new(self.machine, new, None, Besides::default())?;
+        let besides = Besides {
+            other: true,
+            ..Besides::default()
+        };
+        let rows = MotionRows::new(self.machine, new, None, besides)?;
+        let rows = rows.against(OldPath::new(self.machine, old)?);
         rows.finish(&mut parts, &mut meta)?;
-        report::path_table(old, &mut parts)?;
         for (part, (name, text)) in ["nc2", "nc"].into_iter().zip(&mut texts) {
             parts.text(part, name, text)?;
         }

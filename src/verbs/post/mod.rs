@@ -25,7 +25,7 @@ use crate::job::compensate::{self, Compensation, Moved};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::predict::{self, Against, Asked, Predicted, Prediction};
 use crate::job::read_back::{self, Held, Reading};
-use crate::job::report::{BlockRows, ClWindow, Made, PredictedLines};
+use crate::job::report::{self, BlockRows, ClWindow, Made, PredictedLines, PredictedRows};
 use crate::job::{self, plan_rounds, plugin_finder};
 use crate::terminal;
 use parts::Split;
@@ -221,7 +221,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
                 let settings =
                     read_back::course_settings(&arguments.job, &part.machine, &input.name);
                 let cl = ClWindow::new(&part.machine, settings, input.bytes)?;
-                Some(BlockRows::new(&part.machine, cl)?)
+                let predicted = arguments.predict.is_some();
+                Some(BlockRows::new(&part.machine, cl, predicted)?)
             }
             None => None,
         };
@@ -258,21 +259,25 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             }
             verifications.push(held.found);
         }
-        let mut series = None;
+        let mut heard = None;
         if arguments.predict.is_some() {
-            if page.is_some() {
+            let lines = rows.as_mut().map(BlockRows::lines).transpose()?;
+            if let Some(lines) = lines.flatten() {
                 let period = part.machine.motion.period;
-                series = Some(PredictedLines::new(&part.machine, period)?);
+                heard = Some((
+                    PredictedLines::new(&part.machine, period)?,
+                    PredictedRows::new(&part.machine, lines)?,
+                ));
             }
             let files = (&mut source, &mut *file);
-            let predicted = predicted(arguments, part, &finder, files, series.as_mut())?;
+            let predicted = predicted(arguments, part, &finder, files, heard.as_mut())?;
             findings.extend(predicted.findings);
             predictions.push(predicted.found);
         }
         if let (Some(page), Some(rows), Some(report)) = (page, rows, reports.last()) {
             let made = Made {
                 machine: &part.machine,
-                cl: arguments.job.input(),
+                cl: report::name_of(arguments.job.input()),
                 program: &part.target,
                 report,
                 verification: verifications.last(),
@@ -284,7 +289,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
                 },
                 facts: summary::facts(report, verifications.last()),
             };
-            let rows = (rows, series);
+            let rows = (rows, heard);
             made.write(rows, (&mut source, file), arguments.report.most(), page)?;
         }
     }
@@ -487,7 +492,7 @@ fn predicted(
     part: &Part,
     finder: &Finder,
     (source, file): (&mut ClSource, &mut AtomicFile),
-    mut series: Option<&mut PredictedLines>,
+    mut heard: Option<&mut (PredictedLines, PredictedRows<'_>)>,
 ) -> Result<Predicted, Failure> {
     let asked = Asked {
         arguments: &arguments.job,
@@ -501,8 +506,8 @@ fn predicted(
     let name = file.name().to_owned();
     let text = file.reread()?;
     predict::predict(&asked, Against::Cl(source), &name, text, &mut |sample| {
-        if let Some(series) = &mut series {
-            series.take(sample, None);
+        if let Some((series, rows)) = &mut heard {
+            series.take(sample, rows);
         }
         Ok(())
     })

@@ -193,8 +193,8 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
                 None => None,
             };
             let besides = Besides {
-                deviations: false,
                 predicted: true,
+                ..Besides::default()
             };
             let rows = MotionRows::new(&machine, read, cl, besides)?;
             Some((page, rows, PredictedLines::new(&machine, period)?))
@@ -219,7 +219,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
                 rooms.take(sample);
             }
             if let Some((_, rows, lines)) = &mut page {
-                lines.take(sample, Some(rows));
+                lines.take(sample, rows);
             }
             match &mut csv {
                 Some(csv) => Ok(csv.take(sample)?),

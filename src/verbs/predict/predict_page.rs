@@ -49,7 +49,7 @@ impl Shown<'_> {
         meta.warnings = report::warnings(self.findings, name);
         meta.excludes.clone_from(&self.found.assumed);
         let mut parts = Parts::default();
-        lines.finish(Some(&mut rows), &mut parts)?;
+        lines.finish(&mut rows, &mut parts)?;
         rows.finish(&mut parts, &mut meta)?;
         parts.text("nc", name, &mut { program })?;
         if let Some(source) = source {

@@ -11,7 +11,7 @@ use crate::arguments::{JobArguments, ReportArguments};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::job::read_back::{self, Reading};
-use crate::job::report::{Again, Besides, MotionRows};
+use crate::job::report::{Again, Besides, Hears as _, MotionRows};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::terminal;
 
@@ -145,7 +145,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
             let cl = once_more.cl(&source)?;
             let besides = Besides {
                 deviations: true,
-                predicted: false,
+                ..Besides::default()
             };
             Some(MotionRows::new(&machine, program, Some(cl), besides)?)
         }

@@ -1,0 +1,179 @@
+//! The path of the program that another one is held against: a table, the lines that belong together, and how far the new
+//! path is from the old one.
+
+use std::collections::VecDeque;
+use std::fs::File;
+
+use nalgebra::Vector3;
+use post_machine::description::Machine;
+use post_motion::path::Way;
+use post_readback::interpret::Interpreter;
+use post_readback::{Done, MotionKind};
+use post_report::table::TableWriter;
+
+use super::cl_points;
+use super::cl_window::Segment;
+use super::parts::{Parts, fault};
+use crate::failure::Failure;
+use crate::files::Scratch;
+
+/// So many blocks that cannot be read are passed over: whoever compares the programs tells of them.
+const MOST_FAULTS: u32 = 100;
+
+/// How far chords of a path may stray that is only looked at, mm.
+const CHORD: f64 = 0.001;
+
+/// Chords of a curve.
+const MOST_CHORDS: u64 = 64;
+
+/// Segments in which the place of the old path is looked for first, and where it is not near there.
+const AHEAD: [usize; 2] = [64, 4096];
+
+/// Segments that are kept behind the place that was found: a program may go back a little.
+const BEHIND: usize = 64;
+
+/// Farther apart, mm, the paths are not of the same cut.
+const APART: f64 = 10.0;
+
+/// Reads the old program as far as it is asked for.
+pub struct OldPath {
+    program: Interpreter<File>,
+    table: TableWriter<Scratch>,
+    segments: VecDeque<Segment>,
+    /// Segments that stand behind the place that was found last.
+    behind: usize,
+    last: Option<Vector3<f64>>,
+    done: Vec<Done>,
+    faults: u32,
+    ended: bool,
+    fault: Option<Failure>,
+}
+
+impl OldPath {
+    /// Of a program at its beginning.
+    ///
+    /// # Errors
+    /// There is no place for its table.
+    pub fn new(machine: &Machine, program: Interpreter<File>) -> Result<Self, Failure> {
+        let columns = cl_points::columns(machine, false);
+        Ok(Self {
+            program,
+            table: TableWriter::new("cl", columns, Parts::scratch()?),
+            segments: VecDeque::new(),
+            behind: 0,
+            last: None,
+            done: Vec::new(),
+            faults: 0,
+            ended: false,
+            fault: None,
+        })
+    }
+
+    /// The new program comes to `tip`: the line of the old one that does the same, where one is near.
+    pub fn advance(&mut self, tip: Vector3<f64>) -> Option<u64> {
+        for ahead in AHEAD {
+            let last = self.behind + ahead;
+            while self.segments.len() < last && !self.ended {
+                self.read();
+            }
+            let near = self.segments.iter().take(last).enumerate();
+            let far = near.map(|(place, segment)| {
+                // Of places as near that at the end of a line, and that which was not passed yet.
+                let off = (tip - segment.nearest(tip)).norm() + 1e-3 * (tip - segment.to).norm();
+                let passed = if place < self.behind { CHORD } else { 0.0 };
+                (place, off + passed, segment.line)
+            });
+            let nearest = far.min_by(|one, other| one.1.total_cmp(&other.1));
+            let Some((place, off, line)) = nearest else {
+                return None;
+            };
+            let limit = if ahead == AHEAD[0] {
+                APART / 100.0
+            } else {
+                APART
+            };
+            if off < limit {
+                let gone = place.saturating_sub(BEHIND);
+                self.segments.drain(..gone);
+                self.behind = place - gone;
+                return Some(line);
+            }
+        }
+        None
+    }
+
+    /// From the nearest point of the old path to `tip`, mm; none where the paths are far apart.
+    pub fn off(&self, tip: Vector3<f64>) -> Option<Vector3<f64>> {
+        let near = self.segments.iter().take(self.behind + AHEAD[0]);
+        let off = near.map(|segment| tip - segment.nearest(tip));
+        let off = off.min_by(|one, other| one.norm_squared().total_cmp(&other.norm_squared()));
+        off.filter(|off| off.norm() < APART)
+    }
+
+    /// Reads the rest; the table goes to `parts`.
+    ///
+    /// # Errors
+    /// It could not be kept.
+    pub fn finish(mut self, parts: &mut Parts) -> Result<(), Failure> {
+        while !self.ended {
+            self.segments.clear();
+            self.read();
+        }
+        match self.fault {
+            Some(fault) => Err(fault),
+            None => parts.table(self.table),
+        }
+    }
+
+    fn read(&mut self) {
+        let mut done = std::mem::take(&mut self.done);
+        done.clear();
+        match self.program.next(&mut done) {
+            Ok(true) => {}
+            Ok(false) => self.ended = true,
+            Err(_) => {
+                self.faults += 1;
+                self.ended = self.faults > MOST_FAULTS;
+            }
+        }
+        for next in &done {
+            let Done::Motion(motion) = next else {
+                continue;
+            };
+            let from = motion.from.pose.tip;
+            if self.last.is_none_or(|last| (last - from).norm() > 1e-6) {
+                self.point(motion.line, from, 2.0);
+                self.last = Some(from);
+            }
+            let rapid = match motion.kind {
+                MotionKind::Rapid => 1.0,
+                _ => 0.0,
+            };
+            let chords = match &motion.way {
+                Way::Arc { .. } | Way::Spline(_) => MOST_CHORDS,
+                _ => motion.pieces(CHORD, 1.0).min(MOST_CHORDS),
+            };
+            for chord in 1..=chords {
+                let to = match chord == chords {
+                    true => motion.to.pose.tip,
+                    false => motion.at(chord as f64 / chords as f64).tip,
+                };
+                self.point(motion.line, to, rapid);
+                let from = self.last.replace(to).unwrap_or(to);
+                self.segments.push_back(Segment {
+                    line: motion.line,
+                    from,
+                    to,
+                });
+            }
+        }
+        self.done = done;
+    }
+
+    fn point(&mut self, line: u64, tip: Vector3<f64>, rapid: f64) {
+        let row = [line as f64, tip.x, tip.y, tip.z, rapid];
+        if let Err(error) = self.table.row(&row) {
+            self.fault.get_or_insert(fault(error));
+        }
+    }
+}

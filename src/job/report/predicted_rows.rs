@@ -1,0 +1,141 @@
+//! What is predicted of the blocks of a program that was posted: a row for each of theirs.
+
+use std::collections::VecDeque;
+use std::io::Read;
+
+use post_machine::description::Machine;
+use post_report::table::{Column, TableWriter};
+
+use super::block_rows::{decimals, packed};
+use super::motion_rows::{Heard, Hears};
+use super::parts::{Parts, fault};
+use crate::failure::Failure;
+use crate::files::Scratch;
+
+/// A line that somebody tells of is looked for so many rows ahead.
+const AHEAD: usize = 4096;
+
+/// The largest contour error of a row, and the largest velocity and acceleration of each axis.
+pub fn columns(machine: &Machine) -> Vec<Column> {
+    let mut columns = vec![Column::new(
+        "contour",
+        "mm",
+        decimals(machine.accuracy.tolerance),
+    )];
+    for (letter, units) in [("v", ["mm/s", "deg/s"]), ("a", ["mm/s²", "deg/s²"])] {
+        for axis in &machine.axes {
+            let unit = units[usize::from(axis.joint.rotary)];
+            columns.push(Column::new(format!("{letter}.{}", axis.name), unit, 3));
+        }
+    }
+    columns
+}
+
+/// What [`columns`] hold of a row.
+pub fn values(machine: &Machine, heard: &Heard) -> impl Iterator<Item = f64> {
+    let peaks = heard.peaks.iter().flat_map(|peaks| {
+        let axes = machine.axes.iter().zip(peaks);
+        axes.map(|(axis, peak)| peak / axis.unit())
+    });
+    std::iter::once(heard.contour).chain(peaks)
+}
+
+/// Takes what is heard of lines, and packs it for the rows that stand on them.
+pub struct PredictedRows<'m> {
+    machine: &'m Machine,
+    table: TableWriter<Scratch>,
+    /// Lines of the rows, 32 bits each, least byte first.
+    lines: Box<dyn Read>,
+    /// Those that were read and wait.
+    waiting: VecDeque<u64>,
+    ended: bool,
+    /// End of the row before, s.
+    end: f64,
+    fault: Option<Failure>,
+}
+
+impl<'m> PredictedRows<'m> {
+    /// For rows that stand on these lines.
+    ///
+    /// # Errors
+    /// There is no place for them.
+    pub fn new(machine: &'m Machine, lines: Box<dyn Read>) -> Result<Self, Failure> {
+        let mut all = vec![
+            Column::new("t0", "s", 4).from("t1"),
+            Column::new("t1", "s", 4),
+        ];
+        all.extend(columns(machine));
+        Ok(Self {
+            machine,
+            table: TableWriter::new("predicted", all, Parts::scratch()?),
+            lines,
+            waiting: VecDeque::new(),
+            ended: false,
+            end: 0.0,
+            fault: None,
+        })
+    }
+
+    /// All was heard: the table goes to `parts`.
+    ///
+    /// # Errors
+    /// It could not be kept.
+    pub fn finish(mut self, parts: &mut Parts) -> Result<(), Failure> {
+        while self.read() || !self.waiting.is_empty() {
+            self.write(&Heard::default());
+        }
+        match self.fault {
+            Some(fault) => Err(fault),
+            None => parts.table(self.table),
+        }
+    }
+
+    /// One line more waits; false where there is none.
+    fn read(&mut self) -> bool {
+        let mut line = [0; 4];
+        match self.lines.read_exact(&mut line) {
+            _ if self.ended => {}
+            Ok(()) => self.waiting.push_back(u64::from(u32::from_le_bytes(line))),
+            Err(_) => self.ended = true,
+        }
+        !self.ended
+    }
+
+    /// Packs the first row that waits.
+    fn write(&mut self, heard: &Heard) {
+        self.waiting.pop_front();
+        let [from, to] = heard.times.unwrap_or([self.end; 2]);
+        let mut row = vec![packed(from) - packed(self.end), to];
+        self.end = to;
+        row.extend(values(self.machine, heard));
+        if let Err(error) = self.table.row(&row) {
+            self.fault.get_or_insert(fault(error));
+        }
+    }
+}
+
+impl Hears for PredictedRows<'_> {
+    fn hear(&mut self, line: u64, heard: &Heard) {
+        let place = loop {
+            let place = self.waiting.iter().position(|row| *row == line);
+            if place.is_some() || self.waiting.len() >= AHEAD || !self.read() {
+                break place;
+            }
+        };
+        for _ in 0..place.unwrap_or(0) {
+            self.write(&Heard::default());
+        }
+        let mut heard = heard.clone();
+        while place.is_some() {
+            if self.waiting.is_empty() && !self.read() {
+                return;
+            }
+            if self.waiting.front() != Some(&line) {
+                return;
+            }
+            self.write(&heard);
+            // Of several blocks on a line the first is given its time.
+            heard.times = heard.times.map(|[_, to]| [to, to]);
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! What the user sees: results on standard output; questions, progress and messages on standard error.
 
 mod findings;
+mod gathering;
 mod progress;
 mod quantity;
 mod table;
@@ -12,8 +13,9 @@ use std::sync::{Mutex, PoisonError};
 use post_grammar::text::escaped;
 
 pub use findings::findings;
+pub use gathering::{gathered, is_gathering};
 pub use progress::{Progress, Watched};
-pub use quantity::{clock, number};
+pub use quantity::{at_most, clock, number};
 pub use table::table;
 
 use crate::failure::Failure;

@@ -1,4 +1,6 @@
-//! Puts the scripts of the page together: those of `page/order.txt`, one behind the other.
+//! Puts the scripts of the page together: those of `page/order.txt`, one behind the other, squeezed like the styles.
+
+mod squeeze;
 
 use std::path::Path;
 use std::{env, fs};
@@ -7,17 +9,21 @@ fn main() {
     let root = env::var("CARGO_MANIFEST_DIR").expect("cargo names the folder of the crate");
     let page = Path::new(&root).join("page");
     println!("cargo::rerun-if-changed=page");
-    let order = fs::read_to_string(page.join("order.txt")).expect("page/order.txt is there");
-    let mut code = String::from("&[\n");
+    println!("cargo::rerun-if-changed=src/squeeze.rs");
+    let read = |name: &str| {
+        let text = fs::read_to_string(page.join(name));
+        text.unwrap_or_else(|fault| panic!("page/{name} is asked for: {fault}"))
+    };
+    let mut scripts = String::new();
+    let order = read("order.txt");
     for name in order.lines().map(str::trim).filter(|name| !name.is_empty()) {
-        let path = page.join(name);
-        assert!(
-            path.is_file(),
-            "page/order.txt names {name}, which is not there"
-        );
-        code.push_str(&format!("    include_str!({path:?}),\n"));
+        scripts.push_str(&squeeze::script(&read(name)));
+        scripts.push('\n');
     }
-    code.push_str("]\n");
     let out = env::var("OUT_DIR").expect("cargo names the folder of what is built");
-    fs::write(Path::new(&out).join("scripts.rs"), code).expect("the list can be written");
+    let write = |name: &str, text: &str| {
+        fs::write(Path::new(&out).join(name), text).expect("what is built can be written");
+    };
+    write("page.js", &scripts);
+    write("page.css", &squeeze::style(&read("page.css")));
 }

@@ -11,7 +11,7 @@ use crate::{page, part};
 /// # Errors
 /// A part cannot be read, or the document cannot be written.
 pub fn write(meta: &Meta, parts: &mut [&mut dyn Read], out: &mut dyn Write) -> io::Result<()> {
-    let script = page::script();
+    let script = page::SCRIPT;
     // Whatever comes in by a text can load nothing and run nothing, even if the page had a fault.
     write!(
         out,
@@ -20,7 +20,7 @@ pub fn write(meta: &Meta, parts: &mut [&mut dyn Read], out: &mut dyn Write) -> i
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n\
          <meta name=\"generator\" content=\"{}\">\n<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n",
-        page::source(&script),
+        page::source(script),
         page::source(page::STYLE),
         escaped(&meta.by),
         escaped(&meta.title),

@@ -20,6 +20,8 @@ pub mod meta;
 mod page;
 mod part;
 mod sha256;
+#[cfg(test)]
+mod squeeze;
 pub mod table;
 mod template;
 pub mod text;

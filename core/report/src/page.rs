@@ -6,23 +6,10 @@ use crate::{base64, sha256};
 pub const BODY: &str = include_str!("../page/page.html");
 
 /// What it looks like.
-pub const STYLE: &str = include_str!("../page/page.css");
+pub const STYLE: &str = include_str!(concat!(env!("OUT_DIR"), "/page.css"));
 
-/// The scripts, in the order of their inclusion.
-const SCRIPTS: &[&str] = include!(concat!(env!("OUT_DIR"), "/scripts.rs"));
-
-/// All scripts as one, without their comments and indentation, which are for those who read the sources.
-pub fn script() -> String {
-    let mut script = String::new();
-    for line in SCRIPTS.iter().flat_map(|text| text.lines()) {
-        let line = line.trim_start();
-        if !line.is_empty() && !line.starts_with("//") {
-            script.push_str(line);
-            script.push('\n');
-        }
-    }
-    script
-}
+/// All scripts as one.
+pub const SCRIPT: &str = include_str!(concat!(env!("OUT_DIR"), "/page.js"));
 
 /// How a policy names a text: nothing but it may run.
 pub fn source(text: &str) -> String {

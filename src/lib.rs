@@ -5,6 +5,7 @@ mod editor;
 mod failure;
 mod files;
 mod job;
+pub mod library;
 mod terminal;
 mod verbs;
 

@@ -54,8 +54,9 @@ const types = `<?xml version="1.0" encoding="utf-8"?>
 </Types>
 `;
 
-const own = ["package.json", "cl-configuration.json", "nc-configuration.json"];
-const grammars = ["syntaxes/cl.tmLanguage.json", "syntaxes/nc.tmLanguage.json"];
+const { languages, grammars: coloured } = about.contributes;
+const own = ["package.json", ...languages.map((language) => language.configuration.slice(2))];
+const grammars = coloured.map((grammar) => grammar.path.slice(2));
 const files = [
   ["extension.vsixmanifest", Buffer.from(manifest)],
   ["[Content_Types].xml", Buffer.from(types)],

@@ -1,7 +1,8 @@
 //! The files that a run reads: none of them is written to.
 
+use std::cell::RefCell;
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use super::file_id::FileId;
 
@@ -14,9 +15,33 @@ struct ReadFile {
 /// Of the whole run, so that no verb can forget one.
 static READ: Mutex<Vec<ReadFile>> = Mutex::new(Vec::new());
 
-fn all() -> MutexGuard<'static, Vec<ReadFile>> {
-    // A list is whole whatever a thread died of.
-    READ.lock().unwrap_or_else(PoisonError::into_inner)
+thread_local! {
+    /// Those of the job that this thread does by itself; none of a thread of the run.
+    static APART: RefCell<Option<Vec<ReadFile>>> = const { RefCell::new(None) };
+}
+
+/// Puts back what was there, whatever becomes of the job.
+struct Before(Option<Vec<ReadFile>>);
+
+impl Drop for Before {
+    fn drop(&mut self) {
+        APART.replace(self.0.take());
+    }
+}
+
+/// Does a job by itself, inside another program: what it reads, no other job minds.
+pub fn apart<T>(job: impl FnOnce() -> T) -> T {
+    let _before = Before(APART.replace(Some(Vec::new())));
+    job()
+}
+
+/// Does something with the files that are read.
+fn with_all<T>(take: impl FnOnce(&mut Vec<ReadFile>) -> T) -> T {
+    APART.with_borrow_mut(|apart| match apart {
+        Some(own) => take(own),
+        // A list is whole whatever a thread died of.
+        None => take(&mut READ.lock().unwrap_or_else(PoisonError::into_inner)),
+    })
 }
 
 /// Says that `path` is read, as `kind`: `the CL file`.
@@ -29,10 +54,11 @@ pub fn note(kind: &str, path: &Path) {
 
 /// Says that the file `id` is read, and what it is to the user.
 pub fn note_id(id: FileId, what: String) {
-    let mut all = all();
-    if all.iter().all(|read| read.id != id) {
-        all.push(ReadFile { id, what });
-    }
+    with_all(|all| {
+        if all.iter().all(|read| read.id != id) {
+            all.push(ReadFile { id, what });
+        }
+    });
 }
 
 /// Says that a run may load a plugin from any library in `folder`.
@@ -48,7 +74,8 @@ pub fn note_libraries(folder: &Path) {
 
 /// What the file `id` is, if the run reads it.
 pub fn what(id: &FileId) -> Option<String> {
-    let all = all();
-    let found = all.iter().find(|read| read.id == *id)?;
-    Some(found.what.clone())
+    with_all(|all| {
+        let found = all.iter().find(|read| read.id == *id)?;
+        Some(found.what.clone())
+    })
 }

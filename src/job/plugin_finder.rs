@@ -16,6 +16,7 @@ use post_posting::report::PluginUse;
 
 use super::plugin_folders;
 use crate::files::{PathArg, read_files, standard};
+use crate::terminal;
 
 /// The finder for a run, with the folders that the user `named`. Once a library may be opened, results are kept apart
 /// from what it prints.
@@ -24,7 +25,8 @@ pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
     for folder in &folders {
         read_files::note_libraries(folder);
     }
-    if !folders.is_empty() {
+    // Inside another program standard output is not ours to keep.
+    if !folders.is_empty() && !terminal::is_gathering() {
         standard::keep_apart();
     }
     let linked = post_stock::plugins()

@@ -6,13 +6,18 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use post_grammar::text::escaped;
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 
+use super::gathering::gather;
 use crate::files::outcome;
 
 /// Findings of one severity that are told; of the others how many there are.
 const MOST_TOLD: usize = 120;
 
-/// Writes findings to standard error, warnings first, and how many errors there were.
+/// Writes findings to standard error, warnings first, and how many errors there were; or hands them to whoever gathers
+/// them.
 pub fn findings(findings: &[Diagnostic]) {
+    if gather(findings) {
+        return;
+    }
     let mut stderr = std::io::stderr().lock();
     let renderer = if stderr.is_terminal() {
         Renderer::styled()

@@ -2,6 +2,7 @@
 
 mod codes;
 mod findings;
+mod gathering;
 mod progress;
 mod quantity;
 mod table;
@@ -14,8 +15,9 @@ use post_grammar::text::escaped;
 
 pub use codes::{CODES, Code, CodeGroup};
 pub use findings::findings;
+pub use gathering::{gathered, is_gathering};
 pub use progress::{Progress, Watched};
-pub use quantity::{clock, number};
+pub use quantity::{at_most, clock, number};
 pub use table::table;
 
 use crate::failure::Failure;

@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::io::{self, IsTerminal, Read, Seek, SeekFrom};
 use std::rc::Rc;
 
+use super::gathering::is_gathering;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
 /// Records, blocks or batches between two looks at the clock.
@@ -24,7 +25,7 @@ impl Progress {
         };
         // What cannot be read ends it too.
         let bar = bar.with_finish(ProgressFinish::AndClear);
-        if !std::io::stderr().is_terminal() {
+        if is_gathering() || !std::io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
         let style = "{bar:40} {percent}% of {total_bytes}, {eta} left";

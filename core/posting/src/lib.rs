@@ -40,6 +40,7 @@ mod timing;
 mod window;
 
 pub use blocks::{Block, MotionKind, Nominal, Planned, Reason, Time};
+pub use configuration::whole_pass;
 pub use findings::MOST_FAULTS;
 pub use job_facts::{JobFacts, LookedAhead};
 pub use mount_bounds::MountBounds;

@@ -42,7 +42,8 @@ async function report() {
   const folder = await mkdtemp(path.join(os.tmpdir(), "post-"));
   try {
     const page = path.join(folder, "report.html");
-    const program = path.join(folder, "program.nc");
+    const { base: name, name: stem } = path.parse(document.uri.fsPath);
+    const program = path.join(folder, `${stem}.nc`);
     const flags = ["--machine", machine, document.uri.fsPath, "-o", program, "--report", page, "--quiet"];
     const length = settings().get("toolLength");
     if (typeof length === "number") {
@@ -58,7 +59,6 @@ async function report() {
       vscode.window.showErrorMessage(`post: ${said.split("\n")[0]}`);
       return;
     }
-    const name = path.basename(document.uri.fsPath);
     const panel = vscode.window.createWebviewPanel("post.report", `Report: ${name}`, vscode.ViewColumn.Beside, {
       enableScripts: true,
       retainContextWhenHidden: true,

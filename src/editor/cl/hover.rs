@@ -1,11 +1,11 @@
 //! What is said of a line of a CL file.
 
 use post_grammar::{MajorWord, Reader};
-use post_machine::diagnostic::Short;
 
 use super::{Posted, posted};
 use crate::editor::document::Snapshot;
 use crate::editor::readings;
+use crate::terminal::{at_most, number};
 
 /// Lines over which a record may be parted that is looked at.
 const MOST_PARTS: usize = 50;
@@ -84,9 +84,9 @@ fn on_machine(posted: &Posted, line: &posted::PostedLine) -> String {
         "On {}: `{}`\n\n{blocks}, {} s; certified: tip {} mm, tool axis {}°",
         posted.machine.name,
         readings::text(&posted.machine, &line.joints),
-        Short(line.minutes * 60.0),
-        Short(tip),
-        Short(axis.to_degrees()),
+        number(line.minutes * 60.0, 3),
+        at_most(tip, 6),
+        at_most(axis.to_degrees(), 5),
     );
     if let Some(limit) = line.limit {
         text.push_str(&format!("; slower than asked for: {limit}"));

@@ -8,6 +8,7 @@ use super::map::Map;
 use super::program::ProgramLine;
 use crate::editor::document::Snapshot;
 use crate::editor::readings;
+use crate::terminal::at_most;
 
 /// What is said of a line, counted from 0, and of the word at `column`, bytes of the line; in Markdown.
 pub fn text(
@@ -46,8 +47,8 @@ pub fn text(
                     .as_ref()
                     .and_then(|path| path.file_name())
                     .map_or("the CL file".into(), |name| name.to_string_lossy()),
-                Short(row.tip_deviation_mm),
-                Short(row.axis_deviation_deg)
+                at_most(row.tip_deviation_mm, 6),
+                at_most(row.axis_deviation_deg, 5)
             ),
             None => "Nothing in the CL file asks for it.".to_owned(),
         });
@@ -107,7 +108,10 @@ fn held(program: &Program, run: &ProgramLine, itself: bool) -> String {
     let mut text = format!("On {}: `{shown}`", machine.name);
     let how = match run.kind.filter(|_| itself) {
         Some(MotionKind::Rapid) => Some("rapid".to_owned()),
-        Some(MotionKind::Feed) => Some(format!("feed {} mm/min", Short(run.feed))),
+        Some(MotionKind::Feed) => Some(format!(
+            "feed {} mm/min",
+            Short(libm::round(run.feed * 10.0) / 10.0)
+        )),
         Some(MotionKind::Thread) => Some("thread".to_owned()),
         None => None,
     };

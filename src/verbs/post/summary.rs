@@ -7,7 +7,7 @@ use post_posting::report::{Deviation, LengthSource, PluginUse, Report};
 use post_readback::verify::Verification;
 
 use crate::files::PathArg;
-use crate::terminal::{clock, number};
+use crate::terminal::{at_most, clock, number};
 
 /// The summary of a program at `target` that was made from the CL file named `input`, and what reading it back has found,
 /// if it was.
@@ -259,11 +259,9 @@ fn held_by(plan: &PlanReport) -> String {
     }
 }
 
-/// A number with its decimals, no zero of it negative.
-/// Rounded up, but for a thousandth of the last decimal.
+/// A certified maximum and its place.
 fn certified(deviation: Deviation, unit: &str, decimals: u8) -> String {
-    let scale = libm::pow(10.0, f64::from(decimals));
-    let value = number(libm::ceil(deviation.value * scale - 1e-3) / scale, decimals);
+    let value = at_most(deviation.value, decimals);
     if deviation.line == 0 {
         return format!("{value} {unit}");
     }

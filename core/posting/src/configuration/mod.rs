@@ -15,6 +15,7 @@ mod settle;
 mod solution;
 mod taut;
 mod trellis;
+mod whole_pass;
 
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -36,6 +37,7 @@ use crate::stream::{Flow, Outlet};
 pub(crate) use route::Chosen;
 use route::{Lost, Route};
 pub(crate) use trellis::pose;
+pub use whole_pass::whole_pass;
 
 /// What this stage hands on beside commands.
 #[derive(Clone, Debug)]

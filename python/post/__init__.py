@@ -1,0 +1,10 @@
+"""Posts cutter-location files, and solves the kinematics of the machines that run them.
+
+Lengths are in mm and angles in degrees, as the control shows them; points and tool axes are in the part frame; arrays
+are float64, one row a point, axis values in the order of :attr:`Machine.axes`.
+"""
+
+from post.machine import Axis, Machine
+from post.refusal import Diagnostic, PostError
+
+__all__ = ["Axis", "Diagnostic", "Machine", "PostError"]

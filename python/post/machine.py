@@ -1,0 +1,198 @@
+"""A machine: where its tool goes, how its axes get there, and what it makes of a CL file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from post import _native
+
+Floats = NDArray[np.float64]
+Path = str | os.PathLike[str]
+Value = str | bool | int | float | Sequence[float]
+"""What a setting can be: as in a machine file; a text may be an expression."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis of a machine."""
+
+    name: str
+    rotary: bool
+    carries_part: bool
+    """It carries the workpiece; else the tool."""
+    unit: Literal["mm", "deg"]
+    travel: tuple[float, float] | None
+    """Least and largest value; none for an axis without ends."""
+
+
+class Machine:
+    """A machine with its settings and a tool in it; :meth:`load` makes one. It never changes, and threads may share it."""
+
+    _native: _native.Machine
+    _axes: tuple[Axis, ...]
+
+    def __init__(self, native: _native.Machine) -> None:
+        self._native = native
+        self._axes = tuple(
+            Axis(name, rotary, carries_part, unit, travel)
+            for name, rotary, carries_part, unit, travel in native.axes()
+        )
+
+    @classmethod
+    def load(
+        cls,
+        name: Path,
+        *,
+        set: Mapping[str, Value] | None = None,
+        tool_length: float | None = None,
+        mount: Sequence[float] | None = None,
+        turn: float | None = None,
+        machines: Iterable[Path] = (),
+        plugins: Iterable[Path] = (),
+    ) -> Machine:
+        """Loads a machine: a TOML file, or the name of one in a machine folder or built in.
+
+        ``set`` sets parameters (``{"Lm": 312}``) or any keys (``{"accuracy.tolerance": 0.001}``) over the file;
+        ``tool_length`` is that of every tool from the gauge point to the tip, mm; ``mount`` where the part origin sits, all
+        axes at zero, machine frame, mm; ``turn`` how the part is turned about its Z, degrees. ``machines`` and
+        ``plugins`` are further folders, beside those of ``POST_MACHINES`` and ``POST_PLUGINS``.
+
+        Raises :class:`PostError` where the command would refuse.
+        """
+        return cls(
+            _native.Machine(
+                os.fspath(name),
+                [(key, written(value)) for key, value in (set or {}).items()],
+                None if tool_length is None else float(tool_length),
+                None if mount is None else point(mount),
+                None if turn is None else float(turn),
+                [os.fspath(folder) for folder in machines],
+                [os.fspath(folder) for folder in plugins],
+            )
+        )
+
+    @property
+    def name(self) -> str:
+        """Its name, as its file gives it."""
+        return self._native.name
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """Its axes, from the workpiece to the tool: the order of all axis values."""
+        return self._axes
+
+    def __repr__(self) -> str:
+        return f"<post.Machine {self.name!r}, axes {' '.join(axis.name for axis in self.axes)}>"
+
+    def forward(self, q: ArrayLike) -> tuple[Floats, Floats]:
+        """Where tip and tool axis stand for axis values ``q`` (n, k): tips (n, 3), mm, and unit vectors (n, 3)."""
+        return self._native.forward(self._values("q", q))
+
+    def inverse(
+        self,
+        tip: ArrayLike,
+        axis: ArrayLike,
+        *,
+        edge: ArrayLike | None = None,
+        near: ArrayLike | None = None,
+        within_travel: bool = False,
+    ) -> tuple[Floats, NDArray[np.int64]]:
+        """All axis values that bring the tool to ``tip`` (n, 3) along ``axis`` (n, 3): ``q`` (n, s, k), with nan where a
+        point has fewer than s solutions, and how many each has (n,); 0 where it cannot be reached.
+
+        Every solution is held against the forward product. Axes that a point leaves free stand as in ``near`` (k,).
+        Angles are within half a turn of the zero of the machine's drawing; with ``within_travel`` on the turn nearest to
+        ``near``, and solutions outside travel are left out. A machine with fewer than two rotary axes points the tool
+        within ``accuracy.axis_tolerance``. ``edge`` (n, 3) is the leading edge, for machines whose tool has one.
+        """
+        tip, axis, edge = self._poses(tip, axis, edge)
+        rest = self._native.start() if near is None else near
+        stands = np.ascontiguousarray(rest, dtype=np.float64)
+        if stands.shape != (len(self.axes),):
+            raise ValueError(f"near has the shape {stands.shape}, not ({len(self.axes)},)")
+        return self._native.inverse(tip, axis, edge, stands, within_travel)
+
+    def route(
+        self,
+        tip: ArrayLike,
+        axis: ArrayLike,
+        cut: ArrayLike | bool = True,
+        *,
+        edge: ArrayLike | None = None,
+    ) -> Floats:
+        """Axis values (n, k) for a path, chosen over the whole of it as posting does. ``cut`` (n,) says of each point
+        whether the tool comes to it cutting, or in a rapid.
+
+        Raises :class:`PostError` where a point cannot be reached or a cut cannot go on; points are counted from 0.
+        """
+        tip, axis, edge = self._poses(tip, axis, edge)
+        cuts = np.ascontiguousarray(np.broadcast_to(np.asarray(cut, dtype=np.bool_), tip.shape[:1]))
+        return self._native.route(tip, axis, edge, cuts)
+
+    def deviation(self, q0: ArrayLike, q1: ArrayLike, t: ArrayLike = 0.5) -> tuple[Floats, Floats]:
+        """How far the tool strays at shares ``t`` (m,) of moves that take all axes linearly from ``q0`` to ``q1``
+        (n, k): of the tip from the straight line between its ends (n, m, 3), mm, of the tool axis from its great circle
+        (n, m), degrees.
+        """
+        begin, end = self._values("q0", q0), self._values("q1", q1)
+        if begin.shape != end.shape:
+            raise ValueError(f"q0 has the shape {begin.shape}, q1 {end.shape}")
+        shares = np.ascontiguousarray(np.atleast_1d(np.asarray(t, dtype=np.float64)))
+        if shares.ndim != 1:
+            raise ValueError(f"t has the shape {shares.shape}, not (m,)")
+        return self._native.deviation(begin, end, shares)
+
+    def _values(self, name: str, q: ArrayLike) -> Floats:
+        return rows(name, q, len(self.axes))
+
+    def _poses(
+        self, tip: ArrayLike, axis: ArrayLike, edge: ArrayLike | None
+    ) -> tuple[Floats, Floats, Floats | None]:
+        tips = rows("tip", tip, 3)
+        axes = along("axis", axis, tips)
+        return tips, axes, None if edge is None else along("edge", edge, tips)
+
+
+def rows(name: str, values: ArrayLike, width: int) -> Floats:
+    """An array of float64 in one piece, one row a point; a single row is one point."""
+    array = np.ascontiguousarray(values, dtype=np.float64)
+    if array.ndim == 1 and array.shape == (width,):
+        array = array.reshape(1, width)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise ValueError(f"{name} has the shape {np.shape(values)}, not (n, {width})")
+    return array
+
+
+def along(name: str, values: ArrayLike, tips: Floats) -> Floats:
+    """Directions of points; a single one is that of all."""
+    array = rows(name, values, 3)
+    if len(array) == 1 and len(tips) != 1:
+        array = np.ascontiguousarray(np.broadcast_to(array, tips.shape))
+    if array.shape != tips.shape:
+        raise ValueError(f"{name} has the shape {array.shape}, tip {tips.shape}")
+    return array
+
+
+def point(values: Sequence[float]) -> tuple[float, float, float]:
+    """Three coordinates."""
+    x, y, z = (float(value) for value in values)
+    return x, y, z
+
+
+def written(value: Value) -> str:
+    """A value as a machine file has it."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
+    return f"[{', '.join(written(item) for item in value)}]"

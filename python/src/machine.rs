@@ -1,0 +1,173 @@
+//! A machine.
+
+use std::path::PathBuf;
+
+use numpy::ndarray::{Array1, Array2, Array3};
+use numpy::{
+    IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2,
+    PyUntypedArrayMethods,
+};
+use post_command::library::{Deviations, LoadedMachine, MachineTold, Solutions, Wanted};
+use pyo3::prelude::*;
+
+use crate::apart::apart;
+
+/// A machine with its settings, a tool in it.
+#[pyclass(frozen, module = "post._native")]
+pub struct Machine {
+    loaded: LoadedMachine,
+}
+
+/// Numbers of many points.
+type Rows<'py> = Bound<'py, PyArray2<f64>>;
+
+/// Numbers of many points, in one piece.
+type Given<'py> = PyReadonlyArray2<'py, f64>;
+
+/// Of an axis its name, that it turns, that it carries the part, its unit and its travel.
+type AxisTold = (String, bool, bool, &'static str, Option<[f64; 2]>);
+
+#[pymethods]
+impl Machine {
+    #[new]
+    #[expect(clippy::too_many_arguments, reason = "they are those of Machine.load")]
+    fn new(
+        py: Python<'_>,
+        name: String,
+        set: Vec<(String, String)>,
+        tool_length: Option<f64>,
+        mount: Option<[f64; 3]>,
+        turn: Option<f64>,
+        machines: Vec<PathBuf>,
+        plugins: Vec<PathBuf>,
+    ) -> PyResult<Self> {
+        let told = MachineTold {
+            name,
+            set,
+            mount,
+            turn,
+            tool_length,
+            machines,
+            plugins,
+        };
+        let loaded = apart(py, || LoadedMachine::load(told))?;
+        Ok(Self { loaded })
+    }
+
+    /// Its name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.loaded.description().name
+    }
+
+    /// Its axes, from the workpiece to the tool.
+    fn axes(&self) -> Vec<AxisTold> {
+        let axes = self.loaded.kinematics().axes().into_iter();
+        axes.map(|axis| {
+            (
+                axis.name,
+                axis.rotary,
+                axis.carries_part,
+                axis.unit,
+                axis.travel,
+            )
+        })
+        .collect()
+    }
+
+    /// The tool has a leading edge.
+    #[getter]
+    fn has_edge(&self) -> bool {
+        self.loaded.kinematics().has_edge()
+    }
+
+    /// Where the axes stand before anything moves.
+    fn start(&self) -> Vec<f64> {
+        self.loaded.kinematics().start()
+    }
+
+    /// Tip and tool axis of axis values.
+    fn forward<'py>(&self, py: Python<'py>, q: Given<'py>) -> PyResult<(Rows<'py>, Rows<'py>)> {
+        let mut tip = Array2::zeros((q.shape()[0], 3));
+        let mut axis = Array2::zeros((q.shape()[0], 3));
+        let q = q.as_slice()?;
+        if let (Some(tip), Some(axis)) = (tip.as_slice_mut(), axis.as_slice_mut()) {
+            apart(py, || {
+                self.loaded.kinematics().forward(q, tip, axis);
+                Ok(())
+            })?;
+        }
+        Ok((tip.into_pyarray(py), axis.into_pyarray(py)))
+    }
+
+    /// All solutions for tips and tool axes, and how many each point has.
+    fn inverse<'py>(
+        &self,
+        py: Python<'py>,
+        tip: Given<'py>,
+        axis: Given<'py>,
+        edge: Option<Given<'py>>,
+        near: PyReadonlyArray1<'py, f64>,
+        within_travel: bool,
+    ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<i64>>)> {
+        let points = tip.shape()[0];
+        let wanted = Wanted {
+            tip: tip.as_slice()?,
+            axis: axis.as_slice()?,
+            edge: edge.as_ref().map(|edge| edge.as_slice()).transpose()?,
+        };
+        let near = near.as_slice()?;
+        let kinematics = self.loaded.kinematics();
+        let Solutions { width, q, counts } =
+            apart(py, || kinematics.inverse(&wanted, near, within_travel))?;
+        let q = shaped(Array3::from_shape_vec(
+            (points, width, kinematics.count()),
+            q,
+        ))?;
+        Ok((q.into_pyarray(py), Array1::from(counts).into_pyarray(py)))
+    }
+
+    /// The solution over a whole pass.
+    fn route<'py>(
+        &self,
+        py: Python<'py>,
+        tip: Given<'py>,
+        axis: Given<'py>,
+        edge: Option<Given<'py>>,
+        cut: PyReadonlyArray1<'py, bool>,
+    ) -> PyResult<Rows<'py>> {
+        let points = tip.shape()[0];
+        let wanted = Wanted {
+            tip: tip.as_slice()?,
+            axis: axis.as_slice()?,
+            edge: edge.as_ref().map(|edge| edge.as_slice()).transpose()?,
+        };
+        let cut = cut.as_slice()?;
+        let q = apart(py, || self.loaded.route(&wanted, cut))?;
+        let count = self.loaded.kinematics().count();
+        Ok(shaped(Array2::from_shape_vec((points, count), q))?.into_pyarray(py))
+    }
+
+    /// How far the tool strays from the straight line between axis values, at shares of the way.
+    fn deviation<'py>(
+        &self,
+        py: Python<'py>,
+        q0: Given<'py>,
+        q1: Given<'py>,
+        shares: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<(Bound<'py, PyArray3<f64>>, Rows<'py>)> {
+        let (moves, places) = (q0.shape()[0], shares.shape()[0]);
+        let (from, to, shares) = (q0.as_slice()?, q1.as_slice()?, shares.as_slice()?);
+        let Deviations { tip, axis } = apart(py, || {
+            Ok(self.loaded.kinematics().deviation([from, to], shares))
+        })?;
+        let tip = shaped(Array3::from_shape_vec((moves, places, 3), tip))?;
+        let axis = shaped(Array2::from_shape_vec((moves, places), axis))?;
+        Ok((tip.into_pyarray(py), axis.into_pyarray(py)))
+    }
+}
+
+/// An array whose numbers are as many as its shape says.
+fn shaped<T>(array: Result<T, numpy::ndarray::ShapeError>) -> PyResult<T> {
+    array.map_err(|fault| pyo3::exceptions::PyValueError::new_err(fault.to_string()))
+}

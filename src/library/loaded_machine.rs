@@ -1,0 +1,127 @@
+//! A machine with its settings, as the command loads it.
+
+use std::path::PathBuf;
+
+use post_machine::description::{Machine, Setting};
+use post_plugin::DialectSession as _;
+use post_posting::program::{Motion, Pace};
+use post_posting::whole_pass;
+
+use super::{Kinematics, Refused, Wanted, quietly};
+use crate::job::{machine_files, plugin_finder};
+
+/// Decimals that leave axis values as they are solved: a millionth of a micrometre.
+const EXACT: u8 = 9;
+
+/// Which machine, and what is set over its file.
+#[derive(Clone, Debug, Default)]
+pub struct MachineTold {
+    /// A TOML file, or the name of one in a machine folder or built in.
+    pub name: String,
+    /// As `--set`: a parameter or any key, and its value.
+    pub set: Vec<(String, String)>,
+    /// Where the part origin sits, all axes at zero, machine frame, mm.
+    pub mount: Option<[f64; 3]>,
+    /// How the part is turned about its Z, degrees.
+    pub turn: Option<f64>,
+    /// Length of every tool from the gauge point to the tip, mm.
+    pub tool_length: Option<f64>,
+    /// Further folders of machine files.
+    pub machines: Vec<PathBuf>,
+    /// Folders of plugin libraries.
+    pub plugins: Vec<PathBuf>,
+}
+
+impl MachineTold {
+    /// What is set over the machine file, in the order of the command.
+    pub fn settings(&self) -> Vec<Setting> {
+        let set = self.set.iter();
+        let mut settings: Vec<Setting> = set
+            .map(|(key, value)| Setting::Written(format!("{key}={value}")))
+            .collect();
+        settings.extend(self.mount.map(Setting::Mount));
+        settings.extend(self.turn.map(Setting::Turn));
+        settings
+    }
+}
+
+/// A machine that is loaded, a tool in it.
+#[derive(Debug)]
+pub struct LoadedMachine {
+    told: MachineTold,
+    machine: Machine,
+    kinematics: Kinematics,
+}
+
+impl LoadedMachine {
+    /// Loads it as the command does.
+    ///
+    /// # Errors
+    /// There is none of that name, its file is refused, or its chain cannot be solved.
+    pub fn load(told: MachineTold) -> Result<Self, Refused> {
+        let load = || machine_files::load(&told.name, &told.machines, &told.settings());
+        let (machine, _) = quietly(load)?;
+        let kinematics = Kinematics::new(&machine, told.tool_length.unwrap_or(0.0))?;
+        Ok(Self {
+            told,
+            machine,
+            kinematics,
+        })
+    }
+
+    /// What it was loaded by.
+    pub fn told(&self) -> &MachineTold {
+        &self.told
+    }
+
+    /// What its file means.
+    pub fn description(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// Where its tool goes, and how its axes get there.
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
+    /// Axis values for a path, chosen over the whole of it as posting does: by point and axis. `cut` says of each point
+    /// whether the tool comes to it cutting, or in a rapid.
+    ///
+    /// # Errors
+    /// A point that is none or cannot be reached, or where a cut cannot go on.
+    pub fn route(&self, wanted: &Wanted<'_>, cut: &[bool]) -> Result<Vec<f64>, Refused> {
+        let poses = wanted.poses(self.kinematics.has_edge())?;
+        let path: Vec<Motion> = poses
+            .iter()
+            .zip(cut)
+            .map(|(pose, cut)| Motion {
+                tip: pose.tip,
+                axis: pose.axis,
+                edge: pose.edge,
+                pace: match cut {
+                    true => Pace::PerMinute(1000.0),
+                    false => Pace::Rapid,
+                },
+                chord: 0.0,
+            })
+            .collect();
+        let machine = &self.machine;
+        let open = || {
+            let finder = plugin_finder::finder(&self.told.plugins)?;
+            let (dialect, _) = plugin_finder::dialect(&finder, machine, "ROUTE", None)?;
+            let mut format = dialect.format().clone();
+            // Axis values are wanted as they are solved.
+            format.words.fill(EXACT);
+            Ok(format)
+        };
+        let (format, _) = quietly(open)?;
+        let length = self.told.tool_length.unwrap_or(0.0);
+        let found = whole_pass(machine, &format, length, &path)?;
+        let count = self.kinematics.count();
+        let mut q = vec![0.0; found.len() * count];
+        for (joints, row) in found.iter().zip(q.chunks_exact_mut(count)) {
+            self.kinematics.readings(joints, row);
+        }
+        Ok(q)
+    }
+}

@@ -1,5 +1,6 @@
 //! What the user sees: results on standard output; questions, progress and messages on standard error.
 
+mod codes;
 mod findings;
 mod gathering;
 mod progress;
@@ -12,6 +13,7 @@ use std::sync::{Mutex, PoisonError};
 
 use post_grammar::text::escaped;
 
+pub use codes::{CODES, Code, CodeGroup};
 pub use findings::findings;
 pub use gathering::{gathered, is_gathering};
 pub use progress::{JobsProgress, Progress, Watched};

@@ -6,6 +6,7 @@ mod check;
 mod complete;
 mod convert;
 mod diff;
+mod explain;
 mod list_machines;
 mod list_words;
 mod lsp;
@@ -34,6 +35,7 @@ use check::CheckArguments;
 use complete::CompletionsArguments;
 use convert::ConvertArguments;
 use diff::DiffArguments;
+use explain::ExplainArguments;
 use list_machines::MachinesArguments;
 use list_words::WordsArguments;
 use lsp::LspArguments;
@@ -78,6 +80,7 @@ use view::{View, ViewArguments};
   post predict part.nc --machine ac-trunnion --pictures prediction
   post plan curve.json --pictures plan
   post view part.cls --machine ac-trunnion
+  post explain over-travel
   post plugin show fanuc
   post plugin new mine --iso
   post plugin test target/release/libpost_mine.so
@@ -113,6 +116,7 @@ enum Verb {
     Read(Box<ReadArguments>),
     View(ViewArguments),
     Lsp(LspArguments),
+    Explain(ExplainArguments),
     Completions(CompletionsArguments),
     Man(ManArguments),
 }
@@ -138,6 +142,7 @@ impl CommandLine {
             Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
             Some(Verb::Read(arguments)) => read::run(&arguments),
             Some(Verb::View(arguments)) => view(&arguments),
+            Some(Verb::Explain(arguments)) => explain::run(&arguments),
             Some(Verb::Lsp(arguments)) => lsp::run(arguments),
             Some(Verb::Completions(arguments)) => complete::run(&arguments, Self::command()),
             Some(Verb::Man(arguments)) => man::run(&arguments, Self::command()),

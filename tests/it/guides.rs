@@ -10,6 +10,9 @@
 //! `UPDATE_GUIDE=1` writes into the pages what the commands print where it is something else, and the reference pages;
 //! `GUIDE_PAGE=part/of/its/name` keeps to some pages.
 
+mod codes;
 #[cfg(unix)]
 mod examples;
+mod links;
 mod page;
+mod reference;

@@ -90,7 +90,7 @@ fn fields() -> String {
             .strip_prefix("pub ")
             .and_then(|rest| rest.split_once(':'))
         {
-            let doc = doc.drain(..).collect::<Vec<_>>().join(" ");
+            let doc = std::mem::take(&mut doc).join(" ");
             // Links of rustdoc lead nowhere here.
             let doc = doc
                 .replace("[`", "`")

@@ -170,7 +170,7 @@ impl Writer<'_> {
         if following.is_none() {
             let shown = self.told(&self.start, true);
             self.say(&format!("The display shows {shown}"));
-            self.say("All axes are tried. After this stop the depth axis retracts at rapid, as after every program");
+            self.say("All axes are tried. After this stop nothing moves");
             self.batch.push(0, Event::Stop);
         }
     }

@@ -257,7 +257,7 @@ fn takes(schema: &Value, all: &Value) -> String {
             "array" => match resolved(&schema["items"], all)["type"] {
                 Value::Array(_) => counted("number"),
                 Value::String(ref kind) if kind == "string" => counted("text"),
-                _ => counted("entrie").replace("entries", "entries"),
+                _ => counted("entrie"),
             },
             _ => match &schema["additionalProperties"] {
                 Value::Object(_) => "a table by names".to_owned(),

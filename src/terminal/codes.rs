@@ -894,4 +894,30 @@ pub const CODES: &[CodeGroup] = &[
             ),
         ],
     },
+    CodeGroup {
+        title: "Calls from Python",
+        verbs: "PostError of the Python package",
+        codes: &[
+            code(
+                "edge",
+                "A leading edge is asked for by a path, and has no direction at each point.",
+                "As many directions as points, of three numbers.",
+            ),
+            code(
+                "option",
+                "An argument is not one that the command has, or takes another value.",
+                "`post --help` lists what the keywords stand for.",
+            ),
+            code(
+                "point",
+                "A point or direction of the path has numbers that are not finite, or no length.",
+                "Millimetres, and directions from the tip to the holder.",
+            ),
+            code(
+                "unreachable",
+                "At a point of the path the linear axes cannot bring the tip there.",
+                "`Machine.inverse` says how many solutions a point has.",
+            ),
+        ],
+    },
 ];

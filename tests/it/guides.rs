@@ -15,4 +15,5 @@ mod codes;
 mod examples;
 mod links;
 mod page;
+mod pictures;
 mod reference;

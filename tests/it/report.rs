@@ -352,7 +352,7 @@ fn hostile_texts_stay_texts() {
 fn texts_go_first_above_the_largest_size() {
     let folder = tempfile::tempdir().unwrap();
     let mut text = Vec::new();
-    generate::write_file(&mut text, 250_000).unwrap();
+    generate::write_file(&mut text, 350_000).unwrap();
     fs::write(folder.path().join("wave.cls"), text).unwrap();
     let job = [
         "wave.cls",
@@ -561,7 +561,7 @@ fn names(page: &Page, table: &str) -> BTreeSet<String> {
 
 #[test]
 fn what_is_predicted_stands_beside_the_blocks() {
-    let (folder, page) = posted("blade.cls", "ac-trunnion", &["--predict", "s.json"]);
+    let (folder, page) = posted("blade.cls", "ac-trunnion", &["--predict=s.json"]);
     let made = Page::read(&page);
     let cl = sample_file("blade.cls").display().to_string();
     let job = [

@@ -1,4 +1,4 @@
-// The chain as it is drawn: where its bodies stand. Tip and tool axis follow from the same product as in decode.js.
+// The chain as it is drawn: where its bodies stand. Tip and tool axis follow from the same product as in derive.js.
 
 P.chain = {};
 

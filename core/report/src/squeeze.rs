@@ -1,6 +1,6 @@
 //! Scripts and styles without what is for readers of the sources alone: comments, indentation, and blanks between words
-//! and signs. Strings, templates and patterns stay letter for letter, and so does the end of a line, which may end a
-//! statement.
+//! and signs. Strings, templates and patterns stay letter for letter, and so does the end of a line where it may end
+//! a statement.
 //!
 //! A part of the build script, and of the crate for its tests.
 
@@ -97,7 +97,10 @@ impl Script<'_> {
             || before == after && matches!(after, '+' | '-')
             || before == '/'
             || after == '/';
-        if line {
+        let inside = matches!(before, '{' | '(' | '[' | ',') || matches!(after, '}' | ')' | ']');
+        if line && inside {
+            // There no statement ends, or one does with or without it.
+        } else if line {
             self.out.push('\n');
         } else if apart {
             self.out.push(' ');
@@ -225,6 +228,10 @@ mod tests {
             ("a - -b + +c; a-- - b", "a- -b+ +c;a-- -b"),
             ("return a\n  (b)", "return a\n(b)"),
             ("in of instanceof x", "in of instanceof x"),
+            (
+                "f(\n  a,\n  [\n1\n]\n)\n{\n  b;\n  c\n}\nd",
+                "f(a,[1])\n{b;\nc}\nd",
+            ),
             ("5 .toFixed ( 2 )", "5 .toFixed(2)"),
         ] {
             assert_eq!(script(text).trim_end(), squeezed.trim_end(), "{text}");

@@ -32,8 +32,8 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The text that a piece of source begins with, behind blanks and one name with a comma at most.
-fn first_text(source: &str) -> Option<&str> {
+/// The code that a piece of source begins with, behind blanks and one name with a comma at most.
+fn first_code(source: &str) -> Option<&str> {
     let mut rest = source.trim_start();
     if !rest.starts_with('"') {
         let (name, behind) = rest.split_once(',')?;
@@ -45,7 +45,12 @@ fn first_text(source: &str) -> Option<&str> {
         }
         rest = behind.trim_start();
     }
-    rest.strip_prefix('"')?.split('"').next()
+    let text = rest.strip_prefix('"')?.split('"').next()?;
+    let is_code = !text.is_empty()
+        && text
+            .chars()
+            .all(|letter| letter.is_ascii_lowercase() || letter == '-');
+    is_code.then_some(text)
 }
 
 #[test]
@@ -61,7 +66,7 @@ fn every_code_is_explained_and_every_explained_code_is_said() {
         let text = text.split("#[cfg(test)]\nmod ").next().unwrap();
         for maker in MAKERS {
             for (at, _) in text.match_indices(maker) {
-                if let Some(code) = first_text(&text[at + maker.len()..]) {
+                if let Some(code) = first_code(&text[at + maker.len()..]) {
                     said.insert(code.to_owned(), path.clone());
                 }
             }

@@ -16,12 +16,17 @@ fn printed(arguments: &[&str]) -> String {
     run.out
 }
 
-/// A text as the cell of a table.
+/// A text as the cell of a table: what stands between backticks stays as it is, elsewhere nothing is a tag.
 fn cell(text: &str) -> String {
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    text.replace('|', "\\|")
-        .replace('<', "&lt;")
-        .replace('[', "\\[")
+    let parts = text.split('`').enumerate();
+    let parts: Vec<String> = parts
+        .map(|(index, part)| match index % 2 {
+            0 => part.replace('<', "&lt;"),
+            _ => part.to_owned(),
+        })
+        .collect();
+    parts.join("`").replace('|', "\\|")
 }
 
 /// A cell in letters of equal width.
@@ -252,7 +257,7 @@ fn takes(schema: &Value, all: &Value) -> String {
             "array" => match resolved(&schema["items"], all)["type"] {
                 Value::Array(_) => counted("number"),
                 Value::String(ref kind) if kind == "string" => counted("text"),
-                _ => counted("entrie").replace("entries", "entries"),
+                _ => counted("entrie"),
             },
             _ => match &schema["additionalProperties"] {
                 Value::Object(_) => "a table by names".to_owned(),
@@ -279,7 +284,10 @@ fn table(name: &str, what: &str, schema: &Value, all: &Value, text: &mut String)
     let _ = write!(
         text,
         "\n## {}\n\n{}\n\n| key | takes | what it says |\n|---|---|---|\n",
-        code(name),
+        match name.starts_with('[') {
+            true => code(name),
+            false => name.to_owned(),
+        },
         cell(what)
     );
     let mut below = Vec::new();
@@ -299,7 +307,7 @@ fn table(name: &str, what: &str, schema: &Value, all: &Value, text: &mut String)
             }
         };
         let path = name.trim_matches(['[', ']']);
-        let path = inner(if path == "top of the file" {
+        let path = inner(if path == "The top of the file" {
             String::new()
         } else {
             path.to_owned()
@@ -352,7 +360,7 @@ fn the_page_of_keys_is_the_schema() {
         "# Keys of the machine file\n\nWhat `post schema` says, table by table; options of dialects and error models are on [their page](dialects.md). [Every key](../machine-builder/keys.md) tells more of how they go together. A number may be an expression of `[parameters]` where it says so.\n",
     );
     table(
-        "top of the file",
+        "The top of the file",
         schema["description"].as_str().unwrap(),
         &schema,
         &schema,

@@ -1,0 +1,154 @@
+// What follows from other columns, so that Rust has packed no more than what is left of it.
+
+// The tip (mm, part frame) and the tool axis by the chain, from axis values as the control shows them: one product from the
+// workpiece to the tool, as core/machine has it. Into `pose`: x, y, z, i, j, k. With `slides` the linear axes stand at zero,
+// and their ways follow behind, the last axis first.
+P.poser = ({ axes, mount, gauge, tool_axis }) => {
+  const all = new Float64Array(6 + axes.length * 3);
+  return (value, length, pose, slides) => {
+    let end = 6;
+    for (let at = 0; at < 3; at++) {
+      all[at] = gauge[at] - tool_axis[at] * length;
+      all[at + 3] = tool_axis[at];
+    }
+    for (let place = axes.length - 1; place >= 0; place--) {
+      const { kind, direction, point, zero } = axes[place];
+      const [a, b, c] = direction;
+      if (kind !== "rotary") {
+        const q = slides ? 0 : value(place) - zero;
+        for (let at = 0; at < 3; at++) {
+          all[at] += direction[at] * q;
+          if (slides) all[end++] = direction[at];
+        }
+        continue;
+      }
+      const q = ((value(place) - zero) * Math.PI) / 180;
+      const sine = Math.sin(q);
+      const cosine = Math.cos(q);
+      for (let at = 0; at < 3; at++) all[at] -= point[at];
+      for (let at = 0; at < end; at += 3) {
+        const u = all[at];
+        const v = all[at + 1];
+        const w = all[at + 2];
+        const along = (a * u + b * v + c * w) * (1 - cosine);
+        all[at] = u * cosine + (b * w - c * v) * sine + a * along;
+        all[at + 1] = v * cosine + (c * u - a * w) * sine + b * along;
+        all[at + 2] = w * cosine + (a * v - b * u) * sine + c * along;
+      }
+      for (let at = 0; at < 3; at++) all[at] += point[at];
+    }
+    for (let at = 0; at < end; at++) pose[at] = all[at] - (at < 3 ? mount[at][3] : 0);
+  };
+};
+
+// Columns that are told against what follows from others, so that only what is left of them is packed: the sum is what Rust
+// has told, to its last decimal.
+P.derive = {
+  // Tip and tool axis, told against the chain; or the tool axis alone, which the rotary axes turn.
+  chain: ({ meta }, columns) => {
+    const { machine } = meta;
+    const bare = columns.get("tip.x").from !== "chain";
+    const names = ["tip.x", "tip.y", "tip.z", "axis.i", "axis.j", "axis.k"];
+    const axes = machine.axes.map(({ name, kind }) => (bare && kind !== "rotary" ? null : columns.get(`q.${name}`).values));
+    const lengths = columns.get("tool_length").values;
+    const values = names.map((name, at) => (bare && at < 3 ? null : columns.get(name).packed()));
+    const pose = new Float64Array(6 + machine.axes.length * 3);
+    const into = P.poser(machine);
+    let row = 0;
+    const value = (place) => axes[place][row];
+    for (; row < lengths.length; row++) {
+      into(value, lengths[row], pose, bare);
+      for (let name = bare ? 3 : 0; name < 6; name++) values[name][row] += pose[name];
+    }
+    values.forEach((told, at) => told && (columns.get(names[at]).unpacked = told));
+  },
+  // The linear axes, told against those that bring the tip where it is, the rotary axes being as they are.
+  tips: ({ meta }, columns) => {
+    const { machine } = meta;
+    const axes = machine.axes.map(({ name, kind }) => (kind === "rotary" ? columns.get(`q.${name}`).values : null));
+    const slides = machine.axes.filter(({ kind }) => kind !== "rotary").reverse();
+    const told = slides.map(({ name }) => columns.get(`q.${name}`).packed());
+    const lengths = columns.get("tool_length").values;
+    const [x, y, z] = ["tip.x", "tip.y", "tip.z"].map((name) => columns.get(name).values);
+    const m = new Float64Array(15);
+    const far = new Float64Array(3);
+    const into = P.poser(machine);
+    let row = 0;
+    const value = (place) => axes[place][row];
+    // The volume of three of the vectors in m; one of them may be the way that is left.
+    const volume = (a, p, b, q, c, r) => a[p] * (b[q + 1] * c[r + 2] - b[q + 2] * c[r + 1]) + a[p + 1] * (b[q + 2] * c[r] - b[q] * c[r + 2]) + a[p + 2] * (b[q] * c[r + 1] - b[q + 1] * c[r]);
+    for (; row < lengths.length; row++) {
+      into(value, lengths[row], m, true);
+      far[0] = x[row] - m[0];
+      far[1] = y[row] - m[1];
+      far[2] = z[row] - m[2];
+      const whole = volume(m, 6, m, 9, m, 12);
+      if (Math.abs(whole) < 1e-3) continue;
+      told[0][row] += volume(far, 0, m, 9, m, 12) / whole + slides[0].zero;
+      told[1][row] += volume(m, 6, far, 0, m, 12) / whole + slides[1].zero;
+      told[2][row] += volume(m, 6, m, 9, far, 0) / whole + slides[2].zero;
+    }
+    slides.forEach(({ name }, at) => { columns.get(`q.${name}`).unpacked = told[at]; });
+  },
+  // Points of the CL path, told against the tip of the last of the next blocks that come from the same line.
+  blocks: (report, columns) => {
+    const { rows, columns: of } = report.tables.blocks;
+    const lines = columns.get("line").values;
+    const from = of.get("cl").values;
+    const names = ["x", "y", "z"];
+    const tips = names.map((name) => of.get(`tip.${name}`).values);
+    const values = names.map((name) => columns.get(name).packed());
+    let block = 0;
+    for (let point = 0; rows && point < lines.length; point++) {
+      const line = lines[point];
+      if (point === 0 || line !== lines[point - 1]) {
+        let found = block;
+        while (found < rows && found < block + 64 && from[found] !== line) found++;
+        if (from[found] === line && found < block + 64) {
+          while (found + 1 < rows && from[found + 1] === line) found++;
+          block = found;
+        }
+      }
+      for (let at = 0; at < 3; at++) values[at][point] += tips[at][block];
+    }
+    names.forEach((name, at) => { columns.get(name).unpacked = values[at]; });
+  },
+  // The beginning of a block, told against the end of the one before.
+  t1: (report, columns) => {
+    const ends = columns.get("t1").values;
+    const values = columns.get("t0").packed();
+    for (let row = 1; row < values.length; row += 1) values[row] += ends[row - 1];
+    columns.get("t0").unpacked = values;
+  },
+  // The end of a block, told against that of the one before and what a straight way takes at the feed.
+  way: (report, columns) => {
+    const [x, y, z, feed] = ["tip.x", "tip.y", "tip.z", "feed"].map((name) => columns.get(name).values);
+    const values = columns.get("t1").packed();
+    for (let row = 0; row < values.length; row++) {
+      const from = row ? row - 1 : 0;
+      const way = row ? Math.sqrt((x[row] - x[from]) ** 2 + (y[row] - y[from]) ** 2 + (z[row] - z[from]) ** 2) : Math.hypot(x[0], y[0], z[0]);
+      values[row] += (row ? values[row - 1] : 0) + (feed[row] > 0 ? (60 * way) / feed[row] : 0);
+    }
+    columns.get("t1").unpacked = values;
+  },
+  // Places of a block, told against even steps from tip to tip.
+  tip: (report, columns) => {
+    const blocks = report.tables.blocks.columns;
+    const rows = columns.get("row").values;
+    for (const name of ["x", "y", "z"]) {
+      const tips = blocks.get(`tip.${name}`).values;
+      const values = columns.get(name).packed();
+      let first = 0;
+      while (first < rows.length) {
+        const row = rows[first];
+        let end = first + 1;
+        while (end < rows.length && rows[end] === row) end += 1;
+        const to = tips[row];
+        const from = row > 0 ? tips[row - 1] : to;
+        for (let place = first; place < end; place += 1) values[place] += from + (to - from) * ((place - first + 1) / (end - first));
+        first = end;
+      }
+      columns.get(name).unpacked = values;
+    }
+  },
+};

@@ -4,7 +4,19 @@ Lengths are in mm and angles in degrees, as the control shows them; points and t
 are float64, one row a point, axis values in the order of :attr:`Machine.axes`.
 """
 
+from post.job import Blocks, Found, Job
 from post.machine import Axis, Machine
 from post.refusal import Diagnostic, PostError
+from post.studies import Study, study
 
-__all__ = ["Axis", "Diagnostic", "Machine", "PostError"]
+__all__ = [
+    "Axis",
+    "Blocks",
+    "Diagnostic",
+    "Found",
+    "Job",
+    "Machine",
+    "PostError",
+    "Study",
+    "study",
+]

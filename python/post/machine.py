@@ -5,17 +5,42 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from post import _native
+from post.job import Job
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 Floats = NDArray[np.float64]
 Path = str | os.PathLike[str]
-Value = str | bool | int | float | Sequence[float]
+Value = str | bool | int | float | np.integer[Any] | np.floating[Any] | Sequence[float]
 """What a setting can be: as in a machine file; a text may be an expression."""
+
+
+class Options(TypedDict, total=False):
+    """Options of a job, those of the command: ``post --help`` tells what they mean."""
+
+    units: Literal["mm", "inch"] | None
+    msys: Literal["keep", "apply"] | None
+    unknown: Literal["error", "warn", "pass"] | None
+    allow: Sequence[str] | None
+    tool: int | None
+    tool_from_cutter: bool
+    spindle: float | Literal["off"] | None
+    feed: float | None
+    tolerance: float | None
+    tcp: Literal["control", "post"] | None
+    dialect: str | None
+    number: int | None
+    compensate_servo: bool
+    plan: bool
+    plan_rounds: int | None
+    trust_model: bool
 
 
 @dataclass(frozen=True)
@@ -33,9 +58,6 @@ class Axis:
 
 class Machine:
     """A machine with its settings and a tool in it; :meth:`load` makes one. It never changes, and threads may share it."""
-
-    _native: _native.Machine
-    _axes: tuple[Axis, ...]
 
     def __init__(self, native: _native.Machine) -> None:
         self._native = native
@@ -148,6 +170,33 @@ class Machine:
             raise ValueError(f"t has the shape {shares.shape}, not (m,)")
         return self._native.deviation(begin, end, shares)
 
+    def post(
+        self,
+        path: Path,
+        *,
+        output: Path | None = None,
+        blocks: bool = True,
+        **options: Unpack[Options],
+    ) -> Job:
+        """Posts a CL file as the command does: the same program, letter for letter.
+
+        ``output`` writes the program there, whole or not at all; without it nothing is written. ``blocks=False`` keeps no
+        columns of the blocks, some 250 bytes each. Options are those of the command, underscores for hyphens:
+        ``tolerance=0.005``, ``allow=["OFSETL"]``, ``plan=True``.
+
+        Raises :class:`PostError` where the command would refuse.
+        """
+        told = [pair for name, value in options.items() for pair in flags(name, value)]
+        if output is not None:
+            told.append(("output", os.fspath(output)))
+        native = self._native.post(os.fspath(path), told, blocks)
+
+        def planned(rounds: int | None) -> Job:
+            more: Options = {**options, "plan": True, "plan_rounds": rounds}
+            return self.post(path, blocks=blocks, **more)
+
+        return Job(native, planned)
+
     def _values(self, name: str, q: ArrayLike) -> Floats:
         return rows(name, q, len(self.axes))
 
@@ -196,3 +245,17 @@ def written(value: Value) -> str:
     if isinstance(value, (float, np.floating)):
         return repr(float(value))
     return f"[{', '.join(written(item) for item in value)}]"
+
+
+def flags(name: str, value: object) -> list[tuple[str, str | None]]:
+    """An option as flags of the command: a list is the flag so often, and what is none or false is left out."""
+    flag = name.replace("_", "-")
+    if value is None or value is False:
+        return []
+    if value is True:
+        return [(flag, None)]
+    if isinstance(value, (str, int, float, np.integer, np.floating)):
+        return [(flag, written(value))]
+    if isinstance(value, Iterable):
+        return [(flag, str(item)) for item in value]
+    raise TypeError(f"{name} cannot be {value!r}")

@@ -2,13 +2,21 @@
 //! float64 in one piece, and dresses what comes back.
 
 mod apart;
+mod job;
 mod machine;
 mod refusal;
+mod study;
 
 use pyo3::prelude::*;
 
 #[pymodule]
 mod _native {
     #[pymodule_export]
+    use super::apart::fail;
+    #[pymodule_export]
+    use super::job::Job;
+    #[pymodule_export]
     use super::machine::Machine;
+    #[pymodule_export]
+    use super::study::{Study, run_part};
 }

@@ -11,6 +11,7 @@ use post_command::library::{Deviations, LoadedMachine, MachineTold, Solutions, W
 use pyo3::prelude::*;
 
 use crate::apart::apart;
+use crate::job::Job;
 
 /// A machine with its settings, a tool in it.
 #[pyclass(frozen, module = "post._native")]
@@ -20,6 +21,9 @@ pub struct Machine {
 
 /// Numbers of many points.
 type Rows<'py> = Bound<'py, PyArray2<f64>>;
+
+/// Numbers of solutions of many points, and how many solutions each has.
+type Counted<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<i64>>);
 
 /// Numbers of many points, in one piece.
 type Given<'py> = PyReadonlyArray2<'py, f64>;
@@ -109,7 +113,7 @@ impl Machine {
         edge: Option<Given<'py>>,
         near: PyReadonlyArray1<'py, f64>,
         within_travel: bool,
-    ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<i64>>)> {
+    ) -> PyResult<Counted<'py>> {
         let points = tip.shape()[0];
         let wanted = Wanted {
             tip: tip.as_slice()?,
@@ -146,6 +150,18 @@ impl Machine {
         let q = apart(py, || self.loaded.route(&wanted, cut))?;
         let count = self.loaded.kinematics().count();
         Ok(shaped(Array2::from_shape_vec((points, count), q))?.into_pyarray(py))
+    }
+
+    /// Posts a CL file.
+    fn post(
+        &self,
+        py: Python<'_>,
+        input: PathBuf,
+        options: Vec<(String, Option<String>)>,
+        keep_blocks: bool,
+    ) -> PyResult<Job> {
+        let made = apart(py, || self.loaded.post(&input, &options, keep_blocks))?;
+        Ok(Job { made })
     }
 
     /// How far the tool strays from the straight line between axis values, at shares of the way.

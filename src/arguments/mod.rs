@@ -3,6 +3,7 @@
 //! A flag becomes what it means to the core as it is parsed, and is not turned into text again.
 
 pub mod flag_values;
+mod making;
 mod report;
 
 use std::path::PathBuf;
@@ -19,19 +20,12 @@ use flag_values::{
     spindle, word,
 };
 
+pub use making::MakingArguments;
 pub use report::ReportArguments;
 
-/// A CL file, how it is read, and the machine.
-#[derive(Debug, Args)]
-pub struct JobArguments {
-    /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
-    #[arg(short, long, value_name = "MACHINE", required = true)]
-    pub machine: Option<String>,
-
-    /// The CL file, `-` for standard input.
-    #[arg(value_name = "CL-FILE", required = true, value_parser = PathArg::parser())]
-    pub input: Option<PathArg>,
-
+/// How a CL file is read.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ReadingArguments {
     /// Units of the CL file's numbers, whatever it says.
     #[arg(
         long,
@@ -84,6 +78,21 @@ pub struct JobArguments {
     /// Feed of the cuts for which the CL file gives none, mm/min.
     #[arg(long, value_name = "MM_A_MINUTE", value_parser = feed, help_heading = "Reading")]
     pub feed: Option<f64>,
+}
+
+/// A CL file, how it is read, and the machine.
+#[derive(Debug, Args)]
+pub struct JobArguments {
+    /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
+    #[arg(short, long, value_name = "MACHINE", required = true)]
+    pub machine: Option<String>,
+
+    /// The CL file, `-` for standard input.
+    #[arg(value_name = "CL-FILE", required = true, value_parser = PathArg::parser())]
+    pub input: Option<PathArg>,
+
+    #[command(flatten)]
+    pub reading: ReadingArguments,
 
     /// Where the part origin sits for this job, all axes at zero, machine frame, mm.
     #[arg(

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 
 use super::file_id::FileId;
-use super::{FileFault, PathArg, read_files};
+use super::{FileFault, PathArg, interruption, read_files};
 
 /// A CL file that is read, and what is known of it.
 pub struct ClInput {
@@ -44,7 +44,7 @@ impl ClInput {
         }
         Ok(Self {
             name,
-            bytes: Box::new(file),
+            bytes: interruption::watched(Box::new(file)),
             length: metadata.is_file().then_some(metadata.len()),
         })
     }

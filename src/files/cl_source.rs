@@ -1,6 +1,8 @@
 //! A CL file that is read more than once: a file as often as it is asked for, a stream from a copy.
 
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::temporary::Temporary;
 use super::{ClInput, FileFault, PathArg};
@@ -10,7 +12,44 @@ pub struct ClSource {
     argument: PathArg,
     /// What a pipe or standard input held.
     copy: Option<Temporary>,
+    /// What is in the memory already.
+    held: Option<HeldText>,
     name: String,
+}
+
+/// A text in the memory, that may be given up while it is read.
+#[derive(Clone)]
+pub struct HeldText {
+    /// The text.
+    pub bytes: Arc<[u8]>,
+    /// Once this is set, reading it fails.
+    pub stop: Arc<AtomicBool>,
+}
+
+impl HeldText {
+    /// From its start.
+    pub fn open(&self) -> impl Read + use<> {
+        HeldReader {
+            text: self.clone(),
+            at: 0,
+        }
+    }
+}
+
+struct HeldReader {
+    text: HeldText,
+    at: usize,
+}
+
+impl Read for HeldReader {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.text.stop.load(Ordering::Relaxed) {
+            return Err(io::Error::other("given up"));
+        }
+        let count = (&self.text.bytes[self.at..]).read(into)?;
+        self.at += count;
+        Ok(count)
+    }
 }
 
 impl ClSource {
@@ -19,6 +58,7 @@ impl ClSource {
         let mut source = Self {
             argument: argument.clone(),
             copy: None,
+            held: None,
             name: String::new(),
         };
         if !again {
@@ -63,13 +103,38 @@ impl ClSource {
         let source = Self {
             argument: PathArg::Standard,
             copy: Some(copy),
+            held: None,
             name,
         };
         Ok((source, made))
     }
 
+    /// Of a text in the memory that the user knows as the file `argument`.
+    pub fn of_held(argument: &PathArg, text: HeldText) -> Self {
+        let name = argument.path().map(|path| path.display().to_string());
+        Self {
+            argument: argument.clone(),
+            copy: None,
+            held: Some(text),
+            name: name.unwrap_or_default(),
+        }
+    }
+
+    /// The text in the memory, from its start.
+    fn open_held(&self) -> Option<ClInput> {
+        let text = self.held.as_ref()?;
+        Some(ClInput {
+            name: self.name.clone(),
+            length: Some(text.bytes.len() as u64),
+            bytes: Box::new(text.open()),
+        })
+    }
+
     /// From its start, to be read beside another reader that is not done yet.
     pub fn open_beside(&self) -> Result<ClInput, FileFault> {
+        if let Some(input) = self.open_held() {
+            return Ok(input);
+        }
         let Some(copy) = &self.copy else {
             return ClInput::open(&self.argument);
         };
@@ -86,6 +151,9 @@ impl ClSource {
 
     /// From its start.
     pub fn open(&mut self) -> Result<ClInput, FileFault> {
+        if let Some(input) = self.open_held() {
+            return Ok(input);
+        }
         let Some(copy) = &mut self.copy else {
             return ClInput::open(&self.argument);
         };

@@ -138,6 +138,11 @@ impl FileFault {
         }
     }
 
+    /// A file cannot be read: it is the same next time, unless the user changes it.
+    pub fn is_of_input(&self) -> bool {
+        self.code() == "input"
+    }
+
     /// What can be done about it.
     fn help(&self) -> Option<String> {
         match self {

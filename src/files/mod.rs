@@ -9,10 +9,12 @@ mod cl_input;
 mod cl_source;
 mod file_fault;
 mod file_id;
+pub mod interruption;
 mod json_rows;
 mod naming;
 pub mod outcome;
 mod own_folder;
+pub mod parquet;
 mod path_arg;
 mod plan_view;
 pub mod read_files;
@@ -30,7 +32,7 @@ use target::{Target, refuse_losses};
 
 pub use atomic_file::{AtomicFile, NullSink};
 pub use cl_input::ClInput;
-pub use cl_source::ClSource;
+pub use cl_source::{ClSource, HeldText};
 pub use file_fault::FileFault;
 pub use json_rows::JsonRows;
 pub use own_folder::OwnFolder;
@@ -54,6 +56,24 @@ pub fn write(texts: &[(Role, &PathArg, &str)]) -> Result<bool, FileFault> {
     let taken = files.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(files)?;
     Ok(taken)
+}
+
+/// Writes bytes whole, or not at all.
+pub fn write_bytes(role: Role, target: &PathArg, bytes: &[u8]) -> Result<(), FileFault> {
+    let mut files = AtomicFile::create(&[(role, target)])?;
+    for file in &mut files {
+        file.write_bytes(bytes)?;
+    }
+    AtomicFile::finish(files)
+}
+
+/// Refuses targets that are files which the run reads, or one another, or that cannot be written to.
+pub fn check_targets(targets: &[(Role, &PathArg)]) -> Result<(), FileFault> {
+    let targets = targets.iter();
+    let targets: Vec<Target> = targets
+        .map(|(role, named)| Target::find(*role, named))
+        .collect::<Result<_, _>>()?;
+    refuse_losses(&targets.iter().collect::<Vec<_>>())
 }
 
 /// Deletes the file that a text would replace, if there is one; of a link the link alone.

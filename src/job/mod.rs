@@ -1,10 +1,12 @@
 //! A job as the flags mean it: a CL file, a machine with its settings, and the plugins that the machine asks for.
 
+pub mod batch;
 pub mod compensate;
 mod dry_run;
 mod look_ahead;
 pub mod machine_files;
 pub mod machine_schema;
+pub mod making;
 pub mod nc_program;
 pub mod nc_to_cl;
 pub mod one_program;
@@ -16,6 +18,7 @@ mod plugin_folders;
 pub mod predict;
 pub mod read_back;
 pub mod report;
+pub mod summary;
 pub mod unused_options;
 
 use std::path::Path;
@@ -101,14 +104,14 @@ pub fn posting(arguments: &JobArguments, file: &str) -> Job {
     Job {
         reading: Reading {
             file: file.to_owned(),
-            units: arguments.units,
-            tool: arguments.tool,
-            apply_msys: arguments.msys == Msys::Apply,
-            unknown: arguments.unknown,
-            spindle: arguments.spindle.unwrap_or_default(),
-            feed: arguments.feed,
-            tool_from_cutter: arguments.tool_from_cutter,
-            allowed: arguments.allow.clone(),
+            units: arguments.reading.units,
+            tool: arguments.reading.tool,
+            apply_msys: arguments.reading.msys == Msys::Apply,
+            unknown: arguments.reading.unknown,
+            spindle: arguments.reading.spindle.unwrap_or_default(),
+            feed: arguments.reading.feed,
+            tool_from_cutter: arguments.reading.tool_from_cutter,
+            allowed: arguments.reading.allow.clone(),
             ..Reading::default()
         },
         tool_length: arguments.tool_length,

@@ -109,16 +109,16 @@ fn registers(words: &[VocabularyWord]) -> Registers {
 /// How the CL file is meant, as posting was told.
 pub fn course_settings(arguments: &JobArguments, machine: &Machine, file: &str) -> Settings {
     Settings {
-        units: arguments.units,
-        apply_msys: arguments.msys == Msys::Apply,
-        tool: arguments.tool,
-        tool_from_cutter: arguments.tool_from_cutter,
-        feed: arguments.feed,
-        spindle: match arguments.spindle {
+        units: arguments.reading.units,
+        apply_msys: arguments.reading.msys == Msys::Apply,
+        tool: arguments.reading.tool,
+        tool_from_cutter: arguments.reading.tool_from_cutter,
+        feed: arguments.reading.feed,
+        spindle: match arguments.reading.spindle {
             Some(ToldSpindle::On(rpm)) => Some(rpm),
             _ => None,
         },
-        allowed: arguments.allow.clone(),
+        allowed: arguments.reading.allow.clone(),
         ..Settings::of(machine, file)
     }
 }

@@ -134,7 +134,7 @@ impl Kinematics {
             unit: axis.unit_name(),
             travel: axis
                 .travel
-                .map(|travel| travel.map(|end| axis.reading(end))),
+                .map(|travel| travel.map(|end| told(axis.reading(end)))),
         })
         .collect()
     }
@@ -276,6 +276,11 @@ impl Kinematics {
         }
         found
     }
+}
+
+/// An end of travel as the file has it: degrees go through radians and come back a little off.
+fn told(end: f64) -> f64 {
+    libm::rint(end * 1e9) / 1e9
 }
 
 /// The unit vector at a share of the great circle between two others.

@@ -1,13 +1,13 @@
 //! A machine with its settings, as the command loads it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use post_machine::description::{Machine, Setting};
 use post_plugin::DialectSession as _;
 use post_posting::program::{Motion, Pace};
 use post_posting::whole_pass;
 
-use super::{Kinematics, Refused, Wanted, quietly};
+use super::{Kinematics, MadeProgram, OptionTold, Refused, Wanted, quietly};
 use crate::job::{machine_files, plugin_finder};
 
 /// Decimals that leave axis values as they are solved: a millionth of a micrometre.
@@ -82,6 +82,20 @@ impl LoadedMachine {
     /// Where its tool goes, and how its axes get there.
     pub fn kinematics(&self) -> &Kinematics {
         &self.kinematics
+    }
+
+    /// Posts the CL file `input` with these options of the command; its blocks are kept if `keep_blocks` says so. The file
+    /// of the machine is read anew for it.
+    ///
+    /// # Errors
+    /// Why it is refused.
+    pub fn post(
+        &self,
+        input: &Path,
+        options: &[OptionTold],
+        keep_blocks: bool,
+    ) -> Result<MadeProgram, Refused> {
+        MadeProgram::post(&self.told, input, options, keep_blocks)
     }
 
     /// Axis values for a path, chosen over the whole of it as posting does: by point and axis. `cut` says of each point

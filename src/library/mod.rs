@@ -4,8 +4,11 @@
 //! it was: a file that cannot be read, an option that nobody knows, a program that must not run. Nothing is printed, no
 //! signal is caught, and nothing is written but what a call names.
 
+mod blocks;
 mod kinematics;
 mod loaded_machine;
+mod program;
+mod study;
 
 use post_machine::diagnostic::Diagnostic;
 
@@ -13,8 +16,12 @@ use crate::failure::Failure;
 use crate::files::read_files;
 use crate::terminal;
 
+pub use crate::files::interruption::{Stop, stoppable};
+pub use blocks::{Blocks, KINDS, REASONS};
 pub use kinematics::{AxisFacts, Deviations, Kinematics, Solutions, Wanted};
 pub use loaded_machine::{LoadedMachine, MachineTold};
+pub use program::{Found, MadeProgram, OptionTold, ReportTold};
+pub use study::{Column, Progressed, StudyJobs, StudyPart, StudyTable, Values};
 
 /// Why a job was not done: findings, an error among them.
 pub type Refused = Vec<Diagnostic>;
@@ -34,14 +41,24 @@ fn quietly<T>(job: impl FnOnce() -> Result<T, Failure>) -> Result<(T, Vec<Diagno
 /// What a failure says, where nobody prints it.
 fn refused(failure: Failure) -> Refused {
     match failure {
-        Failure::Usage(fault) => vec![Diagnostic::error("option", usage(&fault))],
+        Failure::Usage(fault) => vec![usage(&fault)],
         other => other.findings(),
     }
 }
 
 /// What is wrong with an option, without what a command line would be told besides.
-fn usage(fault: &clap::Error) -> String {
+fn usage(fault: &clap::Error) -> Diagnostic {
     let text = fault.render().to_string();
-    let first = text.split("\n\n").next().unwrap_or_default();
-    first.trim_start_matches("error: ").trim().to_owned()
+    let mut parts = text.split("\n\n").map(str::trim);
+    let first = parts.next().unwrap_or_default();
+    let finding = Diagnostic::error("option", first.trim_start_matches("error: "));
+    match parts.find_map(|part| part.strip_prefix("tip: ")) {
+        Some(tip) => finding.help(tip),
+        None => finding,
+    }
+}
+
+/// An argument that cannot be used.
+fn option(message: String) -> Refused {
+    vec![Diagnostic::error("option", message)]
 }

@@ -16,7 +16,7 @@ use post_grammar::text::escaped;
 pub use codes::{CODES, Code, CodeGroup};
 pub use findings::findings;
 pub use gathering::{gathered, is_gathering};
-pub use progress::{Progress, Watched};
+pub use progress::{JobsProgress, Progress, Watched};
 pub use quantity::{at_most, clock, number};
 pub use table::table;
 

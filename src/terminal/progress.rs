@@ -50,6 +50,40 @@ impl Progress {
     }
 }
 
+/// How many of so many jobs are done.
+pub struct JobsProgress {
+    bar: ProgressBar,
+}
+
+impl JobsProgress {
+    /// A bar over so many jobs.
+    pub fn new(jobs: u64) -> Self {
+        let bar = ProgressBar::new(jobs).with_finish(ProgressFinish::AndClear);
+        if !std::io::stderr().is_terminal() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:40} {pos} of {len} jobs, {eta} left{msg}")
+        {
+            bar.set_style(style);
+        }
+        Self { bar }
+    }
+
+    /// So many are done, so many of them refused.
+    pub fn at(&self, done: u64, refused: u64) {
+        self.bar.set_position(done);
+        if refused > 0 {
+            self.bar.set_message(format!(", {refused} refused"));
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
 /// A file that someone else reads, and how far that has come.
 pub struct Watched<R> {
     input: R,

@@ -1,6 +1,7 @@
 //! The verbs of the command, a file or a folder each. No verb uses another: what two of them need lies in the rooms
 //! below, `job`, `files`, `terminal` and `arguments`.
 
+mod batch;
 mod check;
 mod complete;
 mod convert;
@@ -29,6 +30,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use post_machine::diagnostic::nearest;
 
 use crate::failure::Failure;
+use batch::BatchArguments;
 use check::CheckArguments;
 use complete::CompletionsArguments;
 use convert::ConvertArguments;
@@ -71,6 +73,7 @@ use view::{View, ViewArguments};
   post convert part.h --from dmu50 --to ac-trunnion -o part.nc
   post study part.cls --machine ac-trunnion
   post place part.cls --machine dmu50 --svg travel.svg
+  post batch *.cls --machine dmu50 --machine ac-trunnion -o results.parquet
   post read part.nc --machine ac-trunnion --csv motions.csv
   post verify part.nc --machine dmu50 --against part.cls --map map.json
   post diff old.nc new.nc --machine ac-trunnion
@@ -99,6 +102,7 @@ enum Verb {
     Words(WordsArguments),
     Machines(MachinesArguments),
     Schema(SchemaArguments),
+    Batch(Box<BatchArguments>),
     Check(CheckArguments),
     Convert(Box<ConvertArguments>),
     Diff(Box<DiffArguments>),
@@ -125,6 +129,7 @@ impl CommandLine {
             Some(Verb::Words(arguments)) => list_words::run(&arguments),
             Some(Verb::Machines(arguments)) => list_machines::run(&arguments),
             Some(Verb::Schema(arguments)) => print_schema::run(&arguments),
+            Some(Verb::Batch(arguments)) => batch::run(&arguments),
             Some(Verb::Check(arguments)) => check::run(&arguments),
             Some(Verb::Convert(arguments)) => convert::run(&arguments),
             Some(Verb::Diff(arguments)) => diff::run(&arguments),

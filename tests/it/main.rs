@@ -5,6 +5,7 @@
 )]
 
 mod axes;
+mod batch;
 #[cfg(target_os = "linux")]
 mod bounds;
 mod browser;

@@ -1,12 +1,14 @@
 //! What became of a program that was made, as a page.
 
+use std::io::Read;
+
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_posting::report::{Deviation, Report};
 use post_readback::verify::Verification;
 use post_report::meta::{AxisUsed, Maximum, Names, Verdict};
 
-use super::{BlockRows, Parts, PredictedLines, PredictedRows};
+use super::{BlockRows, Parts, PredictedParts};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::job::predict::Prediction;
@@ -34,8 +36,8 @@ impl Made<'_> {
     /// A text cannot be read again, or the report not be written.
     pub fn write(
         &self,
-        (rows, predicted): (BlockRows<'_>, Option<(PredictedLines, PredictedRows<'_>)>),
-        (source, program): (&mut ClSource, &mut AtomicFile),
+        (rows, predicted): (BlockRows<'_>, Option<PredictedParts<'_>>),
+        (source, name, text): (&mut ClSource, &str, &mut dyn Read),
         most: u64,
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {
@@ -51,7 +53,7 @@ impl Made<'_> {
         meta.maxima = self.maxima();
         meta.facts = self.facts.clone();
         meta.axes_used = self.axes_used();
-        meta.warnings = super::warnings(self.findings, program.name());
+        meta.warnings = super::warnings(self.findings, name);
         meta.excludes = super::excludes();
         meta.tool_length = self.report.tools.first().map_or(0.0, |tool| tool.length_mm);
         if let Some(found) = self.prediction {
@@ -61,13 +63,11 @@ impl Made<'_> {
             meta.excludes.extend(found.assumed.iter().cloned());
         }
         let mut parts = Parts::default();
-        if let Some((series, mut rows)) = predicted {
-            series.finish(&mut rows, &mut parts)?;
-            rows.finish(&mut parts)?;
+        if let Some(predicted) = predicted {
+            predicted.finish(&mut parts)?;
         }
         rows.finish(&mut parts, &mut meta)?;
-        let name = program.name().to_owned();
-        parts.text("nc", &name, &mut program.reread()?)?;
+        parts.text("nc", name, text)?;
         let mut cl = source.open()?;
         parts.text("cl", &cl.name, &mut cl.bytes)?;
         parts.write(meta, most, page)

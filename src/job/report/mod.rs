@@ -17,6 +17,7 @@ mod old_path;
 mod parts;
 mod path_rows;
 mod predicted_lines;
+mod predicted_parts;
 mod predicted_rows;
 mod told_by_prediction;
 
@@ -29,7 +30,7 @@ pub use motion_rows::{Besides, Heard, Hears, MotionRows};
 pub use old_path::OldPath;
 pub use parts::{Parts, excludes};
 pub use predicted_lines::PredictedLines;
-pub use predicted_rows::PredictedRows;
+pub use predicted_parts::PredictedParts;
 pub use told_by_prediction::{predicted_facts, predicted_maxima};
 
 use std::fs::File;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use post_machine::description::{Machine, Setting, Tcp};
 use post_machine::diagnostic::Diagnostic;
-use post_posting::program::{ToldSpindle, Unknown};
+use post_posting::program::ToldSpindle;
 use post_posting::report::Report;
 use post_readback::course::CourseFacts;
 use post_readback::course::cl::{ClCourse, Settings};
@@ -14,9 +14,9 @@ use post_readback::interpret::Limits;
 use post_readback::verify::CutPath;
 
 use crate::arguments::flag_values::{
-    Msys, TcpWord, feed, length, point, positive, setting, spindle, word,
+    TcpWord, feed, length, point, positive, setting, spindle, word,
 };
-use crate::arguments::{JobArguments, ProgramArguments, ReportArguments};
+use crate::arguments::{JobArguments, ProgramArguments, ReadingArguments, ReportArguments};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg, Role};
 use crate::job::nc_program::{self, NcControl};
@@ -303,9 +303,10 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
             job: "convert",
             facts: summed,
         };
+        let (named, mut text) = (program.name().to_owned(), program.reread()?);
         made.write(
             (rows, None),
-            (&mut source, program),
+            (&mut source, &named, &mut text),
             arguments.report.most(),
             &mut page,
         )?;
@@ -354,14 +355,12 @@ impl ConvertArguments {
         JobArguments {
             machine: Some(self.to.clone()),
             input: Some(self.input.clone()),
-            units: None,
-            msys: Msys::default(),
-            unknown: Unknown::default(),
-            allow: Vec::new(),
-            tool: self.tool,
-            tool_from_cutter: false,
-            spindle: self.spindle,
-            feed: self.feed,
+            reading: ReadingArguments {
+                tool: self.tool,
+                spindle: self.spindle,
+                feed: self.feed,
+                ..ReadingArguments::default()
+            },
             mount: self.mount,
             turn: None,
             tool_length: None,

@@ -1,13 +1,35 @@
-//! The summary of a program, for people.
+//! The summary of a program, for people and for programs.
 
 use std::fmt::Write as _;
 
 use post_posting::plan::PlanReport;
 use post_posting::report::{Deviation, LengthSource, PluginUse, Report};
 use post_readback::verify::Verification;
+use serde::Serialize;
 
 use crate::files::PathArg;
+use crate::job::predict::Prediction;
+use crate::job::{compensate, plan_rounds};
 use crate::terminal::{at_most, clock, number};
+
+/// What the summary tells as JSON.
+#[derive(Serialize)]
+pub struct Told<'a> {
+    #[serde(flatten)]
+    pub report: &'a Report,
+    /// What reading the program back has found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verification: Option<&'a Verification>,
+    /// What is predicted of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub prediction: Option<&'a Prediction>,
+    /// What moving points for the servos has done.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub servo_compensation: Option<&'a compensate::Found>,
+    /// What planning the feed in rounds has done.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plan_rounds: Option<&'a plan_rounds::Found>,
+}
 
 /// The summary of a program at `target` that was made from the CL file named `input`, and what reading it back has found,
 /// if it was.

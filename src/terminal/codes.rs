@@ -895,6 +895,37 @@ pub const CODES: &[CodeGroup] = &[
         ],
     },
     CodeGroup {
+        title: "Many jobs",
+        verbs: "post batch, the Python package",
+        codes: &[
+            code(
+                "batch",
+                "There is no job to do, more of them than a run takes, or a worker cannot be started.",
+                "CL files, or a list of jobs that ends in .jsonl; several runs, or fewer `--jobs`.",
+            ),
+            code(
+                "job",
+                "A line of the list of jobs, or a setting of a job, cannot be read.",
+                "`{\"file\": \"part.cls\", \"machine\": \"dmu50\"}`; the message names the line.",
+            ),
+            code(
+                "journal",
+                "There is no file beside which a journal could be.",
+                "Name it: `--resume=FILE`.",
+            ),
+            code(
+                "map",
+                "The picture is to show a column that the table does not have.",
+                "The message lists the columns.",
+            ),
+            code(
+                "panic",
+                "post itself failed at this job; the others are done.",
+                "Please report it, with the job's row.",
+            ),
+        ],
+    },
+    CodeGroup {
         title: "Calls from Python",
         verbs: "PostError of the Python package",
         codes: &[

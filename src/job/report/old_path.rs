@@ -84,9 +84,7 @@ impl OldPath {
                 (place, off + passed, segment.line)
             });
             let nearest = far.min_by(|one, other| one.1.total_cmp(&other.1));
-            let Some((place, off, line)) = nearest else {
-                return None;
-            };
+            let (place, off, line) = nearest?;
             let limit = if ahead == AHEAD[0] {
                 APART / 100.0
             } else {

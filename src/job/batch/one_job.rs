@@ -47,11 +47,16 @@ pub fn run(
     if stop.load(Ordering::Relaxed) {
         return None;
     }
+    Some(told(did))
+}
+
+/// A row of whatever came of a job.
+fn told(did: std::thread::Result<Result<Did, Failure>>) -> Did {
     let new = |outcome| Did {
         outcome,
         known: false,
     };
-    Some(match did {
+    match did {
         Ok(Ok(did)) => did,
         Ok(Err(Failure::Refused(findings))) => new(Outcome::not_written(REFUSED, &findings)),
         Ok(Err(failure)) => {
@@ -71,7 +76,7 @@ pub fn run(
             let finding = Diagnostic::error("panic", message);
             new(Outcome::not_written(FAILED, &[finding]))
         }
-    })
+    }
 }
 
 /// A job with all that it reads.
@@ -373,5 +378,20 @@ impl Read for Stoppable<'_> {
 impl Seek for Stoppable<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.text.seek(to)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_a_row_that_is_tried_again() {
+        let did = told(catch_unwind(|| panic!("line {}", 7)));
+        assert_eq!(did.outcome.state(), FAILED);
+        assert_eq!(did.outcome.key, None);
+        let row = crate::files::json_line(&did.outcome);
+        assert!(row.contains("post itself failed: line 7"), "{row}");
+        assert!(row.contains("\"codes\":\"panic\""), "{row}");
     }
 }

@@ -175,10 +175,10 @@ pub fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     let jobs = jobs(arguments)?;
     let (study, inputs) = Study::new(jobs, arguments.study.clone())?;
     let map = map(arguments, &study)?;
-    let journal = journal(arguments)?;
     for job in &study.jobs {
         read_files::note("the CL file", job.file.as_ref());
     }
+    let journal = journal(arguments)?;
     let mut targets = vec![(RESULTS, &arguments.output)];
     targets.extend(arguments.svg.iter().map(|svg| (Role::PICTURE, svg)));
     // All are opened before the work begins.

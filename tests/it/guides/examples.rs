@@ -162,7 +162,7 @@ fn every_example_of_the_book_runs() {
     // The long ones do not wait for each other.
     let rooms = std::thread::available_parallelism().map_or(1, usize::from);
     let next = std::sync::atomic::AtomicUsize::new(0);
-    let done: Vec<(PathBuf, (String, usize, Vec<String>))> = std::thread::scope(|scope| {
+    let done: Vec<_> = std::thread::scope(|scope| {
         let work = || {
             let take = || next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
             std::iter::from_fn(|| names.get(take()))

@@ -452,6 +452,11 @@ pub const CODES: &[CodeGroup] = &[
                 "`[head.NAME]`.",
             ),
             code(
+                "head-length",
+                "The tool of a head that is swapped in stands across the axis along which the control compensates lengths, and the words count with its length.",
+                "0 in the control's length register of that tool, and a work offset of the head that was measured with the tool in it.",
+            ),
+            code(
                 "index",
                 "Index axes have no position that carries the pass.",
                 "Another tool axis in the CAM system, or the positions of the axis.",

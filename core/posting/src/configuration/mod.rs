@@ -21,8 +21,9 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use nalgebra::Vector3;
+use post_machine::axis_words;
 use post_machine::description::{Machine, Positions, Tcp};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::Pose;
 use post_machine::kinematics::travel::{AT_END, passed};
 use post_plugin::{Format, Spindle};
@@ -313,6 +314,7 @@ impl<'a> Configuration<'a> {
                 self.in_use = false;
                 self.equip(line, findings);
                 self.check_speed(line, findings);
+                self.check_length_register(name, line, findings);
             }
             Command::Home => self.park(&self.machine.frame.park),
             Command::WorkOffset(_) | Command::Subprogram(_) | Command::Smoothing(_) => {
@@ -416,6 +418,30 @@ impl<'a> Configuration<'a> {
             findings.at(line, unknown_length(used.number, self.length_matters()));
         }
         self.tools.push(used);
+    }
+
+    /// The control compensates the length of a tool along the depth axis of the machine that its file begins with. A tool
+    /// that lies across it has its length in the words already.
+    fn check_length_register(&self, head: &str, line: u64, findings: &Findings) {
+        let depths = [self.base, self.machine].map(axis_words::depth);
+        let length = self.length.unwrap_or(0.0);
+        let [Some(compensated), Some(along)] = depths else {
+            return;
+        };
+        if self.machine.control.tcp == Tcp::Post && compensated != along && length != 0.0 {
+            let message = format!(
+                "the tool of head {head} stands across {}, along which the control compensates its length; the words count with {} mm of it along {}",
+                self.base.axes[compensated].name,
+                Short(length),
+                self.machine.axes[along].name
+            );
+            findings.at(
+                line,
+                Diagnostic::warning("head-length", message).help(
+                    "give it a tool number of its own with 0 in the control's length register, and measure the work offset of this head with the tool in it",
+                ),
+            );
+        }
     }
 
     /// Takes machine and tool length into the route.

@@ -27,6 +27,9 @@ pub(super) struct Stray {
     pub worst: Apart,
 }
 
+/// By this share of the tolerance an element must be nearer to count in place of one before it.
+const LEADS_ON: f64 = 0.25;
+
 /// A bound so wide that nothing is told apart by it.
 const WIDEST: f64 = 1e8;
 
@@ -236,7 +239,8 @@ impl<C: Course> Verifier<'_, C> {
             stopped: None,
         };
         let mut apart: Option<Apart> = None;
-        let mut line = 0;
+        // The element that the piece leads to, and how far its end is from it.
+        let (mut line, mut off) = (0, f64::INFINITY);
         // What can be reached of the program's piece at the beginning of the element.
         let mut below = Span::EMPTY;
         let mut below_bound = bounds[0];
@@ -299,8 +303,9 @@ impl<C: Course> Verifier<'_, C> {
             };
             if !right.is_empty() {
                 let near = nearest(to, &element.from, &element.to, &right);
-                if apart.is_none_or(|best| near.point < best.point) {
-                    line = element.line;
+                // A place where two meet is the end of the first, whatever the words round off.
+                if near.point < off - LEADS_ON * self.bound.point {
+                    (line, off) = (element.line, near.point);
                 }
                 apart = Some(apart.map_or(near, |best| best.smaller(&near)));
             }

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from post import _native
-from post.refusal import Diagnostic, diagnostics
+from post.refusal import Diagnostic, Told, diagnostics
 
 if TYPE_CHECKING:
     from post.machine import Floats, Path
@@ -160,7 +160,7 @@ class Job:
         self._native.report(os.fspath(path), verify, predict, max_mb)
 
 
-def found(told: tuple[str, list[_native.Told]]) -> Found:
+def found(told: tuple[str, list[Told]]) -> Found:
     """What Rust tells."""
     text, warnings = told
     return Found(text, diagnostics(warnings))

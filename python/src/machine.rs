@@ -22,6 +22,9 @@ pub struct Machine {
 /// Numbers of many points.
 type Rows<'py> = Bound<'py, PyArray2<f64>>;
 
+/// Numbers of solutions of many points, and how many solutions each has.
+type Counted<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<i64>>);
+
 /// Numbers of many points, in one piece.
 type Given<'py> = PyReadonlyArray2<'py, f64>;
 
@@ -110,7 +113,7 @@ impl Machine {
         edge: Option<Given<'py>>,
         near: PyReadonlyArray1<'py, f64>,
         within_travel: bool,
-    ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<i64>>)> {
+    ) -> PyResult<Counted<'py>> {
         let points = tip.shape()[0];
         let wanted = Wanted {
             tip: tip.as_slice()?,

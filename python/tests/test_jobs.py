@@ -59,14 +59,11 @@ def test_a_job_is_that_of_the_command(name: str, room: Path, command: Command) -
     told = ["--machine", stem, "--tool-length", "120"]
     made = command(cl, *told, "-o", "out.nc", "--summary", "out.json", "--quiet")
     machine = post.Machine.load(stem, tool_length=120)
-    if made.returncode != 0:
-        with pytest.raises(post.PostError):
-            machine.post(cl, output="out.nc")
-        return
-    job = machine.post(cl, output="again.nc")
-    assert (room / "again.nc").read_bytes() == (room / "out.nc").read_bytes()
-    assert job.nc.encode() == (room / "again.nc").read_bytes()
+    assert made.returncode == 0, made.stderr
+    program = (room / "out.nc").read_bytes()
+    (room / "out.nc").unlink()
     named = machine.post(cl, output="out.nc")
+    assert (room / "out.nc").read_bytes() == named.nc.encode() == program
     assert named.json.encode() == (room / "out.json").read_bytes()
 
     checked = command("verify", "out.nc", *told, "--against", cl, "--summary", "verified.json", "-q")
@@ -102,17 +99,13 @@ def test_options_are_those_of_the_command(room: Path, command: Command) -> None:
     told += ["--spindle", "4000", "--tcp", "post", "--dialect", "fanuc", "--number", "77"]
     cl = str(LIBRARY / "dmu50.ncl")
     made = command(cl, *told, "-o", "out.nc", "--quiet")
+    assert made.returncode == 0, made.stderr
     machine = post.Machine.load("dmu50", tool_length=110.5, mount=(1, 2, 3.25), turn=5)
     options = {"tolerance": 0.002, "allow": ["CUTTER", "INSERT"], "units": "mm", "spindle": 4000}
     options |= {"tcp": "post", "dialect": "fanuc", "number": 77}
-    if made.returncode == 0:
-        assert machine.post(cl, output="o/../out.nc", **options).nc == (room / "out.nc").read_text()
-        assert "O0077" in (room / "out.nc").read_text()
-    else:
-        with pytest.raises(post.PostError) as refused:
-            machine.post(cl, **options)
-        codes = [why.code for why in refused.value.diagnostics]
-        assert all(f"[{code}]" in made.stderr for code in codes), (codes, made.stderr)
+    program = (room / "out.nc").read_text()
+    assert "O77" in program or "O0077" in program
+    assert machine.post(cl, output="out.nc", **options).nc == program
 
 
 def test_blocks_tell_what_the_summary_tells(room: Path) -> None:
@@ -132,7 +125,7 @@ def test_blocks_tell_what_the_summary_tells(room: Path) -> None:
     assert blocks["nc_line"].max() <= summary["nc_lines"] == len(lines)
     cl = (room / "part.cls").read_text().splitlines()
     assert all("GOTO" in cl[line - 1] for line in blocks["cl_line"][blocks["reason"] == "point"])
-    assert set(blocks["kind"]) <= {"position", "reference", "rapid", "linear"}
+    assert set(blocks["kind"]) <= {"position", "reference", "rapid", "linear", "hole"}
     # The axis values stand behind the tips.
     tip, axis = machine.forward(blocks["q"])
     np.testing.assert_allclose(tip, blocks["tip"], atol=1e-6)
@@ -173,7 +166,7 @@ def test_refusals_tell_all(room: Path) -> None:
     assert "invalid value '-1'" in why(tolerance=-1).message
     assert "tolerence" in why(tolerence=1).message
     assert why(tolerence=1).help == "a similar argument exists: '--tolerance'"
-    assert "no such file" in why(output="nowhere/out.nc").message.lower()
+    assert "there is no folder" in why(output="nowhere/out.nc").message
     with pytest.raises(post.PostError, match="missing.cls"):
         machine.post("missing.cls")
     # A file that is read is not written over.
@@ -188,7 +181,7 @@ def test_reports_go_where_files_were_before(room: Path) -> None:
     machine.post("other.cls")
     job = machine.post("part.cls")
     job.report("other.cls")
-    assert (room / "other.cls").read_bytes().startswith(b"<!DOCTYPE html>")
+    assert (room / "other.cls").read_bytes().startswith(b"<!doctype html>")
 
 
 def test_a_plugin_of_ones_own_is_found(room: Path, command: Command) -> None:
@@ -198,21 +191,21 @@ def test_a_plugin_of_ones_own_is_found(room: Path, command: Command) -> None:
     library = "libpost_grbl.so"
     (folder / library).write_bytes((CHECKOUT / "target/debug" / library).read_bytes())
     cl = str(LIBRARY / "grbl-router.ncl")
-    made = command(cl, "-m", "grbl-router", "--plugins", "plugins", "-o", "out.nc", "--summary", "out.json", "-q")
+    made = command(cl, "-m", "grbl-router", "--mount", "0,0,55", "--plugins", "plugins", "-o", "out.nc", "--summary", "out.json", "-q")
     assert made.returncode == 0, made.stderr
-    job = post.Machine.load("grbl-router", plugins=["plugins"]).post(cl, output="out.nc")
+    job = post.Machine.load("grbl-router", mount=(0, 0, 55), plugins=["plugins"]).post(cl, output="out.nc")
     assert job.summary["plugins"][0]["path"] == f"plugins/{library}"
     assert job.json.encode() == (room / "out.json").read_bytes()
     os.environ["POST_PLUGINS"] = str(folder)
     try:
-        job = post.Machine.load("grbl-router").post(cl)
+        job = post.Machine.load("grbl-router", mount=(0, 0, 55)).post(cl)
     finally:
         del os.environ["POST_PLUGINS"]
     assert job.summary["plugins"][0]["path"] == str(folder / library)
     # What Python prints still goes where it went.
     script = f"""
         import post
-        job = post.Machine.load("grbl-router", plugins=["plugins"]).post({cl!r})
+        job = post.Machine.load("grbl-router", mount=(0, 0, 55), plugins=["plugins"]).post({cl!r})
         print("printed", flush=True)
     """
     ran = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True)
@@ -261,11 +254,13 @@ def test_threads_post_side_by_side(room: Path) -> None:
 def test_ctrl_c_ends_a_job_and_not_the_interpreter(room: Path) -> None:
     long_file(room / "long.cls", 400_000)
     script = """
-        import post, sys
+        import post, signal
+        # A shell that started all this in the background has it ignored.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         machine = post.Machine.load("ac-trunnion", tool_length=120)
         print("begun", flush=True)
         try:
-            machine.post("long.cls", output="long.nc", tolerance=0.0005)
+            machine.post("long.cls", output="long.nc")
         except KeyboardInterrupt:
             print("interrupted", flush=True)
         machine.post("part.cls")

@@ -85,7 +85,7 @@ def test_the_axis_values_are_among_the_solutions(name: str) -> None:
 
 
 def test_a_point_out_of_reach_has_no_solution() -> None:
-    machine = loaded("head-head")
+    machine = loaded("vmc")
     tip, axis = machine.forward(values(machine, 1))
     solutions, count = machine.inverse([tip[0], tip[0]], [axis[0], [0.0, 0.0, -1.0]])
     assert count[0] > 0

@@ -3,6 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use super::read_files;
+
 /// What became of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Became {
@@ -24,6 +26,10 @@ fn texts() -> MutexGuard<'static, Vec<(String, Became)>> {
 
 /// Notes what became of the text that is called `name`.
 pub fn note(name: &str, became: Became) {
+    // Inside another program there is no run to say it of, and the list would grow with every job.
+    if read_files::is_apart() {
+        return;
+    }
     let mut texts = texts();
     match texts.iter_mut().find(|(known, _)| known == name) {
         Some((_, old)) => *old = became,

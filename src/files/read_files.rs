@@ -35,6 +35,11 @@ pub fn apart<T>(job: impl FnOnce() -> T) -> T {
     job()
 }
 
+/// The job of this thread is done by itself.
+pub fn is_apart() -> bool {
+    APART.with_borrow(Option::is_some)
+}
+
 /// Does something with the files that are read.
 fn with_all<T>(take: impl FnOnce(&mut Vec<ReadFile>) -> T) -> T {
     APART.with_borrow_mut(|apart| match apart {

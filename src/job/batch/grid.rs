@@ -30,15 +30,15 @@ impl Grid {
     ///
     /// # Errors
     /// A job without a machine, or there are too many.
-    pub fn jobs(&self, seeds: Vec<JobLine>) -> Result<Vec<JobLine>, Diagnostic> {
+    pub fn jobs(&self, seeds: Vec<JobLine>) -> Result<Vec<JobLine>, Box<Diagnostic>> {
         let mut jobs = seeds;
         let machines: Vec<Option<String>> = self.machines.iter().cloned().map(Some).collect();
         jobs = lay(jobs, &machines, |job| &mut job.machine)?;
         if let Some(job) = jobs.iter().find(|job| job.machine.is_none()) {
             let message = format!("no machine is named for {}", job.file);
-            return Err(Diagnostic::error("machine", message).help(
-                "--machine names one for all jobs, `\"machine\"` in a list that of one job",
-            ));
+            return Err(Diagnostic::error("machine", message)
+                .help("--machine names one for all jobs, \"machine\" in a list that of one job")
+                .boxed());
         }
         for (key, values) in &self.set {
             jobs = multiplied(jobs, values, |job, value| {
@@ -67,7 +67,7 @@ fn lay<T: Clone>(
     jobs: Vec<JobLine>,
     values: &[Option<T>],
     place: fn(&mut JobLine) -> &mut Option<T>,
-) -> Result<Vec<JobLine>, Diagnostic> {
+) -> Result<Vec<JobLine>, Box<Diagnostic>> {
     multiplied(jobs, values, |job, value| {
         let place = place(job);
         let free = place.is_none();
@@ -83,7 +83,7 @@ fn multiplied<T>(
     jobs: Vec<JobLine>,
     values: &[T],
     put: impl Fn(&mut JobLine, &T) -> bool,
-) -> Result<Vec<JobLine>, Diagnostic> {
+) -> Result<Vec<JobLine>, Box<Diagnostic>> {
     if values.is_empty() {
         return Ok(jobs);
     }
@@ -100,7 +100,8 @@ fn multiplied<T>(
         if all.len() > MOST_JOBS {
             let message = format!("these are more than {MOST_JOBS} jobs");
             return Err(Diagnostic::error("batch", message)
-                .help("fewer values, or several runs, each with a part of the files"));
+                .help("fewer values, or several runs, each with a part of the files")
+                .boxed());
         }
     }
     Ok(all)

@@ -241,7 +241,7 @@ fn ending(output: &PathArg) -> Result<String, Failure> {
 fn jobs(arguments: &BatchArguments) -> Result<Vec<JobLine>, Failure> {
     let mut seeds = Vec::new();
     for file in &arguments.files {
-        if !file.extension().is_some_and(|ending| ending == "jsonl") {
+        if file.extension().is_none_or(|ending| ending != "jsonl") {
             seeds.push(JobLine::of_file(file.to_string_lossy().into_owned()));
             continue;
         }

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 _Floats = NDArray[np.float64]
 _Told = tuple[str, str, str, str | None, str | None, int | None, str | None]
 
-__all__ = ["Job", "Machine", "fail"]
+__all__ = ["Job", "Machine", "Study", "fail", "run_part"]
 
 def fail() -> None: ...
 
@@ -63,6 +63,7 @@ class Machine:
         self, input: str, options: list[tuple[str, str | None]], keep_blocks: bool
     ) -> Job: ...
 
+@final
 class Study:
     def __new__(cls, lines: str, flags: list[str], journal: str | None) -> Study: ...
     def count(self) -> int: ...

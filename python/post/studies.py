@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from post import _native
 from post.machine import Path, written
+from post.refusal import Diagnostic, PostError
 
 if TYPE_CHECKING:
     import pyarrow
@@ -35,8 +36,6 @@ _SETTINGS = ("mount", "turn", "tool_length", "tolerance", "tcp", "dialect")
 
 class Study:
     """What came of a study, a row a job, in the order of the jobs."""
-
-    _native: _native.Study
 
     def __init__(self, native: _native.Study) -> None:
         self._native = native
@@ -132,11 +131,12 @@ def study(
     names = [machines] if isinstance(machines, (str, os.PathLike)) else list(machines)
     seeds = [{"file": os.fspath(path)} for path in paths]
     seeds += [_job(job) for job in jobs]
-    lines = "".join(
-        json.dumps(job) + "\n"
-        for seed in seeds
-        for job in _laid(seed, [os.fspath(name) for name in names], grid or {})
-    )
+    told_jobs = [job for seed in seeds for job in _laid(seed, [os.fspath(name) for name in names], grid or {})]
+    for job in told_jobs:
+        if "machine" not in job:
+            message = f"no machine is named for {job['file']}"
+            raise PostError([Diagnostic("error", "machine", message, "machines names some for all jobs")])
+    lines = "".join(json.dumps(job) + "\n" for job in told_jobs)
     flags: list[str] = []
     for name, asked in (
         ("verify", verify),
@@ -212,11 +212,11 @@ def _laid(seed: dict[str, Any], machines: Sequence[str], grid: Mapping[str, Any]
             ways.append([(key, None, _setting(key, value)) for value in _values(values)])
     for chosen in itertools.product(*ways):
         job = {**seed, "set": dict(said)}
-        for place, key, value in chosen:
-            if key is None:
+        for place, name, value in chosen:
+            if name is None:
                 job[place] = value
             else:
-                job["set"][key] = value
+                job["set"][name] = value
         yield job
 
 
@@ -286,7 +286,8 @@ def _on_ray(native: _native.Study, flags: list[str], workers: int | None, told: 
     done = refused = 0
     try:
         while waiting or flying:
-            at_once = IN_FLIGHT * max(1, int(ray.cluster_resources().get("CPU", 1)))
+            resources = ray.cluster_resources()  # type: ignore[no-untyped-call, unused-ignore]
+            at_once = IN_FLIGHT * max(1, int(resources.get("CPU", 1)))
             while waiting and len(flying) < at_once:
                 # Towards the end smaller groups, so that none waits for the last.
                 fair = max(1, len(waiting) // at_once)

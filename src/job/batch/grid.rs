@@ -36,8 +36,9 @@ impl Grid {
         jobs = lay(jobs, &machines, |job| &mut job.machine)?;
         if let Some(job) = jobs.iter().find(|job| job.machine.is_none()) {
             let message = format!("no machine is named for {}", job.file);
-            let help = "--machine names one for all jobs, `\"machine\"` in a list that of one job";
-            return Err(Box::new(Diagnostic::error("machine", message).help(help)));
+            return Err(Diagnostic::error("machine", message)
+                .help("--machine names one for all jobs, \"machine\" in a list that of one job")
+                .boxed());
         }
         for (key, values) in &self.set {
             jobs = multiplied(jobs, values, |job, value| {
@@ -98,8 +99,9 @@ fn multiplied<T>(
         }
         if all.len() > MOST_JOBS {
             let message = format!("these are more than {MOST_JOBS} jobs");
-            let help = "fewer values, or several runs, each with a part of the files";
-            return Err(Box::new(Diagnostic::error("batch", message).help(help)));
+            return Err(Diagnostic::error("batch", message)
+                .help("fewer values, or several runs, each with a part of the files")
+                .boxed());
         }
     }
     Ok(all)

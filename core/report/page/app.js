@@ -36,7 +36,7 @@ P.views.settle = () => {
   for (const name of P.views.names) P.by(name).classList.toggle("away", solo ? solo !== name : low.includes(name) && lower !== name);
   for (const button of document.querySelectorAll("#head nav button[data-view]")) {
     const { view } = button.dataset;
-    button.setAttribute("aria-pressed", solo ? solo === view : lower === view);
+    button.setAttribute("aria-pressed", solo === view);
   }
   if (P.numbers.follow) P.numbers.follow();
 };
@@ -82,12 +82,12 @@ P.views.foot = () => {
   const told = { deviation: "tip", axis_deviation: "axis", contour: "contour", feed: "F" };
   const tell = () => {
     const { row, playing } = P.state;
-    const word = (name) => (m.column(name) ? `${told[name]} ${P.quantity(m.column(name)[row], m.unit(name))}` : null);
+    const word = (name) => (m.has(name) ? `${told[name]} ${P.quantity(m.at(name, row), m.unit(name))}` : null);
     const machine = P.chain.at(row);
     const own = (name) => !machine || machine.axes.some((axis) => axis.name === name);
-    const limit = m.column("limit") && m.meta.limits[m.column("limit")[row]];
+    const limit = m.meta.limits[m.at("limit", row)];
     const parts = [`Block ${row + 1}`, m.lineOf("nc", row) ? `NC ${m.lineOf("nc", row)}` : null, m.lineOf("cl", row) ? `CL ${m.lineOf("cl", row)}` : null, m.lineOf("nc2", row) ? `old NC ${m.lineOf("nc2", row)}` : null, m.timed ? `${P.shown(m.end(row), "s")} s` : null,
-      ...m.axes.filter(own).map((name) => `${name} ${P.shown(m.column("q." + name)[row], m.unit("q." + name), 3)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
+      ...m.axes.filter(own).map((name) => `${name} ${P.shown(m.at("q." + name, row), m.unit("q." + name), 3)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
     const event = (P.scene.marks || []).find((mark) => mark.row === row && !mark.quiet);
     if (event) parts.push(event.text);
     chosen.setAttribute("aria-live", playing ? "off" : "polite");

@@ -96,16 +96,12 @@ P.chain.values = (row, share) => {
   const machine = P.chain.at(row);
   const first = row === 0 || P.chain.at(row - 1) !== machine;
   return machine.axes.map(({ name }) => {
-    const values = P.m.column("q." + name);
-    if (!values) return 0;
-    const to = values[row];
-    const from = first ? to : values[row - 1];
+    const to = P.m.at(`q.${name}`, row) || 0;
+    if (first || share === 1) return to;
+    const from = P.m.at(`q.${name}`, row - 1) || 0;
     return from + (to - from) * share;
   });
 };
 
 // The length of the tool that is in use in a block, mm.
-P.chain.length = (row) => {
-  const lengths = P.m.column("tool_length");
-  return lengths ? lengths[row] : P.m.meta.tool_length;
-};
+P.chain.length = (row) => P.m.at("tool_length", row) ?? P.m.meta.tool_length;

@@ -115,7 +115,7 @@ P.colour.find = () => {
     modes.push({ id: name, title, unit: unit(name), bad: name !== "feed", make });
   };
   const kinds = (name, title, words) => {
-    if (has(name) && words.length) modes.push({ id: name, title, kinds: words, make: () => ({ value: (row) => column(name)[row] }) });
+    if (has(name) && words.length) modes.push({ id: name, title, kinds: words, make: () => ({ value: ((values) => (row) => values[row])(column(name)) }) });
   };
   share("deviation", "tip deviation", () => column("tolerance") || P.m.tolerance);
   share("axis_deviation", "tool axis deviation", () => P.m.axis_limits || P.m.turn);

@@ -47,7 +47,6 @@ P.scene.build = () => {
     const from = P.m.has("nc2") ? "nc2" : "cl";
     const start = (point) => (line ? P.m.rowOf(from, line[point]) : point);
     scene.cl = P.scene.line(points.rows, cx, cy, cz, start, (_, point) => (rapid && rapid[point] ? scene.RAPID : scene.CUT));
-    scene.cl.look.forEach((_, at) => at % 4 === 0 && (scene.cl.look[at] = -1));
   }
   const [dx, dy, dz] = given(table, ["d.x", "d.y", "d.z"]);
   if (dx && dy && dz) scene.vectors = P.scene.comb(count, [dx, dy, dz]);
@@ -55,6 +54,7 @@ P.scene.build = () => {
   // What is drawn is held in single precision now; the tables of it would lie in memory twice.
   delete report.tables.path;
   delete report.tables.cl;
+  P.release(0, (name) => !/^(t\d|kind)$/.test(name));
   scene.ready = true;
   P.scene.recolour();
 };
@@ -88,6 +88,7 @@ P.scene.line = (count, x, y, z, rowOf, flagOf) => {
     const row = rowOf(point);
     const flag = point === 0 ? P.scene.NONE : flagOf(row, point);
     if (flag === P.scene.RAPID) along += Math.hypot(x[point] - x[point - 1], y[point] - y[point - 1], z[point] - z[point - 1]);
+    look[point * 4] = -1;
     look[point * 4 + 1] = flag;
     look[point * 4 + 2] = row;
     look[point * 4 + 3] = along;

@@ -57,14 +57,13 @@ P.icon = (path) => {
 P.clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 P.digits = { mm: 4, deg: 4, s: 3, "mm/min": 1, "deg/min": 1 };
 
-// A number with as many digits as its unit deserves.
-P.shown = (value, unit, digits) => {
+// A number with as many digits as its unit deserves; a bound below them is told as one of the last.
+P.shown = (value, unit, digits, bound) => {
   if (!Number.isFinite(value)) return "–";
   const places = digits ?? P.digits[unit] ?? 3;
-  const small = value !== 0 && Math.abs(value) < 0.5 * 10 ** -places;
-  return small ? value.toExponential(1) : (value.toFixed(places) * 1 === 0 ? (0).toFixed(places) : value.toFixed(places));
+  return (bound && value > 0 ? Math.max(value, 10 ** -places) : value).toFixed(places).replace(/^-(?=[0.]*$)/, "");
 };
-P.quantity = (value, unit, digits) => P.shown(value, unit, digits) + (unit ? " " + P.unit(unit) : "");
+P.quantity = (value, unit, bound) => P.shown(value, unit, undefined, bound) + (unit ? " " + P.unit(unit) : "");
 P.unit = (unit) => unit.replace("deg", "°");
 // Of a tick of a chart: no more digits than tell.
 P.short = (value) => {
@@ -82,6 +81,8 @@ P.model = (report) => {
   };
   // Whether there is one; asking for it would unpack it.
   const has = (name) => blocks.columns.has(name);
+  // The value in one row: no more than its piece is unpacked.
+  const at = (name, row) => blocks.columns.get(name)?.at(row);
   const unit = (name) => (blocks.columns.get(name) || {}).unit || "";
   const rows = blocks.rows;
   const places = {};
@@ -133,7 +134,7 @@ P.model = (report) => {
   const axis_limits = kind && turn ? Float32Array.from(kind, (value) => (value <= 2 ? Infinity : turn)) : null;
   const names = [...blocks.columns.keys()];
   const axes = names.filter((name) => name.startsWith("q.")).map((name) => name.slice(2));
-  return { report, meta: report.meta, rows, blocks, column, has, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance, turn, axis_limits };
+  return { report, meta: report.meta, rows, blocks, column, at, has, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance, turn, axis_limits };
 };
 
 // Selects a block, and the machine stands at its end.

@@ -50,7 +50,7 @@ P.verdict.maxima = (maxima) => {
     const bar = el("span", { class: `share${over ? " over" : ""}` }, el("i"));
     if (one.limit) bar.firstChild.style.width = `${P.clamp((one.value / one.limit) * 100, 0.5, 100)}%`;
     return [
-      el("tr", {}, el("th", { scope: "row" }, one.name), el("td", { class: "number" }, P.quantity(one.value, one.unit))),
+      el("tr", {}, el("th", { scope: "row" }, one.name), el("td", { class: "number" }, P.quantity(one.value, one.unit, true))),
       el("tr", {}, el("td", { colspan: "2" }, one.limit ? bar : null, el("span", { class: "quiet" }, one.limit ? `of ${P.short(one.limit)} ${P.unit(one.unit)}${over ? ", exceeded" : ""} ` : ""), el("span", { class: "where" }, P.verdict.places(one)))),
     ];
   });

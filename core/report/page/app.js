@@ -66,7 +66,7 @@ P.views.repaint = () => {
 P.views.head = () => {
   const { el, m } = P;
   const { meta } = m;
-  const names = meta.names || {};
+  const names = meta.names;
   const what = [meta.job, names.cl, names.nc, names.nc2, names.machine].filter(Boolean).join(" · ");
   const titles = ["Verdict", "Path", "NC", "CL", "Charts", "Spread", "Table"];
   const nav = el("nav", { "aria-label": "Views" }, P.views.names.map((name, at) => (P.by(name).hidden ? null : el("button", { "data-view": name, onclick: () => P.views.key(at) }, titles[at], el("kbd", {}, String(at + 1))))), el("button", { title: "Light or dark (t)", "aria-label": "Light or dark", onclick: () => P.views.theme() }, "◐"), el("button", { title: "Keys (?)", "aria-label": "Keys", onclick: () => P.keys.help() }, "?"));
@@ -86,9 +86,10 @@ P.views.foot = () => {
     const machine = P.chain.at(row);
     const own = (name) => !machine || machine.axes.some((axis) => axis.name === name);
     const limit = m.meta.limits[m.at("limit", row)];
-    const parts = [`Block ${row + 1}`, m.lineOf("nc", row) ? `NC ${m.lineOf("nc", row)}` : null, m.lineOf("cl", row) ? `CL ${m.lineOf("cl", row)}` : null, m.lineOf("nc2", row) ? `old NC ${m.lineOf("nc2", row)}` : null, m.timed ? `${P.shown(m.end(row), "s")} s` : null,
+    const line = (text, name) => (m.lineOf(name, row) ? `${text} ${m.lineOf(name, row)}` : null);
+    const parts = [`Block ${row + 1}`, line("NC", "nc"), line("CL", "cl"), line("old NC", "nc2"), m.timed ? `${P.shown(m.end(row), "s")} s` : null,
       ...m.axes.filter(own).map((name) => `${name} ${P.shown(m.at("q." + name, row), m.unit("q." + name), 3)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
-    const event = (P.scene.marks || []).find((mark) => mark.row === row && !mark.quiet);
+    const event = P.scene.marks.find((mark) => mark.row === row && !mark.quiet);
     if (event) parts.push(event.text);
     chosen.setAttribute("aria-live", playing ? "off" : "polite");
     chosen.replaceChildren(...parts.filter(Boolean).map((text, at) => el(at ? "span" : "b", {}, text)));

@@ -121,7 +121,7 @@ P.colour.find = () => {
   share("axis_deviation", "tool axis deviation", () => P.m.axis_limits || P.m.turn);
   share("contour", "contour error", () => P.m.tolerance);
   share("feed", "feed");
-  kinds("limit", "what limits the feed", meta.limits || []);
+  kinds("limit", "what limits the feed", meta.limits);
   kinds("kind", "kind of block", P.KINDS);
   kinds("reason", "why the block is there", P.REASONS);
   if (!modes.length) modes.push({ id: "plain", title: "path", make: () => ({ value: () => 0 }) });

@@ -12,7 +12,7 @@ P.FORMAT = 1;
 P.bytesOfBase64 = (text) => {
   const letters = atob(text);
   const bytes = new Uint8Array(letters.length);
-  for (let i = 0; i < letters.length; i += 1) bytes[i] = letters.charCodeAt(i);
+  for (let i = 0; i < letters.length; i++) bytes[i] = letters.charCodeAt(i);
   return bytes;
 };
 
@@ -52,19 +52,13 @@ P.inflate = (bytes, most = Infinity) => {
     count -= found & 15;
     return found >> 4;
   };
-  const room = (more) => {
-    if (end + more <= out.length) return;
-    const larger = new Uint8Array(2 * (end + more));
-    larger.set(out);
-    out = larger;
-  };
   for (let last = 0; !last && end < most; ) {
     last = bits(1);
     const kind = bits(2);
     if (kind === 0) {
       at -= count >> 3;
       const length = bytes[at] | (bytes[at + 1] << 8);
-      room(length);
+      out = P.roomy(out, end + length);
       out.set(bytes.subarray(at + 4, at + 4 + length), end);
       end += length;
       at += 4 + length;
@@ -92,7 +86,7 @@ P.inflate = (bytes, most = Infinity) => {
       const next = symbol(letters);
       if (next === 256) break;
       if (at > bytes.length + 4) throw new Error("The report is damaged.");
-      room(258);
+      out = P.roomy(out, end + 258);
       if (next < 256) {
         out[end++] = next;
         continue;
@@ -121,6 +115,25 @@ P.chunks = (root) => {
   return chunks;
 };
 
+// The first place of so many for which it holds, where it holds for all behind; their number where it never does.
+P.first = (count, holds) => {
+  let low = 0;
+  for (let high = count; low < high; ) {
+    const middle = (low + high) >> 1;
+    if (holds(middle)) high = middle;
+    else low = middle + 1;
+  }
+  return low;
+};
+
+// Bytes with room for `size`: larger ones where they are too few.
+P.roomy = (bytes, size) => {
+  if (size <= bytes.length) return bytes;
+  const larger = new Uint8Array(2 * size);
+  larger.set(bytes);
+  return larger;
+};
+
 P.uint32 = (bytes, at) => (bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16)) + bytes[at + 3] * 16777216;
 
 // Values of a column of a chunk that begins at `at`, into `out` from `start`; where the next column begins.
@@ -133,9 +146,10 @@ P.integers = (bytes, at, rows, out, start, scale = 1) => {
   const step = steps ? P.uint32(bytes, at + 10) : 1;
   let last = 0;
   let slope = 0;
-  for (let row = 0; row < rows; row += 1) {
+  if (!planes) out.fill(base / scale, start, start + rows);
+  for (let row = 0; planes && row < rows; row++) {
     let folded = 0;
-    for (let plane = planes - 1; plane >= 0; plane -= 1) folded = folded * 256 + bytes[first + plane * rows + row];
+    for (let plane = planes - 1; plane >= 0; plane--) folded = folded * 256 + bytes[first + plane * rows + row];
     const half = planes < 4 ? folded >> 1 : Math.floor(folded / 2);
     const difference = folded > 2 * half ? -half - 1 : half;
     if (order === 0) last = difference;
@@ -285,11 +299,11 @@ P.ofTemplates = (bytes, start, lines) => {
   const reader = new P.Reader(bytes, start);
   const count = reader.word();
   const templates = [];
-  for (let i = 0; i < count; i += 1) {
+  for (let i = 0; i < count; i++) {
     const length = reader.word();
     const pieces = [];
     let from = reader.at;
-    for (let at = reader.at; at < reader.at + length; at += 1) {
+    for (let at = reader.at; at < reader.at + length; at++) {
       if (bytes[at] === 0) {
         pieces.push(bytes.subarray(from, at));
         from = at + 1;
@@ -300,34 +314,28 @@ P.ofTemplates = (bytes, start, lines) => {
     templates.push({ pieces, places: [] });
   }
   const columns = Array.from({ length: reader.word() });
-  for (const { pieces, places } of templates) for (let i = 1; i < pieces.length; i += 1) places.push(reader.word());
+  for (const { pieces, places } of templates) for (let i = 1; i < pieces.length; i++) places.push(reader.word());
   const order = reader.integers(lines);
-  for (let i = 0; i < columns.length; i += 1) {
+  for (let i = 0; i < columns.length; i++) {
     const rows = reader.word();
     const form = bytes[reader.at];
-    reader.at += 1;
+    reader.at++;
     const digits = reader.integers(rows);
     columns[i] = { form, digits, each: form >= 64 ? reader.integers(rows) : null, row: 0 };
   }
   if (reader.at !== bytes.length) throw new Error("A text of the report is damaged.");
   let out = new Uint8Array(lines * 48 + 1024);
   let at = 0;
-  const room = (more) => {
-    if (at + more <= out.length) return;
-    const larger = new Uint8Array(2 * (at + more));
-    larger.set(out);
-    out = larger;
-  };
   for (const place of order) {
     const { pieces, places } = templates[place];
-    for (let i = 0; i < pieces.length; i += 1) {
+    for (let i = 0; i < pieces.length; i++) {
       const piece = pieces[i];
-      room(piece.length + 40);
+      out = P.roomy(out, at + piece.length + 40);
       for (let letter = 0; letter < piece.length; letter++) out[at++] = piece[letter];
       if (i === places.length) continue;
       const column = columns[places[i]];
       const { form, digits, each, row } = column;
-      column.row += 1;
+      column.row++;
       const most = form % 32;
       at = P.number(out, at, digits[row], most, each ? each[row] : form >= 32 ? -1 : most);
     }
@@ -378,14 +386,8 @@ P.Text = class {
   // Line `index`, counted from 0, without its end.
   line(index) {
     if (index < 0 || index >= this.lines) return "";
-    let low = 0;
-    let high = this.starts.length - 1;
-    while (low < high) {
-      const middle = (low + high + 1) >> 1;
-      if (this.starts[middle] <= index) low = middle;
-      else high = middle - 1;
-    }
-    const line = this.linesOf(low)[index - this.starts[low]];
+    const chunk = P.first(this.starts.length, (at) => this.starts[at] > index) - 1;
+    const line = this.linesOf(chunk)[index - this.starts[chunk]];
     return line.endsWith("\r") ? line.slice(0, -1) : line;
   }
 

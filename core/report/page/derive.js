@@ -117,7 +117,7 @@ P.derive = {
   t1: (report, columns) => {
     const ends = columns.get("t1").values;
     const values = columns.get("t0").packed();
-    for (let row = 1; row < values.length; row += 1) values[row] += ends[row - 1];
+    for (let row = 1; row < values.length; row++) values[row] += ends[row - 1];
     columns.get("t0").keep(values);
   },
   // The end of a block, told against that of the one before and what a straight way takes at the feed.
@@ -142,10 +142,10 @@ P.derive = {
       while (first < rows.length) {
         const row = rows[first];
         let end = first + 1;
-        while (end < rows.length && rows[end] === row) end += 1;
+        while (end < rows.length && rows[end] === row) end++;
         const to = tips[row];
         const from = row > 0 ? tips[row - 1] : to;
-        for (let place = first; place < end; place += 1) values[place] += from + (to - from) * ((place - first + 1) / (end - first));
+        for (let place = first; place < end; place++) values[place] += from + (to - from) * ((place - first + 1) / (end - first));
         first = end;
       }
       columns.get(name).keep(values);

@@ -16,7 +16,7 @@ P.virtual = (box, { count, height, make, top = 0 }) => {
   const page = P.el("div", { class: "page", role: "presentation" });
   page.style.height = `${Math.min(full, LIMIT) + top}px`;
   box.append(page);
-  const list = { first: 0, page };
+  const list = {};
   // Its height is told when it changes: asking for it would lay the page out anew.
   let tall = box.clientHeight;
   const room = () => Math.max(tall - top, height);
@@ -30,7 +30,6 @@ P.virtual = (box, { count, height, make, top = 0 }) => {
     const from = bar * ratio();
     const first = Math.max(0, Math.floor(from / height) - 4);
     const last = Math.min(count, Math.ceil((from + room()) / height) + 4);
-    list.first = first;
     const rows = [];
     for (let at = first; at < last; at++) {
       const row = make(at);

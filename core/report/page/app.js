@@ -66,7 +66,7 @@ P.views.repaint = () => {
 P.views.head = () => {
   const { el, m } = P;
   const { meta } = m;
-  const names = meta.names;
+  const { names } = meta;
   const what = [meta.job, names.cl, names.nc, names.nc2, names.machine].filter(Boolean).join(" · ");
   const titles = ["Verdict", "Path", "NC", "CL", "Charts", "Spread", "Table"];
   const nav = el("nav", { "aria-label": "Views" }, P.views.names.map((name, at) => (P.by(name).hidden ? null : el("button", { "data-view": name, onclick: () => P.views.key(at) }, titles[at], el("kbd", {}, String(at + 1))))), el("button", { title: "Light or dark (t)", "aria-label": "Light or dark", onclick: () => P.views.theme() }, "◐"), el("button", { title: "Keys (?)", "aria-label": "Keys", onclick: () => P.keys.help() }, "?"));

@@ -100,7 +100,7 @@ P.inflate = (bytes, most = Infinity) => {
       for (; length--; end++) out[end] = out[end - way];
     }
   }
-  return out.subarray(0, end);
+  return out.slice(0, end);
 };
 
 // The chunks of all parts, by name. The elements go once they are read: their letters would lie in memory twice.

@@ -5,7 +5,7 @@ P.keys = {};
 // The next place worth looking at, in the order of the program.
 P.keys.event = (step) => {
   const { row } = P.state;
-  const marks = P.scene.marks;
+  const { marks } = P.scene;
   const found = step > 0 ? marks.find((mark) => mark.row > row) : marks.findLast((mark) => mark.row < row);
   if (found) P.select(found.row);
 };

@@ -23,8 +23,15 @@ P.inflate = (bytes, most = Infinity) => {
   let at = 0;
   let held = 0;
   let count = 0;
-  const bits = (wanted) => {
+  const damaged = () => {
+    throw new Error("The report is damaged.");
+  };
+  const fill = (wanted) => {
+    if (at > bytes.length + 8) damaged();
     for (; count < wanted; count += 8) held |= bytes[at++] << count;
+  };
+  const bits = (wanted) => {
+    fill(wanted);
     const value = held & ((1 << wanted) - 1);
     held >>>= wanted;
     count -= wanted;
@@ -46,8 +53,8 @@ P.inflate = (bytes, most = Infinity) => {
     return table;
   };
   const symbol = (table) => {
-    for (; count < 15; count += 8) held |= bytes[at++] << count;
-    const found = table[held & (table.length - 1)];
+    fill(15);
+    const found = table[held & (table.length - 1)] || damaged();
     held >>>= found & 15;
     count -= found & 15;
     return found >> 4;
@@ -85,7 +92,6 @@ P.inflate = (bytes, most = Infinity) => {
     while (end < most) {
       const next = symbol(letters);
       if (next === 256) break;
-      if (at > bytes.length + 4) throw new Error("The report is damaged.");
       out = P.roomy(out, end + 258);
       if (next < 256) {
         out[end++] = next;

@@ -184,7 +184,7 @@ P.webgl.start = (canvas, restored) => {
     const many = !moving && scene.path.count > 250000;
     if (scene.cl) line(moving ? "cl_moving" : "cl", matrix, { plain: colour.cl.rgb, thin: true });
     line(moving ? "path_moving" : "path", matrix, { width: 2, plain: colour.quiet.rgb, thin: many, near: 0.0004 });
-    if (scene.vectors) line(moving ? "vectors_moving" : "vectors", matrix, { width: 1.2, plain: colour.mark.rgb, near: 0.0006 });
+    if (scene.vectors && P.state.scale) line(moving ? "vectors_moving" : "vectors", matrix, { width: 1.2, plain: colour.mark.rgb, near: 0.0006 });
     line("chosen", matrix, { width: 5, plain: colour.select.rgb, near: 0.002 });
     if (bodies && made.meshes) {
       body("boxes", gl.LINES, bodies, clip, { plain: colour.strong.rgb, alpha: 1 });

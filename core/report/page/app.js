@@ -36,7 +36,7 @@ P.views.settle = () => {
   for (const name of P.views.names) P.by(name).classList.toggle("away", solo ? solo !== name : low.includes(name) && lower !== name);
   for (const button of document.querySelectorAll("#head nav button[data-view]")) {
     const { view } = button.dataset;
-    button.setAttribute("aria-pressed", solo ? solo === view : lower === view);
+    button.setAttribute("aria-pressed", solo === view);
   }
   if (P.numbers.follow) P.numbers.follow();
 };
@@ -66,7 +66,7 @@ P.views.repaint = () => {
 P.views.head = () => {
   const { el, m } = P;
   const { meta } = m;
-  const names = meta.names || {};
+  const { names } = meta;
   const what = [meta.job, names.cl, names.nc, names.nc2, names.machine].filter(Boolean).join(" · ");
   const titles = ["Verdict", "Path", "NC", "CL", "Charts", "Spread", "Table"];
   const nav = el("nav", { "aria-label": "Views" }, P.views.names.map((name, at) => (P.by(name).hidden ? null : el("button", { "data-view": name, onclick: () => P.views.key(at) }, titles[at], el("kbd", {}, String(at + 1))))), el("button", { title: "Light or dark (t)", "aria-label": "Light or dark", onclick: () => P.views.theme() }, "◐"), el("button", { title: "Keys (?)", "aria-label": "Keys", onclick: () => P.keys.help() }, "?"));
@@ -82,13 +82,14 @@ P.views.foot = () => {
   const told = { deviation: "tip", axis_deviation: "axis", contour: "contour", feed: "F" };
   const tell = () => {
     const { row, playing } = P.state;
-    const word = (name) => (m.column(name) ? `${told[name]} ${P.quantity(m.column(name)[row], m.unit(name))}` : null);
+    const word = (name) => (m.has(name) ? `${told[name]} ${P.quantity(m.at(name, row), m.unit(name))}` : null);
     const machine = P.chain.at(row);
     const own = (name) => !machine || machine.axes.some((axis) => axis.name === name);
-    const limit = m.column("limit") && m.meta.limits[m.column("limit")[row]];
-    const parts = [`Block ${row + 1}`, m.lineOf("nc", row) ? `NC ${m.lineOf("nc", row)}` : null, m.lineOf("cl", row) ? `CL ${m.lineOf("cl", row)}` : null, m.lineOf("nc2", row) ? `old NC ${m.lineOf("nc2", row)}` : null, m.timed ? `${P.shown(m.end(row), "s")} s` : null,
-      ...m.axes.filter(own).map((name) => `${name} ${P.shown(m.column("q." + name)[row], m.unit("q." + name), 3)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
-    const event = (P.scene.marks || []).find((mark) => mark.row === row && !mark.quiet);
+    const limit = m.meta.limits[m.at("limit", row)];
+    const line = (text, name) => (m.lineOf(name, row) ? `${text} ${m.lineOf(name, row)}` : null);
+    const parts = [`Block ${row + 1}`, line("NC", "nc"), line("CL", "cl"), line("old NC", "nc2"), m.timed ? `${P.shown(m.end(row), "s")} s` : null,
+      ...m.axes.filter(own).map((name) => `${name} ${P.shown(m.at("q." + name, row), m.unit("q." + name), 3)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
+    const event = P.scene.marks.find((mark) => mark.row === row && !mark.quiet);
     if (event) parts.push(event.text);
     chosen.setAttribute("aria-live", playing ? "off" : "polite");
     chosen.replaceChildren(...parts.filter(Boolean).map((text, at) => el(at ? "span" : "b", {}, text)));

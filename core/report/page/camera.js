@@ -57,8 +57,8 @@ P.camera.look = (index) => {
   Object.assign(P.camera, { turn, tilt, looked: index });
 };
 
-// Fits points of the scene into the view with a margin.
-P.camera.fit = (points) => {
+// Fits points of the scene into the view with a margin, above so many pixels.
+P.camera.fit = (points, below = 0) => {
   const rows = P.camera.rows();
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
@@ -73,6 +73,7 @@ P.camera.fit = (points) => {
   const middle = low.map((value, at) => (value + high[at]) / 2);
   P.camera.target = [0, 1, 2].map((column) => rows[0][column] * middle[0] + rows[1][column] * middle[1] + rows[2][column] * middle[2]);
   const { width, height } = P.camera;
-  const half = Math.max((high[1] - low[1]) / 2, ((high[0] - low[0]) / 2) * (height / width));
+  const half = Math.max(((high[1] - low[1]) / 2) * (height / (height - below)), ((high[0] - low[0]) / 2) * (height / width));
   P.camera.span = Math.max(half * 1.16, 1e-3);
+  P.camera.pan(0, -below / 2);
 };

@@ -12,12 +12,6 @@ P.chain.turn = (v, k, sine, cosine) => {
   ];
 };
 
-// Sine and cosine of an angle in degrees, exact at the quarters.
-P.chain.trig = (degrees) => {
-  const turn = degrees - 360 * Math.floor(degrees / 360 + 0.5);
-  return [Math.sin((turn * Math.PI) / 180), Math.cos((turn * Math.PI) / 180)];
-};
-
 P.chain.unit = (v) => {
   const length = Math.hypot(v[0], v[1], v[2]) || 1;
   return [v[0] / length, v[1] / length, v[2] / length];
@@ -54,16 +48,16 @@ P.chain.apply = (m, v) => [0, 1, 2].map((row) => m[row] * v[0] + m[4 + row] * v[
 
 // The motion of one joint that stands at a position.
 P.chain.motion = ({ kind, direction, point, zero }, position) => {
-  const value = position - (zero || 0);
+  const value = position - zero;
   const k = P.chain.unit(direction);
   const m = P.chain.still();
   if (kind !== "rotary") {
     for (let row = 0; row < 3; row++) m[12 + row] = k[row] * value;
     return m;
   }
-  const [sine, cosine] = P.chain.trig(value);
+  const angle = (value * Math.PI) / 180;
   for (let column = 0; column < 3; column++) {
-    const turned = P.chain.turn([0, 1, 2].map((at) => (at === column ? 1 : 0)), k, sine, cosine);
+    const turned = P.chain.turn([0, 1, 2].map((at) => (at === column ? 1 : 0)), k, Math.sin(angle), Math.cos(angle));
     for (let row = 0; row < 3; row++) m[column * 4 + row] = turned[row];
   }
   const carried = P.chain.apply(m, point);
@@ -96,16 +90,12 @@ P.chain.values = (row, share) => {
   const machine = P.chain.at(row);
   const first = row === 0 || P.chain.at(row - 1) !== machine;
   return machine.axes.map(({ name }) => {
-    const values = P.m.column("q." + name);
-    if (!values) return 0;
-    const to = values[row];
-    const from = first ? to : values[row - 1];
+    const to = P.m.at(`q.${name}`, row) || 0;
+    if (first || share === 1) return to;
+    const from = P.m.at(`q.${name}`, row - 1) || 0;
     return from + (to - from) * share;
   });
 };
 
 // The length of the tool that is in use in a block, mm.
-P.chain.length = (row) => {
-  const lengths = P.m.column("tool_length");
-  return lengths ? lengths[row] : P.m.meta.tool_length;
-};
+P.chain.length = (row) => P.m.at("tool_length", row) ?? P.m.meta.tool_length;

@@ -1,7 +1,7 @@
 // Charts over time or block, one lane a quantity: each column of pixels holds the least and the largest, so that no peak
 // is lost. Dragging chooses a part of the program, which the path shows alone.
 
-P.charts = { groups: [], from: 0, to: 1, left: 88, right: 10 };
+P.charts = { groups: [], places: [], from: 0, to: 1, left: 88, right: 10 };
 
 // What can be drawn with the columns at hand.
 P.charts.find = () => {
@@ -58,24 +58,23 @@ P.charts.build = (view) => {
   charts.handle();
 };
 
-P.charts.whole = () => (P.state.by === "time" ? P.m.total : P.m.rows);
 P.charts.room = () => P.charts.width - P.charts.left - P.charts.right;
 P.charts.x_of = (place) => {
-  const { left, from, to, whole, room } = P.charts;
-  return left + ((place / whole() - from) / (to - from)) * room();
+  const { left, from, to, room } = P.charts;
+  return left + ((place / P.whole() - from) / (to - from)) * room();
 };
 P.charts.row_at = (x) => {
-  const { left, from, to, whole, room } = P.charts;
-  const place = (from + ((x - left) / room()) * (to - from)) * whole();
+  const { left, from, to, room } = P.charts;
+  const place = (from + ((x - left) / room()) * (to - from)) * P.whole();
   return P.state.by === "time" ? P.m.rowAt(P.clamp(place, 0, P.m.total)) : P.clamp(Math.floor(place), 0, P.m.rows - 1);
 };
 
 // The place in the values of a lane under a pixel: a block, or the set-point of that time.
 P.charts.index = ({ times }, x) => {
-  const { left, from, to, whole, room, row_at } = P.charts;
+  const { left, from, to, room, row_at } = P.charts;
   if (!times) return row_at(x);
   const { start, end, rows } = P.m;
-  let time = (from + ((x - left) / room()) * (to - from)) * whole();
+  let time = (from + ((x - left) / room()) * (to - from)) * P.whole();
   if (P.state.by === "block") {
     const row = P.clamp(Math.floor(time), 0, rows - 1);
     time = start(row) + (end(row) - start(row)) * P.clamp(time - row, 0, 1);
@@ -84,16 +83,7 @@ P.charts.index = ({ times }, x) => {
 };
 
 // The last set-point that is not after a time.
-P.charts.sample = (times, time) => {
-  let low = 0;
-  let high = times.length - 1;
-  while (low < high) {
-    const middle = (low + high + 1) >> 1;
-    if (times[middle] <= time) low = middle;
-    else high = middle - 1;
-  }
-  return low;
-};
+P.charts.sample = (times, time) => Math.max(P.first(times.length, (at) => times[at] > time) - 1, 0);
 
 // Ticks of an axis: round numbers, few.
 P.charts.ticks = (low, high, most) => {
@@ -125,9 +115,9 @@ P.charts.draw = () => {
 
 // The axis that the lanes share.
 P.charts.along = (paint) => {
-  const { width, height, left, right, from, to, whole, room, ticks, x_of } = P.charts;
+  const { width, height, left, right, from, to, room, ticks, x_of } = P.charts;
   const { grid, quiet } = P.colour;
-  for (const tick of ticks(from * whole(), to * whole(), room() / 90)) {
+  for (const tick of ticks(from * P.whole(), to * P.whole(), room() / 90)) {
     const x = Math.round(x_of(tick)) + 0.5;
     if (x < left || x > width - right + 1) continue;
     P.stroke(paint, grid.css, 1, [x, 4, x, height - 22]);
@@ -156,7 +146,7 @@ P.charts.cursor = () => {
   const x = x_of(P.play.at());
   if (x < left - 1 || x > width - right + 1) return;
   P.stroke(paint, colour.select.css, 1.5, [x, 0, x, floor]);
-  for (const { lane, top } of places || []) {
+  for (const { lane, top } of places) {
     const limit = lane.bands && m.meta.limits[lane.get(lane.bands)[state.row]];
     const { start, end } = m;
     const at = lane.times ? P.charts.sample(lane.times(), start(state.row) + (end(state.row) - start(state.row)) * state.share) : state.row;

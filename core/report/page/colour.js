@@ -115,13 +115,13 @@ P.colour.find = () => {
     modes.push({ id: name, title, unit: unit(name), bad: name !== "feed", make });
   };
   const kinds = (name, title, words) => {
-    if (has(name) && words.length) modes.push({ id: name, title, kinds: words, make: () => ({ value: (row) => column(name)[row] }) });
+    if (has(name) && words.length) modes.push({ id: name, title, kinds: words, make: () => ({ value: ((values) => (row) => values[row])(column(name)) }) });
   };
   share("deviation", "tip deviation", () => column("tolerance") || P.m.tolerance);
   share("axis_deviation", "tool axis deviation", () => P.m.axis_limits || P.m.turn);
   share("contour", "contour error", () => P.m.tolerance);
   share("feed", "feed");
-  kinds("limit", "what limits the feed", meta.limits || []);
+  kinds("limit", "what limits the feed", meta.limits);
   kinds("kind", "kind of block", P.KINDS);
   kinds("reason", "why the block is there", P.REASONS);
   if (!modes.length) modes.push({ id: "plain", title: "path", make: () => ({ value: () => 0 }) });

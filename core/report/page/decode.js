@@ -12,35 +12,138 @@ P.FORMAT = 1;
 P.bytesOfBase64 = (text) => {
   const letters = atob(text);
   const bytes = new Uint8Array(letters.length);
-  for (let i = 0; i < letters.length; i += 1) bytes[i] = letters.charCodeAt(i);
+  for (let i = 0; i < letters.length; i++) bytes[i] = letters.charCodeAt(i);
   return bytes;
 };
 
-P.inflate = async (bytes) => {
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+// Raw deflate (RFC 1951), at once: what is asked for is there when it is shown. Of a chunk no more than `most` bytes.
+P.inflate = (bytes, most = Infinity) => {
+  let out = new Uint8Array(most < 9 ? 1024 : bytes.length * 8 + 1024);
+  let end = 0;
+  let at = 0;
+  let held = 0;
+  let count = 0;
+  const damaged = () => {
+    throw new Error("The report is damaged.");
+  };
+  const fill = (wanted) => {
+    if (at > bytes.length + 8) damaged();
+    for (; count < wanted; count += 8) held |= bytes[at++] << count;
+  };
+  const bits = (wanted) => {
+    fill(wanted);
+    const value = held & ((1 << wanted) - 1);
+    held >>>= wanted;
+    count -= wanted;
+    return value;
+  };
+  // Codes by the bits that follow: sixteen times the symbol, and how long its code is.
+  const codes = (lengths) => {
+    const table = new Uint16Array(1 << Math.max(...lengths));
+    let code = 0;
+    for (let length = 1; 1 << length <= table.length; length++, code *= 2) {
+      for (let symbol = 0; symbol < lengths.length; symbol++) {
+        if (lengths[symbol] !== length) continue;
+        let turned = 0;
+        for (let bit = 0; bit < length; bit++) turned = (turned << 1) | ((code >> bit) & 1);
+        for (; turned < table.length; turned += 1 << length) table[turned] = (symbol << 4) | length;
+        code++;
+      }
+    }
+    return table;
+  };
+  const symbol = (table) => {
+    fill(15);
+    const found = table[held & (table.length - 1)] || damaged();
+    held >>>= found & 15;
+    count -= found & 15;
+    return found >> 4;
+  };
+  for (let last = 0; !last && end < most; ) {
+    last = bits(1);
+    const kind = bits(2);
+    if (kind === 0) {
+      at -= count >> 3;
+      const length = bytes[at] | (bytes[at + 1] << 8);
+      out = P.roomy(out, end + length);
+      out.set(bytes.subarray(at + 4, at + 4 + length), end);
+      end += length;
+      at += 4 + length;
+      held = count = 0;
+      continue;
+    }
+    let lengths = Array.from({ length: 288 }, (_, at) => (at < 144 || at > 279 ? 8 : at < 256 ? 9 : 7));
+    let ways = Array(30).fill(5);
+    if (kind === 2) {
+      const sizes = [bits(5) + 257, bits(5) + 1];
+      const few = Array(19).fill(0);
+      for (let place = 0, more = bits(4) + 4; place < more; place++) few[[16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15][place]] = bits(3);
+      const table = codes(few);
+      const all = [];
+      while (all.length < sizes[0] + sizes[1]) {
+        const next = symbol(table);
+        if (next < 16) all.push(next);
+        else for (let more = next === 16 ? bits(2) + 3 : next === 17 ? bits(3) + 3 : bits(7) + 11, same = next === 16 ? all.at(-1) : 0; more--; ) all.push(same);
+      }
+      lengths = all.slice(0, sizes[0]);
+      ways = all.slice(sizes[0]);
+    }
+    const [letters, back] = [lengths, ways].map(codes);
+    while (end < most) {
+      const next = symbol(letters);
+      if (next === 256) break;
+      out = P.roomy(out, end + 258);
+      if (next < 256) {
+        out[end++] = next;
+        continue;
+      }
+      // Lengths and ways grow by powers of two, four lengths and two ways each.
+      const more = next < 265 || next > 284 ? 0 : (next - 261) >> 2;
+      let length = bits(more) + (next > 284 ? 258 : more ? ((4 + ((next - 261) & 3)) << more) + 3 : next - 254);
+      const far = symbol(back);
+      const extra = far < 4 ? 0 : (far >> 1) - 1;
+      const way = 1 + (extra ? (2 + (far & 1)) << extra : far) + bits(extra);
+      for (; length--; end++) out[end] = out[end - way];
+    }
+  }
+  return out.slice(0, end);
 };
 
-// The chunks of all parts, by name, inflated. The elements go once they are read: their letters would lie in memory twice.
-P.chunks = async (root) => {
+// The chunks of all parts, by name. The elements go once they are read: their letters would lie in memory twice.
+P.chunks = (root) => {
   const chunks = new Map();
-  const work = [];
   for (const element of root.querySelectorAll("script.part")) {
-    const name = element.dataset.name;
+    const { name } = element.dataset;
     if (!chunks.has(name)) chunks.set(name, []);
-    const list = chunks.get(name);
-    const index = list.push(null) - 1;
-    work.push(P.inflate(P.bytesOfBase64(element.textContent)).then((bytes) => { list[index] = bytes; }));
+    chunks.get(name).push(P.bytesOfBase64(element.textContent));
     element.remove();
   }
-  await Promise.all(work);
   return chunks;
+};
+
+// The first place of so many for which it holds, where it holds for all behind; their number where it never does.
+P.first = (count, holds) => {
+  let low = 0;
+  for (let high = count; low < high; ) {
+    const middle = (low + high) >> 1;
+    if (holds(middle)) high = middle;
+    else low = middle + 1;
+  }
+  return low;
+};
+
+// Bytes with room for `size`: larger ones where they are too few.
+P.roomy = (bytes, size) => {
+  if (size <= bytes.length) return bytes;
+  const larger = new Uint8Array(2 * size);
+  larger.set(bytes);
+  return larger;
 };
 
 P.uint32 = (bytes, at) => (bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16)) + bytes[at + 3] * 16777216;
 
-// Integers of a column of a chunk that begins at `at`, into `out` from `start`; where the next column begins.
-P.integers = (bytes, at, rows, out, start) => {
+// Values of a column of a chunk that begins at `at`, into `out` from `start`; where the next column begins.
+P.integers = (bytes, at, rows, out, start, scale = 1) => {
   const order = bytes[at] & 15;
   const planes = bytes[at + 1];
   const steps = (bytes[at] & 16) !== 0;
@@ -49,22 +152,19 @@ P.integers = (bytes, at, rows, out, start) => {
   const step = steps ? P.uint32(bytes, at + 10) : 1;
   let last = 0;
   let slope = 0;
-  for (let row = 0; row < rows; row += 1) {
+  if (!planes) out.fill(base / scale, start, start + rows);
+  for (let row = 0; planes && row < rows; row++) {
     let folded = 0;
-    let weight = 1;
-    for (let plane = 0; plane < planes; plane += 1) {
-      folded += bytes[first + plane * rows + row] * weight;
-      weight *= 256;
-    }
-    const odd = folded % 2;
-    const difference = odd ? -(folded + 1) / 2 : folded / 2;
+    for (let plane = planes - 1; plane >= 0; plane--) folded = folded * 256 + bytes[first + plane * rows + row];
+    const half = planes < 4 ? folded >> 1 : Math.floor(folded / 2);
+    const difference = folded > 2 * half ? -half - 1 : half;
     if (order === 0) last = difference;
     else if (order === 1) last += difference;
     else {
       slope += difference;
       last += slope;
     }
-    out[start + row] = base + step * last;
+    out[start + row] = (base + step * last) / scale;
   }
   return P.behind(bytes, at, rows);
 };
@@ -72,47 +172,74 @@ P.integers = (bytes, at, rows, out, start) => {
 // Where a column ends.
 P.behind = (bytes, at, rows) => at + (bytes[at] & 16 ? 14 : 2) + bytes[at + 1] * rows;
 
-// A column whose values are unpacked when somebody asks for them first.
+// The columns that are unpacked whole: the last so many; what is asked for again is unpacked again.
+P.held = [];
+P.release = (kept, pick = () => true) => {
+  for (let at = P.held.length; at-- > kept; ) if (pick(P.held[at].name)) P.held.splice(at, 1)[0].whole = null;
+};
+
+// A column whose values are unpacked when somebody asks for them: all, or those about a row.
 P.Column = class {
-  constructor(meta, rows, pieces, owner) {
-    this.owner = owner;
-    this.from = meta.from;
-    this.name = meta.name;
-    this.unit = meta.unit;
-    this.decimals = meta.decimals;
-    this.rows = rows;
-    this.pieces = pieces;
-    this.unpacked = null;
+  constructor({ from, name, unit, decimals }, rows, pieces, owner) {
+    Object.assign(this, { owner, from, name, unit, decimals, rows, pieces, whole: null });
   }
 
   get values() {
-    if (!this.unpacked) {
-      if (this.from) P.derive[this.from](this.owner.report, this.owner.columns);
-      else this.unpacked = this.packed();
-    }
-    return this.unpacked;
+    return this.part();
   }
 
-  // What is packed, unpacked.
-  packed() {
-    const values = new Float64Array(this.rows);
-    let start = 0;
-    for (const piece of this.pieces) {
-      P.integers(piece.bytes, piece.at, piece.rows, values, start);
-      start += piece.rows;
+  // The value of one row; what follows from the rows before is there whole.
+  at(row) {
+    return ["t1", "way"].includes(this.from) ? this.values[row] : this.part(row >> 6)[row & 63];
+  }
+
+  // All values, or those of sixty-four rows.
+  part(place) {
+    const { owner, from, whole } = this;
+    if (whole) return place === undefined ? whole : whole.subarray(place * 64, place * 64 + 64);
+    if (from) P.derive[from](owner.report, owner.columns, place);
+    else this.keep(this.packed(place), place);
+    return place === undefined ? this.whole : this.few;
+  }
+
+  keep(values, place) {
+    if (place !== undefined) return (this.few = values);
+    this.whole = values;
+    P.held.unshift(this);
+    return P.release(16);
+  }
+
+  // What is packed, unpacked: all, or sixty-four rows. Of the last chunk all is kept, as its neighbours will be wanted.
+  packed(place) {
+    const { pieces, decimals } = this;
+    const unpack = (values, piece, start) => P.integers(piece.bytes, piece.at, piece.rows, values, start, 10 ** decimals);
+    const room = (rows) => new (decimals ? Float64Array : Int32Array)(rows);
+    if (place === undefined) {
+      const values = room(this.rows);
+      let start = 0;
+      for (const piece of pieces) {
+        unpack(values, piece, start);
+        start += piece.rows;
+      }
+      return values;
     }
-    this.pieces = null;
-    if (this.decimals === 0) return Int32Array.from(values);
-    const scale = 10 ** this.decimals;
-    for (let row = 0; row < values.length; row += 1) values[row] /= scale;
-    return values;
+    const size = pieces[0].rows;
+    const piece = pieces[Math.floor((place * 64) / size)];
+    if (this.piece !== piece) {
+      this.near ??= room(size);
+      unpack(this.near, piece, 0);
+      this.piece = piece;
+    }
+    const start = (place * 64) % size;
+    return this.near.slice(start, Math.min(start + 64, piece.rows));
   }
 };
 
 P.table = (meta, chunks, report) => {
   const pieces = meta.columns.map(() => []);
   let sum = 0;
-  for (const bytes of chunks) {
+  for (const packed of chunks) {
+    const bytes = P.inflate(packed);
     const rows = P.uint32(bytes, 0);
     let at = 4;
     for (const column of pieces) {
@@ -178,11 +305,11 @@ P.ofTemplates = (bytes, start, lines) => {
   const reader = new P.Reader(bytes, start);
   const count = reader.word();
   const templates = [];
-  for (let i = 0; i < count; i += 1) {
+  for (let i = 0; i < count; i++) {
     const length = reader.word();
     const pieces = [];
     let from = reader.at;
-    for (let at = reader.at; at < reader.at + length; at += 1) {
+    for (let at = reader.at; at < reader.at + length; at++) {
       if (bytes[at] === 0) {
         pieces.push(bytes.subarray(from, at));
         from = at + 1;
@@ -193,34 +320,28 @@ P.ofTemplates = (bytes, start, lines) => {
     templates.push({ pieces, places: [] });
   }
   const columns = Array.from({ length: reader.word() });
-  for (const { pieces, places } of templates) for (let i = 1; i < pieces.length; i += 1) places.push(reader.word());
+  for (const { pieces, places } of templates) for (let i = 1; i < pieces.length; i++) places.push(reader.word());
   const order = reader.integers(lines);
-  for (let i = 0; i < columns.length; i += 1) {
+  for (let i = 0; i < columns.length; i++) {
     const rows = reader.word();
     const form = bytes[reader.at];
-    reader.at += 1;
+    reader.at++;
     const digits = reader.integers(rows);
     columns[i] = { form, digits, each: form >= 64 ? reader.integers(rows) : null, row: 0 };
   }
   if (reader.at !== bytes.length) throw new Error("A text of the report is damaged.");
   let out = new Uint8Array(lines * 48 + 1024);
   let at = 0;
-  const room = (more) => {
-    if (at + more <= out.length) return;
-    const larger = new Uint8Array(2 * (at + more));
-    larger.set(out);
-    out = larger;
-  };
   for (const place of order) {
     const { pieces, places } = templates[place];
-    for (let i = 0; i < pieces.length; i += 1) {
+    for (let i = 0; i < pieces.length; i++) {
       const piece = pieces[i];
-      room(piece.length + 40);
+      out = P.roomy(out, at + piece.length + 40);
       for (let letter = 0; letter < piece.length; letter++) out[at++] = piece[letter];
       if (i === places.length) continue;
       const column = columns[places[i]];
       const { form, digits, each, row } = column;
-      column.row += 1;
+      column.row++;
       const most = form % 32;
       at = P.number(out, at, digits[row], most, each ? each[row] : form >= 32 ? -1 : most);
     }
@@ -237,7 +358,7 @@ P.Text = class {
     this.lines = 0;
     for (const bytes of chunks) {
       this.starts.push(this.lines);
-      this.lines += P.uint32(bytes, 0);
+      this.lines += P.uint32(P.inflate(bytes, 4), 0);
     }
     if (this.lines !== meta.lines) throw new Error(`The text ${meta.name} is damaged.`);
     this.recent = new Map();
@@ -245,7 +366,7 @@ P.Text = class {
 
   // The bytes of a chunk, as they stand in the file.
   bytesOf(chunk) {
-    const bytes = this.chunks[chunk];
+    const bytes = P.inflate(this.chunks[chunk]);
     return bytes[4] === 1 ? P.ofTemplates(bytes, 5, P.uint32(bytes, 0)) : bytes.subarray(5);
   }
 
@@ -271,14 +392,8 @@ P.Text = class {
   // Line `index`, counted from 0, without its end.
   line(index) {
     if (index < 0 || index >= this.lines) return "";
-    let low = 0;
-    let high = this.starts.length - 1;
-    while (low < high) {
-      const middle = (low + high + 1) >> 1;
-      if (this.starts[middle] <= index) low = middle;
-      else high = middle - 1;
-    }
-    const line = this.linesOf(low)[index - this.starts[low]];
+    const chunk = P.first(this.starts.length, (at) => this.starts[at] > index) - 1;
+    const line = this.linesOf(chunk)[index - this.starts[chunk]];
     return line.endsWith("\r") ? line.slice(0, -1) : line;
   }
 
@@ -290,11 +405,10 @@ P.Text = class {
 
 // What the document holds: { meta, tables, texts }.
 P.load = async () => {
-  if (typeof DecompressionStream === "undefined") throw new Error("This browser is too old for the report: it cannot unpack it.");
-  const chunks = await P.chunks(document);
+  const chunks = P.chunks(document);
   const bytes = chunks.get("meta");
   if (!bytes) throw new Error("The report is cut off: its file is not whole.");
-  const meta = JSON.parse(new TextDecoder().decode(bytes[0]));
+  const meta = JSON.parse(new TextDecoder().decode(P.inflate(bytes[0])));
   if (meta.format !== P.FORMAT) throw new Error(`The report has format ${meta.format}, and this page reads ${P.FORMAT}.`);
   const report = { meta, tables: {}, texts: {} };
   for (const table of meta.tables) report.tables[table.name] = P.table(table, chunks.get(table.name) || [], report);

@@ -45,13 +45,13 @@ P.poser = ({ axes, mount, gauge, tool_axis }) => {
 // has told, to its last decimal.
 P.derive = {
   // Tip and tool axis, told against the chain; or the tool axis alone, which the rotary axes turn.
-  chain: ({ meta }, columns) => {
+  chain: ({ meta }, columns, part) => {
     const { machine } = meta;
     const bare = columns.get("tip.x").from !== "chain";
     const names = ["tip.x", "tip.y", "tip.z", "axis.i", "axis.j", "axis.k"];
-    const axes = machine.axes.map(({ name, kind }) => (bare && kind !== "rotary" ? null : columns.get(`q.${name}`).values));
-    const lengths = columns.get("tool_length").values;
-    const values = names.map((name, at) => (bare && at < 3 ? null : columns.get(name).packed()));
+    const axes = machine.axes.map(({ name, kind }) => (bare && kind !== "rotary" ? null : columns.get(`q.${name}`).part(part)));
+    const lengths = columns.get("tool_length").part(part);
+    const values = names.map((name, at) => (bare && at < 3 ? null : columns.get(name).packed(part)));
     const pose = new Float64Array(6 + machine.axes.length * 3);
     const into = P.poser(machine);
     let row = 0;
@@ -60,16 +60,16 @@ P.derive = {
       into(value, lengths[row], pose, bare);
       for (let name = bare ? 3 : 0; name < 6; name++) values[name][row] += pose[name];
     }
-    values.forEach((told, at) => told && (columns.get(names[at]).unpacked = told));
+    values.forEach((told, at) => told && columns.get(names[at]).keep(told, part));
   },
   // The linear axes, told against those that bring the tip where it is, the rotary axes being as they are.
-  tips: ({ meta }, columns) => {
+  tips: ({ meta }, columns, part) => {
     const { machine } = meta;
-    const axes = machine.axes.map(({ name, kind }) => (kind === "rotary" ? columns.get(`q.${name}`).values : null));
+    const axes = machine.axes.map(({ name, kind }) => (kind === "rotary" ? columns.get(`q.${name}`).part(part) : null));
     const slides = machine.axes.filter(({ kind }) => kind !== "rotary").reverse();
-    const told = slides.map(({ name }) => columns.get(`q.${name}`).packed());
-    const lengths = columns.get("tool_length").values;
-    const [x, y, z] = ["tip.x", "tip.y", "tip.z"].map((name) => columns.get(name).values);
+    const told = slides.map(({ name }) => columns.get(`q.${name}`).packed(part));
+    const lengths = columns.get("tool_length").part(part);
+    const [x, y, z] = ["tip.x", "tip.y", "tip.z"].map((name) => columns.get(name).part(part));
     const m = new Float64Array(15);
     const far = new Float64Array(3);
     const into = P.poser(machine);
@@ -88,7 +88,7 @@ P.derive = {
       told[1][row] += volume(m, 6, far, 0, m, 12) / whole + slides[1].zero;
       told[2][row] += volume(m, 6, m, 9, far, 0) / whole + slides[2].zero;
     }
-    slides.forEach(({ name }, at) => { columns.get(`q.${name}`).unpacked = told[at]; });
+    slides.forEach(({ name }, at) => columns.get(`q.${name}`).keep(told[at], part));
   },
   // Points of the CL path, told against the tip of the last of the next blocks that come from the same line.
   blocks: (report, columns) => {
@@ -111,14 +111,14 @@ P.derive = {
       }
       for (let at = 0; at < 3; at++) values[at][point] += tips[at][block];
     }
-    names.forEach((name, at) => { columns.get(name).unpacked = values[at]; });
+    names.forEach((name, at) => columns.get(name).keep(values[at]));
   },
   // The beginning of a block, told against the end of the one before.
   t1: (report, columns) => {
     const ends = columns.get("t1").values;
     const values = columns.get("t0").packed();
-    for (let row = 1; row < values.length; row += 1) values[row] += ends[row - 1];
-    columns.get("t0").unpacked = values;
+    for (let row = 1; row < values.length; row++) values[row] += ends[row - 1];
+    columns.get("t0").keep(values);
   },
   // The end of a block, told against that of the one before and what a straight way takes at the feed.
   way: (report, columns) => {
@@ -129,7 +129,7 @@ P.derive = {
       const way = row ? Math.sqrt((x[row] - x[from]) ** 2 + (y[row] - y[from]) ** 2 + (z[row] - z[from]) ** 2) : Math.hypot(x[0], y[0], z[0]);
       values[row] += (row ? values[row - 1] : 0) + (feed[row] > 0 ? (60 * way) / feed[row] : 0);
     }
-    columns.get("t1").unpacked = values;
+    columns.get("t1").keep(values);
   },
   // Places of a block, told against even steps from tip to tip.
   tip: (report, columns) => {
@@ -142,13 +142,13 @@ P.derive = {
       while (first < rows.length) {
         const row = rows[first];
         let end = first + 1;
-        while (end < rows.length && rows[end] === row) end += 1;
+        while (end < rows.length && rows[end] === row) end++;
         const to = tips[row];
         const from = row > 0 ? tips[row - 1] : to;
-        for (let place = first; place < end; place += 1) values[place] += from + (to - from) * ((place - first + 1) / (end - first));
+        for (let place = first; place < end; place++) values[place] += from + (to - from) * ((place - first + 1) / (end - first));
         first = end;
       }
-      columns.get(name).unpacked = values;
+      columns.get(name).keep(values);
     }
   },
 };

@@ -5,7 +5,7 @@ P.keys = {};
 // The next place worth looking at, in the order of the program.
 P.keys.event = (step) => {
   const { row } = P.state;
-  const marks = P.scene.marks || [];
+  const { marks } = P.scene;
   const found = step > 0 ? marks.find((mark) => mark.row > row) : marks.findLast((mark) => mark.row < row);
   if (found) P.select(found.row);
 };
@@ -18,8 +18,9 @@ P.keys.brush = (end) => {
 
 P.keys.turn_on = (name, values) => P.set({ [name]: values[(values.indexOf(P.state[name]) + 1) % values.length] });
 P.keys.by = () => P.m.timed && P.keys.turn_on("by", ["time", "block"]);
+P.keys.scales = [0, 1, 10, 100, 1000, 10000];
 P.keys.scale = (step) => {
-  const scales = [0, 1, 10, 100, 1000, 10000];
+  const { scales } = P.keys;
   P.set({ scale: scales[P.clamp(scales.indexOf(P.state.scale) + step, 0, scales.length - 1)] });
 };
 P.keys.camera = (run) => {
@@ -80,7 +81,7 @@ P.keys.build = () => {
     el("h2", { id: "help-title" }, "Keys"),
     el("dl", { class: "keys" }, P.keys.list.map(({ keys, text }) => el("div", {}, el("dt", {}, keys.length > 4 ? [shown(keys[0]), " … ", shown(keys[keys.length - 1])] : keys.map((key, at) => [at ? " " : "", shown(key)]).flat()), el("dd", {}, text)))),
     el("p", {}, "Mouse: drag turns the path, with shift or the right button it shifts, the wheel comes nearer; a click selects. In the charts a drag chooses a part of the program, the wheel draws it out, a double click shows all."),
-    el("p", {}, P.m.meta.by || ""),
+    el("p", {}, P.m.meta.by),
     close,
   );
   document.addEventListener("keydown", (event) => {

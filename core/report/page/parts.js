@@ -137,7 +137,7 @@ P.parts.build = (machine) => {
 
   // The side of the tool, from the tool back to the bed.
   const last = machine.axes.length;
-  const length = Math.max(meta.tool_length || 0, 0);
+  const length = Math.max(meta.tool_length, 0);
   const thick = P.clamp(length * 0.09, size * 0.02, size * 0.16);
   const holder = length ? machine.gauge : add(machine.gauge, axis, size * 0.3);
   if (length) {
@@ -173,7 +173,7 @@ P.parts.build = (machine) => {
 
   // Boxes of travel: where the slides of the tool may bring the tip, and those of the work the part's origin.
   const travel = (joints, from, sign) => {
-    const spans = joints.filter((joint) => joint.kind !== "rotary" && joint.travel).map((joint) => joint.travel.map((value) => times(unit(joint.direction), (value - (joint.zero || 0)) * sign)));
+    const spans = joints.filter((joint) => joint.kind !== "rotary" && joint.travel).map((joint) => joint.travel.map((value) => times(unit(joint.direction), (value - joint.zero) * sign)));
     const corner = (bits) => spans.reduce((at, span, place) => add(at, span[(bits >> place) & 1]), from);
     for (let bits = 0; bits < 1 << spans.length; bits++)
       for (let place = 0; place < spans.length; place++)
@@ -187,6 +187,6 @@ P.parts.build = (machine) => {
 
 // Points that the machine takes up, for fitting the view: scene coordinates under the bodies given.
 P.parts.points = (bodies) => {
-  const { edges } = P.parts.made;
-  return Array.from({ length: edges.length / 16 }, (_, at) => P.chain.apply(bodies[edges[at * 16 + 3]], edges.subarray(at * 16, at * 16 + 3)));
+  const { edges, boxes } = P.parts.made;
+  return [edges, boxes].flatMap((ends) => Array.from({ length: ends.length / 4 }, (_, at) => P.chain.apply(bodies[ends[at * 4 + 3]], ends.subarray(at * 4, at * 4 + 3))));
 };

@@ -14,7 +14,7 @@ P.path.build = (view) => {
     return button;
   };
   const colours = P.choose("Colour (c)", P.colour.modes.map((mode) => mode.title), P.state.colour, (at) => P.set({ colour: at }));
-  const scales = [0, 1, 10, 100, 1000, 10000];
+  const { scales } = P.keys;
   if (scene.vectors) P.set({ scale: P.path.fitting_scale() });
   const vectors = P.choose("Deviation vectors (d, D)", scales.map((by) => (by ? `Vectors × ${by.toLocaleString("en")}` : "No vectors")), scales.indexOf(P.state.scale), (at) => P.set({ scale: scales[at] }));
   const looks = P.choose("Look (v)", P.camera.looks.map(([name]) => name), 0, (at) => P.path.look(at));
@@ -145,7 +145,8 @@ P.path.fit = () => {
   const points = [];
   for (let bits = 0; bits < 8; bits++) points.push(P.chain.apply(carry, [0, 1, 2].map((at) => cuts[(bits >> at) & 1][at])));
   if (bodies && P.state.machine) points.push(...P.parts.points(bodies));
-  P.camera.fit(points);
+  // What is told lies over the lowest part: it stays free.
+  P.camera.fit(points, Math.min(P.path.legend.offsetHeight + 14, P.camera.height / 3));
   P.path.redraw();
 };
 

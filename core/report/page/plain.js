@@ -41,11 +41,7 @@ P.plain.start = (canvas) => {
   };
   const edges = (values, bodies, clip, css, alpha) => {
     const path = new Path2D();
-    for (let at = 0; at < values.length; at += 8) {
-      const body = bodies[values[at + 3]];
-      path.moveTo(...P.camera.pixel(clip, ...P.chain.apply(body, [values[at], values[at + 1], values[at + 2]])));
-      path.lineTo(...P.camera.pixel(clip, ...P.chain.apply(body, [values[at + 4], values[at + 5], values[at + 6]])));
-    }
+    for (let at = 0; at < values.length; at += 4) path[at % 8 ? "lineTo" : "moveTo"](...P.camera.pixel(clip, ...P.chain.apply(bodies[values[at + 3]], values.subarray(at, at + 3))));
     paint.globalAlpha = alpha;
     paint.strokeStyle = css;
     paint.lineWidth = 1;

@@ -9,7 +9,7 @@ P.play.build = () => {
   const scrub = el("input", { type: "range", min: "0", max: "100000", step: "1", value: "0", "aria-label": "Place in the program" });
   scrub.addEventListener("input", () => {
     P.set({ playing: false });
-    P.play.to((Number(scrub.value) / 100000) * P.play.whole());
+    P.play.to((Number(scrub.value) / 100000) * P.whole());
     P.remember();
   });
   const speed = el("input", { type: "range", min: "0", max: String(P.play.speeds.length - 1), value: P.play.speeds.indexOf(P.state.speed), "aria-label": "Speed (< and >)", class: "speed" });
@@ -25,7 +25,7 @@ P.play.build = () => {
   });
   const tell = () => {
     const at = P.play.at();
-    scrub.value = String(Math.round((at / (P.play.whole() || 1)) * 100000));
+    scrub.value = String(Math.round((at / (P.whole() || 1)) * 100000));
     scrub.setAttribute("aria-valuetext", P.state.by === "time" ? P.play.clock(at) : `block ${P.state.row + 1}`);
     speed.value = String(P.play.speeds.indexOf(P.state.speed));
     speed.setAttribute("aria-valuetext", `${P.state.speed} times`);
@@ -51,11 +51,10 @@ P.play.at = () => {
   const { start, end } = P.m;
   return by === "time" ? start(row) + (end(row) - start(row)) * share : row + share;
 };
-P.play.whole = () => (P.state.by === "time" ? P.m.total : P.m.rows);
 
 P.play.to = (place) => {
   const { m, state } = P;
-  const at = P.clamp(place, 0, P.play.whole());
+  const at = P.clamp(place, 0, P.whole());
   const row = state.by === "time" ? m.rowAt(at) : Math.min(Math.floor(at), m.rows - 1);
   const length = m.end(row) - m.start(row);
   const share = state.by === "time" ? (length > 0 ? P.clamp((at - m.start(row)) / length, 0, 1) : 1) : at - row;
@@ -63,7 +62,7 @@ P.play.to = (place) => {
 };
 
 P.play.start = () => {
-  if (P.play.at() >= P.play.whole() * (1 - 1e-9)) P.play.to(0);
+  if (P.play.at() >= P.whole() * (1 - 1e-9)) P.play.to(0);
   let place = P.play.at();
   let set = place;
   let before = performance.now();
@@ -75,7 +74,7 @@ P.play.start = () => {
     before = now;
     P.play.to(place);
     set = P.play.at();
-    if (place >= P.play.whole()) P.set({ playing: false });
+    if (place >= P.whole()) P.set({ playing: false });
     else requestAnimationFrame(step);
   };
   requestAnimationFrame(step);

@@ -1,6 +1,6 @@
 // What is drawn, as plain numbers: both renderers draw from here, and a click is found here.
 
-P.scene = { ready: false };
+P.scene = { ready: false, marks: [] };
 
 // Segments that a moving frame draws of the path, of the CL path and of the deviation vectors.
 P.scene.budget = { path: 6500, cl: 3000, vectors: 1200, marks: 1500 };
@@ -25,15 +25,8 @@ P.scene.build = () => {
   }
   if (!count) return;
   const scene = P.scene;
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  [x, y, z].forEach((values, at) => {
-    for (let point = 0; point < count; point++) {
-      const value = values[point];
-      if (value < low[at]) low[at] = value;
-      if (value > high[at]) high[at] = value;
-    }
-  });
+  const low = [x, y, z].map((values) => values.reduce((a, b) => (b < a ? b : a)));
+  const high = [x, y, z].map((values) => values.reduce((a, b) => (b > a ? b : a)));
   scene.low = low;
   scene.high = high;
   scene.centre = low.map((value, at) => (value + high[at]) / 2);
@@ -47,7 +40,6 @@ P.scene.build = () => {
     const from = P.m.has("nc2") ? "nc2" : "cl";
     const start = (point) => (line ? P.m.rowOf(from, line[point]) : point);
     scene.cl = P.scene.line(points.rows, cx, cy, cz, start, (_, point) => (rapid && rapid[point] ? scene.RAPID : scene.CUT));
-    scene.cl.look.forEach((_, at) => at % 4 === 0 && (scene.cl.look[at] = -1));
   }
   const [dx, dy, dz] = given(table, ["d.x", "d.y", "d.z"]);
   if (dx && dy && dz) scene.vectors = P.scene.comb(count, [dx, dy, dz]);
@@ -55,6 +47,7 @@ P.scene.build = () => {
   // What is drawn is held in single precision now; the tables of it would lie in memory twice.
   delete report.tables.path;
   delete report.tables.cl;
+  P.release(0, (name) => !/^(t\d|kind)$/.test(name));
   scene.ready = true;
   P.scene.recolour();
 };
@@ -88,6 +81,7 @@ P.scene.line = (count, x, y, z, rowOf, flagOf) => {
     const row = rowOf(point);
     const flag = point === 0 ? P.scene.NONE : flagOf(row, point);
     if (flag === P.scene.RAPID) along += Math.hypot(x[point] - x[point - 1], y[point] - y[point - 1], z[point] - z[point - 1]);
+    look[point * 4] = -1;
     look[point * 4 + 1] = flag;
     look[point * 4 + 2] = row;
     look[point * 4 + 3] = along;
@@ -186,13 +180,7 @@ P.scene.recolour = () => {
 // The points of a block on the path: [first, last], with the one that it starts from.
 P.scene.points_of = (row) => {
   const { count, look } = P.scene.path;
-  let low = 0;
-  let high = count;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (look[middle * 4 + 2] < row) low = middle + 1;
-    else high = middle;
-  }
+  const low = P.first(count, (point) => look[point * 4 + 2] >= row);
   let last = low;
   while (last + 1 < count && look[(last + 1) * 4 + 2] === row) last++;
   return [Math.max(low - 1, 0), Math.min(last, count - 1)];
@@ -201,7 +189,7 @@ P.scene.points_of = (row) => {
 // Rewinds, branch changes, tools and cycles, from the writer; arcs from the kind of block.
 P.scene.find_marks = () => {
   const { meta, column, rows } = P.m;
-  const marks = (meta.events || []).filter((event) => event.row >= 0 && event.row < rows).map((event) => ({ ...event }));
+  const marks = meta.events.filter((event) => event.row >= 0 && event.row < rows).map((event) => ({ ...event }));
   const kind = column("kind");
   for (let row = 0; kind && row < rows && marks.length < 20000; row++) {
     if (kind[row] === 4) marks.push({ row, kind: "arc", text: "arc", quiet: true });

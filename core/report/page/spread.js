@@ -5,7 +5,7 @@ P.spread = { kind: 0, bins: [], BINS: 20, left: 58, right: 16, top: 34, bottom: 
 P.spread.build = (view) => {
   const { el, spread } = P;
   const { column, has, unit, meta } = P.m;
-  const { tip, axis } = meta.tolerances || {};
+  const { tip, axis } = meta.tolerances;
   const all = [["deviation", "Tip deviation", tip], ["axis_deviation", "Tool axis deviation", axis], ["contour", "Contour error", tip]];
   spread.kinds = all.filter(([name]) => has(name)).map(([name, title, limit]) => ({ title, limit, get: () => column(name), unit: unit(name) }));
   const tabs = P.tabs("Spread of", spread.kinds.map(({ title }) => title), (at) => {

@@ -32,12 +32,12 @@ P.el = (tag, properties, ...children) => {
   const element = document.createElement(tag);
   if (tag === "button") element.type = "button";
   for (const [name, value] of Object.entries(properties || {})) {
-    if (value === null || value === undefined) continue;
+    if (value == null) continue;
     if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
     else if (typeof value !== "boolean" || name.startsWith("aria")) element.setAttribute(name, value);
     else element.toggleAttribute(name, value);
   }
-  element.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined));
+  element.append(...children.flat(Infinity).filter((child) => child != null));
   return element;
 };
 P.by = (id) => document.getElementById(id);
@@ -54,17 +54,18 @@ P.icon = (path) => {
   return svg;
 };
 
+// The end of the program, s or blocks.
+P.whole = () => (P.state.by === "time" ? P.m.total : P.m.rows);
 P.clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 P.digits = { mm: 4, deg: 4, s: 3, "mm/min": 1, "deg/min": 1 };
 
-// A number with as many digits as its unit deserves.
-P.shown = (value, unit, digits) => {
+// A number with as many digits as its unit deserves; a bound below them is told as one of the last.
+P.shown = (value, unit, digits, bound) => {
   if (!Number.isFinite(value)) return "–";
   const places = digits ?? P.digits[unit] ?? 3;
-  const small = value !== 0 && Math.abs(value) < 0.5 * 10 ** -places;
-  return small ? value.toExponential(1) : (value.toFixed(places) * 1 === 0 ? (0).toFixed(places) : value.toFixed(places));
+  return (bound && value > 0 ? Math.max(value, 10 ** -places) : value).toFixed(places).replace(/^-(?=[0.]*$)/, "");
 };
-P.quantity = (value, unit, digits) => P.shown(value, unit, digits) + (unit ? " " + P.unit(unit) : "");
+P.quantity = (value, unit, bound) => P.shown(value, unit, undefined, bound) + (unit ? " " + P.unit(unit) : "");
 P.unit = (unit) => unit.replace("deg", "°");
 // Of a tick of a chart: no more digits than tell.
 P.short = (value) => {
@@ -82,6 +83,8 @@ P.model = (report) => {
   };
   // Whether there is one; asking for it would unpack it.
   const has = (name) => blocks.columns.has(name);
+  // The value in one row: no more than its piece is unpacked.
+  const at = (name, row) => blocks.columns.get(name)?.at(row);
   const unit = (name) => (blocks.columns.get(name) || {}).unit || "";
   const rows = blocks.rows;
   const places = {};
@@ -115,25 +118,19 @@ P.model = (report) => {
   // The block that is under way at a time, s.
   const rowAt = (time) => {
     if (!t1) return P.clamp(Math.floor(time), 0, rows - 1);
-    let low = 0;
-    let high = rows - 1;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (t1[middle] < time) low = middle + 1;
-      else high = middle;
-    }
-    return low;
+    return P.first(rows - 1, (row) => t1[row] >= time);
   };
   const timed = t1 !== null && total > 0;
   // The tolerance of the cuts, which most share; rapids have another.
-  const tolerance = (report.meta.tolerances || {}).tip || 0;
+  const tolerance = report.meta.tolerances.tip;
   // That of the tool axis holds for cuts alone: a rapid may turn the tool as it likes.
   const kind = column("kind");
-  const turn = (report.meta.tolerances || {}).axis || 0;
-  const axis_limits = kind && turn ? Float32Array.from(kind, (value) => (value <= 2 ? Infinity : turn)) : null;
+  const turn = report.meta.tolerances.axis;
+  const axis_limits = kind && turn ? new Float32Array(rows).fill(turn) : null;
+  for (let row = 0; axis_limits && row < rows; row++) if (kind[row] <= 2) axis_limits[row] = Infinity;
   const names = [...blocks.columns.keys()];
   const axes = names.filter((name) => name.startsWith("q.")).map((name) => name.slice(2));
-  return { report, meta: report.meta, rows, blocks, column, has, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance, turn, axis_limits };
+  return { report, meta: report.meta, rows, blocks, column, at, has, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance, turn, axis_limits };
 };
 
 // Selects a block, and the machine stands at its end.

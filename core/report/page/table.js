@@ -9,9 +9,9 @@ P.numbers.build = (view) => {
   const cell = (role, text) => el("span", { class: "cell", role, title: role === "columnheader" ? text : null }, text);
   const title = ({ name, unit }) => name.replace("_", " ") + (unit ? `, ${P.unit(unit)}` : "");
   const text = (one, row) => {
-    const value = one.values[row];
+    const value = one.at(row);
     if (words[one.name]) return words[one.name][value] || "";
-    return one.values instanceof Int32Array ? String(value) : P.shown(value, one.unit);
+    return !one.decimals ? String(value) : P.shown(value, one.unit);
   };
   const box = el("div", { class: "grid", role: "grid", tabindex: "0", "aria-label": "Blocks", "aria-rowcount": m.rows + 1, "aria-colcount": columns.length + 1 });
   box.append(el("div", { class: "row top", role: "row" }, cell("columnheader", "block"), columns.map((one) => cell("columnheader", title(one)))));

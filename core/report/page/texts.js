@@ -4,7 +4,7 @@ P.texts = { panes: {} };
 
 P.texts.build = () => {
   const { texts, meta } = P.m.report;
-  const names = meta.names || {};
+  const { names } = meta;
   const second = texts.cl ? "cl" : texts.nc2 ? "nc2" : null;
   P.by("views").dataset.texts = String((texts.nc ? 1 : 0) + (second ? 1 : 0));
   if (texts.nc) P.texts.pane(P.by("nc"), "nc", "NC program", names.nc);

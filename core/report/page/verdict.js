@@ -17,16 +17,16 @@ P.verdict.build = (view) => {
   const part = (title, ...children) => body.append(el("h3", {}, title), ...children);
   view.append(el("div", { class: "bar" }, el("h2", { id: "verdict-title" }, "Verdict")), body);
   body.append(P.verdict.badge(meta.verdict));
-  body.append(el("div", { class: "said" }, (meta.verdict.sentences || []).map((sentence) => el("p", {}, sentence))));
-  if ((meta.maxima || []).length) part("Largest", P.verdict.maxima(meta.maxima));
-  if ((meta.warnings || []).length) part(`Found (${meta.warnings.length})`, P.verdict.warnings(meta.warnings));
-  if ((meta.axes_used || []).length) part("Travel used", ...meta.axes_used.map(P.verdict.travel));
+  body.append(el("div", { class: "said" }, meta.verdict.sentences.map((sentence) => el("p", {}, sentence))));
+  if (meta.maxima.length) part("Largest", P.verdict.maxima(meta.maxima));
+  if (meta.warnings.length) part(`Found (${meta.warnings.length})`, P.verdict.warnings(meta.warnings));
+  if (meta.axes_used.length) part("Travel used", ...meta.axes_used.map(P.verdict.travel));
   // What stands above is not said twice.
-  const above = [...(meta.maxima || []).map(({ name }) => name), ...(meta.axes_used || []).map(({ name }) => `axis ${name}`)];
-  const facts = (meta.facts || []).filter(([label]) => !above.includes(label));
+  const above = [...meta.maxima.map(({ name }) => name), ...meta.axes_used.map(({ name }) => `axis ${name}`)];
+  const facts = meta.facts.filter(([label]) => !above.includes(label));
   if (facts.length) part("Job", el("dl", { class: "facts" }, facts.map(([label, text]) => [el("dt", {}, label), el("dd", {}, text)])));
-  if ((meta.excludes || []).length) part("What “certified” leaves out", el("ul", { class: "plain quiet" }, meta.excludes.map((sentence) => el("li", {}, sentence))));
-  const left = [...(meta.parts_left_out || [])];
+  if (meta.excludes.length) part("What “certified” leaves out", el("ul", { class: "plain quiet" }, meta.excludes.map((sentence) => el("li", {}, sentence))));
+  const left = [...meta.parts_left_out];
   if (meta.events_left_out > 0) left.push(`${meta.events_left_out} further marks are not listed.`);
   if (left.length) part("Left out of this page", el("ul", { class: "plain" }, left.map((sentence) => el("li", {}, sentence))));
 };
@@ -34,12 +34,12 @@ P.verdict.build = (view) => {
 // Links to the places of something: the line of the program, that of the CL file, else the block.
 P.verdict.places = ({ nc, cl, row }) => {
   const { el } = P;
-  const link = (text, title, run) => el("button", { class: "link number", title, onclick: run }, text);
+  const known = row != null;
+  const link = (text, title, run) => el("button", { class: "link number", title, onclick: known ? () => P.select(row) : run }, text);
   const made = [];
-  const known = row !== null && row !== undefined;
-  if (nc) made.push(link(`NC ${nc}`, `Go to line ${nc} of the program`, () => (known ? P.select(row) : P.select_line("nc", nc - 1))));
-  if (cl) made.push(link(`CL ${cl}`, `Go to line ${cl} of the CL file`, () => (known ? P.select(row) : P.select_line("cl", cl - 1))));
-  if (!made.length && known) made.push(link(`block ${row + 1}`, "Go to the block", () => P.select(row)));
+  if (nc) made.push(link(`NC ${nc}`, `Go to line ${nc} of the program`, () => P.select_line("nc", nc - 1)));
+  if (cl) made.push(link(`CL ${cl}`, `Go to line ${cl} of the CL file`, () => P.select_line("cl", cl - 1)));
+  if (!made.length && known) made.push(link(`block ${row + 1}`, "Go to the block"));
   return made;
 };
 
@@ -50,7 +50,7 @@ P.verdict.maxima = (maxima) => {
     const bar = el("span", { class: `share${over ? " over" : ""}` }, el("i"));
     if (one.limit) bar.firstChild.style.width = `${P.clamp((one.value / one.limit) * 100, 0.5, 100)}%`;
     return [
-      el("tr", {}, el("th", { scope: "row" }, one.name), el("td", { class: "number" }, P.quantity(one.value, one.unit))),
+      el("tr", {}, el("th", { scope: "row" }, one.name), el("td", { class: "number" }, P.quantity(one.value, one.unit, true))),
       el("tr", {}, el("td", { colspan: "2" }, one.limit ? bar : null, el("span", { class: "quiet" }, one.limit ? `of ${P.short(one.limit)} ${P.unit(one.unit)}${over ? ", exceeded" : ""} ` : ""), el("span", { class: "where" }, P.verdict.places(one)))),
     ];
   });

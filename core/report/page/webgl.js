@@ -4,56 +4,56 @@ P.webgl = {};
 
 P.webgl.LINE = `#version 300 es
 precision highp float;
-in vec3 aFrom; in vec3 aTo; in vec4 aLook;
-uniform mat4 uClip; uniform vec2 uSize; uniform float uWidth; uniform float uPerMm; uniform float uDense; uniform vec2 uBrush; uniform bool uThin; uniform float uNear;
-flat out float vPlace; flat out float vFlag; flat out float vOut; out float vAlong;
+in vec3 aFrom,aTo;in vec4 aLook;
+uniform mat4 uClip;uniform vec2 uSize,uBrush;uniform float uWidth,uPerMm,uDense,uNear;uniform bool uThin;
+flat out float vPlace,vFlag,vOut;out float vAlong;
 void main() {
-  vPlace = aLook.x; vFlag = aLook.y; vAlong = aLook.w * uPerMm;
-  vOut = aLook.z < uBrush.x || aLook.z > uBrush.y ? 1.0 : 0.0;
-  vec4 b = uClip * vec4(aTo, 1.0);
-  if (uThin) { gl_Position = b; gl_Position.z += vOut * 0.3 - uNear; return; }
-  float end = float(gl_VertexID >> 1), side = float(gl_VertexID & 1) * 2.0 - 1.0;
-  vec4 a = uClip * vec4(aFrom, 1.0);
-  vec2 way = (b.xy - a.xy) * uSize * 0.5;
-  float len = length(way);
-  vec2 along = len > 1e-5 ? way / len : vec2(1.0, 0.0);
-  float wide = uWidth * (vPlace > 191.5 && vOut < 0.5 ? 1.7 : 1.0);
-  vec4 p = mix(a, b, end);
-  if (vFlag == 1.0) vAlong -= (1.0 - end) * len / uDense;
-  p.xy += (vec2(-along.y, along.x) * side + along * (end * 2.0 - 1.0) * 0.4) * wide / uSize;
-  p.z += vOut * 0.3 - uNear;
-  gl_Position = aLook.y > 1.5 ? vec4(2.0, 2.0, 2.0, 1.0) : p;
+vPlace=aLook.x;vFlag=aLook.y;vAlong=aLook.w*uPerMm;
+vOut=aLook.z<uBrush.x||aLook.z>uBrush.y?1.0:0.0;
+vec4 b=uClip*vec4(aTo,1.0);
+if(uThin) { gl_Position=b;gl_Position.z+=vOut*0.3-uNear;return;}
+float end=float(gl_VertexID>>1),side=float(gl_VertexID&1)*2.0-1.0;
+vec4 a=uClip*vec4(aFrom,1.0);
+vec2 way=(b.xy-a.xy)*uSize*0.5;
+float len=length(way);
+vec2 along=len>1e-5?way/len:vec2(1.0,0.0);
+float wide=uWidth*(vPlace>191.5&&vOut<0.5?1.7:1.0);
+vec4 p=mix(a,b,end);
+if(vFlag==1.0) vAlong-=(1.0-end)*len/uDense;
+p.xy+=(vec2(-along.y,along.x)*side+along*(end*2.0-1.0)*0.4)*wide/uSize;
+p.z+=vOut*0.3-uNear;
+gl_Position=aLook.y>1.5?vec4(2.0,2.0,2.0,1.0):p;
 }`;
 
 P.webgl.LINE_COLOUR = `#version 300 es
 precision highp float;
-flat in float vPlace; flat in float vFlag; flat in float vOut; in float vAlong;
-uniform sampler2D uRamp; uniform vec3 uPlain; uniform vec3 uRapid; uniform vec3 uGround;
+flat in float vPlace,vFlag,vOut;in float vAlong;
+uniform sampler2D uRamp;uniform vec3 uPlain,uRapid,uGround;
 out vec4 colour;
 void main() {
-  if (vFlag > 1.5) discard;
-  vec3 c = vPlace < 0.0 ? uPlain : texture(uRamp, vec2((vPlace + 0.5) / 256.0, 0.5)).rgb;
-  if (vFlag > 0.5) { if (fract(vAlong / 11.0) > 0.55) discard; c = uRapid; }
-  colour = vec4(mix(c, uGround, vOut * 0.84), 1.0);
+if(vFlag>1.5) discard;
+vec3 c=vPlace<0.0?uPlain:texture(uRamp,vec2((vPlace+0.5)/256.0,0.5)).rgb;
+if(vFlag>0.5) { if(fract(vAlong/11.0)>0.55) discard;c=uRapid;}
+colour=vec4(mix(c,uGround,vOut*0.84),1.0);
 }`;
 
 P.webgl.BODY = `#version 300 es
 precision highp float;
-in vec3 aAt; in vec3 aNormal; in vec2 aBody;
-uniform mat4 uBodies[10]; uniform mat4 uClip; uniform vec3 uBack; uniform bool uLit;
+in vec3 aAt,aNormal;in vec2 aBody;
+uniform mat4 uBodies[10],uClip;uniform vec3 uBack;uniform bool uLit;
 out float vLight;
 void main() {
-  mat4 body = uBodies[int(aBody.x + 0.5)];
-  gl_Position = uClip * (body * vec4(aAt, 1.0));
-  vLight = uLit ? aBody.y * (0.62 + 0.38 * abs(dot(mat3(body) * aNormal, uBack))) : 1.0;
+mat4 body=uBodies[int(aBody.x+0.5)];
+gl_Position=uClip*(body*vec4(aAt,1.0));
+vLight=uLit?aBody.y*(0.62+0.38*abs(dot(mat3(body)*aNormal,uBack))):1.0;
 }`;
 
 P.webgl.BODY_COLOUR = `#version 300 es
 precision highp float;
 in float vLight;
-uniform vec3 uPlain; uniform float uAlpha;
+uniform vec3 uPlain;uniform float uAlpha;
 out vec4 colour;
-void main() { colour = vec4(min(uPlain * vLight, vec3(1.0)), uAlpha); }`;
+void main() { colour=vec4(min(uPlain*vLight,vec3(1.0)),uAlpha);}`;
 
 // A renderer on a canvas, or null where WebGL2 is not to be had.
 P.webgl.start = (canvas, restored) => {
@@ -184,7 +184,7 @@ P.webgl.start = (canvas, restored) => {
     const many = !moving && scene.path.count > 250000;
     if (scene.cl) line(moving ? "cl_moving" : "cl", matrix, { plain: colour.cl.rgb, thin: true });
     line(moving ? "path_moving" : "path", matrix, { width: 2, plain: colour.quiet.rgb, thin: many, near: 0.0004 });
-    if (scene.vectors) line(moving ? "vectors_moving" : "vectors", matrix, { width: 1.2, plain: colour.mark.rgb, near: 0.0006 });
+    if (scene.vectors && P.state.scale) line(moving ? "vectors_moving" : "vectors", matrix, { width: 1.2, plain: colour.mark.rgb, near: 0.0006 });
     line("chosen", matrix, { width: 5, plain: colour.select.rgb, near: 0.002 });
     if (bodies && made.meshes) {
       body("boxes", gl.LINES, bodies, clip, { plain: colour.strong.rgb, alpha: 1 });

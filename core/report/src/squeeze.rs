@@ -97,7 +97,8 @@ impl Script<'_> {
             || before == after && matches!(after, '+' | '-')
             || before == '/'
             || after == '/';
-        let inside = matches!(before, '{' | '(' | '[' | ',') || matches!(after, '}' | ')' | ']');
+        let inside =
+            matches!(before, '{' | '(' | '[' | ',' | ';') || matches!(after, '}' | ')' | ']');
         if line && inside {
             // There no statement ends, or one does with or without it.
         } else if line {
@@ -222,7 +223,7 @@ mod tests {
         for (text, squeezed) in [
             (
                 "// one\n\nlet a = 1; // two\n  let b;\n",
-                "let a=1;\nlet b;\n",
+                "let a=1;let b;\n",
             ),
             ("a = b /* no\n line */ + c", "a=b\n+c"),
             ("a - -b + +c; a-- - b", "a- -b+ +c;a-- -b"),
@@ -230,7 +231,7 @@ mod tests {
             ("in of instanceof x", "in of instanceof x"),
             (
                 "f(\n  a,\n  [\n1\n]\n)\n{\n  b;\n  c\n}\nd",
-                "f(a,[1])\n{b;\nc}\nd",
+                "f(a,[1])\n{b;c}\nd",
             ),
             ("5 .toFixed ( 2 )", "5 .toFixed(2)"),
         ] {

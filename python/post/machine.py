@@ -82,11 +82,14 @@ class Machine:
 
         ``set`` sets parameters (``{"Lm": 312}``) or any keys (``{"accuracy.tolerance": 0.001}``) over the file;
         ``tool_length`` is that of every tool from the gauge point to the tip, mm; ``mount`` where the part origin sits, all
-        axes at zero, machine frame, mm; ``turn`` how the part is turned about its Z, degrees. ``machines`` and
+        axes at zero, machine frame, mm; ``turn`` how the part is turned about its Z, degrees: CL files are turned
+        by it as they are posted, and tips and tool axes here and in ``blocks`` are those of the turned part. ``machines`` and
         ``plugins`` are further folders, beside those of ``POST_MACHINES`` and ``POST_PLUGINS``.
 
         Raises :class:`PostError` where the command would refuse.
         """
+        if tool_length is not None and not 0 <= tool_length < float("inf"):
+            raise ValueError(f"tool_length is {tool_length}, not a length from 0 up")
         return cls(
             _native.Machine(
                 os.fspath(name),
@@ -135,7 +138,7 @@ class Machine:
         """
         tip, axis, edge = self._poses(tip, axis, edge)
         rest = self._native.start() if near is None else near
-        stands = np.ascontiguousarray(rest, dtype=np.float64)
+        stands = np.array(rest, dtype=np.float64, order="C", copy=True)
         if stands.shape != (len(self.axes),):
             raise ValueError(f"near has the shape {stands.shape}, not ({len(self.axes)},)")
         return self._native.inverse(tip, axis, edge, stands, within_travel)
@@ -154,7 +157,7 @@ class Machine:
         Raises :class:`PostError` where a point cannot be reached or a cut cannot go on; points are counted from 0.
         """
         tip, axis, edge = self._poses(tip, axis, edge)
-        cuts = np.ascontiguousarray(np.broadcast_to(np.asarray(cut, dtype=np.bool_), tip.shape[:1]))
+        cuts = np.array(np.broadcast_to(np.asarray(cut, dtype=np.bool_), tip.shape[:1]), order="C", copy=True)
         return self._native.route(tip, axis, edge, cuts)
 
     def deviation(self, q0: ArrayLike, q1: ArrayLike, t: ArrayLike = 0.5) -> tuple[Floats, Floats]:
@@ -165,7 +168,7 @@ class Machine:
         begin, end = self._values("q0", q0), self._values("q1", q1)
         if begin.shape != end.shape:
             raise ValueError(f"q0 has the shape {begin.shape}, q1 {end.shape}")
-        shares = np.ascontiguousarray(np.atleast_1d(np.asarray(t, dtype=np.float64)))
+        shares = np.array(np.atleast_1d(np.asarray(t, dtype=np.float64)), order="C", copy=True)
         if shares.ndim != 1:
             raise ValueError(f"t has the shape {shares.shape}, not (m,)")
         return self._native.deviation(begin, end, shares)
@@ -210,7 +213,8 @@ class Machine:
 
 def rows(name: str, values: ArrayLike, width: int) -> Floats:
     """An array of float64 in one piece, one row a point; a single row is one point."""
-    array = np.ascontiguousarray(values, dtype=np.float64)
+    # Copied: another thread may write to the caller's while Rust reads.
+    array = np.array(values, dtype=np.float64, order="C", copy=True)
     if array.ndim == 1 and array.shape == (width,):
         array = array.reshape(1, width)
     if array.ndim != 2 or array.shape[1] != width:

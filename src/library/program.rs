@@ -129,6 +129,8 @@ impl JobLine {
         }
         for (key, value) in options {
             line.push(match value {
+                // Nor standard output to be written.
+                Some(value) if key == "output" && value == "-" => "--output=./-".into(),
                 Some(value) => format!("--{key}={value}").into(),
                 None => format!("--{key}").into(),
             });
@@ -376,10 +378,12 @@ impl MadeProgram {
             let mut rows = BlockRows::new(machine, cl, told.predict)?;
             let mut came = self.line.make(&mut bench, Some(&mut rows))?;
             let (finder, source) = (&bench.finder, &mut bench.source);
-            let held = match told.verify {
-                true => Some(self.held(finder, source, &came.text)?.found),
-                false => None,
-            };
+            let mut held = None;
+            if told.verify {
+                let found = self.held(finder, source, &came.text)?;
+                came.findings.extend(found.findings);
+                held = Some(found.found);
+            }
             let mut heard = None;
             let mut prediction = None;
             if told.predict {

@@ -754,6 +754,11 @@ pub const CODES: &[CodeGroup] = &[
                 "The message has the system's reason.",
             ),
             code(
+                "turned-part",
+                "The part sits turned on the machine, and a CL file of the motions would be turned once more when it is posted.",
+                "`--set workpiece.turn=0`.",
+            ),
+            code(
                 "vocabulary",
                 "The dialect tells no words, so that its programs cannot be read back.",
                 "A dialect of your own tells them by `vocabulary`.",

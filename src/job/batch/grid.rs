@@ -6,7 +6,8 @@ use super::job_line::{JobLine, Written};
 use crate::arguments::flag_values::finite;
 
 /// More jobs than this are a slip.
-const MOST_JOBS: usize = 10_000_000;
+/// More are a slip.
+pub const MOST_JOBS: usize = 10_000_000;
 
 /// So many steps of one range.
 const MOST_STEPS: f64 = 1e6;
@@ -40,7 +41,13 @@ impl Grid {
                 .help("--machine names one for all jobs, \"machine\" in a list that of one job")
                 .boxed());
         }
-        for (key, values) in &self.set {
+        for (index, (key, values)) in self.set.iter().enumerate() {
+            if self.set[..index].iter().any(|(before, _)| before == key) {
+                let message = format!("--set has {key} twice");
+                return Err(Diagnostic::error("batch", message)
+                    .help(format!("one flag has all values: --set {key}=200,250"))
+                    .boxed());
+            }
             jobs = multiplied(jobs, values, |job, value| {
                 if job.set.contains_key(key) {
                     return false;
@@ -135,8 +142,8 @@ fn parts(text: &str) -> Vec<&str> {
             (Some(open), _) if letter == open => quote = None,
             (Some(_), _) => {}
             (None, '"' | '\'') => quote = Some(letter),
-            (None, '[' | '{') => depth += 1,
-            (None, ']' | '}') => depth = depth.saturating_sub(1),
+            (None, '[' | '{' | '(') => depth += 1,
+            (None, ']' | '}' | ')') => depth = depth.saturating_sub(1),
             (None, ',') if depth == 0 => {
                 parts.push(&text[begin..at]);
                 begin = at + 1;
@@ -205,6 +212,7 @@ mod tests {
         assert_eq!(texts("200, 250"), ["200", "250"]);
         assert_eq!(texts("[1,2,3],[4,5,6]"), ["[1,2,3]", "[4,5,6]"]);
         assert_eq!(texts("\"a,b\",c"), ["\"a,b\"", "c"]);
+        assert_eq!(texts("max(1,2),3"), ["max(1,2)", "3"]);
         assert!(values("1,,2").is_err());
     }
 

@@ -23,24 +23,36 @@ impl Journal {
     /// line that is not whole, as of a run that was killed, is passed over.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// It cannot be read, or is a file of another kind, to which nothing is added.
     pub fn open(path: &Path, resume: bool) -> Result<Self, FileFault> {
         let mut known = BTreeMap::new();
         let fault = |error| FileFault::read(path, error);
         match File::open(path) {
-            Ok(file) if resume => {
+            Ok(file) => {
                 let mut lines = BufReader::new(file);
                 let mut line = Vec::new();
+                // A whole line that is no outcome shows a file of another kind, unless outcomes stand in it too.
+                let mut other = false;
                 while lines.read_until(b'\n', &mut line).map_err(fault)? > 0 {
-                    if let Ok(outcome) = serde_json::from_slice::<Outcome>(&line)
-                        && let Some(key) = outcome.key.clone()
-                    {
-                        known.insert(key, outcome);
+                    match serde_json::from_slice::<Outcome>(&line) {
+                        Ok(outcome) => {
+                            known.extend(outcome.key.clone().map(|key| (key, outcome)));
+                        }
+                        Err(_) => other |= !line.starts_with(b"{\"") || line.ends_with(b"\n"),
                     }
                     line.clear();
                 }
+                if other && known.is_empty() {
+                    let kind = io::ErrorKind::InvalidData;
+                    return Err(fault(io::Error::new(
+                        kind,
+                        "this is no journal of post batch",
+                    )));
+                }
+                if !resume {
+                    known.clear();
+                }
             }
-            Ok(_) => {}
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(fault(error)),
         }

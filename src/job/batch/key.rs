@@ -12,7 +12,7 @@ use crate::job::plugin_finder;
 const FORMAT: &str = "post batch 1";
 
 /// The key of a job. What is in it: the bytes of the CL file and its name (programs have it in their comments), the texts of
-/// the machine and of all that it extends, all settings and options, the version of `post`, names, versions and bytes of the
+/// the machine and of all that it extends, all settings and options, the version of `post` and the hash of its sources, names, versions and bytes of the
 /// plugins.
 ///
 /// # Errors
@@ -32,6 +32,7 @@ pub fn key(
     };
     add(FORMAT.as_bytes());
     add(env!("CARGO_PKG_VERSION").as_bytes());
+    add(env!("POST_SOURCES").as_bytes());
     add(job.file.as_bytes());
     add(cl.hash.as_bytes());
     add(crate::files::json_line(texts).as_bytes());

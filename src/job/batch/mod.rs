@@ -26,7 +26,7 @@ mod table;
 mod travel;
 mod workers;
 
-pub use grid::{Grid, values};
+pub use grid::{Grid, MOST_JOBS, values};
 pub use inputs::Inputs;
 pub use job_line::{JobLine, Written};
 pub use journal::Journal;

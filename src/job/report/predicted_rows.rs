@@ -1,7 +1,7 @@
 //! What is predicted of the blocks of a program that was posted: a row for each of theirs.
 
 use std::collections::VecDeque;
-use std::io::Read;
+use std::io::{self, Read};
 
 use post_machine::description::Machine;
 use post_report::table::{Column, TableWriter};
@@ -96,7 +96,12 @@ impl<'m> PredictedRows<'m> {
         match self.lines.read_exact(&mut line) {
             _ if self.ended => {}
             Ok(()) => self.waiting.push_back(u64::from(u32::from_le_bytes(line))),
-            Err(_) => self.ended = true,
+            Err(error) => {
+                self.ended = true;
+                if error.kind() != io::ErrorKind::UnexpectedEof {
+                    self.fault.get_or_insert(fault(error));
+                }
+            }
         }
         !self.ended
     }

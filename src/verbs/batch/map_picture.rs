@@ -41,7 +41,8 @@ enum Cell {
 
 /// The map of one file on one machine.
 struct Panel {
-    title: String,
+    file: String,
+    machine: String,
     /// Row by row, from the least of what goes up.
     cells: Vec<Cell>,
 }
@@ -91,7 +92,19 @@ impl Map {
                 44.0 + pitch[1] * (index / across) as f64 + TOP,
             ];
             let middle = corner[0] + size[0] / 2.0;
-            label(&mut svg, [middle, corner[1] - 12.0], "middle", &panel.title);
+            // Names without their folders, where that is enough to tell them apart.
+            let short = |file: &str| {
+                let name = std::path::Path::new(file).file_name();
+                name.unwrap_or_default().to_string_lossy().into_owned()
+            };
+            let name = short(&panel.file);
+            let alone = |other: &Panel| other.file == panel.file || short(&other.file) != name;
+            let file = match panels.iter().all(alone) {
+                true => &name,
+                false => &panel.file,
+            };
+            let title = format!("{file} on {}", panel.machine);
+            label(&mut svg, [middle, corner[1] - 12.0], "middle", &title);
             let best = if self.most { most } else { least };
             let shades = [least, most, best];
             draw_cells(&mut svg, panel, [corner, cell], xs.len(), shades);
@@ -119,14 +132,13 @@ impl Map {
         };
         let mut panels: Vec<Panel> = Vec::new();
         for row in 0..table.rows {
-            let file = text("file", row);
-            let name = std::path::Path::new(&file).file_name();
-            let name = name.unwrap_or_default().to_string_lossy();
-            let title = format!("{name} on {}", text("machine", row));
-            let place = panels.iter().position(|panel| panel.title == title);
+            let [file, machine] = ["file", "machine"].map(|column| text(column, row));
+            let named = |panel: &Panel| [&panel.file, &panel.machine] == [&file, &machine];
+            let place = panels.iter().position(named);
             let place = place.unwrap_or_else(|| {
                 panels.push(Panel {
-                    title,
+                    file: file.clone(),
+                    machine: machine.clone(),
                     cells: vec![Cell::Empty; xs.len() * ys.len()],
                 });
                 panels.len() - 1

@@ -40,7 +40,7 @@ const JOURNAL: Role = Role {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post batch *.cls --machine dmu50 --machine ac-trunnion -o results.parquet
-  post batch blade.cls -m disc-cutter --set Lm=200:300:25 --tolerance 0.005,0.01 -o results.csv
+  post batch disc-blade.cls -m disc-cutter --set Lm=200:300:25 --tolerance 0.005,0.01 -o results.csv
   post batch part.cls -m dmu50 --mount 0,0,50:250:50 --predict -o results.parquet --resume
   post batch part.cls -m dmu50 --mount -100:100:50,0,50:250:50 -o results.csv --svg map.svg --x mount_x_mm --y mount_z_mm
   post batch jobs.jsonl -m vmc --shard 3/16 -o part-3.parquet
@@ -111,11 +111,11 @@ pub struct BatchArguments {
     svg: Option<PathArg>,
 
     /// What goes across in the map: a column.
-    #[arg(long, value_name = "COLUMN")]
+    #[arg(long, value_name = "COLUMN", requires = "svg")]
     x: Option<String>,
 
     /// What goes up in the map: a column.
-    #[arg(long, value_name = "COLUMN")]
+    #[arg(long, value_name = "COLUMN", requires = "svg")]
     y: Option<String>,
 
     /// What the map shows: a column of numbers.
@@ -160,6 +160,13 @@ fn mounts(text: &str) -> Result<Mounts, String> {
         ));
     };
     let (xs, ys, zs) = (batch::values(x)?, batch::values(y)?, batch::values(z)?);
+    let count = xs.len().saturating_mul(ys.len()).saturating_mul(zs.len());
+    if count > batch::MOST_JOBS {
+        return Err(format!(
+            "these are {count} mounts, {} are allowed",
+            batch::MOST_JOBS
+        ));
+    }
     let mut mounts = Vec::new();
     for x in &xs {
         for y in &ys {
@@ -296,7 +303,9 @@ fn journal(arguments: &BatchArguments) -> Result<Option<Journal>, Failure> {
     };
     // It must be no file that the run reads or writes otherwise.
     let target = PathArg::from(path.clone());
-    files::check_targets(&[(JOURNAL, &target), (RESULTS, &arguments.output)])?;
+    let mut targets = vec![(JOURNAL, &target), (RESULTS, &arguments.output)];
+    targets.extend(arguments.svg.iter().map(|svg| (Role::PICTURE, svg)));
+    files::check_targets(&targets)?;
     Ok(Some(Journal::open(&path, arguments.resume.is_some())?))
 }
 

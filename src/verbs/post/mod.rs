@@ -201,8 +201,9 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             let text = (file.name().to_owned(), file.reread()?);
             let how = (moved, making.plan);
             let held = part.read_back(&arguments.job, &finder, how, &mut source, text)?;
-            if held.is_wrong() {
-                findings.extend(held.findings);
+            let wrong = held.is_wrong();
+            findings.extend(held.findings);
+            if wrong {
                 return Err(findings.into());
             }
             verifications.push(held.found);

@@ -158,7 +158,18 @@ fn write_cl(
     file: &mut AtomicFile,
     refused: &mut Vec<Diagnostic>,
 ) -> Result<(), Failure> {
-    let accuracy = &control.machine.accuracy;
+    let machine = &control.machine;
+    if machine.turn != 0.0 {
+        let message = format!(
+            "on {} the part sits turned by {:.3}° about its Z: posted again, this CL file would be turned once more",
+            machine.name,
+            machine.turn.to_degrees()
+        );
+        return Err(Diagnostic::error("turned-part", message)
+            .help("--set workpiece.turn=0 writes it in the frame of the machine's axes")
+            .into());
+    }
+    let accuracy = &machine.accuracy;
     let [tip, axis] = [accuracy.tolerance, accuracy.axis_tolerance].map(|mm| mm * CHORDS);
     let mut course = DoneCourse::new(program, Chords::within(tip, axis));
     let part = arguments.input.stem().unwrap_or_default();

@@ -11,16 +11,16 @@ use post_posting::report::Report;
 use post_posting::{LookedAhead, Output};
 use post_readback::interpret::Limits;
 
-use super::compensate::{self, Compensation, Moved};
-use super::one_program::{Beside, OneProgram};
-use super::plan_rounds;
-use super::plugin_finder;
-use super::predict::{self, Against, Asked, Predicted};
-use super::read_back::{self, Held, Reading};
-use super::report::PredictedParts;
 use crate::arguments::{JobArguments, MakingArguments};
 use crate::failure::Failure;
 use crate::files::{ClSource, PathArg};
+use crate::job::compensate::{self, Compensation, Moved};
+use crate::job::one_program::{Beside, OneProgram};
+use crate::job::plan_rounds;
+use crate::job::plugin_finder;
+use crate::job::predict::{self, Against, Asked, Predicted};
+use crate::job::read_back::{self, Held, Reading};
+use crate::job::report::PredictedParts;
 
 /// The machine of the command line, its program so numbered if a number is given.
 pub fn numbered(arguments: &JobArguments, number: Option<i64>) -> Result<Machine, Failure> {

@@ -378,12 +378,10 @@ impl MadeProgram {
             let mut rows = BlockRows::new(machine, cl, told.predict)?;
             let mut came = self.line.make(&mut bench, Some(&mut rows))?;
             let (finder, source) = (&bench.finder, &mut bench.source);
-            let mut held = None;
-            if told.verify {
-                let found = self.held(finder, source, &came.text)?;
-                came.findings.extend(found.findings);
-                held = Some(found.found);
-            }
+            let held = match told.verify {
+                true => Some(self.held(finder, source, &came.text)?.found),
+                false => None,
+            };
             let mut heard = None;
             let mut prediction = None;
             if told.predict {

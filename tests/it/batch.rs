@@ -349,7 +349,7 @@ fn slips_are_told_before_any_work() {
         "{\"file\": \"a.cls\", \"tool_length\": \"long\"}",
         "{\"file\": \"a.cls\", \"set\": {\"Lm\": null}}",
     ]);
-    let cases: [(&[&str], i32, &[&str]); 8] = [
+    let cases: [(&[&str], i32, &[&str]); 10] = [
         (
             &["jobs.jsonl", "-o", "r.csv"],
             1,
@@ -397,6 +397,18 @@ fn slips_are_told_before_any_work() {
             &["a.cls", "-m", "vmc", "-o", "r.csv", "--resume=a.cls"],
             1,
             &["the journal would overwrite the CL file a.cls"],
+        ),
+        (
+            &["a.cls", "-m", "vmc", "-o", "r.csv", "--resume=jobs.jsonl"],
+            1,
+            &["jobs.jsonl", "this is no journal of post batch"],
+        ),
+        (
+            &[
+                "a.cls", "-m", "vmc", "-o", "r.csv", "--set", "Lm=1", "--set", "Lm=2",
+            ],
+            1,
+            &["--set has Lm twice", "--set Lm=200,250"],
         ),
     ];
     for (words, code, parts) in cases {

@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
+use super::StudyArguments;
 use super::inputs::Inputs;
 use super::job_line::JobLine;
-use super::study::StudyArguments;
 use super::travel;
 
 /// What the values of a column are.

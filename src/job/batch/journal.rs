@@ -35,10 +35,10 @@ impl Journal {
                 let mut other = false;
                 while lines.read_until(b'\n', &mut line).map_err(fault)? > 0 {
                     match serde_json::from_slice::<Outcome>(&line) {
-                        Ok(outcome) => {
+                        Ok(outcome) if outcome.key.is_some() => {
                             known.extend(outcome.key.clone().map(|key| (key, outcome)));
                         }
-                        Err(_) => other |= !line.starts_with(b"{\"") || line.ends_with(b"\n"),
+                        _ => other |= !line.starts_with(b"{\"") || line.ends_with(b"\n"),
                     }
                     line.clear();
                 }

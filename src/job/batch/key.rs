@@ -3,9 +3,9 @@
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
+use super::Study;
 use super::inputs::{ClText, MachineTexts};
 use super::job_line::JobLine;
-use super::study::Study;
 use crate::job::plugin_finder;
 
 /// Changes when outcomes of old mean something else.

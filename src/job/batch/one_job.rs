@@ -11,12 +11,12 @@ use post_posting::report::Report;
 use post_posting::{LookedAhead, Output};
 use post_readback::interpret::Limits;
 
+use super::Study;
 use super::inputs::{ClText, Inputs};
 use super::job_line::JobLine;
 use super::journal::Journal;
 use super::key;
 use super::outcome::{FAILED, Outcome, REFUSED, WRITTEN};
-use super::study::Study;
 use super::travel;
 use crate::arguments::JobArguments;
 use crate::failure::Failure;

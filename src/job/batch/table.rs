@@ -1,8 +1,8 @@
 //! Rows as columns, and files of them.
 
+use super::Study;
 use super::columns::{Kind, OF_JOB};
 use super::outcome::{Outcome, Value};
-use super::study::Study;
 use crate::files::parquet;
 
 /// The results of a study, a row a job.

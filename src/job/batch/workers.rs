@@ -9,11 +9,11 @@ use std::time::Duration;
 
 use post_machine::diagnostic::Diagnostic;
 
+use super::Study;
 use super::inputs::Inputs;
 use super::journal::Journal;
 use super::one_job::{self, Did};
 use super::outcome::Outcome;
-use super::study::Study;
 use crate::failure::Failure;
 use crate::files::read_files;
 use crate::terminal;

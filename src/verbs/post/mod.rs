@@ -201,9 +201,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             let text = (file.name().to_owned(), file.reread()?);
             let how = (moved, making.plan);
             let held = part.read_back(&arguments.job, &finder, how, &mut source, text)?;
-            let wrong = held.is_wrong();
-            findings.extend(held.findings);
-            if wrong {
+            if held.is_wrong() {
+                findings.extend(held.findings);
                 return Err(findings.into());
             }
             verifications.push(held.found);

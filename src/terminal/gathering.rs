@@ -29,7 +29,7 @@ pub fn gathered<T>(job: impl FnOnce() -> T) -> (T, Vec<Diagnostic>) {
 
 /// Takes findings if they are gathered on this thread; false if they are to be printed.
 pub fn gather(findings: &[Diagnostic]) -> bool {
-    GATHERED.with_borrow_mut(|gathered| match gathered {
+    asked(|gathered| match gathered {
         Some(gathered) => {
             gathered.extend_from_slice(findings);
             true
@@ -40,5 +40,12 @@ pub fn gather(findings: &[Diagnostic]) -> bool {
 
 /// The job of this thread runs inside another program.
 pub fn is_gathering() -> bool {
-    GATHERED.with_borrow(Option::is_some)
+    asked(|gathered| gathered.is_some())
+}
+
+/// At the end of the process, where a plugin that has ended it is named, the thread's own values are gone.
+fn asked(ask: impl FnOnce(&mut Option<Vec<Diagnostic>>) -> bool) -> bool {
+    GATHERED
+        .try_with(|gathered| ask(&mut gathered.borrow_mut()))
+        .unwrap_or(false)
 }

@@ -158,10 +158,14 @@ pub fn run(command: &mut Command, input: &[u8]) -> Run {
     });
     let output = child.wait_with_output().unwrap();
     feeder.join().unwrap();
+    let err = String::from_utf8(output.stderr).unwrap();
+    let Some(code) = output.status.code() else {
+        panic!("{}: {err}", output.status)
+    };
     Run {
-        code: output.status.code().unwrap(),
+        code,
         out: String::from_utf8(output.stdout).unwrap(),
-        err: String::from_utf8(output.stderr).unwrap(),
+        err,
     }
 }
 

@@ -11,6 +11,14 @@ CHECKOUT = Path(__file__).parents[2]
 COMMAND = os.environ.get("POST_COMMAND", str(CHECKOUT / "target/debug/post"))
 
 
+def built(library: str) -> Path:
+    """A plugin's library as cargo has built it last: beside the command, or where tests have it."""
+    folder = Path(COMMAND).parent
+    found = [path for path in (folder / library, folder / "deps" / library) if path.is_file()]
+    assert found, f"{library} is not built"
+    return max(found, key=lambda path: path.stat().st_mtime)
+
+
 @pytest.fixture
 def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to work in, with a CL file in it."""

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import post
 import pytest
+from conftest import built
 
 CHECKOUT = Path(__file__).parents[2]
 LIBRARY = CHECKOUT / "tests/machines"
@@ -189,7 +190,7 @@ def test_a_plugin_of_ones_own_is_found(room: Path, command: Command) -> None:
     folder = room / "plugins"
     folder.mkdir(mode=0o755)
     library = "libpost_grbl.so"
-    (folder / library).write_bytes((CHECKOUT / "target/debug" / library).read_bytes())
+    (folder / library).write_bytes(built(library).read_bytes())
     cl = str(LIBRARY / "grbl-router.ncl")
     made = command(cl, "-m", "grbl-router", "--mount", "0,0,55", "--plugins", "plugins", "-o", "out.nc", "--summary", "out.json", "-q")
     assert made.returncode == 0, made.stderr

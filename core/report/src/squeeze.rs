@@ -1,6 +1,6 @@
-//! Scripts and styles without what is for readers of the sources alone: comments, indentation, and blanks between words
-//! and signs. Strings, templates and patterns stay letter for letter, and so does the end of a line where it may end
-//! a statement.
+//! Scripts and styles without what is for readers of the sources alone: comments, indentation, blanks between words and
+//! signs, semicolons before braces, and that a name never changes. Strings, templates and patterns stay letter for letter,
+//! and so does the end of a line where it may end a statement.
 //!
 //! A part of the build script, and of the crate for its tests.
 
@@ -56,8 +56,21 @@ impl Script<'_> {
             match token {
                 "{" => depth += 1,
                 "}" if inner && depth == 0 => return self.take(length),
-                "}" => depth -= 1,
+                "}" => {
+                    depth -= 1;
+                    // A brace ends a statement too. (No loop of the page has an empty one for its body.)
+                    if self.out.ends_with(';') {
+                        self.out.pop();
+                    }
+                }
                 _ => {}
+            }
+            // What never changes is a matter for readers.
+            if token == "const" {
+                self.out.push_str("let");
+                self.rest = &self.rest[length..];
+                "let".clone_into(&mut self.token);
+                continue;
             }
             self.take(length);
         }
@@ -222,7 +235,7 @@ mod tests {
     fn what_is_for_readers_goes() {
         for (text, squeezed) in [
             (
-                "// one\n\nlet a = 1; // two\n  let b;\n",
+                "// one\n\nconst a = 1; // two\n  let b;\n",
                 "let a=1;let b;\n",
             ),
             ("a = b /* no\n line */ + c", "a=b\n+c"),
@@ -230,7 +243,7 @@ mod tests {
             ("return a\n  (b)", "return a\n(b)"),
             ("in of instanceof x", "in of instanceof x"),
             (
-                "f(\n  a,\n  [\n1\n]\n)\n{\n  b;\n  c\n}\nd",
+                "f(\n  a,\n  [\n1\n]\n)\n{\n  b;\n  c;\n}\nd",
                 "f(a,[1])\n{b;c}\nd",
             ),
             ("5 .toFixed ( 2 )", "5 .toFixed(2)"),

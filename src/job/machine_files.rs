@@ -19,7 +19,15 @@ const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.r
 /// `settings` over it.
 pub fn load(name: &str, named: &[PathBuf], settings: &[Setting]) -> Result<Machine, Failure> {
     let source = source(name, named, &read)?;
-    Ok(examine(source, named, settings, &read)?.machine?)
+    let machine = examine(source, named, settings, &read)?.machine?;
+    let heads = machine.heads.iter().map(|head| &head.machine);
+    for solid in std::iter::once(&machine)
+        .chain(heads)
+        .flat_map(|machine| &machine.solids)
+    {
+        read_files::note("the solid", &solid.file);
+    }
+    Ok(machine)
 }
 
 /// Reads the text of a file, which may be open in an editor and differ there.

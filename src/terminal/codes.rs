@@ -73,6 +73,11 @@ pub const CODES: &[CodeGroup] = &[
                 "Write `--set NAME=VALUE`; `post schema` and the reference of keys have the names.",
             ),
             code(
+                "solid",
+                "A file that `[solids]` of the machine file names cannot be shown; what follows from the chain is drawn instead.",
+                "An STL file, binary or text, in mm; its path is that from the machine file. Programs do not depend on it.",
+            ),
+            code(
                 "syntax",
                 "A line of the CL file cannot be read.",
                 "The marked place is where reading stopped. Let the CAM system write the file again, or correct the line.",
@@ -227,6 +232,11 @@ pub const CODES: &[CodeGroup] = &[
                 "machine-solution",
                 "A rule of `[solution]` names no axis, or one that it cannot be of.",
                 "The message lists the rules and axes.",
+            ),
+            code(
+                "machine-solid",
+                "`[solids]` names what the machine has no axis for, or what is no STL file.",
+                "A letter of the chain with a file that ends in `.stl`.",
             ),
             code(
                 "machine-spindle",

@@ -49,6 +49,7 @@ mod readiness;
 mod real_files;
 mod report;
 mod report_page;
+mod report_solids;
 #[cfg(unix)]
 mod rights;
 mod schema;

@@ -9,7 +9,8 @@ P.vec = {
 };
 
 // Shapes in faces (place, normal, body, tone) and edges (place, body).
-P.shapes = (made) => {
+// Bodies that are `hidden` show nothing but the tool.
+P.shapes = (made, hidden) => {
   const { add, cross, times } = P.vec;
   const { unit } = P.chain;
   const edge = (body, a, b) => made.edges.push(...a, body, ...b, body);
@@ -23,6 +24,7 @@ P.shapes = (made) => {
   };
   // A cylinder or cone from a to b, with a spoke, so that a turn is seen.
   const round = (body, tone, a, b, from, to = from, steps = 32) => {
+    if (hidden.includes(body) && tone < 1.25) return;
     const [u, v] = across(unit(add(b, a, -1)));
     const ring = (at, radius, step) => {
       const turn = (step * 2 * Math.PI) / steps;
@@ -42,6 +44,7 @@ P.shapes = (made) => {
   };
   // A box about a middle with half lengths along three directions.
   const box = (body, tone, middle, u, v, w) => {
+    if (hidden.includes(body)) return;
     for (const [a, b, c] of [[u, v, w], [v, w, u], [w, u, v]]) {
       for (const side of [-1, 1]) {
         const corner = (i, j) => add(add(add(middle, c, side), a, i), b, j);
@@ -59,7 +62,7 @@ P.shapes = (made) => {
     const [u, v] = across(unit(way));
     box(body, 0.75, add(a, way, 0.5), times(way, 0.5), times(u, width), times(v, width));
   };
-  return { across, round, box, bar };
+  return { across, round, box, bar, face, edge };
 };
 
 P.parts = {};
@@ -67,7 +70,8 @@ P.parts = {};
 P.parts.build = (machine) => {
   const { meta } = P.m;
   const made = { faces: [], edges: [], boxes: [], labels: [] };
-  const { across, round, box, bar } = P.shapes(made);
+  const { solids } = P.m.report.tables;
+  const { across, round, box, bar, face, edge } = P.shapes(made, solids ? machine.solid : []);
   const { add, dot, times } = P.vec;
   const { unit } = P.chain;
   const mount = P.chain.mount(machine);
@@ -170,6 +174,18 @@ P.parts.build = (machine) => {
   const behind = base[1] + Math.max(anchor[1] - base[1], size * 2.2);
   const corners = [base, [base[0], behind, base[2]], [anchor[0], behind, anchor[2]], anchor];
   corners.slice(1).forEach((corner, at) => bar(bed, corners[at], corner, size * (at === 1 ? 0.16 : 0.12)));
+
+  // Solids that the machine file names.
+  if (solids) {
+    const [of, corners, body, ...place] = [...solids.columns.values()].map(({ values }) => values);
+    const corner = (row) => place.map((values) => values[row]);
+    for (let row = 0; row < solids.rows; row += corners[row]) {
+      const [a, b, c] = [0, 1, 2].map((more) => corner(row + more));
+      if (of[row] !== meta.heads.indexOf(machine) + 1) continue;
+      if (corners[row] > 2) face(body[row], 1, a, b, c);
+      else edge(body[row], a, b);
+    }
+  }
 
   // Boxes of travel: where the slides of the tool may bring the tip, and those of the work the part's origin.
   const travel = (joints, from, sign) => {

@@ -175,6 +175,9 @@ pub struct MachineMeta {
     pub tool_axis: [f64; 3],
     /// Leading edge of a tool that does not turn.
     pub edge: Option<[f64; 3]>,
+    /// Bodies that the table `solids` shows in place of what is drawn of the chain: 0 is the part, n what follows the
+    /// nth axis.
+    pub solid: Vec<usize>,
 }
 
 /// An axis of the chain.

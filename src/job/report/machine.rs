@@ -19,6 +19,8 @@ pub fn machine(machine: &Machine) -> MachineMeta {
         gauge: machine.gauge.into(),
         tool_axis: machine.tool_axis.into(),
         edge: machine.edge.map(Into::into),
+        // Told where their shapes are read.
+        solid: Vec::new(),
     }
 }
 

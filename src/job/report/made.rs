@@ -62,7 +62,7 @@ impl Made<'_> {
             meta.facts.extend(super::predicted_facts(found));
             meta.excludes.extend(found.assumed.iter().cloned());
         }
-        let mut parts = Parts::default();
+        let mut parts = Parts::of(self.machine, &mut meta)?;
         if let Some(predicted) = predicted {
             predicted.finish(&mut parts)?;
         }

@@ -19,6 +19,7 @@ mod path_rows;
 mod predicted_lines;
 mod predicted_parts;
 mod predicted_rows;
+pub mod solids;
 mod told_by_prediction;
 
 pub use block_rows::BlockRows;

@@ -2,13 +2,16 @@
 
 use std::io::{self, Read};
 
+use post_machine::description::Machine;
 use post_report::document;
 use post_report::meta::{Meta, TableMeta, TextMeta};
 use post_report::table::TableWriter;
 use post_report::text::TextWriter;
 
+use super::solids;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, FileFault, Scratch};
+use crate::terminal;
 
 /// What messages call a scratch file.
 const NAME: &str = "the report";
@@ -19,11 +22,12 @@ const PAGE: u64 = 400_000;
 const TEXTS: &str = "texts";
 
 /// What is left out first, and how the page calls it.
-const ORDER: [(&str, &str); 6] = [
+const ORDER: [(&str, &str); 7] = [
     ("nc2", TEXTS),
     ("nc", TEXTS),
     ("cl", TEXTS),
     ("series", "series over time"),
+    ("solids", "solids of the machine"),
     ("path", "interpolated path"),
     ("cl", "CL path"),
 ];
@@ -36,6 +40,22 @@ pub struct Parts {
 }
 
 impl Parts {
+    /// The parts of a report about `machine`: its solids, to begin with. What cannot be shown of them is said, here and on the
+    /// page.
+    ///
+    /// # Errors
+    /// They cannot be kept.
+    pub fn of(machine: &Machine, meta: &mut Meta) -> Result<Self, Failure> {
+        let mut parts = Self::default();
+        let faults = solids::add(machine, meta, &mut parts)?;
+        terminal::findings(&faults);
+        // Their places are lines of the machine file, which the page does not show.
+        let told = faults.into_iter().map(|fault| fault.at(None));
+        meta.warnings
+            .extend(super::warnings(&told.collect::<Vec<_>>(), ""));
+        Ok(parts)
+    }
+
     /// An empty place for a part.
     ///
     /// # Errors

@@ -14,7 +14,7 @@ use post_machine::diagnostic::Diagnostic;
 use crate::arguments::flag_values;
 use crate::failure::Failure;
 use crate::files::{self, PathArg, Role};
-use crate::job::{self, machine_files, other_dialect, plugin_finder, unused_options};
+use crate::job::{self, machine_files, other_dialect, plugin_finder, report, unused_options};
 use crate::terminal::{self, print};
 
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
@@ -109,6 +109,7 @@ fn alone(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
     let json = arguments.json.as_ref().map(|_| files::json(&check));
     let taken = write(arguments, picture, json)?;
     terminal::findings(&check.findings());
+    terminal::findings(&report::solids::faults(machine));
     if taken {
         return Ok(());
     }

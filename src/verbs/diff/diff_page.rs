@@ -51,7 +51,7 @@ impl Shown<'_> {
         meta.verdict = self.verdict();
         meta.maxima = self.maxima();
         meta.facts = self.facts();
-        let mut parts = Parts::default();
+        let mut parts = Parts::of(self.machine, &mut meta)?;
         let besides = Besides {
             other: true,
             ..Besides::default()

@@ -48,7 +48,7 @@ impl Shown<'_> {
         meta.facts = report::predicted_facts(self.found);
         meta.warnings = report::warnings(self.findings, name);
         meta.excludes.clone_from(&self.found.assumed);
-        let mut parts = Parts::default();
+        let mut parts = Parts::of(self.machine, &mut meta)?;
         lines.finish(&mut rows, &mut parts)?;
         rows.finish(&mut parts, &mut meta)?;
         parts.text("nc", name, &mut { program })?;

@@ -91,7 +91,7 @@ impl Shown<'_> {
         ];
         meta.warnings = report::warnings(&self.held.findings, name);
         meta.excludes = report::excludes();
-        let mut parts = Parts::default();
+        let mut parts = Parts::of(self.machine, &mut meta)?;
         rows.finish(&mut parts, &mut meta)?;
         parts.text("nc", name, &mut { program })?;
         let mut cl = source.open()?;

@@ -367,6 +367,7 @@ impl Builder<'_> {
             .unwrap_or_default();
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
+        let solids = self.solids(&file.solids, &axes);
         let motion = self.motion(&file.motion);
         let plan = self.plan(&file.plan, &motion, accuracy.tolerance);
         let mut machine = Machine {
@@ -416,6 +417,7 @@ impl Builder<'_> {
             frame: Frame::default(),
             heads: Vec::new(),
             unused_options,
+            solids,
         };
         self.frame(control, &mut machine);
         if let (Some(edge), false) = (&file.tool.edge, machine.pointing().len() == 3) {

@@ -44,6 +44,12 @@ pub(crate) struct MachineFile {
     /// The axes of the chain by their letters.
     #[schemars(with = "BTreeMap<String, AxisFile>", extend("propertyNames" = { "pattern": "^[A-CEI-LPQRU-Z][0-9]*$" }))]
     pub axis: BTreeMap<String, Spanned<AxisFile>>,
+    /// STL files of the machine's bodies, for pictures alone; mm, machine frame, every axis at zero. An axis letter is what
+    /// that axis moves, `b` the bed: they are drawn in place of what follows from the chain. `w` is what is clamped with
+    /// the part, `t` a holder or head besides. A path is that from this file.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, String>", extend("propertyNames" = { "pattern": "^([wbt]|[A-CEI-LPQRU-Z][0-9]*)$" }))]
+    pub solids: BTreeMap<Spanned<String>, Spanned<String>>,
     /// How far the axes are from their set-points, by their letters; those of an axis without are followed exactly.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, ServoFile>", extend("propertyNames" = { "pattern": "^[A-CEI-LPQRU-Z][0-9]*$" }))]

@@ -27,6 +27,7 @@ mod servo_file;
 mod servo_models;
 mod setting;
 mod smoothing;
+mod solids;
 mod spindle;
 
 use std::f64::consts::TAU;
@@ -54,6 +55,7 @@ pub use program::{ProgramRules, ProgramText, TextPlace};
 pub use schema::schema;
 pub use setting::Setting;
 pub use smoothing::{Smoothing, SmoothingRules};
+pub use solids::Solid;
 pub use spindle::SpindleSpeeds;
 
 use crate::diagnostic::{Diagnostic, Place};
@@ -114,6 +116,8 @@ pub struct Machine {
     pub heads: Vec<Head>,
     /// Options for plugins that it does not use.
     pub unused_options: Vec<UnusedOptions>,
+    /// Shapes of its bodies, for pictures.
+    pub solids: Vec<Solid>,
 }
 
 /// A table of options for a plugin that the machine does not use: a machine may carry those of several dialects.

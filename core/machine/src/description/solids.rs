@@ -1,0 +1,69 @@
+//! `[solids]`: files with the shapes of the machine's bodies.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+
+use super::Axis;
+use super::build::Builder;
+use super::keys::axes_are;
+use crate::diagnostic::Place;
+
+/// The shape of a body of the machine, for pictures alone: nothing of a program depends on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    /// The body: 0 is the part, n what follows the nth axis of the chain.
+    pub body: usize,
+    /// It shows the body in place of what follows from the chain; else it is drawn besides.
+    pub whole: bool,
+    /// An STL file: mm, machine frame, every axis at zero.
+    pub file: PathBuf,
+    /// Where the machine file names it.
+    pub place: Option<Place>,
+}
+
+impl Builder<'_> {
+    pub(super) fn solids(
+        &mut self,
+        file: &BTreeMap<Spanned<String>, Spanned<String>>,
+        axes: &[Axis],
+    ) -> Vec<Solid> {
+        let bed = axes.iter().filter(|axis| axis.carries_part).count();
+        let mut solids = Vec::new();
+        for (link, path) in file {
+            let name = link.get_ref().as_str();
+            let axis = axes.iter().position(|axis| axis.name == name);
+            let (body, whole) = match (name, axis) {
+                ("w", _) => (0, false),
+                ("b", _) => (bed, true),
+                ("t", _) => (axes.len(), false),
+                (_, Some(at)) if axes[at].carries_part => (at, true),
+                (_, Some(at)) => (at + 1, true),
+                (_, None) => {
+                    let help = format!("{}; w, b and t are part, bed and tool", axes_are(axes));
+                    let message = format!("the machine has no `{name}` that could have a shape");
+                    self.fault("machine-solid", link.span(), message, &help);
+                    continue;
+                }
+            };
+            let named = Path::new(path.get_ref());
+            let ending = named.extension().unwrap_or_default();
+            if !ending.eq_ignore_ascii_case("stl") {
+                let message = format!("`{}` is no name of an STL file", path.get_ref());
+                let help = "the ending is .stl; a CAD system exports it, in mm";
+                self.fault("machine-solid", path.span(), message, help);
+                continue;
+            }
+            let place = self.sources.place(path.span());
+            let folder = place.as_ref().and_then(|at| Path::new(&at.file).parent());
+            solids.push(Solid {
+                body,
+                whole,
+                file: folder.unwrap_or_else(|| Path::new("")).join(named),
+                place,
+            });
+        }
+        solids
+    }
+}

@@ -1,0 +1,66 @@
+//! Edges of a shape that are worth a line.
+
+use std::collections::BTreeMap;
+
+use super::Corner;
+
+/// Faces that meet at a larger angle have an edge: the cosine of 30 degrees.
+const BENT: f64 = 0.866;
+
+/// Corners that are the same to the micrometre.
+type Key = [i64; 3];
+
+/// Where two triangles meet at an angle, or one has no neighbour; the longest first.
+pub(super) fn sharp(triangles: &[[Corner; 3]]) -> Vec<[Corner; 2]> {
+    let key = |corner: Corner| corner.map(|value| (value * 1e3).round() as i64);
+    let mut edges = BTreeMap::<[Key; 2], ([Corner; 2], Vec<Corner>)>::new();
+    for triangle in triangles {
+        let Some(normal) = normal(triangle) else {
+            continue;
+        };
+        for at in 0..3 {
+            let (from, to) = (triangle[at], triangle[(at + 1) % 3]);
+            let mut keys = [key(from), key(to)];
+            keys.sort_unstable();
+            let (_, normals) = edges
+                .entry(keys)
+                .or_insert_with(|| ([from, to], Vec::new()));
+            normals.push(normal);
+        }
+    }
+    let sharp = |normals: &[Corner]| match normals {
+        [one, other] => dot(*one, *other) < BENT,
+        _ => true,
+    };
+    let mut kept: Vec<[Corner; 2]> = edges
+        .into_values()
+        .filter(|(_, normals)| sharp(normals))
+        .map(|(edge, _)| edge)
+        .collect();
+    let length = |[from, to]: &[Corner; 2]| {
+        let way = minus(*to, *from);
+        dot(way, way)
+    };
+    kept.sort_by(|one, other| length(other).total_cmp(&length(one)));
+    kept
+}
+
+/// The unit vector across a triangle; none where it has no area.
+fn normal([a, b, c]: &[Corner; 3]) -> Option<Corner> {
+    let (u, v) = (minus(*b, *a), minus(*c, *a));
+    let across = [
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    ];
+    let length = dot(across, across).sqrt();
+    (length > 0.0).then(|| across.map(|value| value / length))
+}
+
+fn minus(a: Corner, b: Corner) -> Corner {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: Corner, b: Corner) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

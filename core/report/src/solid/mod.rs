@@ -1,0 +1,233 @@
+//! The shape of a body of the machine: triangles of an STL file, few enough to be drawn in every frame.
+
+mod coarse;
+mod edges;
+mod stl;
+
+use std::io::{BufRead, Seek};
+
+pub use stl::StlFault;
+
+/// A corner, mm.
+pub type Corner = [f64; 3];
+
+/// Triangles of all solids of one machine that a frame draws.
+pub const MOST_TRIANGLES: usize = 4_500;
+
+/// Edges of all solids of one machine that a frame draws.
+pub const MOST_EDGES: usize = 3_500;
+
+/// A shape as it is drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solid {
+    /// Its faces.
+    pub triangles: Vec<[Corner; 3]>,
+    /// Where it is bent sharply or ends, the longest first.
+    pub edges: Vec<[Corner; 2]>,
+}
+
+impl Solid {
+    /// Reads an STL file, binary or text. More triangles than `most` become fewer: corners that are close together become
+    /// their mean, and triangles that have shrunk to a line go. Memory grows with what is kept and not with the file.
+    ///
+    /// # Errors
+    /// What is read is no STL file, or cannot be read.
+    pub fn read(file: &mut (impl BufRead + Seek), most: usize) -> Result<Self, StlFault> {
+        let mut triangles = Vec::new();
+        let mut count = 0;
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        stl::read(file, &mut |triangle| {
+            count += 1;
+            if count <= most {
+                triangles.push(triangle);
+            }
+            for corner in triangle {
+                for at in 0..3 {
+                    low[at] = low[at].min(corner[at]);
+                    high[at] = high[at].max(corner[at]);
+                }
+            }
+        })?;
+        if count > most {
+            let mut coarse = coarse::Coarse::new(low, high);
+            stl::read(file, &mut |triangle| coarse.add(triangle))?;
+            triangles = coarse.triangles(most);
+        }
+        let edges = edges::sharp(&triangles);
+        Ok(Self { triangles, edges })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+    use std::io::Cursor;
+
+    use super::{Corner, Solid};
+
+    /// A binary file whose header begins as a text does.
+    fn binary(triangles: &[[Corner; 3]]) -> Vec<u8> {
+        let mut file = [b' '; 80].to_vec();
+        file[..12].copy_from_slice(b"solid column");
+        file.extend(u32::try_from(triangles.len()).unwrap().to_le_bytes());
+        for triangle in triangles {
+            file.extend([0; 12]);
+            for value in triangle.iter().flatten() {
+                file.extend((*value as f32).to_le_bytes());
+            }
+            file.extend([0; 2]);
+        }
+        file
+    }
+
+    fn text(triangles: &[[Corner; 3]]) -> Vec<u8> {
+        let mut file = String::from("SOLID Tisch \r\n");
+        for triangle in triangles {
+            file.push_str("  facet normal 0 0 0\r\n    outer loop\r\n");
+            for [x, y, z] in triangle {
+                file.push_str(&format!("      vertex {x:e} {y} {z}\r\n"));
+            }
+            file.push_str("    endloop\r\n  endfacet\r\n\r\n");
+        }
+        file.push_str("endsolid");
+        file.into_bytes()
+    }
+
+    fn read(file: &[u8], most: usize) -> Solid {
+        Solid::read(&mut Cursor::new(file), most).unwrap()
+    }
+
+    fn refused(file: &[u8]) -> String {
+        Solid::read(&mut Cursor::new(file), 100)
+            .unwrap_err()
+            .to_string()
+    }
+
+    /// A box from the origin, 12 triangles.
+    fn cuboid(x: f64, y: f64, z: f64) -> Vec<[Corner; 3]> {
+        let corner = |bits: usize| {
+            let side = |bit: usize, length: f64| if bits & bit == 0 { 0.0 } else { length };
+            [side(1, x), side(2, y), side(4, z)]
+        };
+        let sides = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        sides
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .map(|corners| corners.map(corner))
+            .collect()
+    }
+
+    /// A ball about a point, 4 n² triangles.
+    fn ball(middle: Corner, radius: f64, n: usize) -> Vec<[Corner; 3]> {
+        let point = |i: usize, j: usize| {
+            let (polar, turn) = (i as f64 * PI / n as f64, j as f64 * TAU / (2 * n) as f64);
+            let ring = radius * polar.sin();
+            [
+                middle[0] + ring * turn.cos(),
+                middle[1] + ring * turn.sin(),
+                middle[2] + radius * polar.cos(),
+            ]
+        };
+        let cells = (0..n).flat_map(|i| (0..2 * n).map(move |j| (i, j)));
+        cells
+            .flat_map(|(i, j)| {
+                let [a, b, c, d] = [
+                    point(i, j),
+                    point(i + 1, j),
+                    point(i + 1, j + 1),
+                    point(i, j + 1),
+                ];
+                [[a, b, c], [a, c, d]]
+            })
+            .collect()
+    }
+
+    #[test]
+    fn both_forms_are_read_as_they_are() {
+        let wanted = cuboid(30.0, 20.5, 10.25);
+        for file in [binary(&wanted), text(&wanted)] {
+            let solid = read(&file, 12);
+            assert_eq!(solid.triangles, wanted);
+            // The diagonals of its sides are none.
+            assert_eq!(solid.edges.len(), 12);
+            let longest = solid.edges[0];
+            assert_eq!((longest[0][0] - longest[1][0]).abs(), 30.0);
+        }
+    }
+
+    #[test]
+    fn many_triangles_become_few_of_the_same_shape() {
+        let (middle, radius) = ([500.0, -200.0, 30.0], 250.0);
+        let file = binary(&ball(middle, radius, 300));
+        for most in [4500, 800, 100] {
+            let solid = read(&file, most);
+            let count = solid.triangles.len();
+            assert!(count <= most && count > most / 4, "{count} of {most}");
+            // As far from the ball as the triangles are large, and all around it.
+            let size = radius * (4.0 * PI * 2.0 / count as f64).sqrt();
+            let (mut low, mut high) = (middle, middle);
+            for corner in solid.triangles.iter().flatten() {
+                let from: Corner = std::array::from_fn(|at| corner[at] - middle[at]);
+                let far = from.iter().map(|value| value * value).sum::<f64>().sqrt();
+                assert!((far - radius).abs() < size, "{far}");
+                for at in 0..3 {
+                    low[at] = low[at].min(corner[at]);
+                    high[at] = high[at].max(corner[at]);
+                }
+            }
+            for at in 0..3 {
+                assert!(
+                    high[at] - low[at] > 2.0 * (radius - size),
+                    "{low:?} {high:?}"
+                );
+            }
+        }
+        assert_eq!(read(&file, 800), read(&file, 800));
+    }
+
+    #[test]
+    fn what_is_no_shape_is_refused_by_its_line() {
+        let good = text(&cuboid(1.0, 1.0, 1.0));
+        let lines: Vec<&str> = str::from_utf8(&good).unwrap().lines().collect();
+        let with = |at: usize, line: &str| {
+            let mut lines = lines.clone();
+            lines[at] = line;
+            lines.join("\n").into_bytes()
+        };
+        for (file, wanted) in [
+            (Vec::new(), "is no STL file"),
+            (
+                b"PK\x03\x04 something else".to_vec(),
+                "is no STL file: it has 19 bytes",
+            ),
+            (b"solid nothing\nendsolid\n".to_vec(), "no triangle"),
+            (
+                with(3, "vertex 0 zero 0"),
+                "line 4: `vertex` and three numbers",
+            ),
+            (with(3, "vertex 0 0"), "line 4: "),
+            (with(3, ""), "line 7: a facet has three corners"),
+            (
+                with(6, "vertex 0 0 0"),
+                "line 7: a facet has three corners, and this is a fourth",
+            ),
+            (with(8, "color 1 0 0"), "line 9: no line of an STL file"),
+            (with(3, "vertex 0 nan 0"), "corner of triangle 1 "),
+            (with(3, "vertex 0 1e7 0"), "corner of triangle 1 "),
+        ] {
+            let told = refused(&file);
+            assert!(told.contains(wanted), "{told}");
+        }
+        // A file that was cut off is neither: its length is not that of its header.
+        let whole = binary(&cuboid(1.0, 1.0, 1.0));
+        let told = refused(&whole[..whole.len() - 7]);
+        assert!(told.contains("677 bytes"), "{told}");
+    }
+}

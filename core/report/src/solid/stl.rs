@@ -1,0 +1,177 @@
+//! Triangles of an STL file, one behind the other.
+//!
+//! A binary file is known by its length, as the header of many begins with `solid` like a text: 80 bytes, the number of
+//! triangles (32 bits, least byte first), and for each 50 bytes (the normal, three corners, two more bytes; numbers of 32 bits).
+//! Of a text the lines `vertex x y z` count, three to a facet. Normals are not looked at: they follow from the corners.
+
+use std::fmt;
+use std::io::{self, BufRead, Read as _, Seek, SeekFrom};
+
+use super::Corner;
+
+/// Largest coordinate, mm: a kilometre is no machine.
+const FARTHEST: f64 = 1e6;
+
+/// Longest line of a text.
+const LONGEST: u64 = 4096;
+
+/// Most bytes of a file.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// Why a file is no shape.
+#[derive(Debug)]
+pub enum StlFault {
+    /// It cannot be read.
+    Io(io::Error),
+    /// It is too long.
+    TooLong(u64),
+    /// It holds no triangle.
+    Empty,
+    /// Neither the length of a binary file, nor the beginning of a text.
+    Neither(u64),
+    /// A line of a text, from 1, and what is wrong with it.
+    Line(u64, &'static str),
+    /// A corner that is no number or far away, in the triangle from 1.
+    Far(u64),
+}
+
+impl fmt::Display for StlFault {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io(error) => write!(out, "{error}"),
+            Self::TooLong(bytes) => write!(
+                out,
+                "it has {bytes} bytes; at most {MOST_BYTES} are read for a picture"
+            ),
+            Self::Empty => write!(out, "it holds no triangle"),
+            Self::Neither(bytes) => write!(
+                out,
+                "it is no STL file: it has {bytes} bytes, which is not what its header says of a binary one, and does not begin with `solid` as a text does"
+            ),
+            Self::Line(line, what) => write!(out, "line {line}: {what}"),
+            Self::Far(triangle) => write!(
+                out,
+                "a corner of triangle {triangle} is no number or farther than {FARTHEST:.0} mm from the origin"
+            ),
+        }
+    }
+}
+
+impl From<io::Error> for StlFault {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+/// Hands every triangle of a file to `take`, from the file's beginning.
+pub(super) fn read(
+    file: &mut (impl BufRead + Seek),
+    take: &mut dyn FnMut([Corner; 3]),
+) -> Result<(), StlFault> {
+    let length = file.seek(SeekFrom::End(0))?;
+    file.rewind()?;
+    if length > MOST_BYTES {
+        return Err(StlFault::TooLong(length));
+    }
+    let mut count = 0;
+    let mut take = |triangle: [Corner; 3]| {
+        count += 1;
+        let near = |value: &f64| value.abs() <= FARTHEST;
+        if !triangle.iter().flatten().all(near) {
+            return Err(StlFault::Far(count));
+        }
+        take(triangle);
+        Ok(())
+    };
+    let mut header = Vec::new();
+    file.by_ref().take(84).read_to_end(&mut header)?;
+    match header.last_chunk::<4>() {
+        Some(triangles)
+            if header.len() == 84
+                && length == 84 + 50 * u64::from(u32::from_le_bytes(*triangles)) =>
+        {
+            binary(file, u32::from_le_bytes(*triangles), &mut take)?;
+        }
+        // One that was cut off has the number of its triangles there, which is no text.
+        _ if header
+            .trim_ascii_start()
+            .to_ascii_lowercase()
+            .starts_with(b"solid")
+            && !header.contains(&0) =>
+        {
+            file.rewind()?;
+            text(file, &mut take)?;
+        }
+        _ => return Err(StlFault::Neither(length)),
+    }
+    match count {
+        0 => Err(StlFault::Empty),
+        _ => Ok(()),
+    }
+}
+
+fn binary(
+    file: &mut impl BufRead,
+    count: u32,
+    take: &mut dyn FnMut([Corner; 3]) -> Result<(), StlFault>,
+) -> Result<(), StlFault> {
+    let mut record = [0; 50];
+    for _ in 0..count {
+        file.read_exact(&mut record)?;
+        let (numbers, _) = record.as_chunks::<4>();
+        let number = |at: usize| f64::from(f32::from_le_bytes(numbers[at]));
+        let corner = |at: usize| [number(at), number(at + 1), number(at + 2)];
+        take([corner(3), corner(6), corner(9)])?;
+    }
+    Ok(())
+}
+
+fn text(
+    file: &mut impl BufRead,
+    take: &mut dyn FnMut([Corner; 3]) -> Result<(), StlFault>,
+) -> Result<(), StlFault> {
+    let mut line = Vec::new();
+    let mut corners = Vec::with_capacity(3);
+    for number in 1.. {
+        line.clear();
+        if file.by_ref().take(LONGEST).read_until(b'\n', &mut line)? == 0 {
+            break;
+        }
+        let fault = |what| Err(StlFault::Line(number, what));
+        // The first line tells a name, which may be of any letters.
+        if number == 1 {
+            continue;
+        }
+        let Ok(line) = str::from_utf8(&line) else {
+            return fault("it is no text");
+        };
+        let mut words = line.split_ascii_whitespace();
+        let Some(word) = words.next() else { continue };
+        match word.to_ascii_lowercase().as_str() {
+            "vertex" if corners.len() < 3 => {
+                let mut corner = [0.0; 3];
+                for value in &mut corner {
+                    let Some(found) = words.next().and_then(|word| word.parse().ok()) else {
+                        return fault("`vertex` and three numbers are expected");
+                    };
+                    *value = found;
+                }
+                corners.push(corner);
+            }
+            "vertex" => return fault("a facet has three corners, and this is a fourth"),
+            "endloop" => {
+                let Ok(triangle) = <[Corner; 3]>::try_from(corners.as_slice()) else {
+                    return fault("a facet has three corners, and here it ends with fewer");
+                };
+                take(triangle)?;
+                corners.clear();
+            }
+            "solid" | "facet" | "outer" | "endfacet" | "endsolid" => {}
+            _ => return fault("no line of an STL file begins so"),
+        }
+    }
+    match corners.is_empty() {
+        true => Ok(()),
+        false => Err(io::Error::from(io::ErrorKind::UnexpectedEof).into()),
+    }
+}

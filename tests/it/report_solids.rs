@@ -151,12 +151,12 @@ fn shapes_stand_where_the_chain_brings_them() {
     );
     assert_eq!(moved["bed"], json!([1, 2, 3]));
     // A table goes the other way than the tool as seen from the part: by -A about X through 0.012, 50.004.
-    let turn = -moved["a"].as_f64().unwrap().to_radians();
+    let (sine, cosine) = libm::sincos(-moved["a"].as_f64().unwrap().to_radians());
     let (y, z) = (20.0 - 0.012, -30.0 - 50.004);
     let wanted = [
         70.0,
-        y * turn.cos() - z * turn.sin() + 0.012,
-        y * turn.sin() + z * turn.cos() + 50.004,
+        y * cosine - z * sine + 0.012,
+        y * sine + z * cosine + 50.004,
     ];
     for (at, wanted) in wanted.iter().enumerate() {
         let got = moved["cradle"][at].as_f64().unwrap();

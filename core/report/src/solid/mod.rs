@@ -60,7 +60,7 @@ impl Solid {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{PI, TAU};
+    use std::f64::consts::PI;
     use std::io::Cursor;
 
     use super::{Corner, Solid};
@@ -124,26 +124,22 @@ mod tests {
             .collect()
     }
 
-    /// A ball about a point, 4 n² triangles.
+    /// A ball about a point: a cube of 12 n² triangles, blown up.
     fn ball(middle: Corner, radius: f64, n: usize) -> Vec<[Corner; 3]> {
-        let point = |i: usize, j: usize| {
-            let (polar, turn) = (i as f64 * PI / n as f64, j as f64 * TAU / (2 * n) as f64);
-            let ring = radius * polar.sin();
-            [
-                middle[0] + ring * turn.cos(),
-                middle[1] + ring * turn.sin(),
-                middle[2] + radius * polar.cos(),
-            ]
+        let side = |at: usize| 2.0 * at as f64 / n as f64 - 1.0;
+        let point = |face: usize, i: usize, j: usize| {
+            let up = if face < 3 { 1.0 } else { -1.0 };
+            let mut place = [side(i) * up, side(j), up];
+            let far = place.iter().map(|value| value * value).sum::<f64>().sqrt();
+            place.rotate_left(face % 3);
+            std::array::from_fn(|at| middle[at] + radius * place[at] / far)
         };
-        let cells = (0..n).flat_map(|i| (0..2 * n).map(move |j| (i, j)));
+        let faces = (0..6).flat_map(|face| (0..n).map(move |i| (face, i)));
+        let cells = faces.flat_map(|(face, i)| (0..n).map(move |j| (face, i, j)));
         cells
-            .flat_map(|(i, j)| {
-                let [a, b, c, d] = [
-                    point(i, j),
-                    point(i + 1, j),
-                    point(i + 1, j + 1),
-                    point(i, j + 1),
-                ];
+            .flat_map(|(face, i, j)| {
+                let [a, b, c, d] = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+                    .map(|(i, j)| point(face, i, j));
                 [[a, b, c], [a, c, d]]
             })
             .collect()
@@ -165,7 +161,7 @@ mod tests {
     #[test]
     fn many_triangles_become_few_of_the_same_shape() {
         let (middle, radius) = ([500.0, -200.0, 30.0], 250.0);
-        let file = binary(&ball(middle, radius, 300));
+        let file = binary(&ball(middle, radius, 120));
         for most in [4500, 800, 100] {
             let solid = read(&file, most);
             let count = solid.triangles.len();

@@ -92,20 +92,21 @@ fn rows(
     row(
         "blocks",
         format!(
-            "{}{} in {} lines, {} points put in{}{}",
+            "{}{} in {}, {} put in{}{}",
             report.blocks,
             match report.curves {
                 0 => String::new(),
-                count => format!(" ({count} arcs and splines)"),
+                count => format!(" ({})", counted(count, "arc or spline", "arcs and splines")),
             },
-            report.nc_lines,
-            report.points_added,
+            counted(report.nc_lines, "line", "lines"),
+            counted(report.points_added, "point", "points"),
             match report.points_dropped {
                 0 => String::new(),
-                count => format!(", {count} CL points left out"),
+                count => format!(", {} left out", counted(count, "CL point", "CL points")),
             },
             match report.model_overruled {
                 0 => String::new(),
+                1 => " (the certificate overruled the model once)".to_owned(),
                 count => format!(" (the certificate overruled the model {count} times)"),
             }
         ),
@@ -140,9 +141,9 @@ fn rows(
         row(
             "read back",
             format!(
-                "{} cuts and {} holes as the CL file asks; tip at most {} mm off, axis {}°",
-                found.cuts,
-                found.holes,
+                "{} and {} as the CL file asks; tip at most {} mm off, axis {}°",
+                counted(found.cuts, "cut", "cuts"),
+                counted(found.holes, "hole", "holes"),
                 number(found.tip.value, 6),
                 number(found.axis.value, 5)
             ),
@@ -180,13 +181,21 @@ fn rows(
         row(&name, format!("{} mm long, {source}", tool.length_mm));
     }
     let mut choices = Vec::new();
-    for (count, what) in [
-        (report.branch_changes, "changes of solution off the part"),
-        (report.rewinds, "rewinds"),
-        (report.points_eased, "points eased close to a pole"),
+    for (count, one, several) in [
+        (
+            report.branch_changes,
+            "change of solution off the part",
+            "changes of solution off the part",
+        ),
+        (report.rewinds, "rewind", "rewinds"),
+        (
+            report.points_eased,
+            "point eased close to a pole",
+            "points eased close to a pole",
+        ),
     ] {
         if count > 0 {
-            choices.push(format!("{count} {what}"));
+            choices.push(counted(count, one, several));
         }
     }
     if !choices.is_empty() {
@@ -200,9 +209,14 @@ fn rows(
             clock(report.cutting_time_s),
             match report.blocks_limited {
                 0 => String::new(),
-                count if report.plan.is_some() =>
-                    format!("; {count} blocks slower than the CL file asks"),
-                count => format!("; {count} blocks slowed down by an axis' largest feed"),
+                count if report.plan.is_some() => format!(
+                    "; {} slower than the CL file asks",
+                    counted(count, "block", "blocks")
+                ),
+                count => format!(
+                    "; {} slowed down by an axis' largest feed",
+                    counted(count, "block", "blocks")
+                ),
             }
         ),
     );
@@ -238,11 +252,16 @@ fn rows(
     rows
 }
 
+/// So many of a thing.
+fn counted(count: u64, one: &str, several: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
+}
+
 /// What a plan came to.
 fn planned(plan: &PlanReport) -> String {
     let mut text = format!(
-        "{} blocks in {} at the feeds written ({} by the plan, {} at the feeds of the CL file if the tool never slowed down)",
-        plan.blocks,
+        "{} in {} at the feeds written ({} by the plan, {} at the feeds of the CL file if the tool never slowed down)",
+        counted(plan.blocks, "block", "blocks"),
         clock(plan.printed_s),
         clock(plan.planned_s),
         clock(plan.asked_s)
@@ -251,12 +270,14 @@ fn planned(plan: &PlanReport) -> String {
     if plan.blocks_cut > 0 {
         let _ = write!(
             text,
-            "; {} blocks cut where the feed changes, {} put in",
-            plan.blocks_cut, plan.blocks_added
+            "; {} cut where the feed changes, {} put in",
+            counted(plan.blocks_cut, "block", "blocks"),
+            plan.blocks_added
         );
     }
     if plan.blocks_unplanned > 0 {
-        let _ = write!(text, "; {} blocks not planned", plan.blocks_unplanned);
+        let blocks = counted(plan.blocks_unplanned, "block", "blocks");
+        let _ = write!(text, "; {blocks} not planned");
     }
     text
 }

@@ -30,6 +30,60 @@ fn the_summary_holds_what_is_documented_and_agrees_with_the_program() {
     }
 }
 
+/// Every key of the JSON stands in the book's page about it; predictions and plans have pages of their own.
+#[test]
+fn every_key_is_in_the_book() {
+    let folder = tempfile::tempdir().unwrap();
+    let (program, json) = (folder.path().join("p.nc"), folder.path().join("s.json"));
+    let mut arguments = vec![
+        "-m",
+        "ac-trunnion",
+        BLADE,
+        "--tool-length",
+        "80",
+        "--verify",
+    ];
+    arguments.extend([
+        "--set",
+        "accuracy.servo_compensation=0.003",
+        "--compensate-servo",
+    ]);
+    arguments.extend([
+        "-o",
+        program.to_str().unwrap(),
+        "--summary",
+        json.to_str().unwrap(),
+    ]);
+    let done = post(&arguments);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let mut summary = read_json(&json);
+    let object = summary.as_object_mut().unwrap();
+    for key in ["verification", "servo_compensation"] {
+        assert!(object[key].is_object(), "{key}");
+    }
+    object.remove("prediction");
+    let page = fs::read_to_string(root().join("docs/src/reference/summary.md")).unwrap();
+    let mut keys = Vec::new();
+    keys_of(&summary, &mut keys);
+    assert!(keys.len() > 60, "{keys:?}");
+    for key in keys {
+        assert!(page.contains(&format!("`{key}`")), "{key}");
+    }
+}
+
+fn keys_of(value: &Value, keys: &mut Vec<String>) {
+    match value {
+        Value::Object(object) => {
+            for (key, value) in object {
+                keys.push(key.clone());
+                keys_of(value, keys);
+            }
+        }
+        Value::Array(values) => values.iter().for_each(|value| keys_of(value, keys)),
+        _ => {}
+    }
+}
+
 fn check_summary(summary: &Value, program: &str, machine: &str) {
     let keys: Vec<&str> = summary
         .as_object()

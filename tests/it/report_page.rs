@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use nalgebra::Vector3;
 use post_machine::description::{Machine, Source, load};
 use post_machine::kinematics::Joints;
 use serde_json::{Value, json};
@@ -232,6 +233,66 @@ fn the_chain_is_the_commands_for_every_machine() {
     }
     assert!(places > 1000, "{places}");
     assert!(swapped > 5, "{swapped} blocks with another head");
+    browser.assert_quiet();
+}
+
+/// Places between the ends of the blocks are packed against the chain, deviations against them: both are those of Rust's chain.
+#[test]
+fn places_on_the_way_are_those_of_the_chain() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    for (name, more) in [
+        ("ac-trunnion", &["--tcp", "post"][..]),
+        ("head-head", &["--tcp", "post"]),
+        ("dmu50", &["--tcp", "post", "--verify"]),
+    ] {
+        let arguments = [&["--tool-length", "120"], more].concat();
+        let made = made(name, &sample("blade.cls"), &arguments);
+        browser.open(&made.page);
+        let asked = browser.ask(
+            "(() => { const out = []; const { path, centre, vectors } = P.scene; const at = n => [0, 1, 2].map(k => path.pos[n * 3 + k] + centre[k]);
+               const values = row => P.m.meta.machine.axes.map(({ name }) => P.m.column(`q.${name}`)[row]);
+               for (let n = 1; n + 1 < path.count; n++) { const row = path.look[n * 4 + 2];
+                 if (row > 0 && path.look[n * 4 - 2] !== row && path.look[n * 4 + 6] === row && path.look[n * 4 + 10] !== row)
+                   out.push({ from: values(row - 1), to: values(row), place: at(n), length: P.chain.length(row) }); }
+               const feet = Array.from({ length: vectors.count }, (_, n) => { const row = vectors.row[n];
+                 const [last] = P.scene.points_of(row); const end = P.scene.points_of(row)[1];
+                 return { foot: [0, 1, 2].map(k => vectors.foot[n * 3 + k] + centre[k]), vector: [...vectors.vector.slice(n * 3, n * 3 + 3)], from: at(last), to: at(end), deviation: P.m.column('deviation')[row] }; });
+               return { out, feet }; })()",
+        );
+        let machine = machine(name);
+        let number = |value: &Value| value.as_f64().unwrap();
+        let vector = |value: &Value| Vector3::from_fn(|at, _| number(&value[at]));
+        let places = asked["out"].as_array().unwrap();
+        assert!(places.len() > 20, "{name}: {}", places.len());
+        for place in places {
+            let solver = machine.solver(number(&place["length"])).unwrap();
+            let mut half = Joints::default();
+            for (at, axis) in machine.axes.iter().enumerate() {
+                let mean = 0.5 * (number(&place["from"][at]) + number(&place["to"][at]));
+                half[at] = mean * axis.unit() - axis.zero;
+            }
+            let far = (solver.chain().forward(&half).tip - vector(&place["place"])).norm();
+            assert!(far < 2e-4, "{name}: {far} mm at {place}");
+        }
+        // The CL path is straight between its points: there a vector stands on the way from tip to tip, as long as it may be.
+        // Vectors are kept to the micrometre.
+        let kept = 1.2e-3;
+        let mut longest: f64 = 0.0;
+        let feet = asked["feet"].as_array().unwrap();
+        assert!(feet.len() > 20, "{name}: {}", feet.len());
+        for told in feet {
+            let [foot, from, to] = ["foot", "from", "to"].map(|key| vector(&told[key]));
+            let way = (to - from).normalize();
+            let off = (foot - from) - way * (foot - from).dot(&way);
+            assert!(off.norm() < kept, "{name}: {} mm: {told}", off.norm());
+            let size = vector(&told["vector"]).norm();
+            assert!(size < number(&told["deviation"]) + kept, "{name}: {told}");
+            longest = longest.max(size);
+        }
+        assert!(longest > 3.0 * kept, "{name}: {longest}");
+    }
     browser.assert_quiet();
 }
 

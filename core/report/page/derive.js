@@ -131,24 +131,36 @@ P.derive = {
     }
     columns.get("t1").keep(values);
   },
-  // Places of a block, told against even steps from tip to tip.
-  tip: (report, columns) => {
-    const blocks = report.tables.blocks.columns;
+  // Places of a block, told against even steps from tip to tip; a single one on the way against the chain, where all follows
+  // from it. How far that one is off the CL path, told against how far it is off the straight way.
+  tip: ({ meta, tables }, columns) => {
+    const blocks = tables.blocks.columns;
     const rows = columns.get("row").values;
-    for (const name of ["x", "y", "z"]) {
-      const tips = blocks.get(`tip.${name}`).values;
-      const values = columns.get(name).packed();
-      let first = 0;
-      while (first < rows.length) {
-        const row = rows[first];
-        let end = first + 1;
-        while (end < rows.length && rows[end] === row) end++;
-        const to = tips[row];
-        const from = row > 0 ? tips[row - 1] : to;
-        for (let place = first; place < end; place++) values[place] += from + (to - from) * ((place - first + 1) / (end - first));
-        first = end;
-      }
-      columns.get(name).keep(values);
+    const held = columns.get("held").values;
+    const names = ["x", "y", "z", "d.x", "d.y", "d.z"];
+    const tips = names.slice(0, 3).map((name) => blocks.get(`tip.${name}`).values);
+    const values = names.map((name) => columns.get(name).packed());
+    const chained = blocks.get("tip.x").from === "chain";
+    const into = chained && P.poser(meta.machine);
+    const axes = chained && meta.machine.axes.map(({ name }) => blocks.get(`q.${name}`).values);
+    const lengths = chained && blocks.get("tool_length").values;
+    const pose = new Float64Array(6);
+    const half = (place) => (axes[place][row - 1] + axes[place][row]) / 2;
+    let row = 0;
+    for (let first = 0, end = 0; first < rows.length; first = end) {
+      row = rows[first];
+      while (end < rows.length && rows[end] === row) end++;
+      const from = tips.map((tip) => tip[Math.max(row - 1, 0)]);
+      const step = tips.map((tip, at) => tip[row] - from[at]);
+      const single = row > 0 && end - first === 2;
+      if (single && chained) into(half, lengths[row], pose);
+      for (let at = 0; at < 3; at++)
+        for (let place = first; place < end; place++) values[at][place] += single && chained && place === first ? pose[at] : from[at] + step[at] * ((place - first + 1) / (end - first));
+      if (!single || !held[first]) continue;
+      const bow = from.map((value, at) => values[at][first] - value - step[at] / 2);
+      const share = P.vec.dot(bow, step) / (P.vec.dot(step, step) || 1);
+      for (let at = 0; at < 3; at++) values[at + 3][first] += bow[at] - step[at] * share;
     }
+    names.forEach((name, at) => columns.get(name).keep(values[at]));
   },
 };

@@ -384,7 +384,10 @@ impl<'m> BlockRows<'m> {
         }
         let off = self.cl.off(block.tip);
         places.push((block.tip, off));
-        self.path.block(row, end, &places);
+        let middle = last.filter(|_| places.len() == 2);
+        let middle =
+            middle.and_then(|(_, from, _)| self.derived.middle(&from, &block.joints, length));
+        self.path.block(row, end, middle, &places);
     }
 
     /// Where the tip stands in the middle of a block, where that is not the middle of a straight line.

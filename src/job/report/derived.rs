@@ -122,12 +122,7 @@ impl<'m> Derived<'m> {
         let Some(chain) = &self.chain else {
             return whole;
         };
-        let mut packed = *joints;
-        for (value, axis) in packed.iter_mut().zip(&self.machine.axes) {
-            let scale = [1e4, 1e5][usize::from(axis.joint.rotary)];
-            let reading = rounded(axis.reading(*value), scale);
-            *value = (reading - axis.zero / axis.unit()) * axis.unit();
-        }
+        let packed = self.packed(joints);
         let length = rounded(length, 1e4);
         let pose = chain.forward(&packed);
         match self.way {
@@ -158,6 +153,28 @@ impl<'m> Derived<'m> {
                 }
             }
         }
+    }
+
+    /// Where the page has the tip halfway between two rows, if all follows from the axes.
+    pub fn middle(&self, from: &Joints, to: &Joints, length: f64) -> Option<Vector3<f64>> {
+        let chain = self.chain.as_ref().filter(|_| self.way == Way::FromAxes)?;
+        let mut half = self.packed(from);
+        for (value, to) in half.iter_mut().zip(self.packed(to)) {
+            *value = 0.5 * (*value + to);
+        }
+        let pose = chain.forward(&half);
+        Some(pose.tip - pose.axis * rounded(length, 1e4))
+    }
+
+    /// Positions as the page will have them.
+    fn packed(&self, joints: &Joints) -> Joints {
+        let mut packed = *joints;
+        for (value, axis) in packed.iter_mut().zip(&self.machine.axes) {
+            let scale = [1e4, 1e5][usize::from(axis.joint.rotary)];
+            let reading = rounded(axis.reading(*value), scale);
+            *value = (reading - axis.zero / axis.unit()) * axis.unit();
+        }
+        packed
     }
 
     /// The positions of the linear axes that bring the tip there, the rotary ones standing as they are; of those zero.

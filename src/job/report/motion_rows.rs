@@ -76,6 +76,8 @@ struct Waiting {
     /// The tip at the end, and as it is packed.
     tips: [Vector3<f64>; 2],
     places: Vec<Vector3<f64>>,
+    /// The middle of its way, as the page will have it.
+    middle: Option<Vector3<f64>>,
 }
 
 /// Reads a program and packs a row of each motion.
@@ -304,12 +306,16 @@ impl<'m> MotionRows<'m> {
         }
         values.extend(left.iter().flatten());
         values.extend([motion.feed, length]);
+        let places = self.places(motion);
+        let middle = (self.came > 0 && places.len() == 1)
+            .then(|| self.derived.middle(&motion.from.joints, joints, length));
         self.waiting.push_back(Waiting {
             nc: motion.line,
             kind: motion.kind,
             values,
             tips: [pose.tip, end],
-            places: self.places(motion),
+            places,
+            middle: middle.flatten(),
         });
         self.came += 1;
         self.cover(motion);
@@ -375,6 +381,7 @@ impl<'m> MotionRows<'m> {
             mut values,
             tips: [tip, end],
             places,
+            middle,
         }) = self.waiting.pop_front()
         else {
             return;
@@ -421,7 +428,7 @@ impl<'m> MotionRows<'m> {
             .chain([tip])
             .map(|place| (place, off(&self.cl, place)))
             .collect();
-        self.path.block(row, end, &places);
+        self.path.block(row, end, middle, &places);
         if self.cl.is_some() {
             self.ends.push(heard.cl, end, 0.0);
         }

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_report::table::{Column, TableWriter};
 
-use super::block_rows::decimals;
+use super::block_rows::{decimals, packed};
 use super::parts::{Parts, fault};
 use crate::failure::Failure;
 use crate::files::Scratch;
@@ -31,9 +31,9 @@ impl PathRows {
             Column::new("x", "mm", 4).from("tip"),
             Column::new("y", "mm", 4).from("tip"),
             Column::new("z", "mm", 4).from("tip"),
-            Column::new("d.x", "mm", off),
-            Column::new("d.y", "mm", off),
-            Column::new("d.z", "mm", off),
+            Column::new("d.x", "mm", off).from("tip"),
+            Column::new("d.y", "mm", off).from("tip"),
+            Column::new("d.z", "mm", off).from("tip"),
             Column::new("held", "", 0),
         ];
         Ok(Self {
@@ -44,20 +44,30 @@ impl PathRows {
     }
 
     /// Places of block `row`, in order, the last its end at `tip` (as packed), and how far each is off the CL path, if that
-    /// is known.
+    /// is known. Where the page has a `middle` by the chain, a single place on the way is told against it.
     pub fn block(
         &mut self,
         row: u64,
         tip: Vector3<f64>,
+        middle: Option<Vector3<f64>>,
         places: &[(Vector3<f64>, Option<Vector3<f64>>)],
     ) {
-        let from = self.last.replace(tip).unwrap_or(tip);
+        let from = self.last.replace(tip);
+        // The first block comes from nowhere.
+        let single = from.is_some() && places.len() == 2;
+        let from = from.unwrap_or(tip);
+        let step = tip - from;
         let count = places.len() as f64;
         for (place, (at, off)) in places.iter().enumerate() {
             let share = (place + 1) as f64 / count;
-            let left = at - (from + (tip - from) * share);
+            let on_the_way = single && place == 0;
+            let known = middle.filter(|_| on_the_way).unwrap_or(from + step * share);
+            let left = at - known;
             let held = f64::from(u8::from(off.is_some()));
-            let off = off.unwrap_or_default();
+            let off = off.map_or_else(Vector3::zeros, |off| match on_the_way {
+                true => off - bow(known + left.map(packed), from, step),
+                false => off,
+            });
             let row = [
                 row as f64, left.x, left.y, left.z, off.x, off.y, off.z, held,
             ];
@@ -77,4 +87,12 @@ impl PathRows {
             None => parts.table(self.table),
         }
     }
+}
+
+/// How far a place is off the straight way from a point by a step.
+fn bow(place: Vector3<f64>, from: Vector3<f64>, step: Vector3<f64>) -> Vector3<f64> {
+    let bow = place - from - step * 0.5;
+    let square = step.norm_squared();
+    let share = bow.dot(&step) / if square == 0.0 { 1.0 } else { square };
+    bow - step * share
 }

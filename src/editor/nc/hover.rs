@@ -118,7 +118,12 @@ fn held(program: &Program, run: &ProgramLine, itself: bool) -> String {
     let mut modal: Vec<String> = how.into_iter().collect();
     modal.extend(run.state.as_deref().map(modes).unwrap_or_default());
     if itself {
-        modal.extend(run.told.iter().cloned());
+        // A tool change tells the tool that the state has too.
+        for told in &run.told {
+            if !modal.contains(told) {
+                modal.push(told.clone());
+            }
+        }
     }
     if !modal.is_empty() {
         text.push_str(&format!("\n\n{}", modal.join(" · ")));

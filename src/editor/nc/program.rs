@@ -47,7 +47,7 @@ pub struct ProgramLine {
     pub joints: Joints,
     /// The feed of its last motion, mm/min.
     pub feed: f64,
-    /// What holds behind it.
+    /// What holds while it moves; behind it if nothing moves.
     pub state: Option<Arc<State>>,
     /// Remarks and operations that it holds.
     pub told: Vec<String>,
@@ -117,6 +117,8 @@ pub fn read(
         for one in done.drain(..) {
             lines.take(one);
         }
+        let (line, state) = program.stand();
+        lines.hold(line, state);
     }
     found.extend(program.report().notes.iter().cloned());
     let mut lines = lines.run;
@@ -160,15 +162,17 @@ impl Lines {
         self.run.last_mut()
     }
 
+    /// What holds behind a block; while it moves, what its motion has.
+    fn hold(&mut self, line: u64, state: Arc<State>) {
+        if let Some(run) = self.at(line).filter(|run| run.kind.is_none()) {
+            run.state = Some(Arc::clone(&state));
+        }
+        self.state = Some(state);
+    }
+
     fn take(&mut self, done: Done) {
         match done {
-            Done::State(state) => {
-                if let Some(last) = self.run.last_mut() {
-                    // It was set by the words that were read last.
-                    last.state = Some(state.clone());
-                }
-                self.state = Some(state);
-            }
+            Done::State(state) => self.state = Some(state),
             Done::Motion(motion) => {
                 if let Some(line) = self.at(motion.line) {
                     line.kind = Some(motion.kind);

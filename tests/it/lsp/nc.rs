@@ -76,6 +76,16 @@ fn what_holds_at_a_line_and_the_cl_line_it_came_from_are_told() {
     let asked = client.at("definition", &program, line, column);
     assert_eq!(asked[0]["uri"], json!(uri(&folder.path().join("part.cls"))));
     assert_eq!(asked[0]["range"]["start"]["line"], 8);
+    // What holds at each line, and nothing of the lines behind: the spindle still stands where the tool is changed, turns from
+    // its line on, and turns while the last cut is made.
+    let (line, column) = place(&text, "M6", 0);
+    let changed = client.hover(&program, line, column);
+    assert_contains(&changed, &["spindle off"]);
+    assert_eq!(changed.matches("tool 1").count(), 1, "{changed}");
+    let (line, column) = place(&text, "M3", 0);
+    let turning = client.hover(&program, line, column);
+    assert_contains(&turning, &["spindle 3000 rpm clockwise"]);
+    assert!(!turning.contains("flood"), "{turning}");
     // Words say what they mean, however they are joined.
     let (line, column) = place(&text, "G21", 1);
     assert_contains(

@@ -159,6 +159,12 @@ impl Control {
         shared
     }
 
+    /// The state as it is, whether a motion has shared it or not.
+    pub fn state_now(&self) -> Arc<State> {
+        let shared = self.shared.as_ref();
+        shared.map_or_else(|| Arc::new(self.state.clone()), Arc::clone)
+    }
+
     /// A block that is not run: what is wrong with it, at its line.
     pub fn refuse(&self, code: &'static str, message: impl Into<String>) -> Box<Diagnostic> {
         self.placed(Diagnostic::error(code, message)).boxed()

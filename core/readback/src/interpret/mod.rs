@@ -42,13 +42,14 @@ mod tools;
 mod variables;
 
 use std::io::{Read, Seek};
+use std::sync::Arc;
 
 use post_grammar::nc::{NcBlock, NcReader, Notation};
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::lexicon::Lexicon;
-use crate::{Done, Offsets};
+use crate::{Done, Offsets, State};
 use flow::Flow;
 use gathered::Gathered;
 use state::Control;
@@ -171,6 +172,11 @@ impl<R: Read + Seek> Interpreter<R> {
         let ran = runner.run(block);
         std::mem::swap(done, &mut runner.control.done);
         ran.map(|()| true).map_err(|finding| flow.show(finding))
+    }
+
+    /// The line of the block that was run last, and what holds behind it.
+    pub fn stand(&self) -> (u64, Arc<State>) {
+        (self.runner.control.line, self.runner.control.state_now())
     }
 
     /// What was found so far.

@@ -176,12 +176,14 @@ P.parts.build = (machine) => {
   corners.slice(1).forEach((corner, at) => bar(bed, corners[at], corner, size * (at === 1 ? 0.16 : 0.12)));
 
   // Solids that the machine file names.
+  let far = 0;
   if (solids) {
     const [of, corners, body, ...place] = [...solids.columns.values()].map(({ values }) => values);
     const corner = (row) => place.map((values) => values[row]);
     for (let row = 0; row < solids.rows; row += corners[row]) {
       const [a, b, c] = [0, 1, 2].map((more) => corner(row + more));
-      if (of[row] !== meta.heads.indexOf(machine) + 1) continue;
+      if (of[row] !== machine.shapes) continue;
+      far = Math.max(far, ...a.map(Math.abs));
       if (corners[row] > 2) face(body[row], 1, a, b, c);
       else edge(body[row], a, b);
     }
@@ -198,7 +200,7 @@ P.parts.build = (machine) => {
   travel(machine.axes.slice(bed), tip, 1);
   travel(machine.axes.slice(0, bed), mount, -1);
   for (const name of ["faces", "edges", "boxes"]) made[name] = new Float32Array(made[name]);
-  P.parts.made = { ...made, size, machine };
+  P.parts.made = { ...made, deep: Math.max(size * 40, far * 4), machine };
 };
 
 // Points that the machine takes up, for fitting the view: scene coordinates under the bodies given.

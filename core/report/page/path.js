@@ -168,7 +168,7 @@ P.path.carry = (bodies) => {
 
 P.path.matrices = () => {
   const bodies = P.path.bodies();
-  const size = P.parts.made ? P.parts.made.size * 40 : 0;
+  const size = P.parts.made ? P.parts.made.deep : 0;
   const clip = P.camera.clip(Math.max(P.scene.radius * 40, size, P.camera.span * 20));
   return { bodies, clip, matrix: P.chain.times(clip, P.path.carry(bodies)) };
 };

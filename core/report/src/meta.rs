@@ -178,6 +178,8 @@ pub struct MachineMeta {
     /// Bodies that the table `solids` shows in place of what is drawn of the chain: 0 is the part, n what follows the
     /// nth axis.
     pub solid: Vec<usize>,
+    /// Number of the shapes that are its own, of those in the table: heads mostly share them.
+    pub shapes: usize,
 }
 
 /// An axis of the chain.

@@ -21,6 +21,7 @@ pub fn machine(machine: &Machine) -> MachineMeta {
         edge: machine.edge.map(Into::into),
         // Told where their shapes are read.
         solid: Vec::new(),
+        shapes: 0,
     }
 }
 

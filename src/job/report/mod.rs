@@ -35,6 +35,7 @@ pub use predicted_parts::PredictedParts;
 pub use told_by_prediction::{predicted_facts, predicted_maxima};
 
 use std::fs::File;
+use std::path::Path;
 
 use post_machine::description::Machine;
 use post_readback::Offsets;
@@ -57,6 +58,14 @@ pub fn name_of(file: &PathArg) -> String {
         || "standard input".to_owned(),
         |name| name.to_string_lossy().into_owned(),
     )
+}
+
+/// A text that names a file, without the file's folders.
+pub fn without_folder(text: &str, file: Option<&Path>) -> String {
+    match file.and_then(|path| Some((path, path.file_name()?))) {
+        Some((path, name)) => text.replace(&path.display().to_string(), &name.to_string_lossy()),
+        None => text.to_owned(),
+    }
 }
 
 /// What every report says of its job.

@@ -1,6 +1,7 @@
 //! Tables and texts of a report, and the file that they become.
 
 use std::io::{self, Read};
+use std::path::Path;
 
 use post_machine::description::Machine;
 use post_report::document;
@@ -51,8 +52,19 @@ impl Parts {
         terminal::findings(&faults);
         // Their places are lines of the machine file, which the page does not show.
         let told = faults.into_iter().map(|fault| fault.at(None));
-        meta.warnings
-            .extend(super::warnings(&told.collect::<Vec<_>>(), ""));
+        let told = super::warnings(&told.collect::<Vec<_>>(), "");
+        // The same job gives the same page wherever its files lie.
+        let heads = machine.heads.iter().map(|head| &head.machine);
+        let solids = std::iter::once(machine).chain(heads);
+        let solids: Vec<&Path> = solids
+            .flat_map(|machine| machine.solids.iter().map(|solid| solid.file.as_path()))
+            .collect();
+        meta.warnings.extend(told.into_iter().map(|mut warning| {
+            for solid in &solids {
+                warning.text = super::without_folder(&warning.text, Some(solid));
+            }
+            warning
+        }));
         Ok(parts)
     }
 

@@ -104,12 +104,16 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
 
 /// What one machine file means.
 fn alone(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
-    let check = job::derive(machine, arguments.tool_length)?;
+    let mut check = job::derive(machine, arguments.tool_length)?;
+    let mut findings = check.findings();
+    let solids = report::solids::faults(machine);
+    let messages = solids.iter().map(|fault| fault.message.clone());
+    check.warnings.extend(messages);
+    findings.extend(solids);
     let picture = arguments.svg.as_ref().map(|_| reach_picture::draw(&check));
     let json = arguments.json.as_ref().map(|_| files::json(&check));
     let taken = write(arguments, picture, json)?;
-    terminal::findings(&check.findings());
-    terminal::findings(&report::solids::faults(machine));
+    terminal::findings(&findings);
     if taken {
         return Ok(());
     }

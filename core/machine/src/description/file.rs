@@ -46,7 +46,8 @@ pub(crate) struct MachineFile {
     pub axis: BTreeMap<String, Spanned<AxisFile>>,
     /// STL files of the machine's bodies, for pictures alone; mm, machine frame, every axis at zero. An axis letter is what
     /// that axis moves, `b` the bed: they are drawn in place of what follows from the chain. `w` is what is clamped with
-    /// the part, `t` a holder or head besides. A path is that from this file.
+    /// the part, `t` a holder or head besides. A path is that from this file; an empty one takes away
+    /// what an extended machine names.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, String>", extend("propertyNames" = { "pattern": "^([wbt]|[A-CEI-LPQRU-Z][0-9]*)$" }))]
     pub solids: BTreeMap<Spanned<String>, Spanned<String>>,

@@ -321,7 +321,7 @@ impl Sources {
     }
 }
 
-/// Keys that a machine file has at its top.
+/// Keys that a machine file has at its top; a test holds them against the schema.
 const TOP: &[&str] = &[
     "name",
     "chain",
@@ -342,6 +342,7 @@ const TOP: &[&str] = &[
     "motion",
     "plan",
     "head",
+    "solids",
 ];
 
 /// The text is a machine file, whatever else may be wrong with it: TOML, with keys of a machine file alone.
@@ -467,4 +468,19 @@ fn moved(value: Spanned<DeValue<'_>>, start: usize) -> Spanned<DeValue<'_>> {
         scalar => scalar,
     };
     Spanned::new(span, inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::TOP;
+
+    #[test]
+    fn a_machine_file_is_known_by_the_keys_of_the_schema() {
+        let schema = super::super::schema();
+        let known = schema["properties"].as_object().unwrap().keys();
+        let known: BTreeSet<&str> = known.map(String::as_str).collect();
+        assert_eq!(known, TOP.iter().copied().collect());
+    }
 }

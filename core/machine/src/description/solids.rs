@@ -47,6 +47,10 @@ impl Builder<'_> {
                     continue;
                 }
             };
+            // A machine that refines another takes a shape away so.
+            if path.get_ref().is_empty() {
+                continue;
+            }
             let named = Path::new(path.get_ref());
             let ending = named.extension().unwrap_or_default();
             if !ending.eq_ignore_ascii_case("stl") {

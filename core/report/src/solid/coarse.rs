@@ -10,14 +10,18 @@ const CELLS: f64 = 256.0;
 /// Triangles that are kept while more come: beyond them the grid is made wider at once.
 const MOST_KEPT: usize = 200_000;
 
+/// By how much wider, step by step.
+const WIDER: f64 = 1.2;
+
 type Cell = [i16; 3];
 
 /// Triangles between cells of a grid.
 pub(super) struct Coarse {
     low: Corner,
+    middle: Corner,
     size: f64,
-    /// Sum and number of the corners in a cell.
-    cells: BTreeMap<Cell, (Corner, f64)>,
+    /// Of the corners in a cell the one that is farthest from the middle of the box: edges and corners of a body stay.
+    cells: BTreeMap<Cell, Corner>,
     triangles: BTreeSet<[Cell; 3]>,
 }
 
@@ -27,6 +31,7 @@ impl Coarse {
         let sides = low.iter().zip(high).map(|(low, high)| high - low);
         Self {
             low,
+            middle: std::array::from_fn(|at| 0.5 * (low[at] + high[at])),
             size: (sides.fold(0.0, f64::max) / CELLS).max(1e-6),
             cells: BTreeMap::new(),
             triangles: BTreeSet::new(),
@@ -35,72 +40,69 @@ impl Coarse {
 
     /// Takes a triangle.
     pub(super) fn add(&mut self, triangle: [Corner; 3]) {
-        let cells = triangle.map(|corner| {
-            let mut cell = [0; 3];
-            for at in 0..3 {
-                cell[at] = ((corner[at] - self.low[at]) / self.size) as i16;
-            }
-            join(&mut self.cells, cell, (corner, 1.0));
-            cell
-        });
+        let cells = triangle.map(|corner| self.join(corner));
         keep(&mut self.triangles, cells);
-        if self.triangles.len() > MOST_KEPT {
-            *self = self.wider(2.0);
+        // Triangles that have shrunk leave their cells behind.
+        if self.triangles.len() > MOST_KEPT || self.cells.len() > MOST_KEPT {
+            *self = self.wider();
         }
     }
 
-    /// At most so many triangles.
-    pub(super) fn triangles(self, most: usize) -> Vec<[Corner; 3]> {
-        let mut coarse = self;
-        if coarse.triangles.len() > most {
-            // Of a surface there are as many as the square of how fine the grid is.
-            let mut width = (coarse.triangles.len() as f64 / most.max(1) as f64).sqrt();
-            let fine = coarse;
-            coarse = fine.wider(width);
-            while coarse.triangles.len() > most {
-                width *= 1.08;
-                coarse = fine.wider(width);
+    /// At most so many triangles, and one at least if there are any.
+    pub(super) fn triangles(mut self, most: usize) -> Vec<[Corner; 3]> {
+        while self.triangles.len() > most {
+            let wider = self.wider();
+            if wider.triangles.is_empty() {
+                break;
             }
+            self = wider;
         }
-        let mean = |cell: &Cell| {
-            let (sum, count) = coarse.cells[cell];
-            sum.map(|sum| sum / count)
-        };
-        let triangles = coarse.triangles.iter();
+        // What is no surface may be many triangles between few cells.
+        let every = self.triangles.len().div_ceil(most.max(1)).max(1);
+        let triangles = self.triangles.iter().step_by(every);
         triangles
-            .map(|triangle| triangle.each_ref().map(mean))
+            .map(|triangle| triangle.map(|cell| self.cells[&cell]))
             .collect()
     }
 
-    /// The same on a grid whose cells are so many times as wide.
-    fn wider(&self, width: f64) -> Self {
+    fn cell(&self, corner: Corner) -> Cell {
+        std::array::from_fn(|at| ((corner[at] - self.low[at]) / self.size) as i16)
+    }
+
+    /// The same on a grid whose cells are wider.
+    fn wider(&self) -> Self {
         let mut wider = Self {
-            low: self.low,
-            size: self.size * width,
+            size: self.size * WIDER,
             cells: BTreeMap::new(),
             triangles: BTreeSet::new(),
+            ..*self
         };
-        let cell = |cell: Cell| cell.map(|place| (f64::from(place) / width) as i16);
-        for (place, corners) in &self.cells {
-            join(&mut wider.cells, cell(*place), *corners);
+        for corner in self.cells.values() {
+            wider.join(*corner);
         }
         for triangle in &self.triangles {
-            keep(&mut wider.triangles, triangle.map(cell));
+            let cells = triangle.map(|cell| wider.cell(self.cells[&cell]));
+            keep(&mut wider.triangles, cells);
         }
         wider
     }
-}
 
-/// Corners come to those of a cell.
-fn join(cells: &mut BTreeMap<Cell, (Corner, f64)>, cell: Cell, (more, number): (Corner, f64)) {
-    let (sum, count) = cells.entry(cell).or_default();
-    for at in 0..3 {
-        sum[at] += more[at];
+    /// A corner comes to those of its cell.
+    fn join(&mut self, corner: Corner) -> Cell {
+        let cell = self.cell(corner);
+        let far = |corner: Corner| -> f64 {
+            let way = corner.iter().zip(self.middle);
+            way.map(|(to, from)| (to - from) * (to - from)).sum()
+        };
+        let kept = self.cells.entry(cell).or_insert(corner);
+        if far(corner) > far(*kept) {
+            *kept = corner;
+        }
+        cell
     }
-    *count += number;
 }
 
-/// Keeps a triangle that has not shrunk, its least corner first: the same one is kept once.
+/// Keeps a triangle that has not shrunk, its least cell first: the same one is kept once.
 fn keep(triangles: &mut BTreeSet<[Cell; 3]>, [a, b, c]: [Cell; 3]) {
     if a == b || b == c || c == a {
         return;

@@ -10,7 +10,8 @@ const BENT: f64 = 0.866;
 /// Corners that are the same to the micrometre.
 type Key = [i64; 3];
 
-/// Where two triangles meet at an angle, or one has no neighbour; the longest first.
+/// Where two triangles meet at an angle, or one has no neighbour, the longest first; of a smooth body all edges, so that it is
+/// seen where faces are not drawn.
 pub(super) fn sharp(triangles: &[[Corner; 3]]) -> Vec<[Corner; 2]> {
     let key = |corner: Corner| corner.map(|value| (value * 1e3).round() as i64);
     let mut edges = BTreeMap::<[Key; 2], ([Corner; 2], Vec<Corner>)>::new();
@@ -32,9 +33,10 @@ pub(super) fn sharp(triangles: &[[Corner; 3]]) -> Vec<[Corner; 2]> {
         [one, other] => dot(*one, *other) < BENT,
         _ => true,
     };
+    let smooth = edges.values().all(|(_, normals)| !sharp(normals));
     let mut kept: Vec<[Corner; 2]> = edges
         .into_values()
-        .filter(|(_, normals)| sharp(normals))
+        .filter(|(_, normals)| smooth || sharp(normals))
         .map(|(edge, _)| edge)
         .collect();
     let length = |[from, to]: &[Corner; 2]| {
@@ -46,7 +48,7 @@ pub(super) fn sharp(triangles: &[[Corner; 3]]) -> Vec<[Corner; 2]> {
 }
 
 /// The unit vector across a triangle; none where it has no area.
-fn normal([a, b, c]: &[Corner; 3]) -> Option<Corner> {
+pub(super) fn normal([a, b, c]: &[Corner; 3]) -> Option<Corner> {
     let (u, v) = (minus(*b, *a), minus(*c, *a));
     let across = [
         u[1] * v[2] - u[2] * v[1],

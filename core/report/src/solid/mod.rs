@@ -12,10 +12,13 @@ pub use stl::StlFault;
 pub type Corner = [f64; 3];
 
 /// Triangles of all solids of one machine that a frame draws.
-pub const MOST_TRIANGLES: usize = 4_500;
+pub const MOST_TRIANGLES: usize = 3_800;
 
 /// Edges of all solids of one machine that a frame draws.
-pub const MOST_EDGES: usize = 3_500;
+pub const MOST_EDGES: usize = 2_500;
+
+/// Decimals of a millimetre that are kept: ten to their power.
+const SCALE: f64 = 100.0;
 
 /// A shape as it is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,7 +31,7 @@ pub struct Solid {
 
 impl Solid {
     /// Reads an STL file, binary or text. More triangles than `most` become fewer: corners that are close together become
-    /// their mean, and triangles that have shrunk to a line go. Memory grows with what is kept and not with the file.
+    /// one of them, and triangles that have shrunk to a line go. Memory grows with what is kept and not with the file.
     ///
     /// # Errors
     /// What is read is no STL file, or cannot be read.
@@ -52,6 +55,13 @@ impl Solid {
             let mut coarse = coarse::Coarse::new(low, high);
             stl::read(file, &mut |triangle| coarse.add(triangle))?;
             triangles = coarse.triangles(most);
+        }
+        for value in triangles.iter_mut().flatten().flatten() {
+            *value = (*value * SCALE).round_ties_even() / SCALE;
+        }
+        triangles.retain(|triangle| edges::normal(triangle).is_some());
+        if triangles.is_empty() {
+            return Err(StlFault::Empty);
         }
         let edges = edges::sharp(&triangles);
         Ok(Self { triangles, edges })
@@ -189,6 +199,63 @@ mod tests {
     }
 
     #[test]
+    fn corners_of_a_body_stay() {
+        // A box whose sides are many triangles.
+        let side = |at: usize| 1000.0 * at as f64 / 60.0;
+        let mut triangles = Vec::new();
+        for (turn, up) in (0..3).flat_map(|turn| [(turn, 0), (turn, 60)]) {
+            for (i, j) in (0..60).flat_map(|i| (0..60).map(move |j| (i, j))) {
+                let point = |i: usize, j: usize| {
+                    let mut place = [side(i), side(j), side(up)];
+                    place.rotate_left(turn);
+                    place
+                };
+                triangles.push([point(i, j), point(i + 1, j), point(i + 1, j + 1)]);
+                triangles.push([point(i, j), point(i + 1, j + 1), point(i, j + 1)]);
+            }
+        }
+        let solid = read(&binary(&triangles), 800);
+        assert!(solid.triangles.len() <= 800);
+        for corner in 0..8 {
+            let wanted: Corner =
+                std::array::from_fn(|at| if corner >> at & 1 == 1 { 1000.0 } else { 0.0 });
+            assert!(
+                solid
+                    .triangles
+                    .iter()
+                    .flatten()
+                    .any(|place| *place == wanted),
+                "{wanted:?}"
+            );
+        }
+        // What is no surface stays something.
+        let cloud: Vec<[Corner; 3]> = (0..5000)
+            .map(|at| {
+                let place = |more: usize| {
+                    let mixed = (at * 7919 + more * 104_729) % 1_000_003;
+                    [
+                        (mixed % 101) as f64,
+                        (mixed / 101 % 97) as f64,
+                        (mixed / 9797 % 89) as f64,
+                    ]
+                };
+                [place(0), place(1), place(2)]
+            })
+            .collect();
+        let count = read(&binary(&cloud), 100).triangles.len();
+        assert!((1..=100).contains(&count), "{count}");
+    }
+
+    #[test]
+    fn names_are_of_any_letters() {
+        let good = text(&cuboid(30.0, 20.0, 10.0));
+        let name = [&b"solid Tr\xe4ger "[..], &[b'x'; 9000], b"\n"].concat();
+        let rest = good.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+        let file = [&name, &good[rest..], b" Tr\xe4ger\r\n\0\x1a"].concat();
+        assert_eq!(read(&file, 12).triangles.len(), 12);
+    }
+
+    #[test]
     fn what_is_no_shape_is_refused_by_its_line() {
         let good = text(&cuboid(1.0, 1.0, 1.0));
         let lines: Vec<&str> = str::from_utf8(&good).unwrap().lines().collect();
@@ -204,6 +271,16 @@ mod tests {
                 "is no STL file: it has 19 bytes",
             ),
             (b"solid nothing\nendsolid\n".to_vec(), "no triangle"),
+            (
+                binary(&[[[1.0, 2.0, 3.0]; 3]; 200]),
+                "no triangle with an area",
+            ),
+            (
+                binary(&cuboid(1e-3, 1e-3, 1e-3)),
+                "no triangle with an area",
+            ),
+            (good[..good.len() - 8].to_vec(), "ends before `endsolid`"),
+            (lines[..5].join("\n").into_bytes(), "ends before `endsolid`"),
             (
                 with(3, "vertex 0 zero 0"),
                 "line 4: `vertex` and three numbers",

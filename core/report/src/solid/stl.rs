@@ -25,8 +25,10 @@ pub enum StlFault {
     Io(io::Error),
     /// It is too long.
     TooLong(u64),
-    /// It holds no triangle.
+    /// It holds no triangle that has an area.
     Empty,
+    /// A text ends before its end.
+    Cut,
     /// Neither the length of a binary file, nor the beginning of a text.
     Neither(u64),
     /// A line of a text, from 1, and what is wrong with it.
@@ -39,11 +41,15 @@ impl fmt::Display for StlFault {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Io(error) => write!(out, "{error}"),
+            Self::Cut => write!(out, "it was cut off: it ends before `endsolid`"),
             Self::TooLong(bytes) => write!(
                 out,
                 "it has {bytes} bytes; at most {MOST_BYTES} are read for a picture"
             ),
-            Self::Empty => write!(out, "it holds no triangle"),
+            Self::Empty => write!(
+                out,
+                "it holds no triangle with an area that is seen; coordinates are taken as mm"
+            ),
             Self::Neither(bytes) => write!(
                 out,
                 "it is no STL file: it has {bytes} bytes, which is not what its header says of a binary one, and does not begin with `solid` as a text does"
@@ -132,22 +138,28 @@ fn text(
 ) -> Result<(), StlFault> {
     let mut line = Vec::new();
     let mut corners = Vec::with_capacity(3);
+    let mut ended = false;
     for number in 1.. {
         line.clear();
         if file.by_ref().take(LONGEST).read_until(b'\n', &mut line)? == 0 {
             break;
         }
+        if !line.ends_with(b"\n") {
+            file.skip_until(b'\n')?;
+        }
         let fault = |what| Err(StlFault::Line(number, what));
-        // The first line tells a name, which may be of any letters.
+        // The first line may be `solid` and a name in one.
         if number == 1 {
             continue;
         }
-        let Ok(line) = str::from_utf8(&line) else {
-            return fault("it is no text");
-        };
+        // Names may be of any letters; some systems end a text with a letter of their own.
+        let line = String::from_utf8_lossy(&line);
+        let line = line.trim_matches(['\0', '\x1a']);
         let mut words = line.split_ascii_whitespace();
         let Some(word) = words.next() else { continue };
-        match word.to_ascii_lowercase().as_str() {
+        let word = word.to_ascii_lowercase();
+        ended = word == "endsolid";
+        match word.as_str() {
             "vertex" if corners.len() < 3 => {
                 let mut corner = [0.0; 3];
                 for value in &mut corner {
@@ -170,8 +182,8 @@ fn text(
             _ => return fault("no line of an STL file begins so"),
         }
     }
-    match corners.is_empty() {
+    match ended {
         true => Ok(()),
-        false => Err(io::Error::from(io::ErrorKind::UnexpectedEof).into()),
+        false => Err(StlFault::Cut),
     }
 }

@@ -81,6 +81,7 @@ fn the_worst_block_is_the_summarys() {
         // Of all blocks none deviates more than the one that the page goes to.
         browser.press("x");
         let row = state(&mut browser, "row");
+        assert_eq!(row, from_maxima["row"], "{machine} {name}");
         let held = browser
             .ask("P.m.column('deviation')[P.state.row] / P.m.column('tolerance')[P.state.row]");
         let most = browser.ask("Math.max(...P.m.column('deviation').map((value, row) => value / P.m.column('tolerance')[row]))");

@@ -19,7 +19,7 @@ P.charts.find = () => {
     return found && found[key] ? found[key] / over : null;
   };
   return [
-    { title: "Deviation", lanes: [lane("deviation", "tip", { limit: tolerance, limits: "tolerance", log: true }), lane("axis_deviation", "axis", { limit: turn, limits: "axis", log: true })] },
+    { title: "Deviation in cuts", lanes: [lane("deviation", "tip", { limit: tolerance, limits: "tolerance", log: true, cuts: true }), lane("axis_deviation", "axis", { limit: turn, limits: "axis", log: true, cuts: true })] },
     { title: "Feed", lanes: lane("feed", "feed", { other: has("asked") && "asked", bands: has("limit") && "limit", zero: true }) },
     { title: "Positions", lanes: axes.map((name) => lane("q." + name, name)) },
     { title: "Velocities", lanes: axes.map((name) => lane("v." + name, name, { zero: true, limit: rate(name, "max_feed", 60) })) },

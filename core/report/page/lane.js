@@ -3,16 +3,19 @@
 P.lane = {};
 
 // Least and largest of every column, with the value the column begins from, and over all.
-P.lane.spans = (values, rows) => {
+// Of cuts alone where `kind` is told: rapids have a tolerance of their own.
+P.lane.spans = (values, rows, kind) => {
   const count = rows.length - 1;
   const low = new Float64Array(count).fill(Infinity);
   const high = new Float64Array(count).fill(-Infinity);
   for (let x = 0; x < count; x++) {
     for (let row = Math.max(rows[x] - (x > 0 ? 1 : 0), 0); row <= Math.max(rows[x + 1] - 1, rows[x]); row++) {
       const value = values[row];
+      if (kind && kind[row] <= 2) continue;
       if (value < low[x]) low[x] = value;
       if (value > high[x]) high[x] = value;
     }
+    if (low[x] > high[x]) low[x] = high[x] = 0;
   }
   return { low, high, least: low.reduce((a, b) => Math.min(a, b)), most: high.reduce((a, b) => Math.max(a, b)) };
 };
@@ -20,7 +23,7 @@ P.lane.spans = (values, rows) => {
 P.lane.draw = (paint, { lane, top, bottom }, rows) => {
   const { left, width, right, room } = P.charts;
   const { colour } = P;
-  const { low, high, least, most } = P.lane.spans(lane.get(), rows);
+  const { low, high, least, most } = P.lane.spans(lane.get(), rows, P.lane.kinds(lane));
   const { limit } = lane;
   const other = lane.other ? P.lane.spans(lane.get(lane.other), rows) : null;
   const band = lane.bands && P.m.meta.limits.length ? 7 : 0;
@@ -60,12 +63,18 @@ P.lane.draw = (paint, { lane, top, bottom }, rows) => {
   if (band) P.lane.bands(paint, lane.get(lane.bands), rows, bottom - band, band);
 };
 
+P.lane.kinds = ({ cuts }) => cuts && P.m.column("kind");
+
 // A logarithm begins at the least value, but no more than three decades under the largest.
 P.lane.deepest = (lane, limit) => {
   if (lane.low) return lane.low;
-  const most = Math.max(P.largest(lane.get()), limit || 0, 1e-9);
-  const least = lane.get().reduce((low, value) => (value > 0 && value < low ? value : low), most);
+  const kind = P.lane.kinds(lane);
+  const shown = kind ? lane.get().filter((_, row) => kind[row] > 2) : lane.get();
+  const most = Math.max(P.largest(shown), limit || 0, 1e-9);
+  const least = shown.reduce((low, value) => (value > 0 && value < low ? value : low), most);
   lane.low = 10 ** Math.max(Math.floor(Math.log10(least)), Math.floor(Math.log10(most) - 3));
+  // The limit stands above what is far below it.
+  if (limit > 0) lane.low = Math.min(lane.low, limit / 10);
   return lane.low;
 };
 

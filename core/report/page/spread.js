@@ -32,13 +32,16 @@ P.spread.count = ({ get, limit }) => {
   const values = get();
   const { BINS } = P.spread;
   const [first, last] = P.state.brush || [0, P.m.rows - 1];
-  const most = Math.max(P.largest(values.subarray(first, last + 1)), limit || 0) || 1e-6;
+  // Rapids have a tolerance of their own.
+  const kind = P.m.column("kind");
+  const most = Math.max(P.largest(values.subarray(first, last + 1).filter((_, at) => !kind || kind[first + at] > 2)), limit || 0) || 1e-6;
   const place = (value) => Math.log10(Math.max(value, 1e-300)) * 4;
   const shift = limit > 0 ? place(limit) : 0;
   const low = Math.ceil(place(most) - shift - 1e-9) - BINS + shift;
   const counts = new Int32Array(BINS);
   const worst = new Int32Array(BINS).fill(-1);
   for (let row = first; row <= last; row++) {
+    if (kind && kind[row] <= 2) continue;
     const bin = P.clamp(Math.ceil(place(values[row]) - low - 1e-9) - 1, 0, BINS - 1);
     counts[bin] += 1;
     if (worst[bin] < 0 || values[row] > values[worst[bin]]) worst[bin] = row;
@@ -77,7 +80,7 @@ P.spread.draw = () => {
     P.stroke(paint, quiet.css, 1, [x, floor, x, floor + 4]);
   }
   P.stroke(paint, line.css, 1, [left, floor + 0.5, width - right, floor + 0.5]);
-  P.write(paint, `${chosen.title.toLowerCase()}, ${P.unit(chosen.unit)}; bars: blocks; the first holds all that is smaller`, (left + width - right) / 2, height - 11, quiet.css);
+  P.write(paint, `${chosen.title.toLowerCase()}, ${P.unit(chosen.unit)}; bars: blocks of cuts; the first holds all that is smaller`, (left + width - right) / 2, height - 11, quiet.css);
   if (!(chosen.limit > 0)) return;
   const x = left + (Math.log10(chosen.limit) * 4 - low) * step;
   const end = x > width - 120;

@@ -63,7 +63,9 @@ P.digits = { mm: 4, deg: 4, s: 3, "mm/min": 1, "deg/min": 1 };
 P.shown = (value, unit, digits, bound) => {
   if (!Number.isFinite(value)) return "–";
   const places = digits ?? P.digits[unit] ?? 3;
-  return (bound && value > 0 ? Math.max(value, 10 ** -places) : value).toFixed(places).replace(/^-(?=[0.]*$)/, "");
+  // What holds at most is told no smaller.
+  const up = Math.ceil(value * 10 ** places - 1e-3) / 10 ** places;
+  return (bound && value > 0 ? Math.max(up, 10 ** -places) : value).toFixed(places).replace(/^-(?=[0.]*$)/, "");
 };
 P.quantity = (value, unit, bound) => P.shown(value, unit, undefined, bound) + (unit ? " " + P.unit(unit) : "");
 P.unit = (unit) => unit.replace("deg", "°");
@@ -183,12 +185,13 @@ P.worth = () => {
   const tolerance = column("tolerance");
   if (deviation) return (row) => (tolerance && tolerance[row] > 0 ? deviation[row] / tolerance[row] : deviation[row]);
   const other = column("contour") || column("axis_deviation");
-  return other ? (row) => other[row] : rows ? () => 0 : null;
+  return other ? (row) => other[row] : null;
 };
 
 // The next block that is worse than the selected one, or better: by value, then by place.
 P.next_by_worth = (worse) => {
   const worth = P.worth();
+  if (!worth) return;
   const { row, brush } = P.state;
   const [first, last] = brush || [0, P.m.rows - 1];
   const own = worth(row);
@@ -207,9 +210,15 @@ P.next_by_worth = (worse) => {
   if (best >= 0) P.select(best);
 };
 
-// The worst block of all; -1 where nothing can be compared.
+// The worst block of all: the verdict's own, where nothing else is looked at; -1 where nothing can be compared.
 P.worst = () => {
   const worth = P.worth();
+  const [{ row, nc } = {}] = P.m.meta.maxima;
+  if (!P.colour.mode().bad || !worth) {
+    if (row != null) return row;
+    if (nc) return P.m.rowOf("nc", nc);
+  }
+  if (!worth) return -1;
   let best = -1;
   for (let at = 0; at < P.m.rows; at++) {
     const here = worth(at);

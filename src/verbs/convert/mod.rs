@@ -284,10 +284,12 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
     }
     notes.extend(held.findings.iter().cloned());
     if let Some((mut page, rows)) = rows {
+        // The same job gives the same page wherever its files lie.
+        let [name, target] = [&arguments.input, &arguments.output].map(report::name_of);
         let summed = summary(
             &name,
             &from.machine,
-            (&machine, &told),
+            (&machine, &target),
             &report,
             &held,
             &facts,

@@ -90,6 +90,12 @@ impl Shown<'_> {
             fact("time", clock(found.time_s)),
         ];
         meta.warnings = report::warnings(&self.held.findings, name);
+        // The same job gives the same page wherever its files lie.
+        for warning in &mut meta.warnings {
+            for file in self.names {
+                warning.text = report::without_folder(&warning.text, file.path());
+            }
+        }
         meta.excludes = report::excludes();
         let mut parts = Parts::of(self.machine, &mut meta)?;
         rows.finish(&mut parts, &mut meta)?;

@@ -82,7 +82,7 @@ P.views.foot = () => {
   const told = { deviation: "tip", axis_deviation: "axis", contour: "contour", feed: "F" };
   const tell = () => {
     const { row, playing } = P.state;
-    const word = (name) => (m.has(name) ? `${told[name]} ${P.quantity(m.at(name, row), m.unit(name))}` : null);
+    const word = (name) => (m.has(name) ? `${told[name]} ${P.quantity(m.at(name, row), m.unit(name), false, m.blocks.columns.get(name).decimals)}` : null);
     const machine = P.chain.at(row);
     const own = (name) => !machine || machine.axes.some((axis) => axis.name === name);
     const limit = m.meta.limits[m.at("limit", row)];

@@ -67,7 +67,8 @@ P.shown = (value, unit, digits, bound) => {
   const up = Math.ceil(value * 10 ** places - 1e-3) / 10 ** places;
   return (bound && value > 0 ? Math.max(up, 10 ** -places) : value).toFixed(places).replace(/^-(?=[0.]*$)/, "");
 };
-P.quantity = (value, unit, bound) => P.shown(value, unit, undefined, bound) + (unit ? " " + P.unit(unit) : "");
+// `most`: digits that are known.
+P.quantity = (value, unit, bound, most = 9) => P.shown(value, unit, Math.min(P.digits[unit] ?? 3, most), bound) + (unit ? " " + P.unit(unit) : "");
 P.unit = (unit) => unit.replace("deg", "°");
 // Of a tick of a chart: no more digits than tell.
 P.short = (value) => {

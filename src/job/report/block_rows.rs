@@ -124,7 +124,7 @@ impl<'m> BlockRows<'m> {
         let accuracy = &machine.accuracy;
         let [tip, turn] = [
             decimals(accuracy.tolerance),
-            1 + decimals(accuracy.axis_tolerance.to_degrees()),
+            decimals(accuracy.axis_tolerance.to_degrees()),
         ];
         let mut columns = vec![
             Column::new("nc", "", 0),

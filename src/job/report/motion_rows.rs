@@ -153,7 +153,7 @@ impl<'m> MotionRows<'m> {
             let turn = accuracy.axis_tolerance.to_degrees();
             columns.extend([
                 Column::new("deviation", "mm", decimals(accuracy.tolerance)),
-                Column::new("axis_deviation", "deg", 1 + decimals(turn)),
+                Column::new("axis_deviation", "deg", decimals(turn)),
                 Column::new("tolerance", "mm", 6),
             ]);
         }

@@ -336,6 +336,38 @@ fn after_a_stop_spindle_and_coolant_are_on_again() {
     assert!(lines[stop + 1].starts_with('X'), "{}", lines[stop + 1]);
 }
 
+/// Behind a stop off the part nothing turns until the next cut: not for a tool change, nor before it turns the other way.
+#[test]
+fn after_a_stop_nothing_turns_before_the_next_cut() {
+    let stopped = |behind: &str| {
+        let cl = UPRIGHT.replace("STOP\n", "");
+        cl.replace(
+            "LOADTL/2\nSPINDL/RPM,2000,CLW\n",
+            &format!("STOP\n{behind}"),
+        )
+    };
+    for (dialect, change) in [("fanuc", "T2 M6"), ("heidenhain", "TOOL CALL 2 Z S2000")] {
+        let more = format!("[control]\ndialect = \"{dialect}\"\n");
+        let changed = lines(
+            "vmc",
+            &more,
+            &[],
+            &stopped("LOADTL/2\nSPINDL/RPM,2000,CLW\n"),
+        );
+        let stop = changed.iter().position(|line| line == "M0").unwrap();
+        let until = changed.iter().position(|line| line == change).unwrap();
+        let between = &changed[stop..until];
+        let turns = |line: &String| line.contains("M3") || line == "M8";
+        assert!(!between.iter().any(turns), "{dialect}: {between:?}");
+    }
+    let fanuc = "[control]\ndialect = \"fanuc\"\n";
+    let reversed = lines("vmc", fanuc, &[], &stopped("SPINDL/RPM,500,CCLW\n"));
+    assert_run(&reversed, &["M0", "S500 M4", "X-20.000"]);
+    // The next cut is a way down.
+    let goes_on = lines("vmc", fanuc, &[], &stopped(""));
+    assert_run(&goes_on, &["M0", "X-20.000", "S3000 M3", "M8"]);
+}
+
 #[test]
 fn coolant_rests_in_a_tool_change_and_each_kind_has_its_end() {
     let through = UPRIGHT.replace("COOLNT/FLOOD", "COOLNT/THRU");

@@ -87,7 +87,7 @@
 //!
 //! [`Block`] makes lines of words and numbers them, [`Modal`] is a value that holds, [`Axes`] writes the words that have
 //! changed, [`AxisNames`] says which names a control can write; [`fixed`] prints a number to so many decimals and
-//! [`quantise`] rounds as it does; [`remark`], [`ascii`] and [`wrapped`] make text safe.
+//! [`quantise`] rounds as it does; [`Standstill`] knows when spindle and coolant are to be on again behind a stop; [`remark`], [`ascii`] and [`wrapped`] make text safe.
 //!
 //! # Other languages
 //!
@@ -112,6 +112,7 @@ mod number;
 mod plane;
 pub mod raw;
 mod setup;
+mod standstill;
 mod text;
 mod vocabulary;
 
@@ -132,5 +133,6 @@ pub use plane::PlaneAngles;
 pub use setup::{
     Accuracy, Ahead, AxisWord, Kinematics, OptionKind, OptionSpec, Setup, Tool, Units, Value,
 };
+pub use standstill::Standstill;
 pub use text::{ascii, remark, wrapped};
 pub use vocabulary::{Meaning, VocabularyWord};

@@ -7,6 +7,7 @@ use crate::{Heidenhain, Held};
 
 impl Heidenhain {
     pub(crate) fn put(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        self.resume(event, out);
         // The speed belongs to the tool call, so this waits for it; what needs no tool may come between.
         match *event {
             Event::Spindle(Spindle::On { .. })

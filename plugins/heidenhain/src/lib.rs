@@ -15,8 +15,8 @@ mod words;
 
 use post_plugin::{
     Axes, AxisNames, Block, Capabilities, Coolant, Dialect, Drilling, Event, Format, Meaning,
-    Modal, NumberStyle, OptionSpec, PlaneAngles, Setup, SpindleSense, Units, VocabularyWord,
-    export_dialect,
+    Modal, NumberStyle, OptionSpec, PlaneAngles, Setup, SpindleSense, Standstill, Units,
+    VocabularyWord, export_dialect,
 };
 
 use crate::cycles::Cycles;
@@ -92,6 +92,8 @@ struct Heidenhain {
     coolant_on: Modal<bool>,
     /// The coolant that is on.
     flowing: Option<Coolant>,
+    /// What a stop has switched off.
+    standstill: Standstill,
 }
 
 /// An event that waits for the tool call.
@@ -187,6 +189,7 @@ impl Dialect for Heidenhain {
             sense: None,
             coolant_on: Modal::default(),
             flowing: None,
+            standstill: Standstill::default(),
         })
     }
 

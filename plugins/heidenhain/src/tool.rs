@@ -1,6 +1,6 @@
 //! Tool calls and the spindle, whose speed belongs to them.
 
-use post_plugin::{NumberStyle, Spindle, SpindleSense, ascii};
+use post_plugin::{Event, NumberStyle, Spindle, SpindleSense, ascii};
 
 use crate::{Heidenhain, Held};
 
@@ -76,13 +76,19 @@ impl Heidenhain {
         Ok(())
     }
 
-    /// A stop switches spindle and coolant off: both are on again before the tool moves.
+    /// A stop switches spindle and coolant off.
     pub(crate) fn halt(&mut self, word: &str, out: &mut String) {
         self.block.line(word, out);
-        if let Some(sense) = self.sense {
+        self.standstill.stop(true, true);
+    }
+
+    /// Ahead of `event`: what a stop has switched off, if the tool needs it now.
+    pub(crate) fn resume(&mut self, event: &Event<'_>, out: &mut String) {
+        let [spindle, coolant] = self.standstill.before(event);
+        if let (true, Some(sense)) = (spindle, self.sense) {
             self.block.line(turns(sense), out);
         }
-        if let Some(flowing) = self.flowing {
+        if let (true, Some(flowing)) = (coolant, self.flowing) {
             self.coolant_codes(flowing, out);
         }
     }

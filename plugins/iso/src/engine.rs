@@ -5,7 +5,7 @@ mod spindle;
 
 use post_plugin::{
     Capabilities, Compensation, Event, Feed, Format, Meaning, Modal, NumberStyle, Spindle,
-    ToolPose, Units,
+    Standstill, ToolPose, Units,
 };
 
 use crate::cycles::Cycles;
@@ -71,6 +71,8 @@ pub struct Engine {
     coolant: Modal<bool>,
     /// The coolant that is on: its place in [`COOLANTS`].
     flowing: Option<usize>,
+    /// What a stop has switched off.
+    pub(crate) standstill: Standstill,
 }
 
 impl Engine {
@@ -311,8 +313,8 @@ impl Engine {
                 self.motion.machine(self.table.machine, axes, words, out);
             }
             Event::Dwell { seconds } => self.dwell(seconds, out),
-            Event::Stop => self.stop(codes.stop[0], out)?,
-            Event::OptionalStop => self.stop(codes.stop[1], out)?,
+            Event::Stop => self.stop(codes.stop[0], out),
+            Event::OptionalStop => self.stop(codes.stop[1], out),
             Event::End => self.end(out),
             Event::WorkOffset { number, .. } => {
                 self.plane.must_be_off("another work offset")?;

@@ -85,6 +85,7 @@ impl<C: Control> Iso<C> {
         let Iso {
             control, engine, ..
         } = self;
+        engine.resume(event, out)?;
         if control.write(event, engine, out)? {
             return Ok(());
         }

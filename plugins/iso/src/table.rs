@@ -177,7 +177,7 @@ pub enum Leave {
     Tcp,
 }
 
-/// What a stop of the program (M0, M1) switches off. It is written again behind the stop: where the control or its
+/// What a stop of the program (M0, M1) switches off. It is switched on again before the next cut: where the control or its
 /// builder has left it on, that does nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stops {

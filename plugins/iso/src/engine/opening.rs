@@ -1,6 +1,6 @@
 //! The engine as a program begins: what table and options say.
 
-use post_plugin::{Axes, Block, Modal, NumberStyle, Setup, Units, Value};
+use post_plugin::{Axes, Block, Modal, NumberStyle, Setup, Standstill, Units, Value};
 
 use super::Engine;
 use super::spindle::COOLANTS;
@@ -131,6 +131,7 @@ impl Engine {
             spindle: Modal::default(),
             coolant: Modal::default(),
             flowing: None,
+            standstill: Standstill::default(),
         })
     }
 }

@@ -1,6 +1,6 @@
 //! Spindle, coolant, and the stops that switch them off.
 
-use post_plugin::{Coolant, NumberStyle, Spindle, SpindleSense};
+use post_plugin::{Coolant, Event, NumberStyle, Spindle, SpindleSense};
 
 use super::{Engine, one_by_one};
 
@@ -91,16 +91,31 @@ impl Engine {
         self.coolant.set(false);
     }
 
-    /// A stop, and behind it what it has switched off, before the tool moves on.
-    pub(super) fn stop(&mut self, word: &str, out: &mut String) -> Result<(), String> {
+    /// A stop; what it has switched off is on again once the tool needs it.
+    pub(super) fn stop(&mut self, word: &str, out: &mut String) {
         self.line(word, out);
-        if self.table.stops.spindle {
+        let stops = self.table.stops;
+        self.standstill.stop(stops.spindle, stops.coolant);
+    }
+
+    /// Ahead of `event`: what a stop has switched off, if the tool needs it now.
+    #[inline]
+    pub(crate) fn resume(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        match self.standstill.before(event) {
+            [false, false] => Ok(()),
+            due => self.switch_on(due, out),
+        }
+    }
+
+    #[cold]
+    fn switch_on(&mut self, [spindle, coolant]: [bool; 2], out: &mut String) -> Result<(), String> {
+        if spindle {
             match self.turning {
                 Some(spindle) => self.turn(spindle, out)?,
                 None => self.surface_speed_again(out)?,
             }
         }
-        if let (true, Some(flowing)) = (self.table.stops.coolant, self.flowing) {
+        if let (true, Some(flowing)) = (coolant, self.flowing) {
             one_by_one(&self.coolant_codes[flowing], &mut self.motion, out);
         }
         Ok(())

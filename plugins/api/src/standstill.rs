@@ -1,0 +1,118 @@
+//! What a stop of the program has switched off, until the tool needs it again.
+
+use crate::Event;
+
+/// Spindle and coolant that a stop has switched off: on again before the next cut, and not in between. An operator stands
+/// at an open door, and a tool change behind the stop would switch both off once more.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Standstill {
+    /// The last motion was a cut: the tool may stand in the part.
+    cut: bool,
+    /// It did so at the stop.
+    in_part: bool,
+    spindle: bool,
+    coolant: bool,
+}
+
+impl Standstill {
+    /// The program stops, and the control switches off what is named.
+    pub fn stop(&mut self, spindle: bool, coolant: bool) {
+        self.spindle |= spindle;
+        self.coolant |= coolant;
+        self.in_part = self.cut;
+    }
+
+    /// Whether the spindle, and the coolant, must be on again ahead of `event`. To be asked of every event, in order.
+    #[inline]
+    pub fn before(&mut self, event: &Event<'_>) -> [bool; 2] {
+        let due = match event {
+            Event::Linear { .. } | Event::Arc { .. } | Event::Spline { .. } => {
+                self.cut = true;
+                true
+            }
+            Event::Cycle { .. }
+            | Event::CyclePoint { .. }
+            | Event::Probe { .. }
+            | Event::Position { .. }
+            // Nobody knows what they do.
+            | Event::Literal { .. }
+            | Event::Subprogram { .. } => {
+                self.cut = false;
+                true
+            }
+            // A spindle that stands tears on the way out of the part.
+            Event::Rapid { .. } | Event::Retract { .. } => {
+                self.cut = false;
+                std::mem::take(&mut self.in_part)
+            }
+            Event::Spindle(_) | Event::SurfaceSpeed { .. } => {
+                self.spindle = false;
+                false
+            }
+            Event::Coolant(_) => {
+                self.coolant = false;
+                false
+            }
+            Event::ToolChange { .. } => {
+                (self.spindle, self.coolant) = (false, false);
+                false
+            }
+            _ => false,
+        };
+        match due && (self.spindle || self.coolant) {
+            true => [&mut self.spindle, &mut self.coolant].map(std::mem::take),
+            false => [false; 2],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Coolant, Feed, Spindle};
+
+    const CUT: Event<'static> = Event::Linear {
+        tool: None,
+        feed: Feed::PerMinute(100.0),
+        words: &[],
+    };
+    const RAPID: Event<'static> = Event::Rapid {
+        tool: None,
+        words: &[],
+    };
+
+    /// What is switched on ahead of each event behind the stop.
+    fn behind<const N: usize>(before: Event<'_>, events: [Event<'_>; N]) -> [[bool; 2]; N] {
+        let mut still = Standstill::default();
+        still.before(&before);
+        still.stop(true, true);
+        events.map(|event| still.before(&event))
+    }
+
+    #[test]
+    fn nothing_turns_before_the_next_cut() {
+        let (off, on) = ([false; 2], [true; 2]);
+        assert_eq!(behind(RAPID, [RAPID, CUT, CUT]), [off, on, off]);
+        let change = Event::ToolChange {
+            number: 2,
+            register: 2,
+            length: None,
+            diameter: None,
+            corner_radius: None,
+            name: "",
+        };
+        assert_eq!(behind(RAPID, [change, RAPID, CUT]), [off; 3]);
+        let reversed = [
+            Event::Spindle(Spindle::Off),
+            Event::Coolant(Coolant::Off),
+            CUT,
+        ];
+        assert_eq!(behind(RAPID, reversed), [off; 3]);
+    }
+
+    #[test]
+    fn the_spindle_does_not_stand_on_the_way_out_of_the_part() {
+        let (off, on) = ([false; 2], [true; 2]);
+        assert_eq!(behind(CUT, [RAPID, CUT]), [on, off]);
+    }
+}

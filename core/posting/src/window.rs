@@ -11,6 +11,9 @@ pub(crate) struct Window {
     lines: Range<u64>,
     /// What was said last before the range, of each kind.
     state: Vec<Command>,
+    /// Of it what was said of spindle and coolant before the tool came: another tool's, until this one moves without a
+    /// word of its own.
+    before_tool: Vec<Command>,
     /// The plane that points lie in, if the file names one.
     plane: Option<Step>,
     entered: bool,
@@ -21,6 +24,7 @@ impl Window {
         Self {
             lines,
             state: Vec::new(),
+            before_tool: Vec::new(),
             plane: None,
             entered: false,
         }
@@ -58,18 +62,44 @@ impl Window {
                 }
             }
         }
+        match &step {
+            Step::Command(command) => self.said_anew(command),
+            Step::Plane(_) | Step::EndCycle => {}
+            Step::Move(_) | Step::Arc(_) | Step::Spline(_) | Step::Cycle(_) => {
+                let held = std::mem::take(&mut self.before_tool).into_iter();
+                to.extend(held.map(|command| (line, Step::Command(command))));
+            }
+        }
         to.push((line, step));
+    }
+
+    /// What the file says now takes the place of what held before the tool came.
+    fn said_anew(&mut self, command: &Command) {
+        let kind = kind(command);
+        self.before_tool.retain(|held| self::kind(held) != kind);
     }
 
     /// Keeps a command that holds until another of its kind, the tool first: a change of it says nothing of what is
     /// switched behind it.
     fn keep(&mut self, command: Command) {
         let Some(kind) = kind(&command) else { return };
+        self.said_anew(&command);
         self.state.retain(|kept| self::kind(kept) != Some(kind));
+        if let Command::Tool(_) | Command::Head(_) = command {
+            // It came with the spindle at rest.
+            let rests = |kept: &Command| matches!(self::kind(kept), Some(SPINDLE | COOLANT));
+            let (held, state) = self.state.drain(..).partition(rests);
+            self.state = state;
+            self.before_tool.extend::<Vec<Command>>(held);
+        }
         self.state.push(command);
         self.state.sort_by_key(self::kind);
     }
 }
+
+/// Of the spindle, and of the coolant.
+const SPINDLE: u8 = 7;
+const COOLANT: u8 = 8;
 
 /// What of a program's state a command sets, in the order in which a program sets it; none if it sets nothing.
 fn kind(command: &Command) -> Option<u8> {
@@ -81,8 +111,8 @@ fn kind(command: &Command) -> Option<u8> {
         Command::Index { axis: 'A', .. } => 4,
         Command::Index { axis: 'B', .. } => 5,
         Command::Index { .. } => 6,
-        Command::Spindle(_) | Command::SurfaceSpeed { .. } => 7,
-        Command::Coolant(_) => 8,
+        Command::Spindle(_) | Command::SurfaceSpeed { .. } => SPINDLE,
+        Command::Coolant(_) => COOLANT,
         Command::Compensate(_) => 9,
         _ => return None,
     })
@@ -90,10 +120,11 @@ fn kind(command: &Command) -> Option<u8> {
 
 #[cfg(test)]
 mod tests {
-    use post_plugin::{Coolant, Spindle};
+    use nalgebra::Vector3;
+    use post_plugin::{Coolant, Spindle, SpindleSense};
 
     use super::*;
-    use crate::program::Tool;
+    use crate::program::{Motion, Pace, Tool};
 
     #[test]
     fn a_part_begins_in_the_state_that_the_lines_before_it_set() {
@@ -125,11 +156,72 @@ mod tests {
             [
                 command(10, Command::Comment("A".to_owned())),
                 command(12, tool(2)),
-                command(12, Command::Spindle(Spindle::Off)),
                 command(12, Command::Coolant(Coolant::Flood)),
                 command(12, Command::OptionalStop),
                 command(19, Command::Home),
             ]
+        );
+    }
+
+    /// The spindle of the tool before waits until the tool moves without a speed of its own.
+    #[test]
+    fn a_tool_begins_with_its_own_speed() {
+        let tool = || {
+            Command::Tool(Tool {
+                number: 2,
+                ..Tool::default()
+            })
+        };
+        let turning = |rpm| {
+            Command::Spindle(Spindle::On {
+                rpm,
+                sense: SpindleSense::Clockwise,
+            })
+        };
+        let made = |said: &[Command]| {
+            let mut window = Window::new(10..20);
+            let mut steps = Vec::new();
+            window.step(1, Step::Command(turning(15_000.0)), &mut steps);
+            window.step(
+                2,
+                Step::Command(Command::Coolant(Coolant::Mist)),
+                &mut steps,
+            );
+            let motion = Motion {
+                tip: Vector3::zeros(),
+                axis: Vector3::z(),
+                edge: Vector3::zeros(),
+                pace: Pace::Rapid,
+                chord: 0.0,
+            };
+            for command in said {
+                window.step(10, Step::Command(command.clone()), &mut steps);
+            }
+            window.step(11, Step::Move(motion), &mut steps);
+            let commands = steps.into_iter().filter_map(|(_, step)| match step {
+                Step::Command(command) => Some(command),
+                _ => None,
+            });
+            commands.collect::<Vec<_>>()
+        };
+        let mist = Command::Coolant(Coolant::Mist);
+        assert_eq!(
+            made(&[tool(), Command::Preselect(3), turning(800.0)]),
+            [tool(), Command::Preselect(3), turning(800.0), mist.clone()]
+        );
+        assert_eq!(
+            made(&[tool(), Command::Preselect(3)]),
+            [
+                tool(),
+                Command::Preselect(3),
+                turning(15_000.0),
+                mist.clone()
+            ]
+        );
+        // No tool came: what turned goes on turning.
+        assert_eq!(
+            made(&[Command::Stop]),
+            [turning(15_000.0), mist, Command::Stop]
         );
     }
 }

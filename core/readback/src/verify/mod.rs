@@ -31,7 +31,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::course::Course;
-use crate::{CycleKind, Done, Motion, MotionKind, Offsets, Told};
+use crate::{CycleKind, Done, Motion, MotionKind, Offsets, Spindle, Told};
 use axes::Axes;
 pub use cut_path::CutPath;
 use detour::Detour;
@@ -141,6 +141,8 @@ pub struct Verifier<'m, C> {
     places: Vec<Place>,
     spare: Vec<Span>,
     /// The work offsets that were cut in, each by the number that the course asks for.
+    /// What the spindle was told since the tool came or since it was compared: with the line of the program.
+    turned: Vec<(Spindle, u64)>,
     worked: Vec<(Option<u32>, String)>,
     detour: Detour,
     axes: Axes,
@@ -188,6 +190,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             places: Vec::new(),
             spare: Vec::new(),
             worked: Vec::new(),
+            turned: Vec::new(),
             detour: Detour::default(),
             axes: Axes::new(machine),
             block: BlockReport::default(),
@@ -219,6 +222,10 @@ impl<'m, C: Course> Verifier<'m, C> {
                 Told::Dwell { .. } | Told::Stop | Told::OptionalStop => self.event(*line, told),
                 Told::Cycle(call) => self.cycle = Some(call.kind),
                 Told::CycleEnd => self.cycle = None,
+                Told::ToolChange { .. } => self.turned.clear(),
+                Told::Spindle(spindle) if self.turned.len() < track::MOST_SPEEDS => {
+                    self.turned.push((*spindle, *line));
+                }
                 _ => {}
             },
             Done::State(_) => {}

@@ -98,6 +98,7 @@ impl<C: Course> Verifier<'_, C> {
             );
             self.fault("spindle", message, Some(motion), cl_line, None);
         }
+        self.compare_speeds(motion, element);
         if state.coolants != asked.coolants {
             let message = format!(
                 "cuts with {}, and the CL file asks for {}",
@@ -124,6 +125,29 @@ impl<C: Course> Verifier<'_, C> {
         self.compare_register(motion, element);
         self.compare_length(motion, element);
         self.compare_work_offset(motion, element);
+    }
+
+    /// Between the tool change and its first cut the spindle turns as the course has it of this tool: the speed of the
+    /// tool before bursts a large one.
+    fn compare_speeds(&mut self, motion: &Motion, element: &Element) {
+        let asked = &element.asked;
+        if self.turned.is_empty() || motion.state.tool != asked.tool {
+            return;
+        }
+        for (spindle, line) in std::mem::take(&mut self.turned) {
+            let known = [asked.spindle, motion.state.spindle, Spindle::Off];
+            let mut known = known.iter().chain(&asked.turned);
+            if known.any(|known| same_spindle(spindle, *known)) {
+                continue;
+            }
+            let message = format!(
+                "the spindle {} with this tool before it cuts, and the CL file asks that it {}",
+                spindle_name(spindle),
+                spindle_name(asked.spindle)
+            );
+            let place = Some((line, None));
+            self.fault_at("spindle", message, place, Some(element.line), None);
+        }
     }
 
     /// Where nothing is said of where work offsets lie, each that the course asks for is one of the program's, always

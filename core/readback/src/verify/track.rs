@@ -17,6 +17,8 @@ use crate::{Coolants, CycleKind, MotionKind, Spindle, Told};
 pub(super) struct Asked {
     pub tool: Option<u32>,
     pub spindle: Spindle,
+    /// What the spindle was told since the tool came.
+    pub turned: Vec<Spindle>,
     pub coolants: Coolants,
     /// Side of the contour: -1 left, 1 right, 0 off.
     pub side: i8,
@@ -89,6 +91,9 @@ pub(super) struct Track<C> {
 
 /// More elements are not kept: a program that lingers over more of its path is lost.
 pub(super) const MOST: usize = 60_000;
+
+/// So many commands of the spindle are kept of a tool.
+pub(super) const MOST_SPEEDS: usize = 64;
 
 /// So many faults of a course are kept.
 const MOST_FAULTS: usize = 50;
@@ -279,9 +284,17 @@ impl<C: Course> Track<C> {
         match told {
             Told::ToolChange { number, .. } => {
                 self.end_hole();
-                Arc::make_mut(&mut self.asked).tool = number;
+                let asked = Arc::make_mut(&mut self.asked);
+                asked.tool = number;
+                asked.turned.clear();
             }
-            Told::Spindle(spindle) => Arc::make_mut(&mut self.asked).spindle = spindle,
+            Told::Spindle(spindle) => {
+                let asked = Arc::make_mut(&mut self.asked);
+                asked.spindle = spindle;
+                if asked.turned.len() < MOST_SPEEDS {
+                    asked.turned.push(spindle);
+                }
+            }
             Told::Coolant(coolants) => Arc::make_mut(&mut self.asked).coolants = coolants,
             Told::Compensation { side, register } => {
                 let asked = Arc::make_mut(&mut self.asked);

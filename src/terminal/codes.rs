@@ -462,11 +462,6 @@ pub const CODES: &[CodeGroup] = &[
                 "`[head.NAME]`.",
             ),
             code(
-                "head-length",
-                "The tool of a head that is swapped in stands across the axis along which the control compensates lengths, and the words count with its length.",
-                "0 in the control's length register of that tool, and a work offset of the head that was measured with the tool in it.",
-            ),
-            code(
                 "index",
                 "Index axes have no position that carries the pass.",
                 "Another tool axis in the CAM system, or the positions of the axis.",
@@ -475,6 +470,11 @@ pub const CODES: &[CodeGroup] = &[
                 "jump",
                 "A cut cannot go on: the axes would have to jump to another solution within tolerance.",
                 "`[rewind]`, another mount (`post place`), or a cut that ends here.",
+            ),
+            code(
+                "length-axis",
+                "The words are axis positions, and the control puts the length of the tool along another axis than the one along which the tool lies; or it puts none on, and the work offset is measured with the tool in the spindle.",
+                "`[tool] length_axis`, where the control can be told; `\"none\"` with the length 0 in the control and a work offset measured with the tool; or `tcp = \"control\"`.",
             ),
             code(
                 "kinematics",

@@ -52,10 +52,13 @@ fn variants() -> Vec<(String, Vec<String>)> {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         let file: toml::Table = fs::read_to_string(&path).unwrap().parse().unwrap();
         let mut changes: Vec<Vec<String>> = vec![vec![]];
-        // Within the tolerance of the tool axis, and beyond it.
-        for lean in ["tool.axis=[0.0005, 0, 1]", "tool.axis=[0.02, 0, 1]"] {
-            changes.push(vec![lean.to_owned()]);
-        }
+        // Within the tolerance of the tool axis, and beyond it, where no control's length lies along it any more.
+        changes.push(vec!["tool.axis=[0.0005, 0, 1]".to_owned()]);
+        changes.push(
+            ["tool.axis=[0.02, 0, 1]", "tool.length_axis=\"none\""]
+                .map(str::to_owned)
+                .into(),
+        );
         let axes = file.get("axis").and_then(toml::Value::as_table);
         for (axis, table) in axes.into_iter().flatten() {
             if table.get("rotary").is_none() || table.get("indexed").is_some() {

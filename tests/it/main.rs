@@ -24,6 +24,7 @@ mod frame;
 mod guide;
 mod guides;
 mod languages;
+mod lengths;
 mod library;
 #[cfg(target_os = "linux")]
 mod linuxcnc;

@@ -532,6 +532,11 @@ typedef struct {
 #define POST_WRITES_ARC_RADIUS 0x0000002000000000u
 /* Cycles also while tool centre point control is on, the tool upright on the part's X and Y. */
 #define POST_WRITES_CYCLE_TCP 0x0000004000000000u
+/* The tool's length is put along the depth axis, whichever of X, Y and Z that is (G18, TOOL CALL 1 Y); else
+ * along Z. */
+#define POST_WRITES_LENGTH_ALONG_DEPTH 0x0000008000000000u
+/* No length is put on: it is in the work offset. */
+#define POST_WRITES_LENGTH_IN_OFFSET 0x0000010000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

@@ -122,6 +122,11 @@ capabilities! {
     37 ARC_RADIUS;
     /// Cycles also while tool centre point control is on, the tool upright on the part's X and Y.
     38 CYCLE_TCP;
+    /// The tool's length is put along the depth axis, whichever of X, Y and Z that is (G18, `TOOL CALL 1 Y`); else
+    /// along Z.
+    39 LENGTH_ALONG_DEPTH;
+    /// No length is put on: it is in the work offset.
+    40 LENGTH_IN_OFFSET;
 }
 
 impl Capabilities {

@@ -66,7 +66,7 @@ impl Control for Grbl {
     }
 
     fn capabilities(&self) -> Capabilities {
-        Capabilities::TOOL_TABLE
+        Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET
     }
 
     fn write(

@@ -25,6 +25,7 @@ impl Heidenhain {
             .and(C::SUBPROGRAM);
         C::TCP_STILL
             | C::TOOL_TABLE
+            | C::LENGTH_ALONG_DEPTH
             | C::INSTEAD
             | commands
             | some(self.rotary, C::PLANE)

@@ -19,6 +19,7 @@ impl Siemens {
             .and(C::CYCLE_IN_PLANE);
         [
             (true, C::TCP_STILL.and(C::TOOL_TABLE).and(commands)),
+            (true, C::LENGTH_ALONG_DEPTH),
             (upright, arcs.and(cycles)),
             (upright && self.cycles.fine(), C::CYCLE_BORE_FINE),
             (

@@ -1,7 +1,7 @@
 //! What events become that the engine has no words for.
 
 use post_iso::{Control, Engine};
-use post_plugin::{Drilling, Event, Feed, Spindle};
+use post_plugin::{Compensation, Drilling, Event, Feed, Spindle};
 
 use crate::Siemens;
 use crate::table::is_work_offset;
@@ -69,11 +69,11 @@ impl Siemens {
                 name,
                 ..
             } if self.tool_names && !name.is_empty() => {
-                self.length.forget();
+                self.changed();
                 engine.change(number, &called(name)?, register, name, out);
             }
             Event::ToolChange { .. } => {
-                self.length.forget();
+                self.changed();
                 return Ok(false);
             }
             Event::Preselect { number } => {
@@ -101,6 +101,11 @@ impl Siemens {
                 engine.motion.feeds_per_minute();
                 self.surface = true;
                 self.turning = None;
+            }
+            Event::Compensate(Compensation::Left { .. } | Compensation::Right { .. })
+                if self.across != "G17" =>
+            {
+                return Err("radius compensation lies across Z, and the tool does not".to_owned());
             }
             Event::Compensate(_) => {
                 self.upright(engine, out);

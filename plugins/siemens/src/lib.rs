@@ -49,6 +49,8 @@ struct Siemens {
     /// Where the last move ended.
     at: Vec<f64>,
     plane: Modal<&'static str>,
+    /// The plane across the tool, along whose third axis D puts the length.
+    across: &'static str,
     tcp_active: Modal<bool>,
     /// In a tilted plane there is no transformation.
     tilted: bool,
@@ -115,6 +117,7 @@ impl Control for Siemens {
             },
             at: Vec::new(),
             plane: Modal::default(),
+            across: across(setup),
             tcp_active: Modal::default(),
             tilted: false,
             vector: Modal::default(),
@@ -155,6 +158,22 @@ impl Control for Siemens {
         out: &mut String,
     ) -> Result<bool, String> {
         self.put(event, engine, out)
+    }
+}
+
+/// The plane across the tool where the words are axis positions. Under a transformation the control turns the length with
+/// the tool.
+fn across(setup: &Setup<'_>) -> &'static str {
+    let lies = |name| {
+        setup
+            .words
+            .iter()
+            .any(|word| word.name == name && word.depth)
+    };
+    match (setup.tcp, lies("X"), lies("Y")) {
+        (false, true, false) => "G19",
+        (false, false, true) => "G18",
+        _ => "G17",
     }
 }
 

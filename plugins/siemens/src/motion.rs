@@ -19,8 +19,8 @@ impl Siemens {
 
     /// The plane of arcs and compensation, and of the tool's length.
     pub(crate) fn upright(&mut self, engine: &mut Engine, out: &mut String) {
-        if self.plane.set("G17") {
-            engine.line("G17", out);
+        if self.plane.set(self.across) {
+            engine.line(self.across, out);
         }
     }
 
@@ -28,6 +28,14 @@ impl Siemens {
     pub(crate) fn length_on(&mut self, engine: &mut Engine, out: &mut String) {
         if self.length.set(true) {
             engine.line(&format!("D{}", self.edge), out);
+        }
+    }
+
+    /// After a tool change, which may have come with a safe state.
+    pub(crate) fn changed(&mut self) {
+        self.length.forget();
+        if self.across != "G17" {
+            self.plane.forget();
         }
     }
 

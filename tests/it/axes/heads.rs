@@ -15,7 +15,10 @@ fn heads(other: &str) -> String {
         (Some("STRAIGHT"), V::z()),
     ] {
         if let Some(head) = head {
+            // Of a tool that lies down the control's length is 0: it has a number of its own.
+            let tool = if head == "STRAIGHT" { 1 } else { 2 };
             text = text.line(&format!("HEAD / {head}"));
+            text = text.line(&format!("LOADTL / {tool}"));
         }
         text = text.rapid(axis * 200.0, axis).cut(axis * 150.0, axis);
         text = text.cut(axis * 150.0 + V::x() * 20.0, axis);
@@ -65,31 +68,12 @@ fn a_head_is_swapped_between_retract_and_next_position() {
     }
 }
 
-/// The words hold the length of a tool that lies down, and the control would add it along Z once more.
-#[test]
-fn a_length_that_the_control_would_add_across_the_tool_is_told() {
-    let run = |length: &str| {
-        let folder = tempfile::tempdir().unwrap();
-        let cl = folder.path().join("heads.ncl");
-        std::fs::write(&cl, heads("ANGLE")).unwrap();
-        let cl = cl.to_str().unwrap();
-        post(&["-m", "head-change", "--tool-length", length, cl, "-o", "-"])
-    };
-    let told = run("100").err;
-    assert!(
-        told.contains("warning[head-length]: the tool of head ANGLE stands across Z"),
-        "{told}"
-    );
-    assert!(told.contains("with 100 mm of it along X"), "{told}");
-    assert!(!told.contains("head STRAIGHT stands"), "{told}");
-    assert!(!run("0").err.contains("head-length"));
-}
-
 /// The operator swaps a head that has no word.
 #[test]
 fn a_head_without_a_word_stops_the_program() {
-    let setup =
-        on("head-change").file("[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\n");
+    let setup = on("head-change").file(
+        "[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\nlength_axis = \"none\"\n",
+    );
     let made = setup.made(&heads("SIDE"));
     let lines: Vec<&str> = made.text.lines().collect();
     let told = lines

@@ -311,6 +311,7 @@ impl Builder<'_> {
             Some(edge) => self.edge(edge, tool_axis),
             None => None,
         };
+        let length_axis = self.length_axis(file.tool.length_axis.as_ref(), &axes);
         let solution = self.solution(file, &axes);
         let rewind = file.rewind.as_ref().and_then(|rewind| self.rewind(rewind));
         let tools = self.tools(file);
@@ -379,6 +380,7 @@ impl Builder<'_> {
             turn,
             gauge,
             tool_axis,
+            length_axis,
             edge,
             control_point,
             tools,

@@ -11,6 +11,7 @@ mod file;
 mod frame;
 mod keys;
 mod layers;
+mod length;
 mod limits;
 mod motion;
 mod motion_file;
@@ -46,6 +47,7 @@ pub use file::{
 };
 pub use frame::Frame;
 pub use layers::{Source, readable};
+pub use length::LengthAxis;
 pub use limits::MOST_BYTES;
 pub use motion::MotionRules;
 pub use motion_file::{BlendRule, CornerRule, LimitsActOn, RapidRule};
@@ -79,6 +81,8 @@ pub struct Machine {
     pub gauge: Vector3<f64>,
     /// Tool axis with all axes at zero, unit vector from the tip to the holder, machine frame.
     pub tool_axis: Vector3<f64>,
+    /// Along which axis the control puts its length.
+    pub length_axis: LengthAxis,
     /// Leading edge of the tool (knife, disc) with all axes at zero, unit vector across the tool axis,
     /// machine frame; none for a tool that turns.
     pub edge: Option<Vector3<f64>>,

@@ -8,6 +8,7 @@ mod cost;
 mod cycle_time;
 mod ease;
 mod full_turns;
+mod lengths;
 mod metric;
 mod recovery;
 mod route;
@@ -21,12 +22,11 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use nalgebra::Vector3;
-use post_machine::axis_words;
 use post_machine::description::{Machine, Positions, Tcp};
-use post_machine::diagnostic::{Diagnostic, Short};
+use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_machine::kinematics::travel::{AT_END, passed};
-use post_plugin::{Format, Spindle};
+use post_plugin::{Capabilities, Format, Spindle};
 
 use crate::accuracy::Placer;
 use crate::expand::Line;
@@ -35,6 +35,7 @@ use crate::program::limits::MOST_TOOLS;
 use crate::program::{Command, Motion, Tool};
 use crate::report::{LengthSource, ToolUse};
 use crate::stream::{Flow, Outlet};
+use lengths::Lengths;
 pub(crate) use route::Chosen;
 use route::{Lost, Route};
 pub(crate) use trellis::pose;
@@ -82,6 +83,8 @@ pub(crate) struct Configuration<'a> {
     /// The dialect switches tool centre point control on in a block that moves nothing, so that no first position is
     /// come to in machine coordinates by a head that turns.
     tcp_still: bool,
+    /// Along which axis the control puts lengths.
+    lengths: Lengths,
     /// What the user says of every tool.
     told_length: Option<f64>,
     /// Length of the tool in use, if anybody gave it.
@@ -109,10 +112,12 @@ impl<'a> Configuration<'a> {
         machine: &'a Machine,
         format: &Format,
         told_length: Option<f64>,
+        writes: Capabilities,
         tcp_still: bool,
     ) -> Result<Self, Box<Diagnostic>> {
         Ok(Self {
             tcp_still,
+            lengths: Lengths::new(writes),
             machine,
             base: machine,
             route: Route::new(machine, format, told_length.unwrap_or(0.0))?,
@@ -304,6 +309,7 @@ impl<'a> Configuration<'a> {
                     findings.at(line, no_head(self.base, name));
                     return;
                 };
+                self.lengths.swap_head(name);
                 self.route.leave();
                 self.machine = &head.machine;
                 // A head may have lengths of its own, and a spindle of its own.
@@ -314,12 +320,13 @@ impl<'a> Configuration<'a> {
                 self.in_use = false;
                 self.equip(line, findings);
                 self.check_speed(line, findings);
-                self.check_length_register(name, line, findings);
             }
             Command::Home => self.park(&self.machine.frame.park),
-            Command::WorkOffset(_) | Command::Subprogram(_) | Command::Smoothing(_) => {
+            Command::WorkOffset(number) => {
+                self.lengths.work_offset(*number);
                 self.park(&[]);
             }
+            Command::Subprogram(_) | Command::Smoothing(_) => self.park(&[]),
             Command::SurfaceSpeed { most, .. } => {
                 self.speed = None;
                 match self.machine.spindle.limit(*most) {
@@ -405,6 +412,12 @@ impl<'a> Configuration<'a> {
             length_mm: self.length.unwrap_or(0.0),
             source: self.source,
         };
+        if let Some(finding) =
+            self.lengths
+                .check(self.base, self.machine, (used.number, self.length))
+        {
+            findings.at(line, finding);
+        }
         if self.tools.contains(&used) {
             return;
         }
@@ -418,30 +431,6 @@ impl<'a> Configuration<'a> {
             findings.at(line, unknown_length(used.number, self.length_matters()));
         }
         self.tools.push(used);
-    }
-
-    /// The control compensates the length of a tool along the depth axis of the machine that its file begins with. A tool
-    /// that lies across it has its length in the words already.
-    fn check_length_register(&self, head: &str, line: u64, findings: &Findings) {
-        let depths = [self.base, self.machine].map(axis_words::depth);
-        let length = self.length.unwrap_or(0.0);
-        let [Some(compensated), Some(along)] = depths else {
-            return;
-        };
-        if self.machine.control.tcp == Tcp::Post && compensated != along && length != 0.0 {
-            let message = format!(
-                "the tool of head {head} stands across {}, along which the control compensates its length; the words count with {} mm of it along {}",
-                self.base.axes[compensated].name,
-                Short(length),
-                self.machine.axes[along].name
-            );
-            findings.at(
-                line,
-                Diagnostic::warning("head-length", message).help(
-                    "give it a tool number of its own with 0 in the control's length register, and measure the work offset of this head with the tool in it",
-                ),
-            );
-        }
     }
 
     /// Takes machine and tool length into the route.

@@ -129,6 +129,25 @@ impl Control {
             Some(name) => self.begin_operation(name),
             None => self.tell(Told::Remark(text.to_owned())),
         }
+        self.head_by_hand = self.head_named(text);
+    }
+
+    /// The head without a word of its own that the operator swaps in at the next stop, if a remark names it.
+    fn head_named(&self, remark: &str) -> Option<usize> {
+        let name = remark.strip_prefix("CHANGE TO HEAD ")?.trim();
+        let mut heads = self.heads.iter();
+        heads.position(|head| head.word.is_none() && head.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The program stops; that may be for the operator to swap a head.
+    pub(super) fn stop(&mut self, told: Told) -> Result<(), Box<Diagnostic>> {
+        match self.head_by_hand.take() {
+            Some(head) => self.take_head(head),
+            None => {
+                self.tell(told);
+                Ok(())
+            }
+        }
     }
 
     /// An operation of this name begins.
@@ -249,14 +268,20 @@ impl Control {
     /// The word swaps a head in.
     fn swap_head(&mut self, code: u16) -> Result<bool, Box<Diagnostic>> {
         let mut heads = self.heads.iter();
-        let head = heads.find(|head| head.word.as_deref().and_then(m_number) == Some(code));
-        let Some(head) = head else {
-            return Ok(false);
-        };
+        let head = heads.position(|head| head.word.as_deref().and_then(m_number) == Some(code));
+        match head {
+            Some(head) => self.take_head(head).map(|()| true),
+            None => Ok(false),
+        }
+    }
+
+    /// The head at this place among the machine's is swapped in.
+    fn take_head(&mut self, head: usize) -> Result<(), Box<Diagnostic>> {
+        let head = &self.heads[head];
         let (name, machine) = (head.name.clone(), std::sync::Arc::clone(&head.machine));
         self.head_changed(machine)?;
         self.tell(Told::Head(name));
-        Ok(true)
+        Ok(())
     }
 
     /// Does what the block asks for, in the order in which controls do it.
@@ -296,8 +321,8 @@ impl Control {
             self.coolant_off();
         }
         match asked.stop {
-            Some(Meaning::Stop) => self.tell(Told::Stop),
-            Some(Meaning::OptionalStop) => self.tell(Told::OptionalStop),
+            Some(Meaning::Stop) => self.stop(Told::Stop)?,
+            Some(Meaning::OptionalStop) => self.stop(Told::OptionalStop)?,
             Some(_) => self.end(),
             None => {}
         }

@@ -53,6 +53,7 @@ impl Control {
             if let Some(edge) = words.take_number(b'D', self)? {
                 self.tools.by_tool = true;
                 self.tools.length_on = edge != 0;
+                self.tools.across = self.modal.plane;
                 self.state.length_register = (edge != 0).then_some(edge);
                 self.length_changed()?;
             }

@@ -82,6 +82,7 @@ impl Control {
             offsets: offsets.clone(),
             machine: Arc::new(machine.clone()),
             heads,
+            head_by_hand: None,
             axes: Axes::new(machine),
             modal: Modal::new(lexicon.language(), machine.control.units),
             frames: Frames::default(),
@@ -115,6 +116,7 @@ impl Control {
             exact_stop: false,
             hole: false,
             zero: Joints::default(),
+            origin: Joints::default(),
             to_part: Frame::default(),
             to_work: Frame::default(),
             line: 0,
@@ -290,27 +292,30 @@ impl Control {
     /// Where the axes stand that the words count from: the tip of the compensated tool on the part origin, rotary axes
     /// showing zero, and the work offset on top.
     fn recount(&mut self) -> Result<(), Box<Diagnostic>> {
-        let mut zero = Joints::default();
-        for (joint, axis) in zero.iter_mut().zip(&self.machine.axes) {
+        let mut exact = Joints::default();
+        for (joint, axis) in exact.iter_mut().zip(&self.machine.axes) {
             if axis.joint.rotary {
                 *joint = -axis.zero;
             }
         }
         let solver = &self.state.solver;
-        let turns = solver.chain().turns(&zero);
-        if solver.place(Vector3::zeros(), &mut zero, &turns).is_err() {
+        let turns = solver.chain().turns(&exact);
+        if solver.place(Vector3::zeros(), &mut exact, &turns).is_err() {
             let message = format!(
                 "the linear axes of {} do not bring the tip onto the part origin, so nothing is known of its work offset",
                 self.machine.name
             );
             return Err(self.refuse("nc-work-offset", message));
         }
+        let mut zero = self.counted_from(exact);
         if let Some(work) = self.work.and_then(|work| self.offsets.work.get(work)) {
-            for (zero, shift) in zero.iter_mut().zip(work.shift) {
+            for ((zero, exact), shift) in zero.iter_mut().zip(&mut exact).zip(work.shift) {
                 *zero += shift;
+                *exact += shift;
             }
         }
         self.zero = zero;
+        self.origin = exact;
         self.frames_changed();
         Ok(())
     }
@@ -322,12 +327,12 @@ impl Control {
             return Frame::default();
         };
         let chain = self.state.solver.chain();
-        let turns = chain.turns(&self.zero);
+        let turns = chain.turns(&self.origin);
         let rotary = self.machine.axes.iter().zip(shift.shift);
         let upright = rotary
             .clone()
             .all(|(axis, shift)| !axis.joint.rotary || shift == 0.0);
-        let origin = chain.forward(&self.zero).tip;
+        let origin = chain.forward(&self.origin).tip;
         if upright {
             return Frame::shifted(origin);
         }

@@ -31,6 +31,8 @@ pub(super) struct Control {
     pub machine: Arc<Machine>,
     /// Its heads.
     pub heads: Vec<Head>,
+    /// The head, by its place among them, that a remark asks the operator to swap in at the next stop.
+    pub head_by_hand: Option<usize>,
     /// Which word is which axis.
     pub axes: Axes,
     /// What is modal in its programs.
@@ -67,6 +69,8 @@ pub(super) struct Control {
     pub hole: bool,
     /// Axis values that the words of the axes count from: mm and radians, by place in the chain.
     pub zero: Joints,
+    /// Axis values at the origin of the work offset, the tip of the tool there: mm and radians, by place in the chain.
+    pub origin: Joints,
     /// The frame of the words in the part frame, where they are the tip.
     pub to_part: Frame,
     /// The frame of the words in that of the work offset.

@@ -1,9 +1,12 @@
 //! Tools and their lengths, as the control's tables have them.
 
+use post_machine::description::LengthAxis;
 use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Joints;
 
-use super::state::Control;
+use super::state::{ArcPlane, Control};
 use crate::Told;
+use crate::lexicon::Language;
 
 /// What the control knows of the tool and its length.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +23,9 @@ pub(super) struct Tools {
     pub longer: f64,
     /// The length that a block has named: G43.1, mm.
     pub stated: Option<f64>,
+    /// The plane across the tool as the length came on: a control with edges, or with a tool call that names the axis, puts
+    /// the length along its third axis.
+    pub across: ArcPlane,
     /// Registers and tools of which was told that their length is taken for granted.
     told: Vec<u32>,
 }
@@ -38,7 +44,11 @@ impl Control {
         if self.tools.by_tool && self.tools.length_on {
             return self.length_changed();
         }
-        Ok(())
+        match self.machine.length_axis {
+            // The work offset is that of the tool, whether its length is called or not.
+            LengthAxis::None => self.solver_changed(),
+            LengthAxis::Dialect | LengthAxis::Said(_) => Ok(()),
+        }
     }
 
     /// The length in force may be another: finds it, and what the words count from with it.
@@ -61,14 +71,6 @@ impl Control {
         if let Some(length) = self.tools.stated {
             return Ok(length);
         }
-        let find = |list: &[(u32, f64)], wanted: Option<u32>| {
-            let mut entries = list.iter();
-            wanted.and_then(|wanted| {
-                entries
-                    .find(|(number, _)| *number == wanted)
-                    .map(|(_, length)| *length)
-            })
-        };
         let register = if self.tools.by_tool {
             None
         } else {
@@ -82,11 +84,12 @@ impl Control {
         } else {
             register
         };
-        let known = find(&self.offsets.lengths, register)
-            .or_else(|| find(&self.offsets.tools, tool))
-            .or(self.offsets.length)
-            .or_else(|| find(&self.machine.tools, tool));
-        if let Some(length) = known {
+        // A register that holds 0 says nothing of how long the tool is.
+        let registers: &[(u32, f64)] = match self.machine.length_axis {
+            LengthAxis::None => &[],
+            LengthAxis::Dialect | LengthAxis::Said(_) => &self.offsets.lengths,
+        };
+        if let Some(length) = find(registers, register).or_else(|| self.length_of(tool)) {
             return Ok(length);
         }
         let what = match (register, tool) {
@@ -117,4 +120,59 @@ impl Control {
         }
         Ok(0.0)
     }
+
+    /// How long a tool is, as far as that is said.
+    fn length_of(&self, tool: Option<u32>) -> Option<f64> {
+        find(&self.offsets.tools, tool)
+            .or(self.offsets.length)
+            .or_else(|| find(&self.machine.tools, tool))
+    }
+
+    /// Where the axes stand that axis positions count from, without the work offset: `exact` with the tip of the tool on
+    /// the part origin, but that the control has put the length along one axis, wherever the tool lies.
+    pub(super) fn counted_from(&self, exact: Joints) -> Joints {
+        let [.., z] = self.axes.cartesian;
+        let place = match (self.machine.length_axis, self.lexicon.language()) {
+            (LengthAxis::None, _) => {
+                // Measured with the tool in the spindle, whether its length is called or not.
+                let length = self.length_of(self.state.tool);
+                let measured = length.and_then(|length| self.machine.zero_of(length));
+                return measured.unwrap_or(exact);
+            }
+            (LengthAxis::Said(place), _) => Some(place),
+            (LengthAxis::Dialect, Language::Names | Language::Conversational) => {
+                self.axes.cartesian[self.tools.across.coordinates()[2]]
+            }
+            (LengthAxis::Dialect, _) => z,
+        };
+        // Where nothing moves along it, or nothing is put on, there is nothing to shift.
+        let (Some(place), true) = (place, self.state.length != 0.0) else {
+            return exact;
+        };
+        let direction = |place: usize| self.machine.axes[place].joint.direction;
+        let beside = |along: usize, place: usize| {
+            along == place || direction(along).dot(&direction(place)) > 1.0 - 1e-6
+        };
+        // A tool that was measured leans a little, and so does what was measured with it.
+        if self
+            .machine
+            .lies_along()
+            .is_some_and(|(along, _)| beside(along, place))
+        {
+            return exact;
+        }
+        let Some(mut zero) = self.machine.zero_of(0.0) else {
+            return exact;
+        };
+        zero[place] += self.state.length;
+        zero
+    }
+}
+
+/// The value of `wanted` in a table.
+fn find(list: &[(u32, f64)], wanted: Option<u32>) -> Option<f64> {
+    let mut entries = list.iter();
+    entries
+        .find(|(number, _)| Some(*number) == wanted)
+        .map(|(_, length)| *length)
 }

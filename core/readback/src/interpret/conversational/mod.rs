@@ -74,7 +74,7 @@ pub(super) fn run(control: &mut Control, block: &NcBlock, words: &mut Gathered) 
         }
         "BLK FORM" => Ok(()),
         "STOP" => {
-            control.tell(Told::Stop);
+            control.stop(Told::Stop)?;
             path::alone(control, &said, words)
         }
         // Words of modes alone: `R0 FMAX`, `FMAX M3`.
@@ -252,8 +252,8 @@ fn afterwards(control: &mut Control, functions: Functions, asked: &Asked) -> Ans
         control.coolant_off();
     }
     match asked.stop {
-        Some(Meaning::Stop) => control.tell(Told::Stop),
-        Some(Meaning::OptionalStop) => control.tell(Told::OptionalStop),
+        Some(Meaning::Stop) => control.stop(Told::Stop)?,
+        Some(Meaning::OptionalStop) => control.stop(Told::OptionalStop)?,
         Some(_) => control.end(),
         None => {}
     }

@@ -223,6 +223,10 @@ fn arc(
     mut centre: Vector3<f64>,
     clockwise: bool,
 ) -> Answer<go::Path> {
+    if control.tools.across != ArcPlane::Xy {
+        let message = "an arc with the tool along X or Y (TOOL CALL) is not run";
+        return Err(control.refuse("nc-arc", message));
+    }
     let [first, second, third] = plane.coordinates();
     let flat = |point: Vector3<f64>| [point[first], point[second]];
     let sweep = control.sweep([flat(from), flat(to), flat(centre)], clockwise)?;

@@ -3,14 +3,11 @@
 use super::{Answer, Said, feed_unit};
 use crate::Told;
 use crate::interpret::gathered::Gathered;
-use crate::interpret::state::Control;
+use crate::interpret::state::{ArcPlane, Control};
 
 /// `TOOL CALL 5 Z S8000 F1200 DL+0.1`; without a tool it changes the speed alone.
 pub(super) fn call(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
     said.only(control, &["X", "Y", "Z"], &["DL", "DR", "DR2"])?;
-    if said.has("X") || said.has("Y") {
-        return Err(control.refuse("nc-tool", "a tool axis other than Z is not run"));
-    }
     if let Some(speed) = words.take(b'S') {
         control.modal.speed = speed;
         control.speed_changed();
@@ -43,6 +40,11 @@ pub(super) fn call(control: &mut Control, said: &Said<'_>, words: &mut Gathered)
     control.tools.by_tool = true;
     control.tools.length_on = true;
     control.tools.longer = longer;
+    control.tools.across = match (said.has("X"), said.has("Y")) {
+        (true, _) => ArcPlane::Yz,
+        (_, true) => ArcPlane::Zx,
+        _ => ArcPlane::Xy,
+    };
     control.length_changed()?;
     control.left_over(words)
 }

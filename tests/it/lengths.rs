@@ -1,0 +1,267 @@
+//! The axis along which the control puts a tool's length is that along which the tool lies, or there is no program.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::{Run, command, run};
+
+/// A cut with the tool along `axis`, from 50 mm above.
+fn cut(axis: &str) -> String {
+    format!(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/20,10,50,{axis}\nFEDRAT/600,MMPM\n\
+         GOTO/20,10,15,{axis}\nGOTO/30,10,15,{axis}\nRAPID\nGOTO/20,10,50,{axis}\nEND\nFINI\n"
+    )
+}
+
+/// A machine whose tool lies along Y, on a control.
+fn lying(dialect: &str, more: &str) -> String {
+    format!(
+        "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n[tool]\naxis = [0, 1, 0]\ngauge = [0, 100, 0]\n{more}\n\
+         [control]\ndialect = \"{dialect}\"\ntcp = \"post\"\n"
+    )
+}
+
+/// Posts `cl` on `machine`, and reads the program against it.
+fn both(folder: &Path, machine: &str, cl: &str, arguments: &[&str]) -> (Run, String, Option<Run>) {
+    fs::write(folder.join("m.toml"), machine).unwrap();
+    fs::write(folder.join("part.cls"), cl).unwrap();
+    let program = folder.join("part.nc");
+    let _ = fs::remove_file(&program);
+    let mut post = command();
+    post.current_dir(folder)
+        .args(["-q", "-m", "m.toml", "-o", "part.nc", "part.cls"])
+        .args(arguments);
+    let made = run(&mut post, b"");
+    let Ok(text) = fs::read_to_string(&program) else {
+        return (made, String::new(), None);
+    };
+    let verified = read_back(folder, arguments);
+    (made, text, Some(verified))
+}
+
+/// `part.nc` read against the job.
+fn read_back(folder: &Path, arguments: &[&str]) -> Run {
+    let job = ["--machine", "m.toml", "--against", "part.cls"];
+    let mut verify = command();
+    verify.current_dir(folder).args(["verify", "part.nc"]);
+    run(verify.args(job).args(arguments), b"")
+}
+
+/// The program, which `verify` finds good.
+#[track_caller]
+fn good(machine: &str, cl: &str, arguments: &[&str]) -> (Run, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let (made, text, verified) = both(folder.path(), machine, cl, arguments);
+    assert_eq!(made.code, 0, "{}", made.err);
+    let verified = verified.unwrap();
+    assert_eq!(verified.code, 0, "{text}\n{}", verified.err);
+    (made, text)
+}
+
+/// What is said of a job that has no program.
+#[track_caller]
+fn refused(machine: &str, cl: &str, arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let (made, text, _) = both(folder.path(), machine, cl, arguments);
+    assert_eq!(made.code, 1, "{text}");
+    assert!(made.err.contains("error[length-axis]"), "{}", made.err);
+    made.err
+}
+
+const LONG: [&str; 2] = ["--tool-length", "100"];
+
+#[test]
+fn controls_that_turn_the_plane_put_the_length_along_the_tool() {
+    let (_, siemens) = good(&lying("siemens", ""), &cut("0,1,0"), &LONG);
+    let plane = siemens.find("G18\n").expect(&siemens);
+    assert!(siemens.find(" D1\n").unwrap() > plane, "{siemens}");
+    let (_, tnc) = good(&lying("heidenhain", ""), &cut("0,1,0"), &LONG);
+    assert!(tnc.contains("TOOL CALL 1 Y S3000"), "{tnc}");
+    // Nothing is put on: it is in the work offset.
+    good(&lying("grbl", ""), &cut("0,1,0"), &LONG);
+}
+
+#[test]
+fn others_have_no_program_for_a_tool_that_lies_down_unless_the_machine_file_answers_for_it() {
+    for dialect in ["fanuc", "haas", "linuxcnc", "mazak", "mitsubishi", "hurco"] {
+        // Whether the length is known or not: the control has one.
+        for length in [&LONG[..], &[]] {
+            let said = refused(&lying(dialect, ""), &cut("0,1,0"), length);
+            assert!(
+                said.contains("lies along Y where the rotary axes show 0"),
+                "{said}"
+            );
+            assert!(said.contains("[tool] length_axis = \"Y\""), "{said}");
+        }
+        let (made, text) = good(&lying(dialect, "length_axis = \"Y\""), &cut("0,1,0"), &LONG);
+        assert!(text.contains("G43 H1 Y10."), "{text}");
+        assert!(!made.err.contains("length-axis"), "{}", made.err);
+    }
+    let wrong = refused_key("length_axis = \"Q\"");
+    assert!(
+        wrong.contains("the machine has no linear axis Q"),
+        "{wrong}"
+    );
+}
+
+fn refused_key(more: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let (made, ..) = both(folder.path(), &lying("fanuc", more), &cut("0,1,0"), &LONG);
+    assert_eq!(made.code, 1);
+    made.err
+}
+
+/// The words count with the length along Z, and G43 would stand in a block of X.
+#[test]
+fn a_tool_that_is_drawn_at_another_angle_than_zero_is_refused() {
+    let machine =
+        "extends = \"mill-turn\"\n[workpiece]\nmount = [100, 0, 0]\n[control]\ntcp = \"post\"\n";
+    let said = refused(machine, &cut("0,1,0"), &LONG);
+    assert!(said.contains("in a block of X"), "{said}");
+}
+
+#[test]
+fn a_tool_that_leans_is_measured_in_the_spindle() {
+    let machine = |more: &str| {
+        format!(
+            "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n[tool]\naxis = [0.6, 0, 0.8]\n{more}\n[control]\ntcp = \"post\"\n"
+        )
+    };
+    refused(&machine(""), &cut("0.6,0,0.8"), &LONG);
+    let none = machine("length_axis = \"none\"");
+    let (made, _) = good(&none, &cut("0.6,0,0.8"), &LONG);
+    assert!(
+        made.err
+            .contains("warning[length-axis]: the control must have 0"),
+        "{}",
+        made.err
+    );
+    // One work offset is measured with one tool.
+    let two = cut("0.6,0,0.8").replace("END\n", "LOADTL/2\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/20,10,50\nFEDRAT/600,MMPM\nGOTO/20,20,15\nEND\n");
+    let said = refused(&format!("{none}[tools]\n1 = 100\n2 = 120\n"), &two, &[]);
+    assert!(
+        said.contains("a tool of 120 mm, and one of 100 mm before"),
+        "{said}"
+    );
+    let own = two.replace("LOADTL/2\n", "SET/OFSETL,2\nLOADTL/2\n");
+    let folder = tempfile::tempdir().unwrap();
+    let (made, ..) = both(
+        folder.path(),
+        &format!("{none}[tools]\n1 = 100\n2 = 120\n"),
+        &own,
+        &[],
+    );
+    assert_eq!(made.code, 0, "{}", made.err);
+}
+
+/// A cut with the straight head, and one with the other, whose tool has another length.
+fn swapped(head: &str) -> String {
+    format!(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/20,10,50,0,0,1\nFEDRAT/600,MMPM\n\
+         GOTO/20,10,15\nRAPID\nGOTO/20,10,50\nHEAD/{head}\nLOADTL/2\nSPINDL/RPM,3000,CLW\nRAPID\n\
+         GOTO/120,10,10,1,0,0\nFEDRAT/600,MMPM\nGOTO/30,10,10\nRAPID\nGOTO/120,10,10\nEND\nFINI\n"
+    )
+}
+
+const HEADS: &str = "extends = \"head-change\"\n[tools]\n1 = 100\n2 = 200\n";
+
+/// The tool comes behind its head, and its length from the machine file.
+#[test]
+fn a_head_whose_tool_lies_across_the_compensated_axis_answers_for_it_or_is_refused() {
+    let side = "[head.SIDE]\nword = \"M63\"\n[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\n";
+    let said = refused(&format!("{HEADS}{side}"), &swapped("SIDE"), &[]);
+    assert!(said.contains("the tool of head SIDE lies along"), "{said}");
+    good(
+        &format!("{HEADS}{side}length_axis = \"none\"\n"),
+        &swapped("SIDE"),
+        &[],
+    );
+    let (made, text) = good(HEADS, &swapped("ANGLE"), &[]);
+    assert!(
+        made.err.contains("the words count with 200 mm of it"),
+        "{}",
+        made.err
+    );
+    assert!(text.contains("M62"), "{text}");
+    // The control has one length of a tool.
+    let same = swapped("ANGLE").replace("LOADTL/2\n", "");
+    let said = refused(HEADS, &same, &[]);
+    assert!(
+        said.contains("the length of tool 1 with one head"),
+        "{said}"
+    );
+}
+
+/// The stop at which the operator swaps it is none that the CL file asks for.
+#[test]
+fn a_head_that_the_operator_swaps_is_read_back() {
+    let side =
+        "[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\nlength_axis = \"none\"\n";
+    let (_, text) = good(&format!("{HEADS}{side}"), &swapped("SIDE"), &[]);
+    assert!(text.contains("(CHANGE TO HEAD SIDE)\nM0\n"), "{text}");
+}
+
+/// Two tools; between the second and its speed the next is made ready.
+const TWO: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,15000,CLW\nRAPID\nGOTO/20,10,50\nFEDRAT/600,MMPM\nGOTO/20,10,15\nRAPID\n\
+    GOTO/20,10,50\nLOADTL/2\nSELECT/TOOL,3\nSPINDL/RPM,800,CLW\nRAPID\nGOTO/-20,10,50\nFEDRAT/600,MMPM\nGOTO/-20,10,15\n\
+    RAPID\nGOTO/-20,10,50\nEND\nFINI\n";
+
+#[test]
+fn a_tool_of_its_own_program_begins_with_its_own_speed() {
+    for dialect in [
+        "fanuc",
+        "siemens",
+        "heidenhain",
+        "haas",
+        "linuxcnc",
+        "mazak",
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let machine = format!(
+            "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n[control]\ndialect = \"{dialect}\"\n"
+        );
+        fs::write(folder.path().join("m.toml"), machine).unwrap();
+        fs::write(folder.path().join("part.cls"), TWO).unwrap();
+        let mut split = command();
+        split.current_dir(folder.path()).args([
+            "-q",
+            "-m",
+            "m.toml",
+            "--split",
+            "tools",
+            "--tool-length",
+            "100",
+            "-o",
+            "part.nc",
+            "part.cls",
+        ]);
+        let made = run(&mut split, b"");
+        assert_eq!(made.code, 0, "{}", made.err);
+        let second = fs::read_dir(folder.path()).unwrap().find_map(|entry| {
+            let text = fs::read_to_string(entry.unwrap().path()).unwrap();
+            (text.contains("S800") && !text.contains("SPINDL")).then_some(text)
+        });
+        let second = second.unwrap();
+        assert!(!second.contains("S15000"), "{dialect}: {second}");
+    }
+}
+
+#[test]
+fn a_spindle_with_the_speed_of_the_tool_before_is_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n";
+    let (made, text, verified) = both(folder.path(), machine, TWO, &LONG);
+    assert_eq!((made.code, verified.unwrap().code), (0, 0), "{}", made.err);
+    let wrong = text.replace("S800 M3\n", "S15000 M3\nS800 M3\n");
+    assert_ne!(wrong, text);
+    fs::write(folder.path().join("part.nc"), wrong).unwrap();
+    let found = read_back(folder.path(), &LONG);
+    assert_eq!(found.code, 1);
+    assert!(
+        found.err.contains(
+            "error[spindle]: the spindle turns clockwise at 15000/min with this tool before it cuts"
+        ),
+        "{}",
+        found.err
+    );
+}

@@ -123,7 +123,8 @@ impl Recorder {
 
 impl DialectSession for Recorder {
     fn capabilities(&self) -> Capabilities {
-        self.capabilities
+        // Its random machines have tools that lie along no axis.
+        self.capabilities | Capabilities::LENGTH_IN_OFFSET
     }
 
     fn format(&self) -> &Format {

@@ -27,7 +27,7 @@ class Options(TypedDict, total=False):
 
     units: Literal["mm", "inch"] | None
     msys: Literal["keep", "apply"] | None
-    unknown: Literal["error", "warn", "pass"] | None
+    unknown: Literal["error", "known", "warn", "pass"] | None
     allow: Sequence[str] | None
     tool: int | None
     tool_from_cutter: bool

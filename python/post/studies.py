@@ -102,7 +102,7 @@ def study(
     timings: bool = False,
     units: Literal["mm", "inch"] | None = None,
     msys: Literal["keep", "apply"] | None = None,
-    unknown: Literal["error", "warn", "pass"] | None = None,
+    unknown: Literal["error", "known", "warn", "pass"] | None = None,
     allow: Iterable[str] = (),
     tool: int | None = None,
     tool_from_cutter: bool = False,

@@ -26,6 +26,7 @@ pub enum TcpWord {
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum UnknownWord {
     Error,
+    Known,
     Warn,
     Pass,
 }
@@ -78,6 +79,7 @@ impl From<UnknownWord> for Unknown {
     fn from(word: UnknownWord) -> Self {
         match word {
             UnknownWord::Error => Self::Error,
+            UnknownWord::Known => Self::Known,
             UnknownWord::Warn => Self::Warn,
             UnknownWord::Pass => Self::Pass,
         }

@@ -45,20 +45,22 @@ pub struct ReadingArguments {
     )]
     pub msys: Msys,
 
-    /// What to do with words that post does not know: refuse the file, leave them out and say so, or write
-    /// them as comments.
+    /// What to do with words that have no effect: refuse the file for any (`error`), for those that post does not know
+    /// (`known`), leave all out and say so (`warn`), or write them as comments (`pass`). What may be a move is refused
+    /// whatever is said here.
     #[arg(
         long,
         value_parser = word::<UnknownWord, Unknown>(),
-        default_value = "warn",
+        default_value = "known",
         value_name = "WHAT",
         help_heading = "Reading"
     )]
     pub unknown: Unknown,
 
-    /// Takes upon yourself what a word would have done, and leaves it out: a word that changes where or whether metal
-    /// is cut (`OFSETL`), `INSERT` (codes become remarks), `CUTTER` (several cutters are one tool), `FINI` (the file
-    /// is whole). Repeatable.
+    /// Takes upon yourself what a word would have done, and leaves it out: a word that post does not know, or that
+    /// changes where or whether metal is cut (`OFSETL`), `INSERT` (codes become remarks), `CUTTER` (several cutters are
+    /// one tool), `FINI` (the file is whole), `DEEP` and the other kinds of cycles in pecks (without any, in one go),
+    /// `MOVARC` (half turns go right-handed about their axis). What may be a move is never left out. Repeatable.
     #[arg(long, value_name = "WORD", value_parser = cl_word, help_heading = "Reading")]
     pub allow: Vec<String>,
 

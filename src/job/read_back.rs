@@ -7,7 +7,7 @@ use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 use post_plugin::{Meaning, VocabularyWord};
-use post_posting::program::ToldSpindle;
+use post_posting::program::{ToldSpindle, Unknown};
 use post_readback::Offsets;
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
 use post_readback::course::{Course, Window};
@@ -119,6 +119,7 @@ pub fn course_settings(arguments: &JobArguments, machine: &Machine, file: &str) 
             _ => None,
         },
         allowed: arguments.reading.allow.clone(),
+        unknown_left_out: matches!(arguments.reading.unknown, Unknown::Warn | Unknown::Pass),
         ..Settings::of(machine, file)
     }
 }

@@ -356,6 +356,11 @@ pub const CODES: &[CodeGroup] = &[
                 "`--set control.insert=literal` writes it as a line; `--allow INSERT` as a remark.",
             ),
             code(
+                "mcs",
+                "`MCS` is a frame of its own, and nobody here knows whether points are meant in it.",
+                "Tool axes with the points (`MULTAX/ON`), in the frame of the part.",
+            ),
+            code(
                 "msys",
                 "The axes of `MSYS` are no frame.",
                 "Without `--msys apply` it is not needed.",
@@ -368,7 +373,7 @@ pub const CODES: &[CodeGroup] = &[
             code(
                 "refused-word",
                 "A word changes where or whether metal is cut, and post does not know how.",
-                "Its lines in `[cl.words]` of the machine file, or `--allow WORD`, which leaves it out.",
+                "Its lines in `[cl.words]` of the machine file, or `--allow WORD`, which leaves it out: but for a word that moves the tool.",
             ),
             code(
                 "rotabl",
@@ -411,9 +416,14 @@ pub const CODES: &[CodeGroup] = &[
                 "`--units mm` or `--units inch`.",
             ),
             code(
+                "unknown-path",
+                "A word that post does not know stands between moves with three numbers or more: it may be a move itself, and is never left out.",
+                "GOTO and CIRCLE from the CAM system, or its lines in `[cl.words]` of the machine file.",
+            ),
+            code(
                 "unknown-word",
                 "A word that post does not know.",
-                "`--unknown error`, `warn` or `pass`; `post words part.cls` lists them.",
+                "`--allow WORD` for one; `--unknown error`, `known`, `warn` or `pass` for all; `post words part.cls` lists them.",
             ),
             code(
                 "word-rule",

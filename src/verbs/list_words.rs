@@ -16,8 +16,8 @@ use crate::terminal::print;
 ///
 /// used: it has its effect on the program; passed on: its text goes into the program; ignored: it says
 /// nothing to a machine; refused: it changes where or whether metal is cut, and post does not know how: [cl.words] in
-/// the machine file gives its lines, --allow leaves it out; unknown: left out with a warning, unless --unknown says
-/// otherwise.
+/// the machine file gives its lines, --allow leaves it out unless it moves the tool; unknown: post does without those
+/// that `post words` has, with a warning, and refuses a file with others, unless --allow or --unknown says otherwise.
 #[derive(Debug, Args)]
 pub struct WordsArguments {
     /// The CL file, `-` for standard input.

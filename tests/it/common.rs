@@ -71,6 +71,8 @@ pub const CASES: &[Case] = &[
         "plate.ncl",
         &["--tcp", "post", "--tool-length", "120"],
     ),
+    case("vmc", "lever.apt", &[]),
+    case("vmc", "link.aptsource", &["--units", "mm"]),
     case("vmc", "plate.ncl", &[]),
 ];
 

@@ -1,6 +1,9 @@
 //! What reading back takes a CL file to mean, against what posting does: two readings of the same records that share no
 //! code must agree, point by point, feed by feed and word by word.
 
+mod renamed;
+mod writers;
+
 use std::fs;
 use std::io::Cursor;
 use std::path::PathBuf;
@@ -28,6 +31,7 @@ struct How {
     from_cutter: bool,
     feed: Option<f64>,
     spindle: Option<f64>,
+    allowed: Vec<String>,
 }
 
 /// Where the tool goes or what is said, so that both sides can be held against each other.
@@ -75,6 +79,7 @@ fn posted(text: &[u8], how: &How) -> (Vec<Beat>, Vec<String>) {
         feed: how.feed,
         spindle: how.spindle.map_or(ToldSpindle::Still, ToldSpindle::On),
         chord_tolerance: 0.0005,
+        allowed: how.allowed.clone(),
         ..Reading::default()
     });
     let mut reader = Reader::new(text);
@@ -234,6 +239,7 @@ fn settings(how: &How) -> Settings {
         tool_from_cutter: how.from_cutter,
         feed: how.feed,
         spindle: how.spindle,
+        allowed: how.allowed.clone(),
         ..Settings::default()
     }
 }
@@ -417,20 +423,27 @@ fn same(ours: &Beat, theirs: &Beat) -> bool {
 
 #[test]
 fn two_readings_of_every_file_agree() {
+    // One of the files goes in pecks and says none.
+    let allowed = vec!["DEEP".to_owned()];
     let hows = [
-        How::default(),
+        How {
+            allowed: allowed.clone(),
+            ..How::default()
+        },
         How {
             units: Some(Units::Inch),
             apply_msys: true,
             tool: Some(7),
             feed: Some(321.0),
             spindle: Some(4321.0),
+            allowed: allowed.clone(),
             ..How::default()
         },
         How {
             turn: 0.3,
             apply_msys: true,
             from_cutter: true,
+            allowed,
             ..How::default()
         },
     ];
@@ -587,6 +600,7 @@ fn counts_and_extents_are_those_of_the_files() {
         let text = fs::read(folder.join(name)).unwrap();
         let settings = Settings {
             file: name.to_owned(),
+            allowed: vec!["DEEP".to_owned()],
             ..Settings::default()
         };
         let mut course = ClCourse::new(settings, Cursor::new(&text));
@@ -685,14 +699,20 @@ fn written_anew(text: &[u8], how: &How) -> String {
 
 #[test]
 fn what_is_written_from_a_course_reads_back_as_it() {
+    // One of the files goes in pecks and says none.
+    let allowed = vec!["DEEP".to_owned()];
     let hows = [
-        How::default(),
+        How {
+            allowed: allowed.clone(),
+            ..How::default()
+        },
         How {
             units: Some(Units::Inch),
             apply_msys: true,
             tool: Some(7),
             turn: 0.3,
             feed: Some(321.0),
+            allowed,
             ..How::default()
         },
     ];

@@ -97,7 +97,9 @@ fn an_unknown_word_is_refused_told_or_passed_on() {
     let told = ["WIGGLE", ":4:1"];
     assert_contains(&refused.err, &["error[unknown-word]", "--unknown=warn"]);
     assert_contains(&refused.err, &told);
-    let warned = post_text(&["-q", "-m", "ac-trunnion"], &text);
+    let strange = post_text(&["-q", "-m", "ac-trunnion"], &text);
+    assert_eq!((strange.code, strange.out.as_str()), (1, ""));
+    let warned = post_text(&["-q", "-m", "ac-trunnion", "--unknown=warn"], &text);
     assert_eq!((warned.code, &warned.out), (0, &known.out));
     assert_contains(&warned.err, &["warning[unknown-word]", "left out"]);
     assert_contains(&warned.err, &told);

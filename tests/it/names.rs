@@ -107,7 +107,7 @@ fn misspelt_parameters_and_axes_are_told_with_those_that_there_are() {
 #[test]
 fn words_that_nobody_knows_are_told_with_the_one_that_is_near() {
     let run = posted(&["-m", "vmc"], "GOTTO/0,0,5\nFROBNICATE/1\n");
-    assert_eq!(run.code, 0, "{}", run.err);
+    assert_eq!(run.code, 1, "{}", run.err);
     assert!(run.err.contains("did you mean GOTO?"), "{}", run.err);
     assert_eq!(run.err.matches("did you mean").count(), 1, "{}", run.err);
 

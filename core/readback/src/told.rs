@@ -101,6 +101,8 @@ pub struct CycleCall {
     pub clearance: f64,
     /// Peck, mm; zero for none.
     pub peck: f64,
+    /// The pecks behind the first, mm; zero where they are as that or grow less.
+    pub later_peck: f64,
     /// Dwell at the bottom, seconds.
     pub dwell: f64,
     /// Feed, mm/min; of a thread mm a revolution where `per_revolution` is set.

@@ -138,8 +138,44 @@ pub fn parse_record(text: &str) -> Result<Statement, SyntaxFault> {
             let read = line(text, statement).and_then(|line| statements::directive(&line));
             Ok(read.unwrap_or_else(|_| Statement::Remark(remark.trim().to_owned())))
         }
+        Rule::drive => statements::statement(&driven(text, inner)),
         _ => statements::statement(&line(text, inner)?),
     }
+}
+
+/// A line that moves the tool along a curve, with all that follows its first word as one item.
+fn driven<'t>(text: &'t str, drive: Pair<'t, Rule>) -> Line<'t> {
+    let word = drive.into_inner().next().map_or(0..0, |word| {
+        let span = word.as_span();
+        span.start()..span.end()
+    });
+    let known = vocabulary::find(&text[word.clone()]);
+    let behind = text[word.end..].trim();
+    Line {
+        text,
+        word: match known {
+            Some((spelling, _)) => Cow::Borrowed(spelling),
+            None => Cow::Owned(excerpt(&text[word.clone()], LONGEST_WORD).to_ascii_uppercase()),
+        },
+        known: known.map(|(_, word)| word),
+        items: vec![Item {
+            text: behind,
+            start: text.len() - text[word.end..].trim_start().len(),
+            value: None,
+            comma_missing: false,
+        }],
+        word_span: word,
+        slash: true,
+    }
+}
+
+/// The value of a text that is a number as a whole, and one that a double holds.
+pub(super) fn number_of(text: &str) -> Option<f64> {
+    let digits = text.trim_start_matches(['+', '-', '.']);
+    if !digits.starts_with(|first: char| first.is_ascii_digit()) {
+        return None;
+    }
+    text.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
 /// A byte that no text holds. Tabs are blanks.

@@ -8,10 +8,12 @@
 //! - in a free text (`PPRINT`, `INSERT`, a comment, …) both are text: a remark that happens to end in `$`
 //!   must not swallow the move after it.
 
+use super::foreign;
 use super::line::{is_free_text, parse_record};
 use super::record::Record;
 use super::scan::{self, Plain};
 use crate::fault::{ReadError, SyntaxFault};
+use crate::text::excerpt;
 use memchr::{memchr_iter, memchr2};
 use std::borrow::Cow;
 use std::io::{self, ErrorKind, Read};
@@ -22,6 +24,9 @@ const CHUNK: usize = 256 * 1024;
 
 /// Longest record, in bytes of the file. Anything longer is not a cutter-location file.
 const LONGEST: usize = 1024 * 1024;
+
+/// So much of the beginning says what a file is.
+const HEAD: usize = 4096;
 
 /// UTF-8 for U+FEFF, which some editors put before a text.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
@@ -49,6 +54,8 @@ pub struct Reader<R> {
     parted: bool,
     /// What was taken last, blanks aside, is no line end.
     unended: bool,
+    /// The beginning of the file was looked at.
+    begun: bool,
 }
 
 /// A physical line; offsets from `start`.
@@ -74,6 +81,7 @@ impl<R: Read> Reader<R> {
             line: 1,
             parted: false,
             unended: false,
+            begun: false,
         }
     }
 
@@ -92,6 +100,9 @@ impl<R: Read> Reader<R> {
     ///
     /// After a [`ReadError::Syntax`] the next call goes on with the next line.
     pub fn next_record(&mut self) -> Result<Option<Record<'_>>, ReadError> {
+        if !self.begun {
+            self.begin()?;
+        }
         if !self.parted
             && let Some((plain, next)) = self.plain()
         {
@@ -128,6 +139,31 @@ impl<R: Read> Reader<R> {
             }
         }
         Ok(None)
+    }
+
+    /// Looks at the beginning: of a file that is none of ours all is passed over.
+    #[cold]
+    fn begin(&mut self) -> Result<(), ReadError> {
+        self.begun = true;
+        if self.pending().is_empty() {
+            self.fill()?;
+        }
+        let head = &self.pending()[..HEAD.min(self.end - self.start)];
+        let Some(kind) = foreign::kind(head) else {
+            return Ok(());
+        };
+        let head = head.trim_ascii_start();
+        let first = head.split(|byte| matches!(byte, b'\n' | b'\r')).next();
+        let text = decode(first.unwrap_or_default());
+        let text = excerpt(&text, SHOWN).into_owned();
+        let message = format!("this is {kind}, no cutter-location file");
+        let fault = SyntaxFault::new(&text, 0..text.len(), message);
+        self.start = self.end;
+        self.ended = true;
+        self.unended = false;
+        let help =
+            "let the CAM system write a CL file: APT, CLSF or NCL, one record a line (GOTO/1,2,3)";
+        Err(fault.help(help).into())
     }
 
     /// The plain `GOTO` that begins here, and where the next line begins; `None` if there is none, or if more of the

@@ -88,6 +88,15 @@ pub enum Statement {
     Units(Units),
     /// `MULTAX/ON`, `MULTAX/OFF`; plain `MULTAX` is on.
     Multax(bool),
+    /// `MODE/MILL`: the tool turns.
+    Milling,
+    /// `MCS/`: the frame of an operation (CAMplete).
+    Mcs {
+        /// Its X, Y and Z directions.
+        axes: [Direction; 3],
+        /// Its origin.
+        origin: Point,
+    },
     /// `MSYS/`: the frame of the operation (NX).
     Msys {
         /// Its origin.
@@ -101,6 +110,15 @@ pub enum Statement {
     Csys([f64; 12]),
     /// `CIRCLE/`: an arc that ends at the next `GOTO`.
     Circle(Circle),
+    /// `MOVARC/`: an arc by its angle that ends at the next `GOTO`.
+    ArcMove(ArcMove),
+    /// `INDIRV/tx,ty,tz`: where the tool sets out along the next curve.
+    SetOut(Direction),
+    /// `AUTOPS` (none) and `PSIS/(PLANE/…)`: normal of the plane in which the tip stays along the next curve; of `AUTOPS`
+    /// it is Z.
+    PartSurface(Option<Direction>),
+    /// `TLON,GOFWD/…`: the tool goes along an arc to its end.
+    AlongArc(AlongArc),
     /// `NURBS/`: a spline begins; its knots and control points follow.
     Nurbs,
     /// `KNOT/`.
@@ -149,6 +167,8 @@ pub enum Statement {
     EndOfPath,
     /// `PARTNO text`.
     PartName(String),
+    /// `TPRINT/text`: name of the tool that is loaded next (CATIA).
+    ToolName(String),
     /// `PPRINT text`: a remark for the operator.
     Print(String),
     /// `INSERT text`: a line for the NC program, letter for letter.
@@ -188,9 +208,16 @@ impl Statement {
             Self::Cutter(_) => "CUTTER",
             Self::Units(_) => "UNITS",
             Self::Multax(_) => "MULTAX",
+            Self::Milling => "MODE",
+            Self::Mcs { .. } => "MCS",
             Self::Msys { .. } => "MSYS",
             Self::Csys(_) => "CSYS",
             Self::Circle(_) => "CIRCLE",
+            Self::ArcMove(_) => "MOVARC",
+            Self::SetOut(_) => "INDIRV",
+            Self::PartSurface(None) => "AUTOPS",
+            Self::PartSurface(Some(_)) => "PSIS",
+            Self::AlongArc(_) => "TLON",
             Self::Nurbs => "NURBS",
             Self::Knot(_) => "KNOT",
             Self::Control { .. } => "CNTRL",
@@ -208,6 +235,7 @@ impl Statement {
             Self::ToolPath { .. } => "TOOL PATH",
             Self::EndOfPath => "END-OF-PATH",
             Self::PartName(_) => "PARTNO",
+            Self::ToolName(_) => "TPRINT",
             Self::Print(_) => "PPRINT",
             Self::Insert(_) => "INSERT",
             Self::Remark(_) => "REMARK",
@@ -331,8 +359,41 @@ pub struct LoadTool {
     pub register: Option<u32>,
     /// Length from the gauge line (`LENGTH,l`), in the file's units.
     pub length: Option<f64>,
+    /// It is `TOOLNO`, which in CATIA's files describes a tool that `LOADTL` loads.
+    pub described: bool,
     /// Any further words, as written.
     pub rest: Vec<Argument>,
+}
+
+impl LoadTool {
+    /// Offset register (0: none) and length of the tool's body, as `LOADTL/number,0,length,register` has them: the form of
+    /// Autodesk's stock APT posts.
+    pub fn of_autodesk(&self) -> Option<(u32, f64)> {
+        match *self.rest.as_slice() {
+            [
+                Argument::Number(0.0),
+                Argument::Number(length),
+                Argument::Number(register),
+            ] => Some((whole(register)?, length)),
+            _ => None,
+        }
+    }
+
+    /// Registers of radius and length, as `LOADTL/number,radius,length` has them: the form of CATIA.
+    pub fn of_catia(&self) -> Option<[u32; 2]> {
+        match *self.rest.as_slice() {
+            [Argument::Number(radius), Argument::Number(length)] => {
+                Some([whole(radius)?, whole(length)?])
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The number, if it is a whole one from 0 up.
+fn whole(value: f64) -> Option<u32> {
+    let whole = value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value);
+    whole.then_some(value as u32)
 }
 
 /// `UNITS/`.
@@ -367,6 +428,34 @@ pub struct Circle {
     pub turns: Option<u32>,
 }
 
+/// `MOVARC/cx,cy,cz,i,j,k,r,ANGLE,degrees`: an arc that ends at the next `GOTO`. Whether the axis tells which way it goes
+/// depends on who wrote it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArcMove {
+    /// The centre.
+    pub centre: Point,
+    /// The axis.
+    pub axis: Direction,
+    /// The radius.
+    pub radius: f64,
+    /// From its start to its end, degrees, above zero.
+    pub degrees: f64,
+}
+
+/// `TLON,GOFWD/ (CIRCLE/…),ON,(LINE/…)` and `TLON,GOFWD/ (CYLNDR/…),ON,(PLANE/…)`: an arc from where the tool stands, set out
+/// on as `INDIRV` says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlongArc {
+    /// The centre, or a point of the cylinder's axis.
+    pub centre: Point,
+    /// The axis of the cylinder; none of a circle, which lies in a plane of X and Y.
+    pub axis: Option<Direction>,
+    /// The radius.
+    pub radius: f64,
+    /// Where it ends.
+    pub end: Point,
+}
+
 /// `CYCLE/`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cycle {
@@ -395,9 +484,9 @@ pub struct CycleDefinition {
     pub feed: Option<FeedRate>,
     /// Dwell at the bottom, s.
     pub dwell: Option<f64>,
-    /// Peck (`STEP`, `PECKING`).
+    /// Peck (`STEP`, `PECKING`, `1STPECK`, `INCR`).
     pub step: Option<f64>,
-    /// The pecks that follow the first, if they are others.
+    /// The pecks that follow the first, if they are others (`SUBPECK`, a second number).
     pub later_step: Option<f64>,
     /// A thread's way a turn, in the file's units; negative for a left-hand thread (`PITCH`).
     pub pitch: Option<f64>,
@@ -411,6 +500,12 @@ pub struct CycleDefinition {
     pub angle: Option<f64>,
     /// A fine boring tool's way off the wall before it goes out (a number behind `NODRAG`, `ORIENT`).
     pub shift: Option<f64>,
+    /// Numbers without a word before them, in the order written: those of fields too.
+    pub bare: Vec<f64>,
+    /// How many of them stand before the feed's unit.
+    pub bare_before_feed: usize,
+    /// What `RAPTO` or `CLEAR` says: `clearance` may be a number without a word.
+    pub rapid_to: Option<f64>,
     /// Words and numbers that have no field.
     pub rest: Vec<Argument>,
 }

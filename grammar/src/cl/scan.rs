@@ -128,6 +128,10 @@ pub(super) fn record(raw: &[u8]) -> Option<Statement> {
         known = vocabulary::find(&text[word_span.clone()]);
     }
     let behind = skip_blanks(raw, word_span.end);
+    // `TLON,GOFWD/` has a form of its own.
+    if raw.get(behind) == Some(&b',') {
+        return None;
+    }
     let slash = raw.get(behind) == Some(&b'/');
     let begin = behind + usize::from(slash);
     let parted = begin > word_span.end || ends(raw, begin);

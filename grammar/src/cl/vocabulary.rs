@@ -7,19 +7,20 @@ use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use super::record::{Argument, Statement};
+use super::statements::along::{psis, tlon};
 use super::statements::drilling::cycle;
 use super::statements::geometry::{
-    circle, cntrl, csys, from, godlta, gohome, goto, head, knot, msys, multax, nurbs, rotate,
-    tlaxis,
+    autops, circle, cntrl, csys, from, godlta, gohome, goto, head, indirv, knot, mcs, movarc, msys,
+    multax, nurbs, rotate, tlaxis,
 };
 use super::statements::technology::{
-    coolnt, delay, end_of_path, fedrat, fini, opstop, rapid, spindl, stop, subprogram, units,
+    coolnt, delay, end_of_path, fedrat, fini, mode, opstop, rapid, spindl, stop, subprogram, units,
     work_offset,
 };
 use super::statements::tooling::{
     cutcom, cutcom_on_centre, cutter, load_tool, select_tool, tldata,
 };
-use super::statements::{ReadItems, ReadText};
+use super::statements::{ReadGeometry, ReadItems, ReadText};
 
 /// What `post` does with a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,7 +34,8 @@ pub enum Usage {
     /// It changes where or whether metal is cut, and `post` does not know how: the file is refused, unless the user
     /// takes it upon himself.
     Refused,
-    /// Nobody's word, or one that a program can do without: `post` does nothing with it, and says so.
+    /// Nobody's word, or one that a program can do without: `post` does nothing with it, and says so; a file with a
+    /// nobody's word is refused unless the user lets it pass.
     Unknown,
 }
 
@@ -57,6 +59,8 @@ pub(super) enum Behind {
     Items(ReadItems),
     /// Any text.
     Text(ReadText),
+    /// Geometry in parentheses.
+    Geometry(ReadGeometry),
     /// The whole line has a form of its own, which `line.pest` takes apart.
     Line,
     /// Items, kept as they stand in [`Statement::Other`].
@@ -77,6 +81,8 @@ pub struct MajorWord {
     pub(super) behind: Behind,
     /// What becomes of it in a form that is not known: refused where the tool would end up in the wrong place.
     otherwise: Usage,
+    /// It moves the tool, or says which records do: whatever its form, it is never left out.
+    pub moves: bool,
     /// Lines that a machine file has for it go before its meaning, which not every control has words for.
     pub by_rule: bool,
 }
@@ -99,6 +105,11 @@ impl MajorWord {
 
     const fn else_refused(mut self) -> Self {
         self.otherwise = Usage::Refused;
+        self
+    }
+
+    const fn moves(mut self) -> Self {
+        self.moves = true;
         self
     }
 
@@ -160,6 +171,43 @@ impl Statement {
             usage => usage,
         }
     }
+
+    /// How it may carry a path that nobody here knows; none if it carries none, or its meaning is known.
+    pub fn unknown_path(&self) -> Option<UnknownPath> {
+        let Self::Other {
+            word,
+            arguments,
+            directive: false,
+        } = self
+        else {
+            return None;
+        };
+        let numbers = arguments
+            .iter()
+            .filter(|argument| matches!(argument, Argument::Number(_)));
+        match MajorWord::find(word) {
+            Some(row) if row.moves => Some(UnknownPath::Word),
+            None if numbers.count() >= POINT => Some(UnknownPath::Numbers),
+            _ => None,
+        }
+    }
+
+    /// The word has no row: it may be misspelt.
+    pub fn is_strange(&self) -> bool {
+        matches!(self, Self::Other { word, directive: false, .. } if MajorWord::find(word).is_none())
+    }
+}
+
+/// So many numbers may be a point.
+const POINT: usize = 3;
+
+/// Why a record that has no meaning here may carry a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnknownPath {
+    /// Its word is one of those that move the tool.
+    Word,
+    /// Nobody knows its word, and it has numbers enough for a point.
+    Numbers,
 }
 
 const fn row(
@@ -175,6 +223,7 @@ const fn row(
         meaning,
         behind,
         otherwise: Usage::Unknown,
+        moves: false,
         by_rule: false,
     }
 }
@@ -212,6 +261,11 @@ const fn refused(spellings: &'static [&'static str], why: &'static str) -> Major
     row(spellings, Usage::Refused, Behind::Kept, ["", why])
 }
 
+/// Moves the tool, or says which records do, in a way that `post` does not know.
+const fn motion(spellings: &'static [&'static str], why: &'static str) -> MajorWord {
+    refused(spellings, why).moves()
+}
+
 /// Known by name, and left out with a warning.
 const fn unsupported(spellings: &'static [&'static str], meaning: &'static str) -> MajorWord {
     row(spellings, Usage::Unknown, Behind::Kept, ["", meaning])
@@ -227,15 +281,28 @@ fn feature(word: &'static str, text: String) -> Statement {
     }
 }
 
+/// A text as Autodesk's posts write it, `'..'`, without the marks.
+fn unquoted(text: String) -> String {
+    let inside = text
+        .strip_prefix('\'')
+        .and_then(|text| text.strip_suffix('\''));
+    match inside {
+        Some(inside) if !inside.contains('\'') => inside.to_owned(),
+        _ => text,
+    }
+}
+
 /// The words that have a statement of their own, those of ISO 4343 and PostWorks that have none, and those that
 /// CAM systems add; in alphabetical order.
 #[rustfmt::skip]
 static WORDS: &[MajorWord] = &[
+    motion(&["ARC", "ARCMOV", "CIRMOV"], "an arc in a form that nobody here knows"),
     refused(&["ARCSLP"], "slope of a helix"),
+    used(&["AUTOPS"], autops, ["AUTOPS", "the tip stays in its plane of X and Y (CATIA)"]).else_refused().moves(),
     refused(&["AUXFUN"], "an M function by its number"),
     ignored(&["BOX"], "the blank"),
     unsupported(&["BREAK"], "a break in the tape"),
-    refused(&["CALL"], "runs a macro"),
+    motion(&["CALL"], "runs a macro"),
     used(&["CALSUB"], subprogram, ["CALSUB/100", "runs a subprogram by its number, if the dialect calls any"]).else_refused().by_rule(),
     ignored(&["CAMERA"], "display"),
     unsupported(&["CHECK"], "limits of the axes to be watched; post watches those of the machine file"),
@@ -244,50 +311,58 @@ static WORDS: &[MajorWord] = &[
     refused(&["CLEARP"], "clearance plane, to which RETRCT goes"),
     refused(&["CLRSRF"], "clearance plane, to which RETRCT goes"),
     used(&["CNTRL"], cntrl, ["CNTRL/1,2,3", "control point of a spline"]),
+    motion(&["CONTUR", "PROFIL", "POCKET", "REGION", "WATERL", "FMILL", "RMILL", "SCRUB"], "moves that only the APT processor can compute"),
     used(&["COOLNT"], coolnt, ["COOLNT/FLOOD", "coolant"]),
-    refused(&["COPY"], "repeats moves"),
+    motion(&["COPY"], "repeats moves"),
     refused(&["COUPLE"], "couples the spindle with an axis"),
     ignored(&["CSI_SET_EXTENSION_LENGTH"], "the tool in the CAM system's library"),
     ignored(&["CSI_SET_FLUTE_LENGTH"], "the tool in the CAM system's library"),
     ignored_as(&["CSYS"], Behind::Items(csys), ["CSYS/1,0,0,0,0,1,0,0,0,0,1,0", "the CAM system's frame; points are meant in the part's"]),
+    motion(&["CUT"], "moves from here on are made again"),
     used(&["CUTCOM"], cutcom, ["CUTCOM/LEFT,XYPLAN", "cutter radius compensation"]).else_refused(),
     used(&["CUTCOM_GEOMETRY_TYPE"], cutcom_on_centre, ["CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER", "the points are the tool's centre, or the contour that CUTCOM offsets (Creo)"]),
     used(&["CUTTER"], cutter, ["CUTTER/10,1", "the cutter: diameter, corner radius"]),
     used(&["CYCLE"], cycle, ["CYCLE/DRILL,FEDTO,-10,MMPM,200,RAPTO,3", "cycle at the points that follow"]).else_refused(),
-    refused(&["DEFSUB"], "defines a subprogram"),
+    motion(&["DEFSUB"], "defines a subprogram"),
     used(&["DELAY", "DWELL"], delay, ["DELAY/2", "waits: seconds, or turns with REV"]),
     ignored(&["DISPLY"], "display"),
-    refused(&["DNTCUT"], "moves up to CUT are not made"),
-    refused(&["DO"], "repeats what follows"),
+    motion(&["DNTCUT"], "moves up to CUT are not made"),
+    motion(&["DO"], "repeats what follows"),
     ignored(&["DRAFT"], "plotter"),
     used(&["END-OF-PATH"], end_of_path, ["END-OF-PATH", "end of an operation (NX)"]),
-    refused(&["ENDSUB"], "ends a subprogram"),
+    motion(&["ENDSUB"], "ends a subprogram"),
     ignored(&["FEATNO"], "number of a feature"),
     used(&["FEDRAT"], fedrat, ["FEDRAT/MMPM,250", "feed of the cuts that follow"]),
     used(&["FINI", "END"], fini, ["FINI", "end of the file"]),
     used(&["FROM"], from, ["FROM/0,0,100", "where the tool stands; no move"]),
-    refused(&["GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN"], "a move to or along a surface, which only the APT processor can compute"),
+    motion(&["GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN"], "a move to or along a surface, which only the APT processor can compute"),
+    motion(&["GOCLER"], "a move to a clearance"),
     used(&["GODLTA"], godlta, ["GODLTA/0,0,5", "move by a step, or along the tool axis"]),
     used(&["GOHOME"], gohome, ["GOHOME", "to the reference, or to a point at rapid"]),
     used(&["GOTO"], goto, ["GOTO/1,2,3,0,0,1", "move to a point, with tool axis and edge as given"]),
     used(&["HEAD"], head, ["HEAD/V1", "the head that works from here on"]).else_refused(),
-    refused(&["IF"], "goes on at another line of the APT program"),
-    refused(&["INCLUD", "INCLUDE"], "goes on in another file"),
-    refused(&["INDEX"], "repeats moves"),
-    refused(&["INDIRV"], "a direction for the APT processor's moves along surfaces"),
+    motion(&["HELIX", "SPIRAL"], "a curve in a form that nobody here knows"),
+    motion(&["IF"], "goes on at another line of the APT program"),
+    motion(&["INCLUD", "INCLUDE"], "goes on in another file"),
+    motion(&["INDEX"], "repeats moves"),
+    motion(&["INDIRP"], "a direction by a point for the APT processor's moves along surfaces"),
+    used(&["INDIRV"], indirv, ["INDIRV/1,0,0", "where the tool sets out along the next curve (CATIA)"]).else_refused().moves(),
     passed(&["INSERT"], Behind::Text(|_, text| Statement::Insert(text)), ["INSERT M8", "a line of the program, or a comment ([control] insert)"]),
-    refused(&["JUMPTO"], "goes on at another line of the APT program"),
+    motion(&["JUMPTO"], "goes on at another line of the APT program"),
     used(&["KNOT"], knot, ["KNOT/0,1", "knots of a spline"]),
     ignored(&["LEADER"], "blank tape"),
     ignored(&["LINTOL"], "tolerance; the machine file states ours"),
     used(&["LOADTL", "LOAD", "TURRET", "TOOLNO"], load_tool, ["LOADTL/3,LENGTH,120", "tool change; LOAD with TOOL"]).else_refused(),
-    refused(&["LOOPST", "LOOPND"], "repeats what stands between them"),
+    motion(&["LOOPST", "LOOPND"], "repeats what stands between them"),
     ignored(&["MACHIN"], "the machine that the CAM system was told; ours is --machine"),
-    refused(&["MACRO"], "defines a macro"),
+    motion(&["MACRO"], "defines a macro"),
     ignored(&["MCHTOL"], "tolerance; the machine file states ours"),
+    used(&["MCS"], mcs, ["MCS/1,0,0,0,1,0,0,0,1,0,0,0", "frame of an operation (CAMplete); another than the part's is refused"]).else_refused(),
     ignored(&["MFGNO"], "number of an operation"),
     refused(&["MIRROR"], "mirrors the points"),
-    refused(&["MODE"], "how the coordinates that follow are meant"),
+    used(&["MODE"], mode, ["MODE/MILL", "the tool turns (Autodesk); other modes are refused"]).else_refused(),
+    used(&["MOVARC"], movarc, ["MOVARC/0,0,0,0,0,1,10,ANGLE,90", "arc to the next GOTO: centre, axis, radius, angle (Autodesk)"]).else_refused().moves(),
+    motion(&["MOVE", "MOVETO", "LINMOV"], "a move in a form that nobody here knows"),
     ignored(&["MOVE_ATTRIB"], "lead in, link, lead out"),
     used(&["MSYS"], msys, ["MSYS/0,0,0,1,0,0,0,1,0", "frame of the operation (--msys)"]).else_refused(),
     used(&["MULTAX"], multax, ["MULTAX/ON", "tool axis with the points; OFF: Z"]),
@@ -299,26 +374,28 @@ static WORDS: &[MajorWord] = &[
     used(&["OPSTOP"], opstop, ["OPSTOP", "optional stop"]),
     refused(&["ORIGIN"], "moves the origin"),
     ignored(&["PAINT"], "display"),
-    passed(&["PARTNO"], Behind::Text(|_, text| Statement::PartName(text)), ["PARTNO blade", "name of the part, as a comment"]),
+    passed(&["PARTNO"], Behind::Text(|_, text| Statement::PartName(unquoted(text))), ["PARTNO blade", "name of the part, as a comment"]),
     refused(&["PIVOTZ"], "how far the head's pivot is; the machine file says it"),
-    refused(&["PLUNGE"], "a move that the control computes"),
-    refused(&["POSITN"], "a move in machine coordinates"),
+    motion(&["PLUNGE"], "a move that the control computes"),
+    motion(&["POSITN"], "a move in machine coordinates"),
     refused(&["POSTN"], "moves the origin"),
-    passed(&["PPRINT"], Behind::Text(|_, text| Statement::Print(text)), ["PPRINT check clamps", "a remark for the operator"]),
+    passed(&["PPRINT"], Behind::Text(|_, text| Statement::Print(unquoted(text))), ["PPRINT check clamps", "a remark for the operator"]),
     ignored(&["PPTOL"], "tolerance; the machine file states ours"),
     ignored(&["PPWORD"], "a word of another post-processor"),
     refused(&["PREFUN"], "a G function by its number"),
-    refused(&["PROBE"], "probing"),
-    refused(&["PSIS"], "a surface for the APT processor's moves"),
+    motion(&["PROBE"], "probing"),
+    row(&["PSIS"], Usage::Used, Behind::Geometry(psis), ["PSIS/(PLANE/(POINT/0,0,0),PERPTO,(VECTOR/0,1,0))", "the plane that the tip stays in along the next curve (CATIA)"]).else_refused().moves(),
     used(&["RAPID"], rapid, ["RAPID", "the next move is at rapid"]),
-    refused(&["READ"], "goes on in another file"),
+    motion(&["READ"], "goes on in another file"),
     refused(&["REFSYS"], "a frame for the points that follow"),
     ignored_as(&["REMARK"], Behind::Text(|_, text| Statement::Remark(text)), ["REMARK roughing", "a remark"]),
-    refused(&["RETRCT"], "retracts to a plane that other words set"),
+    motion(&["RETRACT"], "a retract in a form that nobody here knows"),
+    motion(&["RETRCT"], "retracts to a plane that other words set"),
     ignored(&["REWIND"], "winds the tape back"),
     used(&["ROTABL", "ROTATE"], rotate, ["ROTABL/BAXIS,90,CLW", "turns an index axis"]).else_refused(),
     refused(&["ROTHED"], "turns the head by an angle"),
     ignored(&["SAFETY"], "how the CAM system kept clear"),
+    motion(&["SCURV", "SPLINE", "POLY"], "a curve in a form that nobody here knows"),
     used(&["SELECT", "SELCTL"], select_tool, ["SELECT/TOOL,4", "makes the next tool ready; SELECT with TOOL"]),
     ignored(&["SEQNO"], "block numbers; the machine file states ours"),
     used(&["SET"], work_offset, ["SET/OFSETL,2", "a work offset by its number, if the dialect has several"]).else_refused().by_rule(),
@@ -326,13 +403,15 @@ static WORDS: &[MajorWord] = &[
     used(&["SPINDL"], spindl, ["SPINDL/RPM,9000,CLW", "spindle"]),
     used(&["STOP"], stop, ["STOP", "stop"]),
     refused(&["SYN"], "gives words of the APT program other names"),
-    refused(&["TERMAC"], "ends a macro"),
-    refused(&["THREAD"], "cuts a thread"),
+    motion(&["TERMAC"], "ends a macro"),
+    motion(&["THREAD"], "cuts a thread"),
     used(&["TLAXIS"], tlaxis, ["TLAXIS/0,0,1", "tool axis of the moves that follow"]).else_refused(),
     used(&["TLDATA"], tldata, ["TLDATA/MILL,10,1,75,0,0", "the cutter (NX)"]),
-    refused(&["TLON"], "puts the tool on a curve, which only the APT processor can do"),
+    motion(&["TLLFT", "TLRGT", "TLONPS", "TLOFPS", "TLNDON"], "how the tool stands to a curve, which only the APT processor can follow"),
+    row(&["TLON"], Usage::Used, Behind::Geometry(tlon), ["TLON,GOFWD/(CIRCLE/0,0,0,10),ON,(LINE/0,0,0,10,0,0)", "along an arc to its end (CATIA)"]).else_refused().moves(),
     ignored(&["TMARK"], "mark on the tape"),
     passed(&["TOOL PATH"], Behind::Line, ["TOOL PATH/ROUGH,TOOL,MILL_10", "an operation begins (NX); its name, as a comment"]),
+    passed(&["TPRINT"], Behind::Text(|_, text| Statement::ToolName(text)), ["TPRINT/T1 End Mill D 10", "name of the tool that is loaded next (CATIA)"]),
     refused(&["TRACUT"], "moves the points by a matrix"),
     refused(&["TRANS"], "moves the points by a step"),
     ignored(&["TRNTYP"], "how the CAM system moved the points"),

@@ -244,18 +244,21 @@ fn tools() {
             number,
             register,
             length,
+            described: false,
             rest: rest.to_vec(),
         })
     };
+    assert!(matches!(
+        read("TOOLNO/2.0"),
+        Statement::LoadTool(LoadTool {
+            number: 2,
+            described: true,
+            ..
+        })
+    ));
     same(
         tool(2, None, None, &[]),
-        &[
-            "LOADTL / 2",
-            "LOADTL/         2",
-            "LOAD/TOOL,2",
-            "TURRET/2",
-            "TOOLNO/2.0",
-        ],
+        &["LOADTL / 2", "LOADTL/         2", "LOAD/TOOL,2", "TURRET/2"],
     );
     same(
         tool(2, Some(3), None, &[]),
@@ -360,6 +363,7 @@ fn cycles() {
             depth: Some(0.0),
             clearance: Some(3.0),
             feed: feed(250.0),
+            rapid_to: Some(3.0),
             ..CycleDefinition::default()
         }),
         &["CYCLE/DRILL,DEEP,RAPTO,3.0000,FEDTO,0.0000,MMPM,250.0000"],
@@ -371,6 +375,7 @@ fn cycles() {
             clearance: Some(1.0),
             feed: feed(50.0),
             step: Some(1.0),
+            rapid_to: Some(1.0),
             ..CycleDefinition::default()
         }),
         &["CYCLE / DEEP, DEPTH, 3.500000, STEP, 1.000000, MMPM, 50.000000, CLEAR, 1.000000"],
@@ -383,6 +388,7 @@ fn cycles() {
             retract: Some(25.0),
             feed: feed(275.59),
             dwell: Some(0.0),
+            rapid_to: Some(3.0),
             ..CycleDefinition::default()
         }),
         &["CYCLE/DRILL,FEDTO,10.,MMPM,275.59,RAPTO,3.,RTRCTO,25.,DWELL,0"],
@@ -398,6 +404,8 @@ fn cycles() {
             step: Some(5.0),
             later_step: Some(2.0),
             rest: vec![word("G98"), number(46.927686)],
+            bare: vec![12.3733, 3.0, 46.927686, 46.927686],
+            bare_before_feed: 1,
             ..CycleDefinition::default()
         }),
         &[
@@ -410,6 +418,7 @@ fn cycles() {
             depth: Some(10.0),
             clearance: Some(3.0),
             pitch: Some(-1.5),
+            rapid_to: Some(3.0),
             ..CycleDefinition::default()
         }),
         &["CYCLE/TAP,DEPTH,10,CLEAR,3,PITCH,-1.5"],
@@ -420,6 +429,7 @@ fn cycles() {
             depth: Some(10.0),
             clearance: Some(3.0),
             turns_per_inch: Some(20.0),
+            rapid_to: Some(3.0),
             ..CycleDefinition::default()
         }),
         &["CYCLE/TAP,DEPTH,10,CLEAR,3,TPI,20"],
@@ -430,6 +440,7 @@ fn cycles() {
             clearance: Some(3.0),
             diameter: Some(8.0),
             angle: Some(90.0),
+            rapid_to: Some(3.0),
             ..CycleDefinition::default()
         }),
         &["CYCLE/CSINK,DIAMET,8,ANGLE,90,CLEAR,3"],
@@ -441,6 +452,7 @@ fn cycles() {
             clearance: Some(3.0),
             break_through: Some(2.0),
             shift: Some(0.2),
+            rapid_to: Some(3.0),
             ..CycleDefinition::default()
         }),
         &["CYCLE/BORE,NODRAG,0.2,DEPTH,5,THRU,2,CLEAR,3"],
@@ -450,6 +462,7 @@ fn cycles() {
             kinds: kinds(&["THRU"]),
             depth: Some(5.0),
             clearance: Some(3.0),
+            bare: vec![5.0, 3.0],
             ..CycleDefinition::default()
         }),
         &["CYCLE/THRU,5,3"],
@@ -463,6 +476,8 @@ fn cycles() {
                 value: Some(30.0),
                 unit: Some(FeedUnit::InchesPerMinute),
             }),
+            bare: vec![10.0, 2.0],
+            bare_before_feed: 1,
             ..CycleDefinition::default()
         }),
         &["CYCLE/TAP,10,IPM,30,2"],
@@ -762,6 +777,111 @@ fn each_word_has_one_row_and_each_statement_the_name_of_its_row() {
     }
     assert!(MajorWord::find("NOSUCH").is_none());
     assert_eq!(read("nosuch/1").word(), "NOSUCH");
+}
+
+/// The forms of Autodesk's stock APT posts and of CATIA.
+#[test]
+fn forms_of_autodesk_and_catia() {
+    same(
+        Statement::ArcMove(ArcMove {
+            centre: [1.0, 2.0, 3.0],
+            axis: [0.0, 0.0, -1.0],
+            radius: 10.0,
+            degrees: 45.5,
+        }),
+        &[
+            "MOVARC/1,2,3,0,0,-1,10,ANGLE,45.5",
+            "movarc / 1., 2., 3., 0, 0, -1, 10, angle, 45.5",
+        ],
+    );
+    for wrong in [
+        "MOVARC/1,2,3,0,0,-1,10",
+        "MOVARC/1,2,3,0,0,-1,ANGLE,45",
+        "MOVARC/1,2,3,0,0,-1,10,45",
+        "MOVARC/1,2,3,0,0,-1,10,ANGLE,45,1",
+        "MOVARC/1,2,3,0,0,-1,10,ANGLE",
+        "INDIRV/1,2",
+        "MCS/1,0,0",
+    ] {
+        assert!(parse_record(wrong).is_err(), "{wrong}");
+    }
+    same(Statement::Milling, &["MODE/MILL", "MODE / mill"]);
+    assert_eq!(read("MODE/TURN").usage(), Usage::Refused);
+    same(
+        Statement::SetOut([0.0, 1.0, 0.0]),
+        &["INDIRV/0,1,0", "INDIRV/ 0.,1.,0."],
+    );
+    assert_eq!(read("INDIRV/V1").usage(), Usage::Refused);
+    same(Statement::PartSurface(None), &["AUTOPS", "AUTOPS/"]);
+    same(
+        Statement::PartSurface(Some([0.0, 1.0, 0.0])),
+        &[
+            "PSIS/(PLANE/(POINT/1,2,3),PERPTO,(VECTOR/0,1,0))",
+            "PSIS / (PLANE/ (POINT/ 1, 2,3) , PERPTO,(VECTOR/0,1,0))",
+        ],
+    );
+    assert_eq!(read("PSIS/S1").usage(), Usage::Refused);
+    same(
+        Statement::ToolName("T1 End Mill".to_owned()),
+        &["TPRINT/T1 End Mill", "TPRINT T1 End Mill"],
+    );
+    same(
+        Statement::PartName("1001".to_owned()),
+        &["PARTNO/'1001'", "PARTNO 1001"],
+    );
+    same(Statement::Print("it's so".to_owned()), &["PPRINT it's so"]);
+    let Statement::LoadTool(tool) = read("LOADTL/4, 0, 60.5, 14") else {
+        panic!();
+    };
+    assert_eq!(
+        (tool.number, tool.of_autodesk(), tool.of_catia()),
+        (4, Some((14, 60.5)), None)
+    );
+    let Statement::LoadTool(tool) = read("LOADTL/4,5,6") else {
+        panic!();
+    };
+    assert_eq!((tool.of_autodesk(), tool.of_catia()), (None, Some([5, 6])));
+    let Statement::Cycle(Cycle::Define(cycle)) =
+        read("CYCLE/DEEP2,FEDTO,12,1STPECK,5,SUBPECK,2,MMPM,100,RAPTO,2")
+    else {
+        panic!();
+    };
+    assert_eq!((cycle.step, cycle.later_step), (Some(5.0), Some(2.0)));
+    let Statement::Cycle(Cycle::Define(cycle)) =
+        read("CYCLE/DEEP, 12, INCR, 4, MMPM, 150, 15, RAPTO, 12")
+    else {
+        panic!();
+    };
+    assert_eq!(
+        (
+            cycle.step,
+            cycle.bare.as_slice(),
+            cycle.bare_before_feed,
+            cycle.rapid_to
+        ),
+        (Some(4.0), &[12.0, 15.0][..], 1, Some(12.0))
+    );
+}
+
+/// What may be a move that nobody here knows.
+#[test]
+fn unknown_paths_are_told_from_other_words() {
+    for (text, path) in [
+        ("NOSUCH/1,2,3", Some(UnknownPath::Numbers)),
+        ("NOSUCH/A,1,B,2,3", Some(UnknownPath::Numbers)),
+        ("NOSUCH/1,2", None),
+        ("NOSUCH", None),
+        ("GOFWD/L1", Some(UnknownPath::Word)),
+        ("TLLFT,GOLFT/L1,PAST,L2", Some(UnknownPath::Word)),
+        ("TLON,GOFWD/C1,ON,L1", Some(UnknownPath::Word)),
+        ("INDIRV/V1", Some(UnknownPath::Word)),
+        ("TRACUT/1,0,0,0,0,1,0,0,0,0,1,0", None),
+        ("$$-> NOSUCH / 1,2,3", None),
+        ("$$ GOFWD", None),
+        ("PAINT/1,2,3", None),
+    ] {
+        assert_eq!(read(text).unknown_path(), path, "{text}");
+    }
 }
 
 #[test]

@@ -68,6 +68,6 @@ fn unknown(word: &str) -> Diagnostic {
     let help = meant(word, "`post words` lists", &names);
     match help.split_once("? ") {
         Some((question, _)) => fault.help(format!("{question}?")),
-        None => fault.help("`post words` lists those that it knows; it is left out with a warning"),
+        None => fault.help("`post words` lists those that it knows; a file with it is refused, unless --allow leaves it out"),
     }
 }

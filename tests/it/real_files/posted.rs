@@ -47,26 +47,32 @@ const GOOD: &[(&str, &str, &str)] = &[
         "head-head",
         "--msys apply --tool-length 150",
     ),
-    ("nx_HumMan_cutcom.clsf", "vmc", ""),
+    // Its points are the tool's centre, as those of SolidWorks CAM and CAMWorks.
+    (
+        "nx_HumMan_cutcom.clsf",
+        "vmc",
+        "--set control.compensation_on_centre=wear",
+    ),
     // Cutter compensation on an indexed table: the tool stands upright in the machine.
     (
         "camworks_neMoguta_UniSource.clt",
         "ac-trunnion",
-        "--tool-from-cutter --tool-length 150",
+        "--tool-from-cutter --tool-length 150 --set control.compensation_on_centre=wear",
     ),
     (
         "swcam_aamorim_Interface-glue.clt",
         "ac-trunnion",
-        "--tool-from-cutter --tool-length 150",
+        "--tool-from-cutter --tool-length 150 --set control.compensation_on_centre=wear",
     ),
     (
         "swcam_aamorim_Teste-Metrologia.apt",
         "ac-trunnion",
-        "--tool-length 80",
+        "--tool-length 80 --set control.compensation_on_centre=wear",
     ),
     ("nx_HumMan_nurbs.clsf", "head-head", "--tool 1"),
     ("nx_HumMan_nurbs.clsf", "disc-cutter", "--tool 1"),
-    ("nx_HumMan_deep_drill.clsf", "vmc", "--tool 1"),
+    // It goes in pecks and says none.
+    ("nx_HumMan_deep_drill.clsf", "vmc", "--tool 1 --allow DEEP"),
     ("nx_HumMan_standart_drill.clsf", "vmc", "--tool 1"),
     ("nx_HumMan__3_PAZ_125_N2.cls", "head-head", "--tool 1"),
     (
@@ -76,11 +82,15 @@ const GOOD: &[(&str, &str, &str)] = &[
     ),
     ("nx_HumMan__8_SVERL_63_N2.cls", "head-head", "--tool 1"),
     ("nx_HumMan__8_SVERL_63_N2.cls", "disc-cutter", "--tool 1"),
-    ("swcam_aamorim_basemach.apt", "vmc", "--mount -170,-75,0"),
+    (
+        "swcam_aamorim_basemach.apt",
+        "vmc",
+        "--mount -170,-75,0 --set control.compensation_on_centre=wear",
+    ),
     (
         "swcam_aamorim_basemach.apt",
         "nutating-head",
-        "--tcp post --tool-length 100",
+        "--tcp post --tool-length 100 --set control.compensation_on_centre=wear",
     ),
     // It has no word for its units; it is in inches.
     ("own_ncl_form.as", "ac-trunnion", "--units inch"),
@@ -127,7 +137,22 @@ const REFUSED: &[(&str, &str, &str, &str)] = &[
         "over-travel",
     ),
     // A dialect with G43 H must know the tool.
-    ("nx_HumMan_deep_drill.clsf", "vmc", "", "dialect"),
+    (
+        "nx_HumMan_deep_drill.clsf",
+        "vmc",
+        "--allow DEEP",
+        "dialect",
+    ),
+    // It goes in pecks and says none.
+    ("nx_HumMan_deep_drill.clsf", "vmc", "--tool 1", "cycle"),
+    // Points of the tool's centre, and the radius in the register.
+    ("nx_HumMan_cutcom.clsf", "vmc", "", "compensation"),
+    (
+        "swcam_aamorim_basemach.apt",
+        "vmc",
+        "--mount -170,-75,0",
+        "compensation",
+    ),
     ("own_ncl_form.as", "vmc", "", "out-of-reach"),
     (
         "camworks_neMoguta_UniSource.clt",

@@ -230,7 +230,11 @@ fn arcs_of_nx_stay_among_the_points_of_the_file() {
         return;
     };
     for (file, machine, arguments) in [
-        ("nx_HumMan_cutcom.clsf", "vmc", ""),
+        (
+            "nx_HumMan_cutcom.clsf",
+            "vmc",
+            "--set control.compensation_on_centre=wear",
+        ),
         ("nx_HumMan__3_PAZ_125_N2.cls", "head-head", "--tool 1"),
     ] {
         let text = fs::read_to_string(folder.join(file)).unwrap();

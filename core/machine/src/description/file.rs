@@ -454,7 +454,8 @@ pub enum Print {
     Message,
 }
 
-/// What becomes of `CUTCOM` on points of the tool's centre (`CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER`).
+/// What becomes of `CUTCOM` on points of the tool's centre: those of Creo (`CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER`) and of
+/// NX (`$$ centerline data`), and presumably those of SolidWorks CAM and CAMWorks, whose files do not say.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompensationOnCentre {
@@ -463,6 +464,8 @@ pub enum CompensationOnCentre {
     Refuse,
     /// It is written, with a warning: the register holds the tool's wear alone.
     Wear,
+    /// As `refuse`, but where the file does not say what its points are, they are those of the contour.
+    Contour,
 }
 
 /// How the holes of drilling cycles are written.

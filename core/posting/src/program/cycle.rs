@@ -1,6 +1,7 @@
 //! Cycles: what is done at a hole, as the control's own cycle and as moves that do the same (approach, peck, dwell,
 //! retract, along the tool axis).
 
+use nalgebra::Vector3;
 use post_grammar::{Argument, CycleDefinition};
 use post_machine::diagnostic::Short;
 use post_plugin::Cycle;
@@ -26,6 +27,9 @@ pub struct DrillCycle {
     pitch: Option<f64>,
     /// Off the wall before the tool goes out (fine boring).
     shift: Option<f64>,
+    /// The point is the bottom of the hole, and these heights are the part's: where the tool goes between the holes, and
+    /// where the feed begins.
+    planes: Option<[f64; 2]>,
 }
 
 /// One peck after the other.
@@ -196,7 +200,64 @@ impl DrillCycle {
             dwell,
             pitch: pitch(cycle, scale)?,
             shift,
+            planes: None,
         })
+    }
+
+    /// The kind that goes in pecks, if no peck is said.
+    pub(crate) fn lacks_pecks(cycle: &CycleDefinition) -> Option<&str> {
+        if cycle.step.is_some_and(|step| step != 0.0) {
+            return None;
+        }
+        let mut kinds = cycle.kinds.iter().map(String::as_str);
+        kinds.find(|kind| PECKED.contains(kind))
+    }
+
+    /// The cycle where its points are the bottoms of holes: `plane` is the height of the part that the tool goes to between
+    /// them, `feed_from` that where its feed begins, mm.
+    pub(crate) fn by_planes(self, plane: f64, feed_from: f64) -> Self {
+        Self {
+            planes: Some([plane, feed_from]),
+            ..self
+        }
+    }
+
+    /// The cycle at a hole whose bottom is `point`, and the point above it that its heights count from; none if its points
+    /// are no bottoms.
+    ///
+    /// # Errors
+    /// The planes do not lie above the hole, as a sentence.
+    pub(crate) fn on_bottom(
+        &self,
+        point: Vector3<f64>,
+        axis: Vector3<f64>,
+    ) -> Result<Option<(Self, Vector3<f64>)>, String> {
+        let Some([plane, feed_from]) = self.planes else {
+            return Ok(None);
+        };
+        if (axis - Vector3::z()).norm() > 1e-6 {
+            return Err(
+                "the clearance plane of this cycle is a height along Z, and the tool leans"
+                    .to_owned(),
+            );
+        }
+        let top = point - axis * self.bottom;
+        let [retract, clearance] = [plane, feed_from].map(|height| height - top.z);
+        if clearance < 0.0 || retract < clearance {
+            return Err(format!(
+                "the hole begins at Z{}, its feed at Z{}, and its clearance plane is Z{}: none may lie below the one before",
+                Short(top.z),
+                Short(feed_from),
+                Short(plane)
+            ));
+        }
+        let cycle = Self {
+            clearance,
+            retract,
+            planes: None,
+            ..*self
+        };
+        Ok(Some((cycle, top)))
     }
 
     /// It cuts a thread: the feed follows from the spindle.
@@ -257,18 +318,11 @@ impl DrillCycle {
 
     /// Words of a definition that have no effect here.
     pub fn left_out(cycle: &CycleDefinition) -> impl Iterator<Item = String> {
-        let pecks = cycle.step.is_none()
-            && cycle
-                .kinds
-                .iter()
-                .any(|kind| PECKED.contains(&kind.as_str()));
-        let pecks = pecks.then(|| "the pecks, since there is no STEP".to_owned());
         let is = |kind: &str| cycle.kinds.iter().any(|word| word == kind);
         let angles = (cycle.diameter.or(cycle.angle).is_some() && !is("CSINK"))
             .then(|| "the diameter and the angle, which are those of CSINK".to_owned());
-        pecks
+        angles
             .into_iter()
-            .chain(angles)
             .chain(cycle.rest.iter().filter_map(|argument| match argument {
                 // CAMWorks states the level twice.
                 Argument::Word(word) if word == "G98" => None,

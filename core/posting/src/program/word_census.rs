@@ -12,8 +12,10 @@ use super::limits::MOST_WORDS;
 pub enum Unknown {
     /// Refuse the file.
     Error,
-    /// Leave it out and say so.
+    /// Leave out those that a program is known to do without, and say so; refuse the file for the others.
     #[default]
+    Known,
+    /// Leave it out and say so.
     Warn,
     /// Write it into the program as a comment.
     Pass,
@@ -108,7 +110,10 @@ impl WordCensus {
                 };
                 let message = format!("{word} {what}: met {}", times(count.count));
                 let finding = match policy {
-                    Unknown::Error => Diagnostic::error("unknown-word", message).help(
+                    Unknown::Known if MajorWord::find(word).is_some() => {
+                        Diagnostic::warning("unknown-word", format!("{message}; left out"))
+                    }
+                    Unknown::Error | Unknown::Known => Diagnostic::error("unknown-word", message).help(
                         "--allow leaves it out, --unknown=warn all of its kind, --unknown=pass writes them as comments",
                     ),
                     Unknown::Warn => {
@@ -120,8 +125,11 @@ impl WordCensus {
                     ),
                 };
                 let finding = finding.at(Some(count.first.clone()));
-                match (&finding.help, known(word)) {
+                match (finding.help.clone(), known(word)) {
                     (None, Some(meant)) => finding.help(format!("did you mean {meant}?")),
+                    (Some(help), Some(meant)) => {
+                        finding.help(format!("did you mean {meant}? {help}"))
+                    }
                     _ => finding,
                 }
             })

@@ -477,6 +477,9 @@ fn real_files_have_fewer_blocks() {
         let settings: Vec<Setting> = mount
             .iter()
             .map(|(x, y, z)| Setting::Mount([*x, *y, *z]))
+            .chain([Setting::Written(
+                "control.compensation_on_centre=wear".to_owned(),
+            )])
             .collect();
         let machine = load(source(machine), &settings, &mut |name| Ok(source(name))).unwrap();
         let counts = [Capabilities::NONE, ALL].map(|writes| {

@@ -1,7 +1,7 @@
 //! Holes as cycles of the control: a model of the control carries out what the dialect is asked to write, and what it
 //! does is held against the moves of the same job.
 
-use post_machine::description::{Machine, Source, load};
+use post_machine::description::{CompensationOnCentre, Machine, Source, load};
 use post_plugin::{Capabilities, Cycle, Feed};
 use post_posting::Job;
 use post_posting::program::{Reading, ToldSpindle};
@@ -82,6 +82,7 @@ fn run_file(machine: &Machine, capabilities: Capabilities, cl: &str, no_tools: b
         reading: Reading {
             spindle: ToldSpindle::On(500.0),
             tool_from_cutter: no_tools,
+            allowed: vec!["DEEP".to_owned()],
             ..Reading::default()
         },
         tool_length: Some(50.0),
@@ -670,7 +671,8 @@ fn real_files_need_fewer_blocks_with_cycles() {
             continue;
         };
         let cl = String::from_utf8_lossy(&cl);
-        let machine = trunnion("post");
+        let mut machine = trunnion("post");
+        machine.control.compensation_on_centre = CompensationOnCentre::Wear;
         let moves = run_file(&machine, Capabilities::NONE, &cl, no_tools).good(file);
         let native = run_file(&machine, CYCLES, &cl, no_tools).good(file);
         let count = |kind| {

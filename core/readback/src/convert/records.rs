@@ -44,6 +44,10 @@ pub(super) fn definition(
     if call.peck > 0.0 {
         out.push_str(",STEP,");
         number::write(&mut out, call.peck, LENGTH);
+        if call.later_peck > 0.0 && call.later_peck != call.peck {
+            out.push(',');
+            number::write(&mut out, call.later_peck, LENGTH);
+        }
     }
     if call.dwell > 0.0 {
         out.push_str(",DWELL,");

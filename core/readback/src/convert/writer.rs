@@ -274,9 +274,13 @@ impl ClWriter {
         }
     }
 
-    /// Begins the operation that waits, or one for a tool that has a name.
+    /// Begins the operation that waits, with the name of its tool; where none waits, that name alone.
     fn open_operation(&mut self, tool: Option<&str>, out: &mut String) {
-        let Some(name) = self.begins.take().or(tool.map(str::to_owned)) else {
+        let Some(name) = self.begins.take() else {
+            if let Some(tool) = tool {
+                self.end_cycle(out);
+                let _ = writeln!(out, "TPRINT/{}", text::name(tool));
+            }
             return;
         };
         self.end_cycle(out);

@@ -1,11 +1,11 @@
-//! Holes of cycles: down the axis at feed to the bottom, and out again; the pecks are the control's business.
+//! Holes of cycles: down the axis at feed to the bottom, and out again, in no larger pecks than asked for.
 
 use nalgebra::Vector3;
 
 use super::Verifier;
 use super::place::{Apart, Place};
 use super::state;
-use super::track::{Element, What};
+use super::track::{Element, Hole, What};
 use crate::course::Course;
 use crate::{CycleKind, Motion, MotionKind, Told};
 
@@ -21,8 +21,22 @@ pub(super) struct HoleRun {
     /// The bottom was reached.
     bottom: bool,
     dwelt: bool,
+    stroke: Stroke,
     /// How far it is off its axis as a whole, mm: told once.
     shift: Vector3<f64>,
+}
+
+/// One way down in a hole.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stroke {
+    /// Others went before it.
+    later: bool,
+    /// How far the hole was cut when it began, mm.
+    from: f64,
+    /// How far up the tool went since the last cut, mm below the level where the feed begins.
+    highest: f64,
+    /// What is wrong with pecks was told.
+    told: bool,
 }
 
 /// A hole that was made, as long as nothing else is cut.
@@ -64,6 +78,37 @@ impl Axis {
             axis: place.apart(&self.top).axis,
         };
         (depth, apart)
+    }
+}
+
+impl HoleRun {
+    /// What is wrong with going down to `to` at feed, if no peck goes so far, or comes out before the next: told once a hole.
+    fn too_long(&mut self, asked: &Hole, to: f64, bound: f64) -> Option<String> {
+        let [first, later] = asked.pecks?;
+        if to <= self.deepest {
+            return None;
+        }
+        // Up since the last cut: another stroke begins.
+        let up = self.stroke.highest < self.deepest - bound && self.deepest > 0.0;
+        let in_it = up && self.stroke.highest > bound;
+        if up {
+            self.stroke.later = true;
+            self.stroke.from = self.deepest;
+        }
+        self.stroke.highest = f64::INFINITY;
+        let most = if self.stroke.later { later } else { first };
+        let cut = to - self.stroke.from;
+        let message = if cut > most + bound {
+            format!(
+                "{cut:.3} mm of a hole are cut in one go, and the CL file asks for pecks of {most:.3} mm"
+            )
+        } else if in_it && asked.kind == CycleKind::Deep {
+            "the tool stays in a hole between its pecks, and the CL file asks to come out"
+                .to_owned()
+        } else {
+            return None;
+        };
+        (!std::mem::replace(&mut self.stroke.told, true)).then_some(message)
     }
 }
 
@@ -115,6 +160,7 @@ impl<C: Course> Verifier<'_, C> {
             at: from,
             bottom: false,
             dwelt: false,
+            stroke: Stroke::default(),
             shift,
         });
         true
@@ -209,6 +255,9 @@ impl<C: Course> Verifier<'_, C> {
                 }
             } else {
                 down |= to > from;
+                if let Some(message) = run.too_long(asked, to, bound.point) {
+                    self.fault("hole", message, Some(motion), cl_line, None);
+                }
                 worst = worst.larger(&off);
                 if to > axis.depth + bound.point {
                     let message = format!(
@@ -227,6 +276,9 @@ impl<C: Course> Verifier<'_, C> {
                 }
                 run.deepest = run.deepest.max(to);
                 run.bottom |= run.deepest >= axis.depth - bound.point;
+            }
+            if to < from {
+                run.stroke.highest = run.stroke.highest.min(to);
             }
             run.at = to;
         }

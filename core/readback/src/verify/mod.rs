@@ -8,8 +8,8 @@
 //!
 //! Rapids are free but for what matters of them (`rapid`): they lead from where a cut ends to where the next begins,
 //! past the points that the course asks for, in their order. A cut may be left for a while, if it goes on where it was
-//! left. In a hole the control pecks as it likes (`hole`): the bottom is reached at feed, and no rapid goes where
-//! nothing was cut.
+//! left. In a hole the control pecks as it likes (`hole`), but in no larger pecks than asked for: the bottom is reached at
+//! feed, and no rapid goes where nothing was cut.
 //!
 //! Memory does not grow with the program: of the course only what the program may stand at is kept.
 

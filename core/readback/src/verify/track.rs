@@ -10,7 +10,7 @@ use post_machine::diagnostic::Diagnostic;
 use super::chop;
 use super::place::{Apart, Bound, Place};
 use crate::course::{Course, Item, Piece};
-use crate::{Coolants, CycleKind, MotionKind, Spindle, Told};
+use crate::{Coolants, CycleCall, CycleKind, MotionKind, Spindle, Told};
 
 /// What a course asks to hold while the tool cuts.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -65,6 +65,9 @@ pub(super) enum What {
 #[derive(Clone, Debug)]
 pub(super) struct Hole {
     pub kind: CycleKind,
+    /// How far below the level where its feed begins the first peck may come, and how far each behind it, mm; none: in one
+    /// go.
+    pub pecks: Option<[f64; 2]>,
     /// At the bottom.
     pub dwell: Option<Told>,
     /// How the tool comes back.
@@ -79,7 +82,7 @@ pub(super) struct Track<C> {
     sag: Bound,
     elements: VecDeque<Element>,
     asked: Arc<Asked>,
-    cycle: Option<CycleKind>,
+    cycle: Option<CycleCall>,
     hole: Option<Element>,
     places: Vec<Place>,
     ended: bool,
@@ -227,8 +230,15 @@ impl<C: Course> Track<C> {
         let down = piece.kind != MotionKind::Rapid;
         match &mut self.hole {
             None if down => {
+                let cycle = self.cycle.unwrap_or_default();
+                let later = match cycle.later_peck > 0.0 {
+                    true => cycle.later_peck,
+                    false => cycle.peck,
+                };
+                let pecks = [cycle.clearance + cycle.peck, later];
                 let hole = Hole {
-                    kind: self.cycle.unwrap_or_default(),
+                    kind: cycle.kind,
+                    pecks: (cycle.peck > 0.0).then_some(pecks),
                     dwell: None,
                     back: None,
                 };
@@ -305,7 +315,7 @@ impl<C: Course> Track<C> {
             }
             Told::Cycle(call) => {
                 self.end_hole();
-                self.cycle = Some(call.kind);
+                self.cycle = Some(call);
             }
             Told::CycleEnd => {
                 self.end_hole();

@@ -101,10 +101,18 @@ impl Asks {
         self
     }
 
-    fn hole(mut self, depth: f64) -> Self {
+    fn hole(self, depth: f64) -> Self {
+        self.pecked(depth, CycleKind::Deep, [0.0; 2])
+    }
+
+    /// A hole whose feed begins 2 mm above its point, in pecks.
+    fn pecked(mut self, depth: f64, kind: CycleKind, [peck, later_peck]: [f64; 2]) -> Self {
         let top = self.at.unwrap();
         self = self.tell(Told::Cycle(CycleCall {
-            kind: CycleKind::Deep,
+            kind,
+            clearance: 2.0,
+            peck,
+            later_peck,
             ..CycleCall::default()
         }));
         self.hole = true;
@@ -385,6 +393,79 @@ fn holes_are_pecked_as_the_control_likes() {
     let (found, _) = verify(&does, holes());
     assert_eq!(found.faults, []);
     assert_eq!(found.holes, 2);
+}
+
+/// A hole of 12 mm from Z2 down, each of `down` cut in one go; behind each but the last the tool goes up to `up`.
+fn strokes(down: &[f64], up: f64) -> Does {
+    let mut does = Does::at(0.0, 0.0, 50.0).rapid(0.0, 0.0, 2.0);
+    let mut cut = 2.0;
+    for &to in down {
+        if cut < 2.0 {
+            does = does.rapid(0.0, 0.0, up.max(cut)).rapid(0.0, 0.0, cut + 0.5);
+        }
+        does = does.cut(0.0, 0.0, to);
+        cut = to;
+    }
+    does.rapid(0.0, 0.0, 50.0)
+}
+
+#[test]
+fn pecks_are_no_larger_than_asked_for() {
+    let asks = |kind, pecks| {
+        Asks::default()
+            .rapid(0.0, 0.0, 2.0)
+            .pecked(12.0, kind, pecks)
+            .rapid(0.0, 0.0, 50.0)
+    };
+    let told = |does: &Does, kind, pecks| {
+        let (found, _) = verify(does, asks(kind, pecks));
+        found
+            .faults
+            .iter()
+            .map(|fault| fault.code)
+            .collect::<Vec<_>>()
+    };
+    let none: [&str; 0] = [];
+    use CycleKind::{BreakChip, Deep};
+    for pecks in [[4.0, 0.0], [4.0, 3.0]] {
+        // Counted from the point or from where the feed begins, by rounding and by smaller ones.
+        for down in [
+            &[-4.0, -7.0, -10.0][..],
+            &[-2.0, -5.0, -8.0, -10.0],
+            &[-4.0005, -7.0, -10.0],
+            &[0.0, -2.0, -4.0, -6.0, -8.0, -10.0],
+        ] {
+            assert_eq!(told(&strokes(down, 2.0), Deep, pecks), none, "{down:?}");
+            assert_eq!(
+                told(&strokes(down, 2.0), BreakChip, pecks),
+                none,
+                "{down:?}"
+            );
+            assert_eq!(
+                told(&strokes(down, -1.0), Deep, pecks),
+                ["hole"],
+                "{down:?}"
+            );
+        }
+        for down in [
+            &[-10.0][..],
+            &[-5.0, -8.0, -10.0],
+            &[-2.0, -6.5, -10.0],
+            &[-4.0, -10.0],
+        ] {
+            assert_eq!(told(&strokes(down, 2.0), Deep, pecks), ["hole"], "{down:?}");
+        }
+    }
+    assert_eq!(
+        told(&strokes(&[-4.0, -8.0, -10.0], 2.0), Deep, [4.0, 4.0]),
+        none
+    );
+    assert_eq!(
+        told(&strokes(&[-4.0, -8.0, -10.0], 2.0), Deep, [4.0, 3.0]),
+        ["hole"]
+    );
+    // Nobody asked for pecks.
+    assert_eq!(told(&strokes(&[-10.0], 2.0), Deep, [0.0, 0.0]), none);
 }
 
 #[test]

@@ -26,12 +26,16 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
         let mut labelled = true;
         match name.as_ref() {
             "FEDTO" | "DEPTH" => cycle.depth = Some(items.number(&name, FORM)?),
-            "RAPTO" | "CLEAR" => cycle.clearance = Some(items.number(&name, FORM)?),
-            // CAMWorks gives the first peck and those that follow.
-            "STEP" | "PECKING" => {
-                cycle.step = Some(items.number(&name, FORM)?);
-                cycle.later_step = items.take_number();
+            "RAPTO" | "CLEAR" => {
+                cycle.rapid_to = Some(items.number(&name, FORM)?);
+                cycle.clearance = cycle.rapid_to;
             }
+            // CAMWorks gives the first peck and those that follow, SolidWorks CAM each by its word.
+            "STEP" | "PECKING" | "INCR" | "1STPECK" => {
+                cycle.step = Some(items.number(&name, FORM)?);
+                cycle.later_step = items.take_number().or(cycle.later_step);
+            }
+            "SUBPECK" => cycle.later_step = Some(items.number(&name, FORM)?),
             "PITCH" => cycle.pitch = Some(items.number(&name, FORM)?),
             "TPI" => cycle.turns_per_inch = Some(items.number(&name, FORM)?),
             "DIAMET" | "DIAMTR" | "DIA" => cycle.diameter = Some(items.number(&name, FORM)?),
@@ -56,6 +60,7 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
                 }
             },
             _ if feed_unit(&name).is_some() => {
+                cycle.bare_before_feed = cycle.bare.len();
                 cycle.feed = Some(FeedRate {
                     value: Some(items.number(&name, FORM)?),
                     unit: feed_unit(&name),
@@ -67,6 +72,7 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
         if labelled {
             continue;
         }
+        cycle.bare.extend(item.value);
         match item.value {
             Some(value) => match [&mut cycle.depth, &mut cycle.clearance, &mut cycle.retract]
                 .into_iter()

@@ -3,7 +3,7 @@
 use super::Read;
 use super::items::{Items, word};
 use super::technology::sense;
-use crate::cl::record::{Circle, Delta, Rotate, Sense, Statement};
+use crate::cl::record::{ArcMove, Circle, Delta, Rotate, Sense, Statement};
 use crate::fault::SyntaxFault;
 
 pub(crate) fn goto(items: &mut Items<'_, '_>) -> Read<Statement> {
@@ -131,6 +131,49 @@ pub(crate) fn circle(items: &mut Items<'_, '_>) -> Read<Statement> {
         }
     }
     Ok(Statement::Circle(circle))
+}
+
+/// Autodesk's stock APT posts: centre, axis, radius, `ANGLE` and degrees.
+pub(crate) fn movarc(items: &mut Items<'_, '_>) -> Read<Statement> {
+    const FORM: &str = "MOVARC/x,y,z,i,j,k,radius,ANGLE,degrees";
+    let mut numbers = [0.0; 7];
+    for number in &mut numbers {
+        *number = items.number("MOVARC", FORM)?;
+    }
+    match items.take() {
+        Some(item) if word(item) == "ANGLE" => {}
+        Some(item) => return Err(items.unexpected(item, "ANGLE is expected", FORM)),
+        None => return Err(items.fault(items.rest(), "MOVARC needs an ANGLE", FORM)),
+    }
+    let degrees = items.number("ANGLE", FORM)?;
+    let [x, y, z, i, j, k, radius] = numbers;
+    items.nothing(Statement::ArcMove(ArcMove {
+        centre: [x, y, z],
+        axis: [i, j, k],
+        radius,
+        degrees,
+    }))
+}
+
+/// A direction by its numbers; one by name is left to those who know it.
+pub(crate) fn indirv(items: &mut Items<'_, '_>) -> Read<Statement> {
+    match items.peek() {
+        Some(item) if item.value.is_some() => Ok(Statement::SetOut(items.array("INDIRV/i,j,k")?)),
+        _ => items.other(),
+    }
+}
+
+pub(crate) fn autops(items: &mut Items<'_, '_>) -> Read<Statement> {
+    items.nothing(Statement::PartSurface(None))
+}
+
+pub(crate) fn mcs(items: &mut Items<'_, '_>) -> Read<Statement> {
+    let [xi, xj, xk, yi, yj, yk, zi, zj, zk, ox, oy, oz] =
+        items.array("MCS/ X, Y and Z direction, origin")?;
+    Ok(Statement::Mcs {
+        axes: [[xi, xj, xk], [yi, yj, yk], [zi, zj, zk]],
+        origin: [ox, oy, oz],
+    })
 }
 
 /// CAMWorks puts the number first, in radians, and each move is a step that is undone at the operation's end.

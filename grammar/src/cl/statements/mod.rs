@@ -4,6 +4,7 @@
 //! (`COOLNT/SUPER`, `LOAD/WIRE`, `CUTTER/DISPLY`), the record comes through as [`Statement::Other`],
 //! so that it is reported and not guessed at.
 
+pub(super) mod along;
 pub(super) mod drilling;
 pub(super) mod geometry;
 mod items;
@@ -21,6 +22,9 @@ type Read<T> = Result<T, SyntaxFault>;
 /// Reads the items of one word.
 pub(super) type ReadItems = fn(&mut Items<'_, '_>) -> Read<Statement>;
 
+/// Reads a line whose geometry stands in parentheses.
+pub(super) type ReadGeometry = fn(&Line<'_>) -> Read<Statement>;
+
 /// Takes the text behind one word: its spelling in capitals, the text without blanks around it.
 pub(super) type ReadText = fn(&'static str, String) -> Statement;
 
@@ -37,8 +41,10 @@ pub(super) fn directive(line: &Line<'_>) -> Read<Statement> {
 
 /// A statement of its own.
 pub(super) fn statement(line: &Line<'_>) -> Read<Statement> {
-    let Some(Behind::Items(read)) = line.known.map(|word| word.behind) else {
-        return Ok(other(line, false));
+    let read = match line.known.map(|word| word.behind) {
+        Some(Behind::Items(read)) => read,
+        Some(Behind::Geometry(read)) => return read(line),
+        _ => return Ok(other(line, false)),
     };
     if let Some(first) = line.items.first().filter(|_| !line.slash) {
         let message = format!("a `/` must stand between {} and what follows it", line.word);

@@ -185,6 +185,14 @@ fn only_whole(items: &[Item<'_>]) -> Option<u32> {
     whole.then_some(value as u32)
 }
 
+/// `MODE/MILL`; what else it may be is left to those who know it.
+pub(crate) fn mode(items: &mut Items<'_, '_>) -> Read<Statement> {
+    match items.line.items.as_slice() {
+        [item] if word(item) == "MILL" => Ok(Statement::Milling),
+        _ => items.other(),
+    }
+}
+
 pub(crate) fn rapid(items: &mut Items<'_, '_>) -> Read<Statement> {
     items.nothing(Statement::Rapid)
 }

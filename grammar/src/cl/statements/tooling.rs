@@ -12,6 +12,7 @@ pub(crate) fn load_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
     }
     let mut tool = LoadTool {
         number: items.whole(&items.line.word, FORM)?,
+        described: items.line.word == "TOOLNO",
         ..LoadTool::default()
     };
     while let Some(item) = items.take() {

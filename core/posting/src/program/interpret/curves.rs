@@ -9,7 +9,7 @@ use crate::program::{Arc, ArcStep, Spline, SplineStep, Step};
 use post_machine::diagnostic::Short;
 
 /// Ends of an arc whose distances from its centre differ by more are no arc: mm.
-const ARC_MISMATCH: f64 = 0.1;
+pub(super) const ARC_MISMATCH: f64 = 0.1;
 
 impl Interpreter {
     pub(super) fn arc(
@@ -155,6 +155,7 @@ impl Interpreter {
         let Some(Pending::Spline { knots, points }) = self.pending.take() else {
             return;
         };
+        self.refuse_suspects();
         // The RAPID that may stand behind the spline is meant for the record that ends it.
         let rapid = std::mem::take(&mut self.rapid);
         let pace = self.pace(record);

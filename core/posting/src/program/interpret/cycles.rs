@@ -23,6 +23,19 @@ impl Interpreter {
         emit: &mut impl FnMut(Step),
     ) {
         self.rapid = false;
+        let (drill, point) = match drill.on_bottom(point, self.axis) {
+            Ok(Some(above)) => above,
+            Ok(None) => (drill, point),
+            Err(message) => {
+                self.fault(
+                    record,
+                    "cycle",
+                    message,
+                    "let the CAM system write it as moves",
+                );
+                return;
+            }
+        };
         let Some(drill) = (match drill.taps() {
             true => self.thread(record, drill, feed),
             false => Some(drill),
@@ -116,9 +129,68 @@ impl Interpreter {
         }
     }
 
+    /// Whether the form is one that says what it means: its pecks, and what stands where.
+    fn written(&mut self, record: &Record<'_>, definition: &CycleDefinition) -> Result<(), String> {
+        if let Some(kind) = DrillCycle::lacks_pecks(definition) {
+            if !self.reading.allows(kind) {
+                return Err(format!(
+                    "CYCLE/{kind} without a peck (STEP, PECKING, 1STPECK, INCR): the tool would go to the bottom in one go; --allow {kind} lets it"
+                ));
+            }
+            self.allow(kind, "is drilled in one go", record);
+        }
+        if definition.feed.is_some() && definition.bare_before_feed > 1 {
+            return Err(
+                "more than one number stands before the unit of the feed: which of them is the feed (Creo's fixed form) and which a height, nobody here knows"
+                    .to_owned(),
+            );
+        }
+        let by_position = definition.bare.len() > 1 && definition.feed.is_none();
+        if self.writer.catia && by_position {
+            return Err(
+                "in CATIA's files the place of a number in CYCLE is that of the machine's NC table: which of them is the feed and which a height, nobody here knows"
+                    .to_owned(),
+            );
+        }
+        if self.writer.autodesk && definition.bare.len() > 2 {
+            return Err("the numbers behind the clearance plane are not known here".to_owned());
+        }
+        Ok(())
+    }
+
+    /// In the stock APT posts of Autodesk the depth counts from the stock down to the point, which is the bottom, and the
+    /// clearance plane is a height of the part.
+    fn with_heights(
+        &mut self,
+        record: &Record<'_>,
+        drill: DrillCycle,
+        definition: &CycleDefinition,
+    ) -> DrillCycle {
+        let (true, [_, plane]) = (self.writer.autodesk, definition.bare.as_slice()) else {
+            return drill;
+        };
+        if !std::mem::replace(&mut self.writer.told_heights, true) {
+            self.warn(
+                record,
+                "cycle",
+                "the points of cycles are taken for the bottoms of the holes and their clearance plane for a height of the part, as \
+                 the published text of Autodesk's stock APT post has it: look at the first hole"
+                    .to_owned(),
+            );
+        }
+        let plane = plane * self.scale;
+        drill.by_planes(
+            plane,
+            plane - definition.rapid_to.unwrap_or(0.0) * self.scale,
+        )
+    }
+
     pub(super) fn define_cycle(&mut self, record: &Record<'_>, definition: &CycleDefinition) {
-        let drill = match DrillCycle::new(definition, self.scale) {
-            Ok(drill) => drill,
+        let drill = self
+            .written(record, definition)
+            .and_then(|()| DrillCycle::new(definition, self.scale));
+        let drill = match drill {
+            Ok(drill) => self.with_heights(record, drill, definition),
             Err(message) => {
                 self.cycle = None;
                 self.cycle_lost = true;

@@ -9,12 +9,14 @@ mod moves;
 mod readiness;
 mod reading;
 mod tools;
+mod turned;
 mod words;
+mod writer;
 
 use nalgebra::Vector3;
 use post_grammar::text::{as_remark, excerpt};
 use post_grammar::{
-    Circle, Coolant as CoolantWord, Delay, Delta, Record, Side, Statement, Units, Usage,
+    ArcMove, Circle, Coolant as CoolantWord, Delay, Delta, Record, Side, Statement, Units, Usage,
 };
 use post_machine::description::{Print, Smoothing};
 use post_plugin::{Coolant, SpindleSense};
@@ -26,6 +28,9 @@ use super::limits::{LONGEST_DWELL, MOST_WORDS, direction};
 use super::word_census::WordCensus;
 use super::{Command, DrillCycle, Pace, PlaneStep, Step};
 use post_machine::diagnostic::{Diagnostic, Place, Short};
+use turned::ArcAxes;
+use words::Suspect;
+use writer::Writer;
 
 /// Turns records into steps.
 #[derive(Debug)]
@@ -77,6 +82,11 @@ pub struct Interpreter {
     cutter_changed: bool,
     /// Some number was read that the units gave its meaning.
     measured: bool,
+    /// Some move was read.
+    moved: bool,
+    /// Records behind a move that may carry a path, and that nobody here knows: none may be left out where a further
+    /// move follows.
+    suspects: Vec<Suspect>,
     /// Some move was read since the last tool was loaded.
     cut_any: bool,
     /// The cutters described so far, in the order of the numbers of their tools, and the tool that is to be loaded for the
@@ -90,10 +100,15 @@ pub struct Interpreter {
     /// Cutter compensation is in force, and its register.
     compensated: bool,
     register: Option<u32>,
-    /// The file says that its points are the tool's centre, whatever `CUTCOM` says.
-    on_centre: bool,
-    /// Set once it was told what becomes of `CUTCOM` then.
+    /// What the file has shown of who wrote it.
+    writer: Writer,
+    /// Set once it was told what becomes of `CUTCOM` on points of the tool's centre.
     told_on_centre: bool,
+    /// `INDIRV`, unit vector, frame of the file.
+    set_out: Option<Vector3<f64>>,
+    /// Normal of the plane that `AUTOPS` or `PSIS` names, unit vector, frame of the file.
+    part_surface: Option<Vector3<f64>>,
+    arc_axes: ArcAxes,
     tool_name: String,
     diameter: Option<f64>,
     /// A cycle was refused: the points that it acts at are no moves.
@@ -137,6 +152,7 @@ const SHOWN_NAME: usize = 80;
 #[derive(Clone, Debug)]
 enum Pending {
     Arc(Circle),
+    Turned(ArcMove),
     Spline {
         knots: Vec<f64>,
         points: Vec<Vector3<f64>>,
@@ -180,6 +196,8 @@ impl Interpreter {
             loaded: None,
             cutter_changed: false,
             measured: false,
+            moved: false,
+            suspects: Vec::new(),
             cut_any: false,
             cutters: Vec::new(),
             file_loads: false,
@@ -187,8 +205,11 @@ impl Interpreter {
             described: None,
             compensated: false,
             register: None,
-            on_centre: false,
+            writer: Writer::default(),
             told_on_centre: false,
+            set_out: None,
+            part_surface: None,
+            arc_axes: ArcAxes::default(),
             tool_name: String::new(),
             diameter: None,
             cycle_lost: false,
@@ -238,15 +259,22 @@ impl Interpreter {
     pub fn finish(&mut self) {
         match self.pending.take() {
             None => {}
-            Some(Pending::Arc(_)) => self.findings.push(Diagnostic::error(
+            Some(Pending::Arc(_) | Pending::Turned(_)) => self.findings.push(Diagnostic::error(
                 "arc",
-                "the file ends with a CIRCLE that no GOTO ends",
+                "the file ends with a CIRCLE or MOVARC that no GOTO ends",
             )),
             Some(Pending::Spline { .. }) => self.findings.push(Diagnostic::error(
                 "spline",
                 "the file ends within a NURBS: no GOTO, END-OF-PATH or FINI follows it",
             )),
         }
+        if self.set_out.is_some() {
+            self.findings.push(Diagnostic::error(
+                "arc",
+                "the file ends with an INDIRV that no TLON follows",
+            ));
+        }
+        self.clear_suspects();
         if self.tip.is_some() && self.units.is_none() && self.reading.units.is_none() {
             match self.feed_units {
                 Some(Units::Inch) => self.findings.push(
@@ -358,6 +386,8 @@ impl Interpreter {
                 self.load_told(record, emit);
                 self.spindle(record, *spindle, emit);
             }
+            // The kind stands in the record behind it.
+            Statement::Coolant(CoolantWord::On) if self.writer.autodesk => {}
             Statement::Coolant(word) => {
                 let coolant = match word {
                     CoolantWord::Off => Coolant::Off,
@@ -400,6 +430,8 @@ impl Interpreter {
                     self.axis = Vector3::z();
                 }
             }
+            Statement::Milling => self.writer.milling = true,
+            Statement::Mcs { axes, origin } => self.mcs(record, axes, origin),
             Statement::Msys { origin, x, y } => {
                 let Some(origin) = self.point(record, *origin) else {
                     return;
@@ -411,16 +443,21 @@ impl Interpreter {
                     self.fault(record, "msys", message.to_owned(), "");
                 }
             }
-            Statement::Circle(circle) => {
-                if self.pending.is_some() {
-                    self.fault(
-                        record,
-                        "arc",
-                        "the curve before this CIRCLE is not ended by a GOTO".to_owned(),
-                        "",
-                    );
+            Statement::Circle(circle) => self.wait_for_end(record, Pending::Arc(circle.clone())),
+            Statement::ArcMove(arc) => self.wait_for_end(record, Pending::Turned(*arc)),
+            Statement::SetOut(along) => match direction(Vector3::from(*along)) {
+                Some(along) => {
+                    self.set_out = Some(along);
+                    self.due = true;
                 }
-                self.pending = Some(Pending::Arc(circle.clone()));
+                None => self.fault(record, "arc", "INDIRV has no direction".to_owned(), ""),
+            },
+            Statement::PartSurface(normal) => {
+                self.part_surface = direction(Vector3::from(normal.unwrap_or([0.0, 0.0, 1.0])));
+            }
+            Statement::AlongArc(along) => {
+                self.end_spline(record, emit);
+                self.along_arc(record, along, emit);
             }
             Statement::Nurbs => {
                 self.end_spline(record, emit);
@@ -449,7 +486,7 @@ impl Interpreter {
                 self.load_told(record, emit);
                 self.cutcom(record, *cutcom, emit);
             }
-            Statement::CutcomOnCentre(on_centre) => self.on_centre = *on_centre,
+            Statement::CutcomOnCentre(on_centre) => self.writer.says_points(*on_centre),
             Statement::Rotate(_) if self.frame.sits_turned() => self.fault(
                 record,
                 "rotabl",
@@ -527,7 +564,11 @@ impl Interpreter {
                 emit(Step::Command(Command::Comment(as_remark(text.clone()))))
             }
             Statement::Insert(text) => self.insert(record, text, emit),
+            Statement::ToolName(name) => self.tool_name = as_remark(name.clone()),
             Statement::Csys(_) | Statement::Remark(_) => {
+                if let Statement::Remark(text) = &record.statement {
+                    self.writer.remark(text);
+                }
                 self.count(record.statement.word(), record, Usage::Ignored);
             }
             Statement::Fini => {
@@ -540,6 +581,33 @@ impl Interpreter {
                 arguments,
                 directive,
             } => self.other_word(record, word, arguments, *directive, emit),
+        }
+    }
+
+    /// A curve that the next point ends.
+    fn wait_for_end(&mut self, record: &Record<'_>, curve: Pending) {
+        if self.pending.is_some() {
+            let word = record.statement.word();
+            self.fault(
+                record,
+                "arc",
+                format!("the curve before this {word} is not ended by a GOTO"),
+                "",
+            );
+        }
+        self.pending = Some(curve);
+    }
+
+    /// The frame of an operation: only that of the part is understood.
+    fn mcs(&mut self, record: &Record<'_>, axes: &[[f64; 3]; 3], origin: &[f64; 3]) {
+        let own = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        if *axes != own || *origin != [0.0; 3] {
+            self.fault(
+                record,
+                "mcs",
+                "MCS is a frame of its own: whether the points behind it are meant in it, nobody here knows".to_owned(),
+                "let the CAM system write the tool axis with each point (MULTAX/ON), in the frame of the part",
+            );
         }
     }
 

@@ -40,7 +40,7 @@ impl Interpreter {
         emit: &mut impl FnMut(Step),
     ) {
         let pending = match self.pending.take() {
-            Some(Pending::Arc(circle)) => Some(circle),
+            Some(arc @ (Pending::Arc(_) | Pending::Turned(_))) => Some(arc),
             Some(spline) => {
                 self.pending = Some(spline);
                 self.end_spline(record, emit);
@@ -64,8 +64,16 @@ impl Interpreter {
         let Some(tip) = self.point(record, point) else {
             return;
         };
-        if let Some(circle) = pending {
-            self.arc(record, &circle, tip, start_axis, emit);
+        if let Some(pending) = pending {
+            let circle = match pending {
+                Pending::Arc(circle) => Some(circle),
+                Pending::Turned(arc) => self.turned(record, &arc, tip),
+                Pending::Spline { .. } => None,
+            };
+            match circle {
+                Some(circle) => self.arc(record, &circle, tip, start_axis, emit),
+                None => self.tip = Some(tip),
+            }
         } else if let Some((drill, feed)) = self.cycle
             && let Some(pace) = self.resolved(record, feed)
         {
@@ -151,6 +159,7 @@ impl Interpreter {
     pub(super) fn arrive(&mut self, tip: Vector3<f64>) {
         self.tip = Some(tip);
         self.measured = true;
+        self.moved = true;
         self.cut_any = true;
     }
 

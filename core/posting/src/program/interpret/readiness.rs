@@ -23,6 +23,16 @@ impl Interpreter {
                 "one of the two is wrong: check the operation's set-up in the CAM system",
             );
         }
+        self.refuse_suspects();
+        if self.set_out.take().is_some() {
+            self.fault(
+                record,
+                "arc",
+                "INDIRV says where the tool sets out along a curve, and no TLON follows it"
+                    .to_owned(),
+                "",
+            );
+        }
         self.load_told(record, emit);
         if std::mem::take(&mut self.cutter_changed) {
             self.refuse_cutter(record);

@@ -2,10 +2,11 @@
 
 use post_grammar::text::excerpt;
 use post_grammar::{
-    Argument, Cutcom, LoadTool, Record, Sense, Side, Spindle as SpindleWord, SpindleUnit,
+    Argument, Cutcom, LoadTool, Record, Sense, Side, Spindle as SpindleWord, SpindleUnit, Usage,
 };
 use post_plugin::{Compensation, Spindle, SpindleSense};
 
+use super::writer::CutPoints;
 use super::{Described, Interpreter, SHOWN_NAME};
 use crate::program::limits::{MOST_COORDINATE, MOST_TOOLS};
 use crate::program::{Command, Step, Tool};
@@ -21,7 +22,7 @@ impl Interpreter {
     ) {
         self.spindle_said = true;
         self.may_cut = self.need_not_turn();
-        let step = match spindle {
+        let step = match self.spindle_meant(record, spindle) {
             SpindleWord::Off => Spindle::Off,
             SpindleWord::Orient => Spindle::Orient,
             SpindleWord::On {
@@ -95,6 +96,30 @@ impl Interpreter {
             }
         };
         emit(Step::Command(Command::Spindle(step)));
+    }
+
+    /// Autodesk's stock APT posts stop the spindle by `SPINDL/ON` and start it by `SPINDL/OFF`: the two are exchanged in the
+    /// posts' own table.
+    fn spindle_meant(&mut self, record: &Record<'_>, spindle: SpindleWord) -> SpindleWord {
+        let on = SpindleWord::On {
+            speed: None,
+            unit: SpindleUnit::Rpm,
+            sense: None,
+            most: None,
+        };
+        let meant = match spindle {
+            SpindleWord::Off if self.writer.autodesk => on,
+            spindle if self.writer.autodesk && spindle == on => SpindleWord::Off,
+            _ => return spindle,
+        };
+        if !std::mem::replace(&mut self.writer.told_spindle, true) {
+            self.warn(
+                record,
+                "spindle",
+                "SPINDL/ON stops the spindle and SPINDL/OFF starts it, as Autodesk's stock APT posts write it".to_owned(),
+            );
+        }
+        meant
     }
 
     pub(super) fn load(
@@ -190,6 +215,13 @@ impl Interpreter {
         tool: &LoadTool,
         emit: &mut impl FnMut(Step),
     ) {
+        if self.writer.catia && tool.described {
+            // LOADTL loads it.
+            self.count("TOOLNO", record, Usage::Ignored);
+            return;
+        }
+        let (tool, radius_register) = self.by_position(tool);
+        let tool = &tool;
         self.file_loads = true;
         if self.reading.tool_from_cutter {
             self.fault(
@@ -226,6 +258,31 @@ impl Interpreter {
             self.warn(record, "tool", message);
         }
         self.load(record, tool, emit);
+        self.register = radius_register.or(self.register);
+    }
+
+    /// The tool change with the numbers that its writer has by position, and the register of the cutter's radius.
+    fn by_position(&mut self, tool: &LoadTool) -> (LoadTool, Option<u32>) {
+        let mut read = tool.clone();
+        let some = |register: u32| (register > 0).then_some(register);
+        if self.writer.milling
+            && let Some((register, body)) = tool.of_autodesk()
+        {
+            self.writer.autodesk = true;
+            read.register = some(register);
+            // That of the tool's body is no length from the gauge line.
+            self.cutter_length = Some(body * self.scale);
+            read.rest.clear();
+            return (read, None);
+        }
+        if self.writer.catia
+            && let Some([radius, length]) = tool.of_catia()
+        {
+            read.register = some(length);
+            read.rest.clear();
+            return (read, some(radius));
+        }
+        (read, None)
     }
 
     /// A cutter's description; `length` is where its length stands.
@@ -335,20 +392,41 @@ impl Interpreter {
     /// Points of the tool's centre are already off the contour by its radius: a register that holds the radius would
     /// add it once more. Told once a file.
     fn check_on_centre(&mut self, record: &Record<'_>, register: u32) {
-        if !self.on_centre || std::mem::replace(&mut self.told_on_centre, true) {
+        let option = self.reading.compensation_on_centre;
+        let (why, presumed) = match self.writer.points() {
+            CutPoints::Centre(why) => (why, false),
+            CutPoints::Presumed(why) if option != CompensationOnCentre::Contour => (why, true),
+            CutPoints::Contour if self.writer.autodesk && !self.told_on_centre => {
+                self.told_on_centre = true;
+                let message = format!(
+                    "CUTCOM in a file of Autodesk's, which does not say what its points are: with compensation \"in control\" they are the contour, \
+                     with \"wear\" the tool's centre, and register {register} must hold the wear alone"
+                );
+                self.warn(record, "compensation", message);
+                return;
+            }
+            CutPoints::Presumed(_) | CutPoints::Contour => return,
+        };
+        if std::mem::replace(&mut self.told_on_centre, true) {
             return;
         }
         let place = self.place(record);
-        let path = "the points are the tool's centre (CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER)";
-        let finding = match self.reading.compensation_on_centre {
-            CompensationOnCentre::Refuse => Diagnostic::error(
+        let path = format!("the points are the tool's centre ({why})");
+        let finding = match option {
+            CompensationOnCentre::Refuse | CompensationOnCentre::Contour => Diagnostic::error(
                 "compensation",
                 format!("CUTCOM where {path}: with the radius in register {register} the part would be off by the radius"),
             )
-            .help(
-                "let the CAM system put out the contour; or, where that register holds the tool's wear alone, \
-                 [control] compensation_on_centre = \"wear\"",
-            ),
+            .help(match presumed {
+                false => {
+                    "let the CAM system put out the contour; or, where that register holds the tool's wear alone, \
+                     [control] compensation_on_centre = \"wear\""
+                }
+                true => {
+                    "where that register holds the tool's wear alone: [control] compensation_on_centre = \"wear\"; \
+                     where the CAM system puts out the contour: \"contour\""
+                }
+            }),
             CompensationOnCentre::Wear => Diagnostic::warning(
                 "compensation",
                 format!("CUTCOM where {path}: register {register} must hold the tool's wear alone, not its radius"),

@@ -1,11 +1,22 @@
 //! Words without a meaning of their own, and `INSERT`: carried out by a rule of the machine file, left out, or refused.
 
 use post_grammar::text::{as_remark, escaped, excerpt, is_unprintable};
-use post_grammar::{Argument, Record, Usage};
+use post_grammar::{Argument, Record, UnknownPath, Usage};
 use post_machine::description::Insert;
+use post_machine::diagnostic::{Diagnostic, Place};
 
-use super::{Interpreter, SHOWN_NAME};
+use super::{Interpreter, SHOWN_NAME, record_place};
 use crate::program::{Command, Step, Unknown};
+
+/// A record that may carry a path.
+#[derive(Debug)]
+pub(super) struct Suspect {
+    word: String,
+    place: Place,
+}
+
+/// So many of them are told of.
+const MOST_SUSPECTS: usize = 100;
 
 impl Interpreter {
     pub(super) fn other_word(
@@ -16,9 +27,13 @@ impl Interpreter {
         directive: bool,
         emit: &mut impl FnMut(Step),
     ) {
-        self.wants_fini |= directive || ends_with_fini(word);
+        self.writer.word(word);
+        self.wants_fini |= directive || self.writer.is_camworks();
         // A directive is meant for another program.
         if !directive && self.by_rule(record, word, arguments, emit) {
+            return;
+        }
+        if record.statement.unknown_path().is_some() && self.carries_path(record, word) {
             return;
         }
         let usage = record.statement.usage();
@@ -39,6 +54,53 @@ impl Interpreter {
             emit(Step::Command(Command::Comment(as_remark(
                 record.text().into_owned(),
             ))));
+        }
+    }
+
+    /// A record that may carry a path and that nobody here knows; false if it may be left out all the same, since the
+    /// tool has not moved yet.
+    fn carries_path(&mut self, record: &Record<'_>, word: &str) -> bool {
+        if record.statement.unknown_path() == Some(UnknownPath::Word) {
+            self.fault(
+                record,
+                "refused-word",
+                format!("{word} moves the tool, or says which records do, and post does not know this form of it: it cannot be left out"),
+                "let the CAM system write GOTO and CIRCLE instead; [cl.words] in the machine file gives the lines of the program that it stands for",
+            );
+            return true;
+        }
+        if self.moved && self.suspects.len() < MOST_SUSPECTS {
+            self.due = true;
+            self.suspects.push(Suspect {
+                word: word.to_owned(),
+                place: record_place(&self.reading.file, record),
+            });
+        }
+        self.moved
+    }
+
+    /// A move follows: what may carry a path stands between moves.
+    pub(super) fn refuse_suspects(&mut self) {
+        for Suspect { word, place } in std::mem::take(&mut self.suspects) {
+            let message = format!(
+                "{word} is not a word that post knows, and stands with its numbers between moves: it may be a move itself, and cannot be left out"
+            );
+            let help = "let the CAM system write GOTO and CIRCLE instead; [cl.words] in the machine file gives the lines of the program that it stands for";
+            let finding = Diagnostic::error("unknown-path", message).help(help);
+            self.findings.push(finding.at(Some(place)));
+        }
+    }
+
+    /// The file ends: no move follows, so that the records are as any other that nobody knows.
+    pub(super) fn clear_suspects(&mut self) {
+        for Suspect { word, place } in std::mem::take(&mut self.suspects) {
+            match self.reading.allows(&word) {
+                true => self.census.allow(&word, "is left out", place),
+                false => {
+                    // Full, it was said.
+                    let _ = self.census.count(&word, Usage::Unknown, || place);
+                }
+            }
         }
     }
 
@@ -114,15 +176,6 @@ impl Interpreter {
         }
         emit(Step::Command(Command::Comment(as_remark(text))));
     }
-}
-
-/// Words that are found only in the files of systems that end every file with `FINI`: CAMWorks and SolidWorks CAM. (Of
-/// Creo the directives tell.)
-fn ends_with_fini(word: &str) -> bool {
-    matches!(
-        word,
-        "BOX" | "MOVE_ATTRIB" | "OPFEATSTART" | "OPFEATEND" | "TRNTYP"
-    ) || word.starts_with("CSI_")
 }
 
 /// What an `INSERT` holds. SolidWorks CAM describes tools and stock with it (`14MM CRB 4FL 32 LOC`,

@@ -9,8 +9,11 @@ fn cycles_that_moves_cannot_make_are_errors() {
         ("DRILL,FEDTO,-5,RAPTO,2,MMPM,50", ""),
         ("DRILL,FEDTO,-5,RAPTO,0,MMPM,50", ""),
         ("DRILL,DEEP,FEDTO,-5,RAPTO,2,STEP,1,MMPM,50", ""),
-        ("DEEP,FEDTO,-5,RAPTO,2,MMPM,50", "warning cycle"),
-        ("BRKCHP,FEDTO,-5,RAPTO,2,MMPM,50", "warning cycle"),
+        ("DEEP,FEDTO,-5,RAPTO,2,MMPM,50", "error cycle"),
+        ("BRKCHP,FEDTO,-5,RAPTO,2,MMPM,50", "error cycle"),
+        ("DEEP,FEDTO,-5,RAPTO,2,STEP,0,MMPM,50", "error cycle"),
+        // Creo's fixed form: the feed before its unit.
+        ("DRILL,-5,100,MMPM,2", "error cycle"),
         ("TAP,FEDTO,-5,RAPTO,2,MMPM,50", "error cycle"),
         ("RTAP,FEDTO,-5,RAPTO,2,MMPM,50", "error cycle"),
         ("DRILL,TAP,FEDTO,-5,RAPTO,2,MMPM,50", "error cycle"),

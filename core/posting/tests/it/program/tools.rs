@@ -106,7 +106,7 @@ fn the_register_of_compensation_does_not_outlive_its_tool() {
 /// Points of the tool's centre and the radius in the register: the part would be off by the radius.
 #[test]
 fn compensation_on_the_tools_centre_is_wear_or_refused() {
-    use post_machine::description::CompensationOnCentre::{Refuse, Wear};
+    use post_machine::description::CompensationOnCentre::{Contour, Refuse, Wear};
     let centre = "$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_CENTER";
     let remark = "REMARK -> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_CENTER";
     let contour = "$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_PROFILE";
@@ -116,6 +116,14 @@ fn compensation_on_the_tools_centre_is_wear_or_refused() {
         (remark, Refuse, "error compensation"),
         (centre, Wear, "warning compensation"),
         (contour, Refuse, ""),
+        (centre, Contour, "error compensation"),
+        ("$$ centerline data", Refuse, "error compensation"),
+        ("$$ centerline data", Wear, "warning compensation"),
+        ("$$ centerline data", Contour, "error compensation"),
+        // SolidWorks CAM does not say.
+        ("MOVE_ATTRIB/LEADIN", Refuse, "error compensation"),
+        ("MOVE_ATTRIB/LEADIN", Wear, "warning compensation"),
+        ("MOVE_ATTRIB/LEADIN", Contour, ""),
     ] {
         let reading = Reading {
             compensation_on_centre: on_centre,
@@ -137,7 +145,7 @@ fn compensation_on_the_tools_centre_is_wear_or_refused() {
             );
             assert!(text.contains("register 7"), "{text}");
             let names_it = text.contains("compensation_on_centre = \"wear\"");
-            assert_eq!(names_it, on_centre == Refuse, "{text}");
+            assert_eq!(names_it, on_centre != Wear, "{text}");
             assert_eq!(told.place.as_ref().map(|place| place.line), Some(5));
         }
         // Without CUTCOM nobody cares, and the next operation may say otherwise.

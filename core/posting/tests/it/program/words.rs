@@ -56,6 +56,7 @@ fn unknown_words_go_by_the_policy() {
     const TEXT: &str = "UNITS/MM;FEDRAT/100;FROBN/1,UP;GOTO/1,0,0;FROBN/2";
     let cases = [
         (Unknown::Error, "F100 1,0,0", "error unknown-word"),
+        (Unknown::Known, "F100 1,0,0", "error unknown-word"),
         (Unknown::Warn, "F100 1,0,0", "warning unknown-word"),
         (
             Unknown::Pass,

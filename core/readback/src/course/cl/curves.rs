@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_grammar::{Circle, Record, Sense, Statement};
+use post_grammar::{ArcMove, Circle, Record, Sense, Statement};
 use post_machine::kinematics::Pose;
 
 use super::modal::{Meant, Modal, Out};
@@ -12,10 +12,10 @@ use crate::SplineWay;
 use crate::course::Curve;
 
 /// Ends of an arc nearer than this are one point, and the arc a whole turn: mm.
-const CLOSED: f64 = 1e-3;
+pub(super) const CLOSED: f64 = 1e-3;
 
 /// Ends of an arc whose distances from its axis differ by more are no arc: mm.
-const NO_ARC: f64 = 0.1;
+pub(super) const NO_ARC: f64 = 0.1;
 
 /// More knots or poles than this stand in no file: a spline is held in memory until it ends.
 const MOST_NUMBERS: usize = 1_000_000;
@@ -24,6 +24,7 @@ const MOST_NUMBERS: usize = 1_000_000;
 #[derive(Clone, Debug)]
 pub(super) enum Pending {
     Arc(Circle),
+    Turned(ArcMove),
     Spline {
         /// Knots between the ends, and the last.
         knots: Vec<f64>,
@@ -42,8 +43,14 @@ impl Modal {
             _ => None,
         };
         let done = match (&record.statement, &mut self.pending) {
-            (Statement::Circle(_), Some(Pending::Arc(_))) => {
-                faulty("the CIRCLE before this one is not ended by a point")
+            (
+                Statement::Circle(_) | Statement::ArcMove(_),
+                Some(Pending::Arc(_) | Pending::Turned(_)),
+            ) => faulty("the arc before this one is not ended by a point"),
+            (Statement::ArcMove(arc), _) => {
+                self.end_spline(record, out)?;
+                self.pending = Some(Pending::Turned(*arc));
+                Ok(())
             }
             (Statement::Circle(circle), _) => {
                 self.end_spline(record, out)?;
@@ -63,7 +70,9 @@ impl Modal {
                     None => faulty("NURBS begins where the tool stands, and nobody knows where"),
                 }
             }
-            (_, None | Some(Pending::Arc(_))) => faulty("no NURBS stands before this"),
+            (_, None | Some(Pending::Arc(_) | Pending::Turned(_))) => {
+                faulty("no NURBS stands before this")
+            }
             (_, Some(Pending::Spline { knots, poles }))
                 if knots.len().max(poles.len()) > MOST_NUMBERS =>
             {
@@ -142,6 +151,9 @@ impl Modal {
     pub(super) fn end_spline(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
         if !matches!(self.pending, Some(Pending::Spline { .. })) {
             return Ok(());
+        }
+        if let Some(fault) = self.strange.between_moves() {
+            return Err(fault);
         }
         let (Some(Pending::Spline { knots, poles }), Some(from)) =
             (self.pending.take(), self.stands)

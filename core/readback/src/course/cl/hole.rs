@@ -15,12 +15,16 @@ pub(super) struct Hole {
     /// Where the tool stands between holes.
     pub(super) level: f64,
     pub(super) peck: f64,
+    /// Of those behind the first.
+    pub(super) later_peck: f64,
     /// At the bottom, s.
     pub(super) dwell: f64,
     /// At the bottom, turns of the spindle (`DWELL,REV,2`).
     pub(super) dwell_turns: f64,
     /// A thread's way a turn, mm, if its words say it; negative for a left-hand thread.
     pub(super) pitch: Option<f64>,
+    /// Of Autodesk: its points are bottoms, and these heights along Z those of the level and of the clearance, mm.
+    pub(super) planes: Option<[f64; 2]>,
 }
 
 /// A dwell in a hole lasts no longer: a day, s.
@@ -64,10 +68,30 @@ impl Hole {
             depth: depth(cycle)? * scale,
             level: level.max(clearance),
             peck,
+            later_peck: match cycle.later_step {
+                Some(later) if later != 0.0 => libm::fabs(later) * scale,
+                _ => peck,
+            },
             dwell,
             dwell_turns: turns(cycle),
             pitch,
+            planes: None,
         })
+    }
+
+    /// The kind of a cycle that goes in pecks and says none.
+    pub(super) fn without_pecks(cycle: &CycleDefinition) -> Option<&str> {
+        let pecked = |kind: &&String| {
+            matches!(
+                kind.as_str(),
+                "DEEP" | "DEEP2" | "DEEPHL" | "BRKCHP" | "CHIP"
+            )
+        };
+        let kind = cycle.kinds.iter().find(pecked)?;
+        cycle
+            .step
+            .is_none_or(|step| step == 0.0)
+            .then_some(kind.as_str())
     }
 
     /// It cuts a thread.
@@ -87,6 +111,7 @@ impl Hole {
             depth: self.clearance + self.depth,
             clearance: self.clearance,
             peck: self.peck,
+            later_peck: self.later_peck,
             dwell: self.dwell,
             feed: self.pitch.filter(|_| self.taps()).map_or(feed, libm::fabs),
             per_revolution: self.taps() && self.pitch.is_some(),

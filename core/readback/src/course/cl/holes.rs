@@ -1,6 +1,7 @@
 //! Holes: what a cycle does at a point becomes pieces.
 
-use post_grammar::{Cycle, Record};
+use post_grammar::{Cycle, CycleDefinition, Record};
+use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 
 use super::feed::FeedWord;
@@ -19,8 +20,7 @@ impl Modal {
             Cycle::On => self.cycle = self.last_cycle,
             Cycle::Define(definition) => {
                 self.cycle = None;
-                let hole = Hole::new(definition, self.scale);
-                let hole = hole.map_err(|why| self.fault(record, why))?;
+                let hole = self.hole(record, definition)?;
                 let feed = match definition.feed {
                     Some(feed) => self.feed_word(record, feed)?,
                     // A thread's feed follows from its pitch.
@@ -37,6 +37,67 @@ impl Modal {
         Ok(())
     }
 
+    /// What a definition says, in the way of its writer.
+    fn hole(
+        &self,
+        record: &Record<'_>,
+        definition: &CycleDefinition,
+    ) -> Result<Hole, Box<Diagnostic>> {
+        let faulty = |why: &str| Err(self.fault(record, why.to_owned()));
+        if let Some(kind) = Hole::without_pecks(definition)
+            && !self.settings.allows(kind)
+        {
+            return faulty(&format!("CYCLE/{kind} without a peck"));
+        }
+        let bare = definition.bare.as_slice();
+        let by_feed = definition.feed.is_some() && definition.bare_before_feed > 1;
+        let by_table = self.strange.catia && definition.feed.is_none() && bare.len() > 1;
+        if by_feed || by_table {
+            return faulty("which of the numbers of this cycle is a height is not known");
+        }
+        let mut hole = Hole::new(definition, self.scale).map_err(|why| self.fault(record, why))?;
+        match (self.strange.autodesk, bare) {
+            (true, [_, level]) => {
+                let below = definition.rapid_to.unwrap_or(0.0);
+                hole.planes = Some([*level, level - below].map(|height| height * self.scale));
+            }
+            (true, [_, _, ..]) => return faulty("numbers behind the clearance plane of a cycle"),
+            _ => {}
+        }
+        Ok(hole)
+    }
+
+    /// The hole whose bottom is at a pose, and the pose at its top.
+    fn above(
+        &self,
+        record: &Record<'_>,
+        hole: Hole,
+        bottom: Pose,
+    ) -> Result<(Hole, Pose), Box<Diagnostic>> {
+        let Some(planes) = hole.planes else {
+            return Ok((hole, bottom));
+        };
+        let mut at = bottom;
+        at.tip.z += hole.depth;
+        let [level, clearance] = planes.map(|height| height - at.tip.z);
+        let upright = bottom.axis.z > 1.0 - 1e-9;
+        match upright && clearance >= 0.0 && level >= clearance {
+            true => Ok((
+                Hole {
+                    level,
+                    clearance,
+                    ..hole
+                },
+                at,
+            )),
+            false => {
+                let message =
+                    "the planes of this cycle do not lie above its hole, or the tool leans";
+                Err(self.fault(record, message.to_owned()))
+            }
+        }
+    }
+
     /// A hole at a pose: up to the level and aside, down to where the feed begins, in, and out to the level.
     pub(super) fn drill(
         &mut self,
@@ -46,6 +107,7 @@ impl Modal {
         at: Pose,
         out: &mut Out,
     ) -> Meant {
+        let (hole, at) = self.above(record, hole, at)?;
         let feed = match (feed, hole.taps(), hole.pitch, self.tools.rpm()) {
             (_, true, Some(pitch), Some(rpm)) => Some(libm::fabs(pitch) * rpm),
             (Some(FeedWord::InverseTime(_)), ..) => {

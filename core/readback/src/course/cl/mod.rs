@@ -15,7 +15,9 @@ mod hole;
 mod holes;
 mod modal;
 mod settings;
+mod strange;
 mod tools;
+mod turned;
 
 use std::collections::VecDeque;
 use std::io::Read;

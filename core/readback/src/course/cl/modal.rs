@@ -3,9 +3,7 @@
 use std::collections::VecDeque;
 
 use nalgebra::Vector3;
-use post_grammar::{
-    Argument, Coolant, Delay, Delta, Record, Rotate, Side, Statement, Units, Usage,
-};
+use post_grammar::{Argument, Coolant, Delay, Delta, Record, Rotate, Side, Statement, Units};
 use post_machine::description::Print;
 use post_machine::diagnostic::{Diagnostic, Place};
 use post_machine::kinematics::Pose;
@@ -15,7 +13,9 @@ use super::feed::FeedWord;
 use super::frame::Frames;
 use super::hole::Hole;
 use super::settings::Settings;
+use super::strange::Strange;
 use super::tools::Tools;
+use super::turned::Rule;
 use crate::course::{Curve, Item, Piece, Reach};
 use crate::{Coolants, MotionKind, Told};
 
@@ -65,6 +65,12 @@ pub(super) struct Modal {
     register: Option<u32>,
     pub(super) compensated: bool,
     offset: Option<u32>,
+    /// `INDIRV`, frame of the file.
+    pub(super) set_out: Option<Vector3<f64>>,
+    /// Normal of the plane that the tip stays in along a curve, frame of the file.
+    pub(super) surface: Option<Vector3<f64>>,
+    pub(super) arc_rule: Rule,
+    pub(super) strange: Strange,
     finished: bool,
 }
 
@@ -94,6 +100,10 @@ impl Modal {
             register: None,
             compensated: false,
             offset: None,
+            set_out: None,
+            surface: None,
+            arc_rule: Rule::default(),
+            strange: Strange::default(),
             finished: false,
         }
     }
@@ -108,11 +118,14 @@ impl Modal {
 
     /// What is left open at the end of the file.
     pub(super) fn finish(&mut self) -> Meant {
+        if let Some(fault) = self.strange.left_over() {
+            return Err(fault);
+        }
         match self.pending.take() {
             None => Ok(()),
             Some(pending) => {
                 let what = match pending {
-                    Pending::Arc(_) => "a CIRCLE that no GOTO ends",
+                    Pending::Arc(_) | Pending::Turned(_) => "a CIRCLE or MOVARC that no GOTO ends",
                     Pending::Spline { .. } => "a NURBS that nothing ends",
                 };
                 Err(Diagnostic::error("course", format!("the file ends in {what}")).boxed())
@@ -151,6 +164,8 @@ impl Modal {
                 Ok(())
             }
             Statement::Spindle(spindle) => self.spindle(record, *spindle, out),
+            // Autodesk names the kind in the record behind it.
+            Statement::Coolant(Coolant::On) if self.strange.autodesk => Ok(()),
             Statement::Coolant(word) => self.coolant(record, *word, out),
             Statement::LoadTool(tool) => self.load_read(record, tool, out),
             Statement::SelectTool(number) => {
@@ -177,7 +192,33 @@ impl Modal {
                 let set = self.frames.set_msys(origin, directions);
                 set.map_err(|why| self.fault(record, format!("this MSYS is no frame: {why}")))
             }
+            Statement::SetOut(ahead) => {
+                self.set_out = Some(self.unit(record, *ahead, "INDIRV")?);
+                Ok(())
+            }
+            Statement::PartSurface(normal) => {
+                let normal = normal.unwrap_or([0.0, 0.0, 1.0]);
+                self.surface = Some(self.unit(record, normal, "the plane")?);
+                Ok(())
+            }
+            Statement::AlongArc(along) => self.along_arc(record, along, out),
+            Statement::Milling => {
+                self.strange.mills = true;
+                Ok(())
+            }
+            Statement::Mcs { axes, origin } => {
+                let turned = axes
+                    .iter()
+                    .flatten()
+                    .zip([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0])
+                    .any(|(value, own)| *value != own);
+                match turned || origin.iter().any(|value| *value != 0.0) {
+                    true => Err(self.fault(record, "MCS is a frame of its own".to_owned())),
+                    false => Ok(()),
+                }
+            }
             Statement::Circle(_)
+            | Statement::ArcMove(_)
             | Statement::Nurbs
             | Statement::Knot(_)
             | Statement::Control { .. } => self.curve_word(record, out),
@@ -259,34 +300,38 @@ impl Modal {
                 self.tell(record, Told::Remark(text.clone()), out);
                 Ok(())
             }
-            // Lines and notes of the user's own: they move nothing that is known here.
-            Statement::Insert(_) | Statement::Remark(_) | Statement::Csys(_) => Ok(()),
+            Statement::ToolName(name) => {
+                self.tools.name(Some(name));
+                Ok(())
+            }
+            Statement::Remark(text) => {
+                self.strange.catia |=
+                    text.trim() == "*CATIA0" || text.trim().starts_with("CATIA APT VERSION");
+                Ok(())
+            }
+            // Lines of the user's own: they move nothing that is known here.
+            Statement::Insert(_) | Statement::Csys(_) => Ok(()),
             Statement::Fini => {
                 self.finished = true;
                 self.end_spline(record, out)
             }
             Statement::Other {
                 word, arguments, ..
-            } => {
-                let refused = record.statement.usage() == Usage::Refused;
-                if !refused || self.does_nothing(word, arguments) {
-                    return Ok(());
-                }
-                let message = format!(
-                    "{word} changes where or whether metal is cut, and its meaning is not known"
-                );
-                Err(self.fault(record, message))
-            }
+            } => self.other(record, word, arguments),
         }
     }
 
     /// The machine file has lines for the word, or the user takes it upon himself.
     fn does_nothing(&self, word: &str, arguments: &[Argument]) -> bool {
+        self.has_lines(word, arguments) || self.settings.allows(word)
+    }
+
+    /// The machine file has lines for the word.
+    pub(super) fn has_lines(&self, word: &str, arguments: &[Argument]) -> bool {
         let rules = &self.settings.rules;
         rules
             .iter()
             .any(|rule| rule.fits(word, arguments).is_some())
-            || self.settings.allows(word)
     }
 
     /// Nobody knows where the tool stands from here on.
@@ -313,8 +358,13 @@ impl Modal {
     /// The tool goes to a pose of the part frame: along the curve that waits, into a hole, or straight.
     fn arrive(&mut self, record: &Record<'_>, to: Pose, out: &mut Out) -> Meant {
         self.before_move(record, out)?;
-        if let Some(Pending::Arc(circle)) = self.pending.take() {
-            return self.arc(record, &circle, to, out);
+        match self.pending.take() {
+            Some(Pending::Arc(circle)) => return self.arc(record, &circle, to, out),
+            Some(Pending::Turned(arc)) => {
+                let circle = self.turned(record, &arc, to)?;
+                return self.arc(record, &circle, to, out);
+            }
+            _ => {}
         }
         if let Some((hole, feed)) = self.cycle {
             self.rapid = false;
@@ -353,6 +403,11 @@ impl Modal {
         self.register = None;
     }
 
+    /// The register of the radius that a tool change names.
+    pub(super) fn use_register(&mut self, register: Option<u32>) {
+        self.register = register.or(self.register);
+    }
+
     /// The way to a pose, mm; of the first point of all none.
     fn way(&self, curve: &Curve, to: Pose) -> Option<f64> {
         let from = self.stands?;
@@ -379,6 +434,7 @@ impl Modal {
         out: &mut Out,
     ) {
         self.measured = true;
+        self.strange.moved = true;
         let known = !(self.only_said && curve == Curve::Straight);
         let item = match self.stands.filter(|_| known) {
             Some(from) => Item::Piece(Piece {
@@ -404,7 +460,14 @@ impl Modal {
     }
 
     /// What is seen to before a point: index moves that disagree, a tool that is named outside the file.
-    fn before_move(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
+    pub(super) fn before_move(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
+        if let Some(fault) = self.strange.between_moves() {
+            return Err(fault);
+        }
+        if self.set_out.take().is_some() {
+            let message = "INDIRV sets out along a curve, and no TLON follows it";
+            return Err(self.fault(record, message.to_owned()));
+        }
         if std::mem::take(&mut self.indexed)
             && let (Some(turned), Some(told)) = (self.frames.turned(), self.told_axis)
             && (turned * self.axis - told).norm() > 1e-3
@@ -582,7 +645,11 @@ impl Modal {
     }
 
     /// A point with the axis and edge in force, part frame.
-    fn pose(&self, record: &Record<'_>, point: [f64; 3]) -> Result<Pose, Box<Diagnostic>> {
+    pub(super) fn pose(
+        &self,
+        record: &Record<'_>,
+        point: [f64; 3],
+    ) -> Result<Pose, Box<Diagnostic>> {
         let point = self.file_point(record, point)?;
         Ok(Pose {
             tip: self.frames.point(point),

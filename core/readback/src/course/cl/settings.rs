@@ -22,6 +22,8 @@ pub struct Settings {
     pub spindle: Option<f64>,
     /// Words that the user takes upon himself, in capitals (`--allow`): they do nothing.
     pub allowed: Vec<String>,
+    /// Words that nobody knows are left out (`--unknown warn`, `pass`).
+    pub unknown_left_out: bool,
     /// How the part sits turned about its Z, radians, right-handed: `machine.turn`.
     pub turn: f64,
     /// Which length of a tool counts: `control.tool_length`.

@@ -122,10 +122,29 @@ impl Modal {
         tool: &LoadTool,
         out: &mut Out,
     ) -> Meant {
+        if self.strange.catia && tool.described {
+            return Ok(());
+        }
         self.settings.tool = None;
         self.tools.due = None;
         self.end_spline(record, out)?;
-        self.load(record, tool, out)
+        let mut tool = tool.clone();
+        let mut radius = None;
+        let some = |register: u32| Some(register).filter(|register| *register > 0);
+        if self.strange.mills
+            && let Some((register, body)) = tool.of_autodesk()
+        {
+            self.strange.autodesk = true;
+            self.tools.length = Some(body * self.scale);
+            tool.register = some(register);
+        } else if self.strange.catia
+            && let Some(registers) = tool.of_catia()
+        {
+            [radius, tool.register] = registers.map(some);
+        }
+        self.load(record, &tool, out)?;
+        self.use_register(radius);
+        Ok(())
     }
 
     fn load(&mut self, record: &Record<'_>, tool: &LoadTool, out: &mut Out) -> Meant {
@@ -211,6 +230,18 @@ impl Modal {
     ) -> Meant {
         self.load_due(record, out)?;
         self.tools.said = true;
+        // Autodesk's posts write ON where the spindle stops, and OFF where it starts.
+        let on = SpindleWord::On {
+            speed: None,
+            unit: SpindleUnit::Rpm,
+            sense: None,
+            most: None,
+        };
+        let word = match word {
+            SpindleWord::Off if self.strange.autodesk => on,
+            word if self.strange.autodesk && word == on => SpindleWord::Off,
+            word => word,
+        };
         let (speed, unit, sense, most) = match word {
             SpindleWord::Off | SpindleWord::Orient => {
                 self.tools.spindle = match word {

@@ -128,6 +128,7 @@ impl Hole {
                 .surface
                 .map_or(0.0, |surface| libm::fabs(self.clearance - surface)),
             peck: self.pecks.map_or(0.0, |pecks| pecks.first),
+            later_peck: 0.0,
             dwell: if self.wait.revolutions {
                 0.0
             } else {

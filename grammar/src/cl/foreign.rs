@@ -1,0 +1,133 @@
+//! Files that are none of ours and look a little so: NC programs, and Mastercam's NCI.
+
+use super::line::number_of;
+
+/// So many lines at the beginning of a file are looked at.
+const LOOKED_AT: usize = 40;
+
+/// So many of them must look like blocks of a program.
+const ENOUGH: usize = 3;
+
+/// What the file is that begins so, if it is no cutter-location file.
+pub(super) fn kind(head: &[u8]) -> Option<&'static str> {
+    let head = String::from_utf8_lossy(head);
+    let lines: Vec<&str> = head
+        .split(['\n', '\r'])
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+        .take(LOOKED_AT)
+        .collect();
+    if lines.iter().any(|line| is_record(line)) {
+        return None;
+    }
+    if is_nci(&lines) {
+        return Some("Mastercam's NCI");
+    }
+    let begins = lines.first().is_some_and(|first| {
+        let first = first.to_ascii_uppercase();
+        *first == *"%" || first.starts_with("%_N_") || first.contains("BEGIN PGM")
+    });
+    let blocks = lines.iter().filter(|line| is_block(line)).count();
+    (blocks >= ENOUGH || begins && blocks > 0).then_some("an NC program")
+}
+
+/// A word, then a slash: no line of a program.
+fn is_record(line: &str) -> bool {
+    let end = line
+        .find(|letter: char| !letter.is_ascii_alphabetic())
+        .unwrap_or(line.len());
+    end > 1 && line[end..].trim_start().starts_with('/') || line.starts_with("$$")
+}
+
+/// A code by itself, then a line of numbers, from the first line on.
+fn is_nci(lines: &[&str]) -> bool {
+    let is_code = |line: &str| {
+        line.len() <= 5 && !line.is_empty() && line.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    let pairs = lines.chunks_exact(2).take(4);
+    lines.len() >= 4
+        && pairs.into_iter().all(|pair| {
+            is_code(pair[0])
+                && (pair[1]
+                    .split_whitespace()
+                    .all(|number| number_of(number).is_some())
+                    || pair[1].starts_with('('))
+        })
+}
+
+/// A block: words of a letter and a number (`N10 G0 X1.5`), at least one of them N, G, M or T; or one of Heidenhain
+/// (`1 L X+10 FMAX`).
+fn is_block(line: &str) -> bool {
+    let mut code = String::new();
+    let mut inside = false;
+    for letter in line.chars() {
+        match letter {
+            '(' => inside = true,
+            ')' => inside = false,
+            ';' if !inside => break,
+            letter if !inside => code.push(letter.to_ascii_uppercase()),
+            _ => {}
+        }
+    }
+    let mut heidenhain = code.split_whitespace();
+    if heidenhain
+        .next()
+        .is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
+        && heidenhain
+            .next()
+            .is_some_and(|word| matches!(word, "L" | "TOOL" | "CYCL" | "BEGIN" | "BLK"))
+    {
+        return true;
+    }
+    let mut rest = code.trim_start_matches('/').trim_start();
+    let mut telling = false;
+    while let Some(letter) = rest.chars().next() {
+        let Some(number) = rest.strip_prefix(|letter: char| letter.is_ascii_alphabetic()) else {
+            return false;
+        };
+        let number = number.trim_start_matches('=');
+        let end = number
+            .find(|letter: char| !(letter.is_ascii_digit() || "+-.".contains(letter)))
+            .unwrap_or(number.len());
+        if end == 0 {
+            return false;
+        }
+        telling |= matches!(letter, 'N' | 'G' | 'M' | 'T');
+        rest = number[end..].trim_start();
+    }
+    telling
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programs_are_told_from_cl_files() {
+        for (head, expected) in [
+            (
+                "%\nO0001 (PART)\nN10 G21 G90\nN20 T1 M6\nN30 G0 X1. Y2.\n",
+                Some("an NC program"),
+            ),
+            (
+                "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S1000\n2 L X+10 R0 FMAX\n",
+                Some("an NC program"),
+            ),
+            ("N10 G54\nN20 G0 X0\nN30 M30\n", Some("an NC program")),
+            (
+                "1050\n0 0 8. 25. 1 2024\n1053\n(MACHINE)\n1011\n0. 0. 0.\n1016\n1 2 3\n",
+                Some("Mastercam's NCI"),
+            ),
+            (
+                "PARTNO x\nGOTO/1,2,3\nN10 G0 X1\nN20 G1 X2\nN30 M30\n",
+                None,
+            ),
+            ("$$ CLF\nRAPID\n", None),
+            ("RAPID\nSTOP\n", None),
+            ("", None),
+            ("M3\nUNITS/MM\nM4\nM5\nM6", None),
+        ] {
+            assert_eq!(kind(head.as_bytes()), expected, "{head}");
+        }
+    }
+}

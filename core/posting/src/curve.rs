@@ -121,6 +121,11 @@ impl Keeps {
             && self.writes.has(Capabilities::ARC_RADIUS)
     }
 
+    /// A helix is told by its turn alone.
+    pub(crate) fn by_turn(&self) -> bool {
+        self.writes.has(Capabilities::HELIX_BY_TURN)
+    }
+
     /// A spline of the CL file may be kept that would be so many chords.
     pub(crate) fn spline(&self, end: &Motion, chords: u64) -> bool {
         let needs = match self.tcp {

@@ -452,6 +452,7 @@ typedef struct {
 #define POST_MEANING_MILLIMETRE_LENGTHS 190u
 #define POST_MEANING_CENTRE 191u
 #define POST_MEANING_ARC 192u
+#define POST_MEANING_FEED_PER_MINUTE_ALL_AXES 193u
 /* Arc in the plane of X and Y (G17). */
 #define POST_WRITES_ARC_XY 0x0000000000000001u
 /* Arc in the plane of Z and X (G18). */
@@ -537,6 +538,12 @@ typedef struct {
 #define POST_WRITES_LENGTH_ALONG_DEPTH 0x0000008000000000u
 /* No length is put on: it is in the work offset. */
 #define POST_WRITES_LENGTH_IN_OFFSET 0x0000010000000000u
+/* Arc that ends off the plane of its start is told by its turn, to 0.00001 degrees: it ends as far from the
+ * centre as it begins. */
+#define POST_WRITES_HELIX_BY_TURN 0x0000020000000000u
+/* A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
+ * along the linear ones. */
+#define POST_WRITES_FEED_ALL_AXES 0x0000040000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

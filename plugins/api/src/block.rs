@@ -3,7 +3,7 @@
 //! Nothing here is needed to write a dialect; it saves an author the usual hundred lines.
 
 use crate::number::{Front, Look};
-use crate::{AxisWord, Setup, fixed};
+use crate::{AxisWord, Setup, fixed, quantise};
 
 /// How numbers look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -176,10 +176,26 @@ struct Axis {
     decimals: u8,
     /// Its words lie within one turn.
     wrapped: bool,
+    /// Rotary, without ends, and its words count turns.
+    endless: bool,
+    /// Its words say the place within one turn, and the way there.
+    modulo: Option<Box<Modulo>>,
     /// Behind the number.
     behind: &'static str,
     last: Modal<f64>,
 }
+
+/// A word of a control that knows the places of one turn alone.
+#[derive(Clone, Debug)]
+struct Modulo {
+    /// In front of the number: by the shorter way, the positive, the negative.
+    ways: [String; 3],
+    /// The value written last, whole turns counted.
+    at: Option<f64>,
+}
+
+/// Turns below this are the shorter way, degrees; at half a turn none is.
+const SHORTER: f64 = 179.9;
 
 /// Which axis words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -211,6 +227,8 @@ impl Axes {
             },
             decimals: if word.rotary { rotary } else { linear },
             wrapped: word.wrapped,
+            endless: word.rotary && !word.wrapped && word.travel.is_none(),
+            modulo: None,
             behind: "",
             last: Modal::default(),
         });
@@ -227,6 +245,30 @@ impl Axes {
             axis.front = Front::blank(&axis.name);
             axis.behind = close;
         }
+    }
+
+    /// Words of endless axes say the place within one turn and the way there: `C=DC(280.000)`, or where that is no shorter
+    /// `C=ACP(280.000)` and `C=ACN(280.000)`, with these in front of the number and `close` behind it.
+    pub fn modulo(&mut self, ways: [&str; 3], close: &'static str) {
+        for axis in self.axes.iter_mut().filter(|axis| axis.endless) {
+            let name = axis.name.trim_end_matches('=');
+            axis.modulo = Some(Box::new(Modulo {
+                ways: ways.map(|way| format!("{name}{way}")),
+                at: None,
+            }));
+            axis.behind = close;
+        }
+    }
+
+    /// A move to `words` turns an axis by so much that [`Axes::modulo`] cannot say it: its name.
+    pub fn turns_round(&self, words: &[f64]) -> Option<&str> {
+        let far = |(axis, word): &(&Axis, &f64)| {
+            let modulo = axis.modulo.as_ref();
+            let before = modulo.and_then(|modulo| modulo.at);
+            before.is_some_and(|before| (*word - before).abs() > 360.0 - 1e-9)
+        };
+        let found = self.axes.iter().zip(words).find(far);
+        found.map(|(axis, _)| axis.name.trim_end_matches('='))
     }
 
     /// Decimals of each word, for [`Format::words`](crate::Format::words).
@@ -326,8 +368,27 @@ impl Axes {
 impl Axis {
     fn write(&mut self, block: &mut Block, value: f64, style: NumberStyle) {
         if self.last.set(value) {
-            block.number_behind(self.front, &self.name, value, self.decimals, style);
+            match &mut self.modulo {
+                None => block.number_behind(self.front, &self.name, value, self.decimals, style),
+                Some(modulo) => {
+                    let far = modulo.at.replace(value).map_or(0.0, |at| value - at);
+                    let way = match far.abs() {
+                        ..SHORTER | 360.0.. => 0,
+                        _ if far > 0.0 => 1,
+                        _ => 2,
+                    };
+                    let place = within_turn(value, self.decimals);
+                    block.number_behind(None, &modulo.ways[way], place, self.decimals, style);
+                }
+            }
             block.words.push_str(self.behind);
         }
     }
+}
+
+/// An angle from 0 to below 360 degrees, as it is printed.
+fn within_turn(value: f64, decimals: u8) -> f64 {
+    let printed = |value: f64| quantise(value - 360.0 * (value / 360.0).floor(), decimals);
+    let place = printed(value);
+    if place < 360.0 { place } else { 0.0 }
 }

@@ -127,6 +127,12 @@ capabilities! {
     39 LENGTH_ALONG_DEPTH;
     /// No length is put on: it is in the work offset.
     40 LENGTH_IN_OFFSET;
+    /// `Arc` that ends off the plane of its start is told by its turn, to 0.00001 degrees: it ends as far from the centre
+    /// as it begins.
+    41 HELIX_BY_TURN;
+    /// A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
+    /// along the linear ones.
+    42 FEED_ALL_AXES;
 }
 
 impl Capabilities {

@@ -348,5 +348,7 @@ codes! {
         Centre = 191 "CENTRE",
         /// An arc whose direction another word gives: C, CR, CP.
         Arc = 192 "ARC",
+        /// Feed a minute that counts along all axes together where no tip is kept: G94 of Fanuc.
+        FeedPerMinuteAllAxes = 193 "FEED_PER_MINUTE_ALL_AXES",
     }
 }

@@ -14,8 +14,8 @@ pub(crate) struct Cycles {
     angle: f64,
     /// How far the drill is drawn back to break the chip.
     chip: f64,
-    /// Feeds in the parameters of an inch program: their unit is not settled.
-    metric: bool,
+    /// What feeds count in the parameters: tenths of an inch a minute in an inch program, as every F there.
+    feeds: f64,
 }
 
 /// Out at rapid: the largest feed that the parameter takes.
@@ -29,13 +29,15 @@ impl Cycles {
             floating: setup.text("tapping") == "floating",
             lift: setup.integer("bore_direction"),
             angle: setup.number("bore_angle"),
-            chip: setup.number("chip_break"),
-            metric: setup.units == Units::Millimetre,
+            chip: match setup.units {
+                Units::Millimetre => setup.number("chip_break"),
+                Units::Inch => setup.number("chip_break") / 25.4,
+            },
+            feeds: match setup.units {
+                Units::Millimetre => 1.0,
+                Units::Inch => 10.0,
+            },
         }
-    }
-
-    pub(crate) fn metric(&self) -> bool {
-        self.metric
     }
 
     pub(crate) fn fine(&self) -> bool {
@@ -55,7 +57,10 @@ impl Cycles {
         let Drilling {
             dwell, clearance, ..
         } = drilling;
-        let down = || drilling.feed_per_minute(rpm).ok_or(NO_SPEED);
+        let down = || {
+            let feed = drilling.feed_per_minute(rpm).ok_or(NO_SPEED)?;
+            Ok::<f64, &str>(feed * self.feeds)
+        };
         let cycle = drilling.cycle;
         let depth = if matches!(cycle, Cycle::Tap | Cycle::TapLeft) {
             (201, -drilling.depth, "DEPTH OF THREAD")
@@ -109,7 +114,7 @@ impl Cycles {
             }
             Cycle::Tap | Cycle::TapLeft if self.floating => {
                 let speed = rpm.ok_or(NO_SPEED)?;
-                let feed = plunge(drilling.thread(rpm).ok_or(NO_SPEED)? * speed);
+                let feed = plunge(drilling.thread(rpm).ok_or(NO_SPEED)? * speed * self.feeds);
                 let parameters = vec![clear, depth, feed, wait, surface, away];
                 ((206, "TAPPING", "GEWINDEBOHREN"), parameters)
             }

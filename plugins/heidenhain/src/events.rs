@@ -3,7 +3,7 @@
 use post_plugin::{Compensation, Drilling, Event, Group, NumberStyle, Spindle};
 
 use crate::tool::tool_call;
-use crate::{Heidenhain, Held};
+use crate::{Call, Heidenhain, Held};
 
 impl Heidenhain {
     pub(crate) fn put(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
@@ -25,6 +25,10 @@ impl Heidenhain {
                 self.held.push(Held::Coolant(coolant));
                 return Ok(());
             }
+            Event::Word { text } if self.tool.is_some() => {
+                self.held.push(Held::Word(text.to_owned()));
+                return Ok(());
+            }
             _ => self.call_tool(None, out)?,
         }
         match *event {
@@ -39,7 +43,7 @@ impl Heidenhain {
                 if !name.is_empty() {
                     self.comment(&format!("T{number} {name}"), out);
                 }
-                self.tool = Some(tool_call(number, name, self.tool_names)?);
+                self.tool = Some(Call::Tool(tool_call(number, name, self.tool_names)?));
             }
             Event::Preselect { number } => self.preselect(number, out)?,
             Event::Spindle(spindle) => self.turn(spindle, out)?,
@@ -51,6 +55,18 @@ impl Heidenhain {
                     Compensation::Left { .. } => "RL",
                     Compensation::Right { .. } => "RR",
                 }
+            }
+            Event::Turn { .. }
+            | Event::Position { .. }
+            | Event::Park { .. }
+            | Event::Rapid { .. }
+            | Event::Linear { .. }
+                if self.stays =>
+            {
+                return Err(
+                    "`M140` retracts along the tool's axis, which no TOOL CALL has named yet: name another `retract`"
+                        .to_owned(),
+                );
             }
             Event::Turn { words } => {
                 self.axes.forget();

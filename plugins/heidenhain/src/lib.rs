@@ -77,8 +77,12 @@ struct Heidenhain {
     rpm: Option<f64>,
     /// What takes the place of the next event's lines.
     instead: Option<String>,
-    /// A tool call that waits for its speed: a number, or a name in quotes.
-    tool: Option<String>,
+    /// A tool call that waits for its speed.
+    tool: Option<Call>,
+    /// A tool has been called here, or the program calls none: the control knows the axis of the tool.
+    called: bool,
+    /// What M140 should have retracted before that: nothing may move until then.
+    stays: bool,
     /// What came between a tool change and its call.
     held: Vec<Held>,
     speed: Modal<f64>,
@@ -96,11 +100,22 @@ struct Heidenhain {
     standstill: Standstill,
 }
 
+/// A tool call on its way.
+#[derive(Clone, Debug)]
+enum Call {
+    /// A number, or a name in quotes.
+    Tool(String),
+    /// Lines of the user's own, which call the tool.
+    Own(String),
+}
+
 /// An event that waits for the tool call.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Held {
     Preselect(u32),
     Coolant(Coolant),
+    /// A line of the user's own.
+    Word(String),
 }
 
 impl Dialect for Heidenhain {
@@ -179,6 +194,8 @@ impl Dialect for Heidenhain {
                 (Coolant::Air, own("coolant_air")),
             ],
             tool: None,
+            called: setup.ahead.is_some_and(|ahead| ahead.tools.is_empty()),
+            stays: false,
             held: Vec::new(),
             speed: Modal::default(),
             feed: Modal::default(),
@@ -235,6 +252,11 @@ impl Dialect for Heidenhain {
             let written = self.put(event, out);
             self.retract = own;
             return written;
+        }
+        if let Event::ToolChange { .. } = event {
+            self.call_tool(None, out)?;
+            self.tool = Some(Call::Own(lines));
+            return Ok(());
         }
         // As if it were written, but for the numbers of the blocks.
         let block = self.block.clone();

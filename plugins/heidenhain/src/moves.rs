@@ -159,8 +159,11 @@ impl Heidenhain {
         }
         if self.retract.is_empty() {
             self.in_machine_coordinates(axes, words, out);
-        } else {
+        } else if self.called || !self.retract.split_whitespace().any(|word| word == "M140") {
             self.own(&self.retract.clone(), out);
+        } else {
+            // The tool's axis is named by a TOOL CALL: the first change goes to its place by itself.
+            self.stays = true;
         }
         self.axes.forget();
         self.radius.forget();

@@ -47,6 +47,59 @@ fn options_change_what_they_say() {
     insta::assert_snapshot!(bench.write(&events).unwrap());
 }
 
+/// Lines of the machine file in the place of a tool call keep their oversizes: no call of ours stands behind them.
+#[test]
+fn own_tool_calls_get_the_speed_and_nothing_behind_them() {
+    let own = |text| {
+        let events = [
+            Event::Start,
+            Event::Instead { text },
+            TOOL,
+            Event::Word { text: "; measured" },
+            turning(3000.0),
+            at(P1),
+            TOP,
+            Event::End,
+        ];
+        bench().write(&events)
+    };
+    let written = own("TOOL CALL 1 Z DL+0.1 DR-0.05 ; worn").unwrap();
+    assert!(
+        written.contains(" TOOL CALL 1 Z S3000 DL+0.1 DR-0.05 ; worn\n"),
+        "{written}"
+    );
+    assert_eq!(written.matches("TOOL CALL").count(), 1, "{written}");
+    let written = own("TOOL CALL 1 Z S3000").unwrap();
+    assert_eq!(written.matches("TOOL CALL").count(), 1, "{written}");
+    assert!(own("TOOL CALL 1 Z S2000").unwrap_err().contains("S3000"));
+    let written = own("CALL PGM CHANGE").unwrap();
+    assert!(
+        written.contains("CALL PGM CHANGE\n") && written.contains("TOOL CALL S3000\n"),
+        "{written}"
+    );
+}
+
+/// `M140` knows the tool's axis from a TOOL CALL alone.
+#[test]
+fn nothing_retracts_along_a_tool_that_was_not_called() {
+    let bench = bench().with("retract", Value::Text("L M140 MB MAX"));
+    let events = [
+        Event::Start,
+        TOP,
+        TOOL,
+        turning(1000.0),
+        at(P1),
+        TOP,
+        Event::End,
+    ];
+    let text = bench.write(&events).unwrap();
+    let (before, _) = text.split_once("TOOL CALL").unwrap();
+    assert!(!before.contains("M140"), "{text}");
+    assert!(text.contains("M140"), "{text}");
+    let uncalled = bench.write(&[Event::Start, TOP, at(P1)]).unwrap_err();
+    assert!(uncalled.contains("no TOOL CALL"), "{uncalled}");
+}
+
 #[test]
 fn what_cannot_be_written_is_refused() {
     let refused = |events: &[Event<'_>]| bench().write(events).unwrap_err();

@@ -2,7 +2,7 @@
 
 use post_plugin::{Event, NumberStyle, Spindle, SpindleSense, ascii};
 
-use crate::{Heidenhain, Held};
+use crate::{Call, Heidenhain, Held};
 
 impl Heidenhain {
     /// The tool call that waits, with its speed if one is known, and what waited for it.
@@ -10,12 +10,24 @@ impl Heidenhain {
         let Some(tool) = self.tool.take() else {
             return Ok(());
         };
-        self.block.word("TOOL CALL").word(&tool);
-        self.block.word(self.axes.depth());
-        if let Some(speed) = speed {
-            self.block.number("S", speed, 0, NumberStyle::default());
+        match tool {
+            Call::Tool(tool) => {
+                self.block.word("TOOL CALL").word(&tool);
+                self.block.word(self.axes.depth());
+                if let Some(speed) = speed {
+                    self.block.number("S", speed, 0, NumberStyle::default());
+                }
+                self.block.end(out);
+            }
+            Call::Own(lines) => {
+                let lines = match speed {
+                    Some(speed) => with_speed(&lines, speed)?,
+                    None => lines,
+                };
+                self.own(&lines, out);
+            }
         }
-        self.block.end(out);
+        (self.called, self.stays) = (true, false);
         self.speed.forget();
         self.spindle_on.forget();
         self.sense = None;
@@ -25,6 +37,7 @@ impl Heidenhain {
             match held {
                 Held::Preselect(number) => self.preselect(number, out)?,
                 Held::Coolant(coolant) => self.cool(coolant, out)?,
+                Held::Word(text) => self.own(&text, out),
             }
         }
         Ok(())
@@ -65,6 +78,8 @@ impl Heidenhain {
             self.block
                 .number("S", rpm, 0, NumberStyle::default())
                 .end(out);
+            // Some tool is in the spindle.
+            (self.called, self.stays) = (true, false);
             if tcp {
                 self.own(&self.tcp_on.clone(), out);
             }
@@ -102,6 +117,49 @@ impl Heidenhain {
             self.end_coolant(out);
         }
     }
+}
+
+/// Own lines whose `TOOL CALL` has the speed: behind the tool and its axis, before feed and oversizes (`S3000 DL+0.1`).
+/// A call of the speed alone behind it might take the oversizes back.
+///
+/// # Errors
+/// If it has another speed.
+fn with_speed(lines: &str, speed: f64) -> Result<String, String> {
+    let mut wanted = String::new();
+    NumberStyle::default().write(&mut wanted, speed, 0);
+    let calls = |line: &&str| line.split_whitespace().take(2).eq(["TOOL", "CALL"]);
+    let Some(call) = lines.lines().find(calls) else {
+        // They call a program that does.
+        return Ok(format!("{lines}\nTOOL CALL S{wanted}"));
+    };
+    let mut words: Vec<String> = call.split_whitespace().map(str::to_owned).collect();
+    let begins = |word: &String, address: &str| {
+        let rest = word.strip_prefix(address);
+        rest.is_some_and(|rest| {
+            rest.starts_with(|c: char| c.is_ascii_digit() || "+-.Q".contains(c))
+        })
+    };
+    match words.iter().skip(3).find(|word| begins(word, "S")) {
+        Some(own) if own[1..] == wanted => return Ok(lines.to_owned()),
+        Some(own) => {
+            return Err(format!(
+                "the lines in the place of a tool change call the tool with {own}, and the CL file asks for S{wanted}: leave \
+                 the S out, it is put there"
+            ));
+        }
+        None => {}
+    }
+    let oversize = |word: &String| {
+        ["F", "DL", "DR"]
+            .iter()
+            .any(|address| begins(word, address))
+    };
+    let place = words.iter().skip(3).position(oversize);
+    let remark = words.iter().position(|word| word.starts_with(';'));
+    let ends = remark.unwrap_or(words.len());
+    let place = place.map_or(ends, |place| (place + 3).min(ends));
+    words.insert(place, format!("S{wanted}"));
+    Ok(lines.replacen(call, &words.join(" "), 1))
 }
 
 pub(crate) fn turns(sense: SpindleSense) -> &'static str {

@@ -11,6 +11,7 @@ impl Heidenhain {
         let some = |yes: bool, set: Capabilities| if yes { set } else { C::NONE };
         let arcs = C::ARC_XY
             .and(C::HELIX)
+            .and(C::HELIX_BY_TURN)
             .and(C::ARC_RADIUS)
             .and(C::CYCLE_IN_PLANE);
         let drills = C::CYCLE_DRILL.and(C::CYCLE_DEEP).and(C::CYCLE_BREAK_CHIP);
@@ -18,7 +19,7 @@ impl Heidenhain {
             .and(C::CYCLE_BORE)
             .and(C::CYCLE_TAP)
             .and(C::CYCLE_TAP_LEFT);
-        let cycles = self.linear.is_some() && self.cycles.metric();
+        let cycles = self.linear.is_some();
         let commands = C::SMOOTHING
             .and(C::OPERATION)
             .and(C::WORK_OFFSET)

@@ -396,6 +396,28 @@ impl Placer {
         }
     }
 
+    /// A last decimal of the linear words, mm: the coarsest.
+    pub(crate) fn last_decimal(&self) -> f64 {
+        2.0 * self.words.half_decimal()[0]
+    }
+
+    /// The node with its control point at another printed place (mm, part frame), the rotary axes standing.
+    ///
+    /// # Errors
+    /// Why it cannot stand there.
+    pub(crate) fn resettle(&self, node: &mut Node, place: Vector3<f64>) -> Result<(), Refused> {
+        let rotary = node.trace.joints;
+        self.settle_at(node, node.target, place, node.t, &rotary)
+    }
+
+    /// The control stands at `joints`, beside the words of `node`.
+    pub(crate) fn stray(&self, node: &mut Node, joints: Joints) {
+        node.trace.joints = joints;
+        self.solver.chain().trace(&mut node.trace);
+        node.tip = node.trace.pose.tip;
+        node.measure();
+    }
+
     /// Do the rotary axes of `rotary`, as printed, stand as those of `at`, which are printed?
     pub(crate) fn stand(&self, rotary: &Joints, at: &Joints) -> bool {
         self.words.stand(rotary, at)

@@ -1,8 +1,8 @@
 //! An arc as a control makes it of the printed words, and how far it is from the arc of the CL file.
 //!
 //! The control turns evenly about the centre from the printed start to the printed end; where these differ in their
-//! distance from the centre, that goes evenly from one to the other, as the height does. All in the frame of the linear
-//! words, in mm.
+//! distance from the centre, that goes evenly from one to the other, as the height does. A helix that is told by its turn
+//! stays at its first distance: it ends beside the words. All in the frame of the linear words, in mm.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -53,6 +53,11 @@ fn toward(angle: f64) -> Vector2<f64> {
     Vector2::new(cosine, sine)
 }
 
+/// An angle as it is told, radians: to 0.00001 degrees.
+fn told(angle: f64) -> f64 {
+    (libm::rint(angle.to_degrees() * 1e5) / 1e5).to_radians()
+}
+
 /// An angle brought to where it is no larger than half a turn.
 pub(super) fn least_turn(angle: f64) -> f64 {
     angle - TAU * libm::rint(angle / TAU)
@@ -85,6 +90,17 @@ impl PrintedArc {
             radii,
             heights: [start[axis], end[axis]],
         })
+    }
+
+    /// The same told by its turn alone, the tool standing at `start`: it keeps its distance from the centre.
+    pub(crate) fn by_turn(self, start: Vector3<f64>) -> Self {
+        let arm = in_plane(self.axis, start - self.centre);
+        Self {
+            from: libm::atan2(arm.y, arm.x),
+            turn: told(self.turn),
+            radii: [arm.norm(); 2],
+            ..self
+        }
     }
 
     /// The centre of the arc of less than half a turn that has this radius. None where the ends are too far apart for it,

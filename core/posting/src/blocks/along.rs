@@ -1,6 +1,8 @@
 //! Curves that stay curves: an arc of the CL file becomes one block, or a few, where dialect, machine and tolerance
 //! allow; else it goes by the moves that it was cut into.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector3;
 use post_machine::description::ArcSplit;
 use post_machine::kinematics::Joints;
@@ -21,6 +23,13 @@ const FASTER: f64 = 1.05;
 
 /// An arc by its radius turns by no more than this in a block, radians (160°).
 const BY_RADIUS: f64 = 2.792_526_803_190_927;
+
+/// Words and places that differ by less are one, mm.
+const SAME: f64 = 1e-7;
+
+/// Behind a helix that ended beside its words an arc turns by no more than this, radians: a whole circle would be one of
+/// nothing where its start lies ahead of its end.
+const ALMOST_WHOLE: f64 = TAU - 0.01;
 
 /// Shares of an arc that are as near to its ends are no places to cut it at.
 const AT_ITS_END: f64 = 1e-6;
@@ -209,7 +218,8 @@ impl Blocks<'_> {
                 .or(self.last.as_deref())?;
             let tip = if cut == 1.0 { end.tip } else { arc.at(cut) };
             let target = pose(&Motion { tip, ..*end });
-            let node = placer.settled(target, 1.0, &before.trace.joints).ok()?;
+            let mut node = placer.settled(target, 1.0, &before.trace.joints).ok()?;
+            self.steady(placer, before, &mut node);
             let wanted = arc.piece(from, cut).placed(
                 |point| frame.point(point),
                 |direction| frame.direction(direction),
@@ -251,11 +261,20 @@ impl Blocks<'_> {
         [from, node]: [&Node; 2],
         off: impl Fn(&PrintedArc) -> f64,
     ) -> Option<ArcBlock> {
-        let ends = [placer.printed(from)?, placer.printed(node)?];
+        let mut ends = [placer.printed(from)?, placer.printed(node)?];
         let (axis, sense) = about;
+        // A helix may have ended beside its words: the next arc begins there, and one told by its turn turns as much as
+        // words say.
+        let stands = frame.point(from.tip);
+        let beside = self.keeps.by_turn() && (stands - ends[0]).norm() > SAME;
+        let by_turn = self.keeps.by_turn() && ends[0][axis] != ends[1][axis];
+        let start = if beside { stands } else { ends[0] };
+        if !by_turn {
+            ends[0] = start;
+        }
         centre[axis] = ends[0][axis];
         let (words, rounded) = placer.printed_point(centre)?;
-        let (centre, radius) = match self.keeps.by_radius() {
+        let (centre, radius) = match self.keeps.by_radius() && !by_turn {
             false => (rounded, None),
             true => {
                 // The length of a word is printed with the decimals of that word.
@@ -268,14 +287,21 @@ impl Blocks<'_> {
                 (centre, Some(word[across]))
             }
         };
-        let printed = PrintedArc::new(about, ends, centre)?;
+        let mut printed = PrintedArc::new(about, ends, centre)?;
+        // What the words say it differs by, the control sees.
+        let mismatch = printed.mismatch();
+        if by_turn {
+            printed = printed.by_turn(start);
+        } else if beside && printed.turn > ALMOST_WHOLE {
+            return None;
+        }
         let (length, rise) = (printed.length(), printed.rise());
         if !self.keeps.about(axis, rise != 0.0, self.in_plane())
             || !printed
                 .radii
                 .iter()
                 .all(|radius| self.keeps.radius(*radius))
-            || printed.mismatch() > MISMATCH
+            || printed.mismatch().max(mismatch) > MISMATCH
             || libm::hypot(length, rise) > FASTER * length
         {
             return None;
@@ -287,6 +313,10 @@ impl Blocks<'_> {
         let between = self.arc_between(frame, &printed)?;
         let mut normal = [0.0; 3];
         normal[axis] = 1.0;
+        let mut node = Box::new(*node);
+        if by_turn {
+            placer.stray(&mut node, frame.joints(printed.at(1.0)));
+        }
         let words = CurveWords::Arc {
             centre: words,
             normal,
@@ -294,7 +324,7 @@ impl Blocks<'_> {
             radius,
         };
         Some(ArcBlock {
-            node: Box::new(*node),
+            node,
             printed,
             curve: PrintedCurve {
                 words,

@@ -180,7 +180,9 @@ impl Blocks<'_> {
         let wanted = &laid.wanted[at..=end];
         [2, 1, 0].into_iter().find_map(|axis| {
             let rise = ends[1][axis] - ends[0][axis];
-            if !self.keeps.about(axis, rise != 0.0, self.in_plane()) {
+            // Where a helix ends that is told by its turn, no leg begins.
+            let helix = rise != 0.0;
+            if helix && self.keeps.by_turn() || !self.keeps.about(axis, helix, self.in_plane()) {
                 return None;
             }
             // The corners of the path, and the middles of its legs.

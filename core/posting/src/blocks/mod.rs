@@ -404,6 +404,9 @@ impl<'a> Blocks<'a> {
         if self.compensating {
             self.check_compensation(placer, leg.line, &node, to.findings);
         }
+        if let Some(last) = &self.last {
+            self.steady(placer, last, &mut node);
+        }
         let gathers = self.gathers(leg, &node);
         if !gathers {
             self.end_run(to);

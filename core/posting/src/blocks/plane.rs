@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use post_machine::axis_words;
 use post_machine::description::Tcp;
 use post_machine::diagnostic::Diagnostic;
@@ -12,9 +12,12 @@ use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Format;
 
 use super::{Blocks, Surroundings, TURN};
-use crate::accuracy::{PlacedBatch, Placer};
+use crate::accuracy::{Node, PlacedBatch, Placer};
 use crate::configuration::{Chosen, pose};
 use crate::program::Command;
+
+/// A place so near to the middle between two printed values may stand at either, in last decimals.
+const BETWEEN: f64 = 0.1;
 
 /// The plane in force.
 #[derive(Debug)]
@@ -28,6 +31,8 @@ pub(super) struct Planes {
     stands: Option<Joints>,
     /// A plane was told.
     told: bool,
+    /// Its axes as columns, part frame, while one is in force.
+    axes: Option<Matrix3<f64>>,
 }
 
 impl Planes {
@@ -38,6 +43,7 @@ impl Planes {
             wanted: None,
             stands: None,
             told: false,
+            axes: None,
         }
     }
 
@@ -89,6 +95,7 @@ impl Blocks<'_> {
     /// No plane is in force any more; the tool has left the part.
     fn leave_plane(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
         self.planes.stands = None;
+        self.planes.axes = None;
         self.use_placer(self.planes.outside.clone(), to);
         if std::mem::take(&mut self.planes.told) {
             to.out.command(line, Command::Plane(None));
@@ -164,7 +171,41 @@ impl Blocks<'_> {
         };
         self.use_placer(Some(Rc::new(inside)), to);
         self.planes.told = true;
+        self.planes.axes = Some(plane.axes);
         to.out.command(line, Command::Plane(Some(Box::new(plane))));
+    }
+
+    /// A coordinate that is constant in the plane is turned into it with the noise of the CL file's digits: where the place of
+    /// `node` is about between two printed values, it stays at that of `last`. What that puts it off is certified as all
+    /// rounding is.
+    pub(super) fn steady(&self, placer: &Placer, last: &Node, node: &mut Node) {
+        let Some(axes) = self.planes.axes else {
+            return;
+        };
+        let (Some(before), Some(printed)) = (placer.printed(last), placer.printed(node)) else {
+            return;
+        };
+        let step = before - printed;
+        let off = axes.transpose() * node.off();
+        let largest = placer.last_decimal() * (1.0 + BETWEEN);
+        let mut shift = Vector3::zeros();
+        for axis in 0..3 {
+            let far = libm::fabs(step[axis]);
+            let kept = libm::fabs(step[axis] + off[axis]);
+            if far > 0.0 && far <= largest && kept <= (0.5 + BETWEEN) * far {
+                shift[axis] = step[axis];
+            }
+        }
+        if shift == Vector3::zeros() {
+            return;
+        }
+        let mut steadied = *node;
+        if placer
+            .resettle(&mut steadied, node.tip + axes * shift)
+            .is_ok()
+        {
+            *node = steadied;
+        }
     }
 
     /// The words are those of a tilted plane.

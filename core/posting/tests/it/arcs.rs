@@ -16,7 +16,7 @@ use post_testkit::{Rng, randomised, repository, shared};
 
 type V = Vector3<f64>;
 
-const ALL: Capabilities = Capabilities::ARC_XY
+pub(super) const ALL: Capabilities = Capabilities::ARC_XY
     .and(Capabilities::ARC_ZX)
     .and(Capabilities::ARC_YZ)
     .and(Capabilities::HELIX)
@@ -40,7 +40,12 @@ impl Observer for Printed {
 }
 
 /// Posts with a recorder that declares so much.
-fn posted(bench: &Bench, decimals: u8, writes: Capabilities, cl: &str) -> (Run, Vec<Block>) {
+pub(super) fn posted(
+    bench: &Bench,
+    decimals: u8,
+    writes: Capabilities,
+    cl: &str,
+) -> (Run, Vec<Block>) {
     let mut dialect = Recorder::new(&bench.machine, decimals);
     dialect.capabilities = writes;
     let mut printed = Printed::default();
@@ -59,7 +64,7 @@ fn posted(bench: &Bench, decimals: u8, writes: Capabilities, cl: &str) -> (Run, 
     (run, printed.0)
 }
 
-const LENGTH: f64 = 60.0;
+pub(super) const LENGTH: f64 = 60.0;
 
 /// How a control goes along an arc from the words `from` to those of `to`, in program units.
 struct Controlled {
@@ -72,7 +77,7 @@ struct Controlled {
     to: Vec<f64>,
 }
 
-fn point(words: &[f64]) -> V {
+pub(super) fn point(words: &[f64]) -> V {
     V::new(words[0], words[1], words[2])
 }
 
@@ -129,22 +134,22 @@ impl Controlled {
 
 /// An arc of a CL file, by its own numbers.
 #[derive(Clone, Debug)]
-struct Wanted {
-    centre: V,
-    normal: V,
-    start: V,
-    end: V,
-    turns: u32,
-    axis: V,
+pub(super) struct Wanted {
+    pub(super) centre: V,
+    pub(super) normal: V,
+    pub(super) start: V,
+    pub(super) end: V,
+    pub(super) turns: u32,
+    pub(super) axis: V,
 }
 
 impl Wanted {
-    fn split(&self, p: V) -> (V, f64) {
+    pub(super) fn split(&self, p: V) -> (V, f64) {
         let height = self.normal.dot(&(p - self.centre));
         (p - self.centre - self.normal * height, height)
     }
 
-    fn sweep(&self) -> f64 {
+    pub(super) fn sweep(&self) -> f64 {
         let ((from, _), (to, _)) = (self.split(self.start), self.split(self.end));
         let angle = libm::atan2(self.normal.dot(&from.cross(&to)), from.dot(&to));
         let first = if (from - to).norm() < 1e-3 {
@@ -157,7 +162,7 @@ impl Wanted {
         first + TAU * f64::from(self.turns - 1)
     }
 
-    fn at(&self, t: f64) -> V {
+    pub(super) fn at(&self, t: f64) -> V {
         let ((from, low), (to, high)) = (self.split(self.start), self.split(self.end));
         let normal = Unit::new_normalize(self.normal);
         let turn = UnitQuaternion::from_axis_angle(&normal, self.sweep() * t);
@@ -166,7 +171,7 @@ impl Wanted {
     }
 
     /// How far a place is from the arc, close to a share of it.
-    fn nearest(&self, place: V, share: f64) -> f64 {
+    pub(super) fn nearest(&self, place: V, share: f64) -> f64 {
         let off = |t: f64| (place - self.at(t)).norm();
         let (mut low, mut high) = (share - 0.02, share + 0.02);
         for _ in 0..60 {
@@ -179,7 +184,7 @@ impl Wanted {
         off(low.midpoint(high))
     }
 
-    fn cl(&self) -> String {
+    pub(super) fn cl(&self) -> String {
         let six = |p: V, q: V| {
             format!(
                 "{:.6},{:.6},{:.6},{:.9},{:.9},{:.9}",
@@ -204,7 +209,7 @@ impl Wanted {
     }
 
     /// With the numbers that its text has.
-    fn written(mut self) -> Self {
+    pub(super) fn written(mut self) -> Self {
         let tip = |v: V| v.map(|x| (x * 1e6).round() / 1e6);
         let way = |v: V| v.map(|x| (x * 1e9).round() / 1e9);
         (self.centre, self.start, self.end) = (tip(self.centre), tip(self.start), tip(self.end));
@@ -213,7 +218,7 @@ impl Wanted {
     }
 }
 
-const CHAINS: [&str; 3] = [
+pub(super) const CHAINS: [&str; 3] = [
     "[w C' A' b Y X Z t]",
     "[w C' b X Y Z A t]",
     "[w b X Y Z C A t]",
@@ -223,7 +228,7 @@ fn list(v: V) -> String {
     format!("[{}, {}, {}]", v.x, v.y, v.z)
 }
 
-fn machine(rng: &mut Rng, chain: &str, tcp: &str, units: &str, more: &str) -> String {
+pub(super) fn machine(rng: &mut Rng, chain: &str, tcp: &str, units: &str, more: &str) -> String {
     let mut text = format!(
         "name = \"random\"\nchain = \"{chain}\"\n[workpiece]\nmount = {}\n[tool]\ngauge = {}\n",
         list(rng.point(100.0)),
@@ -256,7 +261,7 @@ fn machine(rng: &mut Rng, chain: &str, tcp: &str, units: &str, more: &str) -> St
 }
 
 /// An arc across an axis of the words, the tool standing as some random angles have it.
-fn wanted(rng: &mut Rng, bench: &Bench, tcp: &str) -> Wanted {
+pub(super) fn wanted(rng: &mut Rng, bench: &Bench, tcp: &str) -> Wanted {
     let mut q = Joints::default();
     q[bench.place("C")] = [0.0, rng.range(-3.0, 3.0)][rng.pick(2)];
     q[bench.place("A")] = [0.0, rng.range(-1.7, 1.7)][rng.pick(2)];
@@ -289,7 +294,7 @@ fn wanted(rng: &mut Rng, bench: &Bench, tcp: &str) -> Wanted {
 }
 
 /// Words in mm and degrees.
-fn in_mm(words: &[f64], unit: f64) -> Vec<f64> {
+pub(super) fn in_mm(words: &[f64], unit: f64) -> Vec<f64> {
     let mut words = words.to_vec();
     words[..3].iter_mut().for_each(|word| *word *= unit);
     words

@@ -9,6 +9,7 @@ mod arcs;
 mod certificate;
 mod events;
 mod feed;
+mod helices;
 mod holes;
 mod path;
 mod plan;

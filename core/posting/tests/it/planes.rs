@@ -318,3 +318,57 @@ fn arcs_in_a_plane_are_laid_in_its_x_and_y() {
         }
     }
 }
+
+/// A coordinate that is constant in the plane comes back from five decimals of the CL file with their noise: its word does
+/// not jitter by a last digit, and what that costs is certified.
+#[test]
+fn constant_coordinates_of_a_plane_do_not_jitter() {
+    let mut jitters = 0;
+    for (name, machine) in machines("control") {
+        let lean = Rotation3::from_euler_angles(0.3, 0.5, 0.2);
+        let (x, y, z) = (
+            lean * Vector3::x(),
+            lean * Vector3::y(),
+            lean * Vector3::z(),
+        );
+        let mut cl = "UNITS/MM\nMULTAX/ON\nLOADTL/1\nFEDRAT/500,MMPM\n".to_owned();
+        let mut heights = Vec::new();
+        for level in 0..40 {
+            let height = 12.1625 + f64::from(level - 20) * 1e-6;
+            for step in 0..25 {
+                let tip = x * (f64::from(step) * 1.037) + y * f64::from(level) + z * height;
+                cl += &format!(
+                    "GOTO/{:.5},{:.5},{:.5},{:.9},{:.9},{:.9}\n",
+                    tip.x, tip.y, tip.z, z.x, z.y, z.z
+                );
+                heights.push((cl.lines().count() as u64, level));
+            }
+        }
+        let mut recorder = Recorder::new(&machine, 3);
+        recorder.capabilities = Capabilities::PLANE;
+        let done = run(&machine, recorder, &cl).good(name);
+        assert!(
+            done.asked.iter().any(|asked| asked.plane.is_some()),
+            "{name}"
+        );
+        let words: Vec<(i32, f64)> = done
+            .motions()
+            .iter()
+            .filter_map(|asked| {
+                let (_, level) = heights.iter().find(|(line, _)| *line == asked.line)?;
+                Some((*level, asked.words[2]))
+            })
+            .collect();
+        jitters += words
+            .windows(2)
+            .filter(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1)
+            .count();
+        let report = done.report.as_ref().unwrap();
+        assert!(
+            report.tip_deviation_mm.value < 0.0011,
+            "{name} {:?}",
+            report.tip_deviation_mm
+        );
+    }
+    assert_eq!(jitters, 0);
+}

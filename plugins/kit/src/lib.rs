@@ -45,7 +45,11 @@ const fn word(name: &str, rotary: bool, depth: bool) -> AxisWord<'_> {
         wrapped: false,
         depth,
         carries_part: rotary,
-        travel: None,
+        // The trunnion has ends, its table none.
+        travel: match name.as_bytes() {
+            b"A" => Some([-120.0, 120.0]),
+            _ => None,
+        },
     }
 }
 

@@ -21,12 +21,28 @@ impl Siemens {
         match *event {
             Event::Start => {
                 engine.motion.axes.shorter_way("=DC(", ")");
+                if self.modulo {
+                    let ways = ["=DC(", "=ACP(", "=ACN("];
+                    engine.motion.axes.modulo(ways, ")");
+                }
                 if !self.header.is_empty() {
                     engine.bare(&self.header, out);
                 }
                 self.plane.set("G17");
                 self.tcp_active.set(false);
                 return Ok(false);
+            }
+            Event::Linear { words, .. } | Event::Arc { words, .. }
+                if let Some(axis) = engine
+                    .motion
+                    .axes
+                    .turns_round(words)
+                    .filter(|_| !self.by_vector()) =>
+            {
+                return Err(format!(
+                    "{axis} turns by a whole turn or more in one block, which the words of a modulo axis cannot say: \
+                     endless = \"counted\" where the control counts turns"
+                ));
             }
             Event::Linear { feed, .. } if self.surface && !matches!(feed, Feed::PerMinute(_)) => {
                 return Err(format!(

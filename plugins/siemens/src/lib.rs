@@ -42,6 +42,8 @@ struct Siemens {
     arcs_off_xy: bool,
     swivels: bool,
     messages: bool,
+    /// Words of endless axes stay within a turn.
+    modulo: bool,
     /// Places of X, Y and Z among the words, if the machine has them and the spindle is along Z.
     linear: Option<[usize; 3]>,
     decimals: u8,
@@ -105,6 +107,7 @@ impl Control for Siemens {
             arcs_off_xy: setup.flag("arcs_off_xy"),
             swivels: setup.flag("swivel"),
             messages: setup.flag("messages"),
+            modulo: setup.text("endless") == "modulo",
             linear,
             decimals: setup.integer(match setup.units {
                 Units::Millimetre => "decimals",

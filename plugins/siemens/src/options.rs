@@ -42,6 +42,13 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
     options::decimals(3),
     options::decimals_inch(4),
     options::rotary_decimals(3),
+    choice(
+        "endless",
+        &["modulo", "counted"],
+        "modulo",
+        "A rotary axis without travel or range: modulo, it is shown from 0 to 359.999 (another value is alarm 16830) and \
+         written as DC(), ACP() or ACN(); counted: its words count turns.",
+    ),
     options::TRAILING_ZEROS,
     options::feed_decimals(1),
     options::inverse_time_decimals(3),

@@ -488,6 +488,80 @@ fn wrapped_axes_take_the_shorter_way() {
     );
 }
 
+/// A modulo axis takes 0 to 359.999 alone, and each move goes the way that was certified.
+#[test]
+fn endless_axes_stay_within_a_turn() {
+    let words = ["X", "Z", "C"].map(|name| AxisWord {
+        name,
+        rotary: name == "C",
+        depth: name == "Z",
+        travel: (name != "C").then_some([-500.0, 500.0]),
+        ..AxisWord::default()
+    });
+    let written = |endless: &'static str, angles: &[f64], cut: bool| {
+        let declared = crate::plugin().options();
+        let mut options: Vec<_> = declared
+            .iter()
+            .map(|spec| (spec.key, spec.default))
+            .collect();
+        for (key, value) in &mut options {
+            if *key == "endless" {
+                *value = Value::Text(endless);
+            }
+        }
+        let setup = Setup {
+            units: Units::Millimetre,
+            words: &words,
+            options: &options,
+            ..Setup::default()
+        };
+        let mut dialect = crate::plugin().open(&setup).unwrap().unwrap();
+        let mut batch = Batch::default();
+        batch.push(1, Event::Start);
+        let places: Vec<[f64; 3]> = angles.iter().map(|angle| [0.0, 0.0, *angle]).collect();
+        for place in &places {
+            batch.push(
+                2,
+                match cut {
+                    true => Event::linear(place, Feed::PerMinute(100.0)),
+                    false => turn(place),
+                },
+            );
+        }
+        let promise = Promise {
+            words: 3,
+            inverse_time: true,
+        };
+        let (mut out, mut ends) = (String::new(), Vec::new());
+        let done = dialect.write(&batch, &promise, &mut out, &mut ends);
+        done.map(|()| out)
+    };
+    let angles = [-80.0, 10.0, 200.0, 10.0, 170.0, 359.9999];
+    let out = written("modulo", &angles, false).unwrap();
+    let found: Vec<&str> = out
+        .split_whitespace()
+        .filter(|word| word.starts_with("C="))
+        .collect();
+    assert_eq!(
+        found,
+        [
+            "C=DC(280.000)",
+            "C=DC(10.000)",
+            "C=ACP(200.000)",
+            "C=ACN(10.000)",
+            "C=DC(170.000)",
+            "C=ACP(0.000)"
+        ],
+        "{out}"
+    );
+    assert!(
+        written("counted", &angles, false)
+            .unwrap()
+            .contains("C-80.000")
+    );
+    assert!(written("modulo", &[0.0, 400.0], true).is_err());
+}
+
 #[test]
 fn what_cannot_be_written_is_refused() {
     let refused = |events: &[Event<'_>]| bench().write(events).unwrap_err();

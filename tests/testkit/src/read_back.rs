@@ -295,7 +295,12 @@ pub fn blocks(program: &str, names: &[&str], swap: &[String]) -> Vec<Block> {
     let (mut rapid, mut swaps) = (true, 0);
     let mut blocks = Vec::new();
     for (index, line) in program.lines().enumerate() {
-        let code = line.split(['(', ';']).next().unwrap();
+        // The place within a turn, and the way there: `C=ACP(280.000)`.
+        let ways = ["=DC(", "=ACP(", "=ACN("];
+        let plain = ways
+            .iter()
+            .fold(line.to_owned(), |line, way| line.replace(way, ""));
+        let code = plain.split(['(', ';']).next().unwrap();
         let words = || code.split_whitespace();
         swaps += words()
             .filter(|word| swap.iter().any(|swap| swap == word))
@@ -316,7 +321,7 @@ pub fn blocks(program: &str, names: &[&str], swap: &[String]) -> Vec<Block> {
                 _ => {
                     let name = names.iter().find(|name| word.starts_with(**name));
                     if let Some(name) = name
-                        && let Ok(value) = word[name.len()..].parse()
+                        && let Ok(value) = word[name.len()..].trim_end_matches(')').parse()
                     {
                         known.insert(name, value);
                         moved = true;

@@ -239,3 +239,57 @@ fn turning_cuts() -> String {
     }
     cl.rapid(V::new(20.0, 5.0, 60.0), lean(20.0, 130.0)).end()
 }
+
+/// Clamps hold what stands in a cut, also an axis that turns in other operations: they are let go before its next word.
+/// The option of the dialect and the keys of the axes say the same.
+#[test]
+fn clamps_hold_axes_that_are_not_indexed() {
+    let sample = crate::common::sample("wedge.ncl");
+    let wedge = |with: &[&str]| {
+        let mut all = vec![
+            "-q",
+            "-m",
+            "ac-trunnion",
+            "--tool-length",
+            "100",
+            "-o",
+            "-",
+            "--verify",
+        ];
+        all.extend(with);
+        all.push(sample.to_str().unwrap());
+        let done = crate::common::post(&all);
+        assert_eq!(done.code, 0, "{}", done.err);
+        done.out
+    };
+    let own = wedge(&[
+        "--set",
+        "control.fanuc.clamps=[\"A M20 M21\", \"C M10 M11\"]",
+    ]);
+    let keys = wedge(&[
+        "--set",
+        "axis.A.clamp=\"M20\"",
+        "--set",
+        "axis.A.unclamp=\"M21\"",
+        "--set",
+        "axis.C.clamp=\"M10\"",
+        "--set",
+        "axis.C.unclamp=\"M11\"",
+    ]);
+    assert_eq!(own, keys);
+    let (mut clamped, mut held) = (None, 0);
+    for line in own.lines() {
+        match line {
+            "M10" => clamped = Some(true),
+            "M11" => clamped = Some(false),
+            _ if line.split_whitespace().any(|word| word.starts_with('C')) => {
+                assert_eq!(clamped, Some(false), "{line}\n{own}");
+            }
+            _ if line.contains(" F") && line.contains('X') => {
+                held += u32::from(clamped == Some(true))
+            }
+            _ => {}
+        }
+    }
+    assert!(held > 0, "{own}");
+}

@@ -203,7 +203,7 @@ impl<'a> Post<'a> {
             expand: Expand::new(machine, job.reading.chord_tolerance, writes, ahead),
             shift: None,
             lines: Vec::new(),
-            timing: Timing::new(machine, &format)?,
+            timing: Timing::new(machine, &format, writes)?,
             configuration: Configuration::new(
                 machine,
                 &format,
@@ -410,6 +410,7 @@ impl<'a> Post<'a> {
             time_s: (durations.cutting + durations.other) * 60.0,
             cutting_time_s: durations.cutting * 60.0,
             blocks_limited: durations.limited,
+            blocks_capped: durations.capped,
             fast_rapids: stages.timing.rapids().found().clone(),
             ignored_words: self
                 .interpreter

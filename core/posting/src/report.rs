@@ -63,6 +63,8 @@ pub struct Report {
     pub cutting_time_s: f64,
     /// Blocks slowed down because an axis would have gone faster than its `max_feed`.
     pub blocks_limited: u64,
+    /// Blocks of these whose F by time would be larger than `most_inverse_time`.
+    pub blocks_capped: u64,
     /// Rapids that the control runs by itself and in which an axis may pass its `max_feed`.
     pub fast_rapids: FastRapids,
     /// Words of the CL file that say nothing to a machine, and how often.

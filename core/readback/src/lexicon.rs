@@ -71,6 +71,8 @@ pub struct Lexicon {
     changes_by_word: bool,
     /// The dialect itself knows G64, so that G61 is one of several modes.
     path_modes: bool,
+    /// A feed a minute counts along all axes together where no tip is kept.
+    all_axes: bool,
 }
 
 impl Lexicon {
@@ -97,6 +99,9 @@ impl Lexicon {
             m: vec![0; CODES / 10],
             senses: vec![Sense::Unknown],
             syntax: syntax(words, language),
+            all_axes: words
+                .iter()
+                .any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
             path_modes: words.iter().any(|word| word.word == "G64"),
             changes_by_word: words.iter().any(|word| word.meaning == Meaning::ToolChange),
             ..Self::default()
@@ -128,6 +133,11 @@ impl Lexicon {
     /// A word changes the tool, M6 or another; else T does.
     pub(crate) fn changes_by_word(&self) -> bool {
         self.changes_by_word
+    }
+
+    /// A feed a minute counts along all axes together where no tip is kept, degrees as millimetres.
+    pub(crate) fn counts_all_axes(&self) -> bool {
+        self.all_axes
     }
 
     /// G61 is one of several modes, and not just the name of the only one.

@@ -23,6 +23,8 @@ impl Control for Fanuc {
         },
         relies: RELIES,
         cancel: CANCEL,
+        cancel_behind_length: true,
+        feed_all_axes: true,
         tcp: Tcp::Length("G43.4"),
         vector: "G43.5",
         plane: Plane::Euler {
@@ -31,8 +33,6 @@ impl Control for Fanuc {
             off: "G69",
         },
         cycles_in_plane: true,
-        // P, Q and K of cycles have no point.
-        step_in_increments: true,
         rigid: Rigid::Ahead("M29"),
         splines: Splines::Knots {
             code: "G6.2",
@@ -76,7 +76,8 @@ const OPTIONS: &[OptionSpec] = iso_options![
     OptionSpec::lines(
         "cancel",
         CANCEL,
-        "Block at the start that cancels scaling, mirror and rotation; less on a control without one of them.",
+        "Block behind the first retract that cancels rotation and tilted plane; `G50 G50.1 G69` where scaling and mirror image \
+         are there, empty where nothing of it is.",
     ),
     options::TOOL_VECTOR,
     options::cycles_in_plane(true),
@@ -96,8 +97,9 @@ const RELIES: &[&str] = &[
     "one M code a block is enough, G53 counts from the machine's zero",
 ];
 
-/// Scaling, programmable mirror image, rotation and tilted plane off.
-const CANCEL: &str = "G50 G50.1 G69";
+/// Rotation and tilted plane off. Scaling and mirror image (G50, G50.1) are options of many controls, whose words without
+/// the option are an alarm.
+const CANCEL: &str = "G69";
 
 /// AI contour control: how much it leaves the path is the parameters' to say.
 const SMOOTHING: [&str; 2] = ["0 G5.1 Q1", "G5.1 Q0"];

@@ -2,7 +2,7 @@
 //!
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
-use post_iso::{Control, Iso, Leave, Subprogram, Table, Tcp, iso_options, options, words};
+use post_iso::{Control, Iso, Leave, Rigid, Subprogram, Table, Tcp, iso_options, options, words};
 use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 
 struct Hurco;
@@ -13,6 +13,7 @@ impl Control for Hurco {
         extension: "fnc",
         title: Some(("O", 4)),
         relies: RELIES,
+        feed_all_axes: true,
         // G69 ahead of M128: no transform plane.
         tcp: Tcp::Blocks {
             on: "G69\nM128",
@@ -20,6 +21,8 @@ impl Control for Hurco {
             length_first: false,
         },
         leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
+        // P is not optional there.
+        rigid: Rigid::Alone("M29"),
         subprogram: Subprogram {
             number: "M98 P{}",
             name: "",
@@ -50,6 +53,7 @@ const OPTIONS: &[OptionSpec] = iso_options![
         "",
         "Block that switches it off; empty: M129 under tcp = \"control\", else nothing is written about it.",
     ),
+    options::tapping("rigid"),
     options::BORE_SHIFT,
     options::smoothing(""),
     options::smoothing_off(""),

@@ -29,3 +29,18 @@ fn five_axes_with_axis_positions() {
 fn five_axes_with_tcp() {
     insta::assert_snapshot!(bench().tcp().write_job().unwrap());
 }
+
+/// `M29` stands alone, and P is not optional there; without a rigid holder it is left out.
+#[test]
+fn taps_are_rigid() {
+    let rigid = bench().write_declared(&jobs::three_axes()).unwrap();
+    let (_, tap) = rigid.split_once("\nM29\n").expect("a rigid tap");
+    let tap = tap.lines().next().unwrap();
+    assert!(tap.contains("G84 ") && tap.contains(" P0 F"), "{tap}");
+    let floating = bench().with("tapping", Value::Text("floating"));
+    let floating = floating.write_declared(&jobs::three_axes()).unwrap();
+    assert!(
+        floating.contains("G84 ") && !floating.contains("M29"),
+        "{floating}"
+    );
+}

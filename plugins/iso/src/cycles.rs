@@ -202,6 +202,9 @@ impl Engine {
             let block = &mut self.motion.block;
             block.number("S", rpm, 0, NumberStyle::default()).end(out);
         }
+        if let (Some(Rigid::Alone(word)), true) = (rigid, running.first) {
+            self.line(word, out);
+        }
         self.tapped |= rigid.is_some();
         let level = match top > plane + 1e-9 {
             true => "G98",
@@ -250,10 +253,13 @@ impl Engine {
             block.number("R", plane, places, style);
         }
         if first {
-            self.cycle_words(&running);
+            self.cycle_words(&running, rigid);
             // Spindle and axis are told the same thread.
             let more = if taps(running.kind) { 3 } else { 0 };
             self.motion.feed_again(running.feed, more);
+            if let Some(Rigid::Beside(word)) = rigid {
+                self.motion.block.word(word);
+            }
         }
         self.motion.block.end(out);
         self.motion.at_level(words, z, top);
@@ -262,7 +268,7 @@ impl Engine {
     }
 
     /// Step, shift and wait.
-    fn cycle_words(&mut self, running: &Running) {
+    fn cycle_words(&mut self, running: &Running, rigid: Option<Rigid>) {
         let places = self.motion.linear_decimals(2);
         let style = self.motion.style;
         let q = match running.step.filter(|_| pecks(running.kind)) {
@@ -270,20 +276,19 @@ impl Engine {
             None => shifts(running.kind).then_some(self.cycles.shift),
         };
         if let Some(q) = q {
-            match self.table.step_in_increments {
-                true => {
-                    // Rounded down: a step is never longer than asked for.
-                    let increments = (q * if self.inch { 10_000.0 } else { 1000.0 } + 1e-6).floor();
-                    let block = &mut self.motion.block;
-                    block.number("Q", increments.max(1.0), 0, NumberStyle::default());
-                }
-                false => {
-                    self.motion.block.number("Q", q, places, style);
-                }
-            }
+            // Rounded down: a step is never longer than asked for.
+            let scale = (0..places).fold(1.0, |scale, _| scale * 10.0);
+            let q = (q * scale + 1e-6).floor().max(1.0) / scale;
+            self.motion.block.number("Q", q, places, style);
         }
-        if let Some(seconds) = running.dwell {
-            self.wait_by("P", seconds);
+        match running.dwell {
+            Some(seconds) => self.wait_by("P", seconds),
+            None if matches!(rigid, Some(Rigid::Alone(_))) => {
+                // None, whatever the unit.
+                let style = NumberStyle::default();
+                self.motion.block.number("P", 0.0, 0, style);
+            }
+            None => {}
         }
     }
 

@@ -45,6 +45,8 @@ pub struct Engine {
     pub(crate) tcp: bool,
     work_offset: String,
     cancel: String,
+    /// It waits for the length to be off.
+    cancel_due: bool,
     /// In the place of a retract in machine coordinates; empty: none.
     retract: String,
     tcp_on: String,
@@ -111,6 +113,9 @@ impl Engine {
         }
         if !table.length.on.is_empty() && !table.length.by_itself {
             writes |= Capabilities::OFFSETS;
+        }
+        if table.feed_all_axes {
+            writes |= Capabilities::FEED_ALL_AXES;
         }
         writes
             | self.cycles.capabilities()
@@ -187,10 +192,18 @@ impl Engine {
             self.offset_active.set(true);
         }
         self.line(&safe, out);
-        let cancel = std::mem::take(&mut self.cancel);
-        self.line(&cancel, out);
-        self.cancel = cancel;
+        self.cancel_due = true;
+        if !self.table.cancel_behind_length || self.length_active.is(false) {
+            self.cancel_what_was(out);
+        }
         self.motion.feeds_per_minute();
+    }
+
+    /// What shifts, turns, scales or mirrors is cancelled, unless it is.
+    pub(crate) fn cancel_what_was(&mut self, out: &mut String) {
+        if std::mem::take(&mut self.cancel_due) {
+            self.motion.line(&self.cancel, out);
+        }
     }
 
     /// Writes any event but the program's start.
@@ -299,6 +312,7 @@ impl Engine {
             Event::Coolant(coolant) => self.cool(coolant, out)?,
             Event::Compensate(compensation) => self.motion.compensate(compensation),
             Event::Turn { words } => {
+                self.cancel_what_was(out);
                 self.offset_before_position(out);
                 self.motion.turn(words, out);
             }
@@ -406,6 +420,7 @@ impl Engine {
     ) -> Result<(), String> {
         let keeps_tip = self.tcp && !self.plane.is_on();
         let mut length = self.length()?;
+        self.cancel_what_was(out);
         self.settings.smoothing_due(&mut self.motion, out);
         self.offset_before_position(out);
         // The rotary axes have been turned; what is left of them here moves nothing else.
@@ -509,6 +524,7 @@ impl Engine {
                     if self.length_active.set(false) {
                         self.motion.line(self.table.length.off, out);
                     }
+                    self.cancel_what_was(out);
                 }
                 Leave::Tcp => {
                     if self.tcp_active.set(false) {

@@ -76,6 +76,7 @@ impl Engine {
         out: &mut String,
     ) -> Result<(), String> {
         self.plane.must_be_off("a tilted plane")?;
+        self.cancel_what_was(out);
         self.motion.settle(out);
         // The axes stand there: what is not known of it is written, and moves nothing.
         self.motion.turn(words, out);

@@ -57,7 +57,9 @@ impl Settings {
             smoothing_off: text(setup, "smoothing_off", off),
             smoothing: None,
             waiting: None,
-            clamps: clamps.map(clamp).collect::<Result<_, _>>()?,
+            clamps: clamps
+                .map(|line| clamp(line, setup))
+                .collect::<Result<_, _>>()?,
             axes: setup
                 .words
                 .iter()
@@ -157,9 +159,16 @@ fn level(line: &str) -> Result<(f64, String), String> {
 }
 
 /// `C M10 M11`.
-fn clamp(line: &str) -> Result<Clamp, String> {
+fn clamp(line: &str, setup: &Setup<'_>) -> Result<Clamp, String> {
     let words: Vec<&str> = line.split_whitespace().collect();
+    let turns = |axis: &str| {
+        let mut axes = setup.words.iter();
+        axes.any(|word| word.rotary && word.name == axis)
+    };
     match words.as_slice() {
+        [axis, ..] if !turns(axis) => Err(format!(
+            "clamps has the line `{line}`, and the machine has no rotary axis {axis}"
+        )),
         [axis, on, off] => Ok(Clamp {
             axis: (*axis).to_owned(),
             on: (*on).to_owned(),
@@ -192,13 +201,11 @@ impl Engine {
             Event::Clamp { word, on } if !self.settings.clamps.is_empty() => {
                 let axis = self.settings.axes.get(word as usize);
                 let mut clamps = self.settings.clamps.iter();
-                let clamp = clamps.find(|clamp| Some(&clamp.axis) == axis);
-                let clamp = clamp.ok_or_else(|| {
-                    let axis = axis.map_or("?", String::as_str);
-                    format!("the option `clamps` has no line for the axis {axis}")
-                })?;
-                let codes = if on { &clamp.on } else { &clamp.off };
-                one_by_one(codes, &mut self.motion, out);
+                // An axis without a line has no clamp.
+                if let Some(clamp) = clamps.find(|clamp| Some(&clamp.axis) == axis) {
+                    let codes = if on { &clamp.on } else { &clamp.off };
+                    one_by_one(codes, &mut self.motion, out);
+                }
             }
             Event::Message { text } if !table.message.is_empty() => {
                 let remark = (table.remark)(text);

@@ -36,6 +36,12 @@ pub struct Table {
     /// A block behind it that cancels what shifts, turns, scales or mirrors, and moves nothing; may be empty. Option
     /// `cancel`.
     pub cancel: &'static str,
+    /// It stands behind the end of the length compensation, which comes with the first retract: ahead of that the control
+    /// would refuse it.
+    pub cancel_behind_length: bool,
+    /// A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
+    /// along the linear ones.
+    pub feed_all_axes: bool,
     /// Largest block number; past it they begin anew.
     pub largest_number: u32,
     /// Zeros at the end of axis words are left out. Option `trailing_zeros`.
@@ -62,8 +68,6 @@ pub struct Table {
     pub cycles: &'static [CycleCode],
     /// Cycles, and arcs, inside a tilted plane. Option `cycles_in_plane`.
     pub cycles_in_plane: bool,
-    /// The step of a cycle (Q) counts in least increments (0.001 mm, 0.0001 inch), without a point.
-    pub step_in_increments: bool,
     /// What makes tapping rigid. Option `tapping`.
     pub rigid: Rigid,
     /// Tilted planes.
@@ -212,8 +216,12 @@ pub struct CycleCode {
 pub enum Rigid {
     /// The cycle is, or the control's parameters say so.
     Always,
-    /// A block with the speed ahead of the cycle: `M29`.
+    /// A block with the speed ahead of the cycle: `M29 S500`.
     Ahead(&'static str),
+    /// A block of its own ahead of the cycle, `M29`, and a wait in the cycle even where it is none.
+    Alone(&'static str),
+    /// A word in the block of the cycle: `,R1`.
+    Beside(&'static str),
     /// Another code than that of the cycle, right-hand and left-hand.
     Codes([&'static str; 2]),
     /// A move of its own down and up, with the pitch as K: `G33.1`.
@@ -363,6 +371,8 @@ impl Table {
         safe: "G17 G40 G80 G90 G94",
         relies: &[],
         cancel: "",
+        cancel_behind_length: false,
+        feed_all_axes: false,
         largest_number: 99_999,
         trim: false,
         per_revolution: 4,
@@ -389,7 +399,6 @@ impl Table {
         change: "M6",
         cycles: CYCLES,
         cycles_in_plane: false,
-        step_in_increments: false,
         rigid: Rigid::Always,
         plane: Plane::None,
         vector: "",

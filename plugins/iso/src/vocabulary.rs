@@ -69,14 +69,16 @@ impl Engine {
         if let Some((letter, _)) = table.title {
             add(letter, M::Nothing);
         }
+        let per_minute = match table.feed_all_axes {
+            true => M::FeedPerMinuteAllAxes,
+            false => M::FeedPerMinute,
+        };
+        let feeds = [per_minute, M::InverseTime, M::FeedPerRevolution];
         let listed = each(&codes.units, &[M::Millimetre, M::Inch])
             .chain(each(&codes.motion, &[M::Rapid, M::Linear]))
             .chain(each(&codes.arc, &[M::ArcClockwise, M::ArcCounterClockwise]))
             .chain(each(&codes.planes, &[M::PlaneXy, M::PlaneZx, M::PlaneYz]))
-            .chain(each(
-                &codes.feed,
-                &[M::FeedPerMinute, M::InverseTime, M::FeedPerRevolution],
-            ))
+            .chain(each(&codes.feed, &feeds))
             .chain(each(
                 &codes.compensation,
                 &[
@@ -153,7 +155,11 @@ impl Engine {
         }
         match table.rigid {
             Rigid::Always => {}
-            Rigid::Ahead(word) => add(word, M::Nothing),
+            Rigid::Ahead(word) | Rigid::Alone(word) => add(word, M::Nothing),
+            Rigid::Beside(word) => add(
+                word.trim_end_matches(|c: char| c.is_ascii_digit()),
+                M::Nothing,
+            ),
             Rigid::Codes([right, left]) => {
                 add(right, M::CycleTap);
                 add(left, M::CycleTapLeft);

@@ -388,10 +388,14 @@ fn clamps_registers_and_units() {
         behind(&bench, &[clamp(4, true), clamp(3, false)]).unwrap(),
         "M10\nM21\n"
     );
+    // An axis without a line has no clamp.
+    assert_eq!(behind(&bench, &[clamp(0, true)]).unwrap(), "");
+    let stranger = whole().with("clamps", Value::Text("Q M10 M11"));
     assert!(
-        behind(&bench, &[clamp(0, true)])
+        stranger
+            .write(&[])
             .unwrap_err()
-            .contains("no line for the axis X")
+            .contains("no rotary axis Q")
     );
     let slip = whole().with("clamps", Value::Text("C M10"));
     assert!(slip.write(&[]).unwrap_err().contains("clamps has the line"));
@@ -549,8 +553,9 @@ fn a_program_can_be_started_behind_each_tool_change() {
 #[test]
 fn what_it_declares_follows_from_table_and_options() {
     let writes = |options: &[(&str, Value<'_>)]| {
-        let words = ["X", "Y", "Z"].map(|name| post_plugin::AxisWord {
+        let words = ["X", "Y", "Z", "C"].map(|name| post_plugin::AxisWord {
             name,
+            rotary: name == "C",
             depth: name == "Z",
             ..post_plugin::AxisWord::default()
         });

@@ -23,6 +23,7 @@ impl Control for Mazak {
             ..Table::ISO.offset
         },
         relies: RELIES,
+        feed_all_axes: true,
         cancel: CANCEL,
         tcp: Tcp::Length("G43.4"),
         vector: "G43.5",

@@ -3,7 +3,7 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Control, Iso, Offset, Plane, Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six,
+    Control, Iso, Offset, Plane, Rigid, Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six,
     iso_options, offset_beyond_six, options, words,
 };
 use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
@@ -21,6 +21,7 @@ impl Control for Mitsubishi {
             ..Table::ISO.offset
         },
         relies: RELIES,
+        feed_all_axes: true,
         cancel: CANCEL,
         tcp: Tcp::Length("G43.4"),
         vector: "G43.5",
@@ -29,6 +30,8 @@ impl Control for Mitsubishi {
             turn: "G53.1",
             off: "G69",
         },
+        // Else parameter #8159 decides, as delivered for a compensating chuck.
+        rigid: Rigid::Beside(",R1"),
         surface: Some(SurfaceSpeed {
             codes: ["G96", "G97"],
             most: "G92 S",
@@ -69,6 +72,7 @@ const OPTIONS: &[OptionSpec] = iso_options![
     ),
     options::TOOL_VECTOR,
     options::cycles_in_plane(false),
+    options::tapping("rigid"),
     options::BORE_SHIFT,
     options::smoothing(""),
     options::smoothing_off(""),

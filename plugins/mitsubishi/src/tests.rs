@@ -36,3 +36,20 @@ fn five_axes_with_axis_positions() {
 fn five_axes_with_tcp() {
     insta::assert_snapshot!(bench().tcp().write_job().unwrap());
 }
+
+/// Without `,R1` a parameter decides, which is delivered for a compensating chuck.
+#[test]
+fn taps_are_synchronous() {
+    let rigid = bench().write_declared(&jobs::three_axes()).unwrap();
+    let taps: Vec<&str> = rigid.lines().filter(|line| line.contains("G84 ")).collect();
+    assert!(
+        !taps.is_empty() && taps.iter().all(|tap| tap.ends_with(" ,R1")),
+        "{rigid}"
+    );
+    let floating = bench().with("tapping", Value::Text("floating"));
+    let floating = floating.write_declared(&jobs::three_axes()).unwrap();
+    assert!(
+        floating.contains("G84 ") && !floating.contains(",R"),
+        "{floating}"
+    );
+}

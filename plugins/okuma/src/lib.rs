@@ -39,6 +39,7 @@ impl Control for Okuma {
             ..Table::ISO.length
         },
         relies: RELIES,
+        feed_all_axes: true,
         tcp: Tcp::Blocks {
             on: "",
             off: "",

@@ -424,7 +424,7 @@ impl Builder<'_> {
         let axis = spanned.get_ref();
         let (span, help) = match (&axis.clamp, &axis.unclamp) {
             (None, None) => return None,
-            (Some(on), Some(off)) if axis.indexed.is_some() => {
+            (Some(on), Some(off)) if axis.indexed.is_some() || axis.rotary.is_some() => {
                 return Some(Clamp {
                     on: on.get_ref().clone(),
                     off: off.get_ref().clone(),
@@ -432,7 +432,7 @@ impl Builder<'_> {
             }
             (Some(on), Some(_)) => (
                 on.span(),
-                "only an axis that stands still in cuts is clamped: indexed = 0",
+                "a linear axis is clamped if it stands still in cuts: indexed = 0",
             ),
             (Some(word), None) | (None, Some(word)) => (
                 word.span(),

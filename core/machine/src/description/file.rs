@@ -208,7 +208,7 @@ pub(crate) struct AxisFile {
     /// An indexed axis stands at whole multiples of this alone, mm or degrees.
     #[schemars(with = "Option<Number>", extend("exclusiveMinimum" = 0))]
     pub step: Option<Quantity>,
-    /// The line of the program that clamps an indexed axis, such as M10.
+    /// The line of the program that clamps the axis where it stands in a cut, such as M10: a rotary one, or an indexed one.
     #[schemars(with = "Option<String>")]
     pub clamp: Option<Spanned<String>>,
     /// The line of the program that lets it go, such as M11.
@@ -508,9 +508,9 @@ pub(crate) struct ControlFile {
     /// What F means under inverse time; minutes if not said.
     #[serde(default)]
     pub inverse_time: InverseTime,
-    /// The length that the control divides by F when it does not keep the tip; linear if not said.
-    #[serde(default)]
-    pub feed_length: FeedLength,
+    /// The length that the control divides by F when it does not keep the tip; if not said as the dialect has it: combined
+    /// for Fanuc, Mazak, Mitsubishi, Okuma and Hurco, linear for the others.
+    pub feed_length: Option<FeedLength>,
     /// The length that the control divides by F when it keeps the tip; tip if not said.
     #[serde(default)]
     pub tcp_feed_length: TcpFeedLength,

@@ -286,7 +286,7 @@ pub struct Control {
     /// How feeds are written.
     pub feed: FeedMode,
     /// What a feed a minute is meant along.
-    pub feed_length: FeedLength,
+    pub feed_length: Option<FeedLength>,
     /// What a feed a minute is meant along where the control keeps the tip.
     pub tcp_feed_length: TcpFeedLength,
     /// What F means under inverse time.

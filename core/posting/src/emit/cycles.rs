@@ -184,7 +184,7 @@ impl Emit<'_> {
 
     /// The cycle, unless it is in force, and its point.
     fn point(&mut self, hole: &Hole, native: &Native, in_force: bool) {
-        if self.machine.clamps
+        if self.clamps()
             && let Some(block) = points(&hole.into).find(|block| block.kind == MotionKind::Linear)
         {
             self.clamp(block);

@@ -267,6 +267,9 @@ impl Emit<'_> {
         self.rest(line);
         self.go_home(line, findings);
         self.tell_wound(line, findings);
+        if let Some(warning) = self.texts.without_operations() {
+            findings.add(warning);
+        }
         self.say(line, TextPlace::Footer);
         self.writer.push(line, Event::End);
     }
@@ -281,6 +284,7 @@ impl Emit<'_> {
         self.wake(line, findings);
         let words = &block.words[..self.writer.words()];
         // Nobody knows whether they are clamped.
+        self.free = 0;
         for joint in 0..self.machine.axes.len() {
             self.set_clamp(line, joint, false, true);
         }

@@ -37,6 +37,8 @@ pub(crate) struct Emit<'a> {
     last: Joints,
     /// Axes that are known to be clamped, one bit each.
     clamped: u8,
+    /// Rotary axes that have turned in a cut since the tool came: they are left free, one bit each.
+    free: u8,
     /// Prints positions in machine coordinates.
     words: Words,
     /// The machine's, with any tool in it.
@@ -101,6 +103,7 @@ impl<'a> Emit<'a> {
             extremes: Extremes::new(),
             last: Joints::default(),
             clamped: 0,
+            free: 0,
             words,
             chain: chain(machine),
             clear: false,
@@ -211,7 +214,7 @@ impl<'a> Emit<'a> {
                 }
                 self.extremes.reach(&block.joints);
                 self.extremes.go(&self.last, &block.joints);
-                if self.machine.clamps {
+                if self.clamps() {
                     self.clamp(block);
                 }
                 self.extremes.mark(block, self.writer.next());
@@ -242,7 +245,7 @@ impl<'a> Emit<'a> {
             from = *place;
         }
         self.extremes.go(&from, &block.joints);
-        if self.machine.clamps {
+        if self.clamps() {
             self.clamp(block);
         }
         self.extremes.mark(block, self.writer.next());
@@ -346,28 +349,48 @@ impl<'a> Emit<'a> {
         }
     }
 
-    /// Lets go the axes that this block moves, and clamps the others before the tool cuts.
+    /// Lets go the axes that this block moves, and clamps the others before the tool cuts: but for those that turn in the
+    /// cuts here, which would be clamped from block to block.
     fn clamp(&mut self, block: &Block) {
         for joint in 0..self.machine.axes.len() {
+            let cuts = block.kind != MotionKind::Rapid;
             if self.last[joint] != block.joints[joint] {
                 self.set_clamp(block.line, joint, false, false);
-            } else if block.kind != MotionKind::Rapid {
+                self.free |= u8::from(cuts) << joint;
+            } else if cuts && self.free >> joint & 1 == 0 {
                 self.set_clamp(block.line, joint, true, false);
             }
         }
     }
 
+    /// Some axis is clamped and let go by words: those of the machine file, or the dialect's.
+    fn clamps(&self) -> bool {
+        self.machine.clamps || self.writer.knows(Capabilities::CLAMP)
+    }
+
     /// Writes the word that clamps an axis or lets it go, unless it is so already.
     fn set_clamp(&mut self, line: u64, joint: usize, on: bool, unknown: bool) {
-        let Some(clamp) = &self.machine.axes[joint].clamp else {
-            return;
-        };
+        let axis = &self.machine.axes[joint];
         let bit = 1 << joint;
-        if unknown || (self.clamped & bit != 0) != on {
-            self.clamped = self.clamped & !bit | if on { bit } else { 0 };
-            let text = if on { &clamp.on } else { &clamp.off };
-            self.writer.push(line, Event::Word { text });
+        if !unknown && (self.clamped & bit != 0) == on {
+            return;
         }
+        match &axis.clamp {
+            Some(clamp) => {
+                let text = if on { &clamp.on } else { &clamp.off };
+                self.writer.push(line, Event::Word { text });
+            }
+            None if axis.joint.rotary && self.writer.knows(Capabilities::CLAMP) => {
+                let mut order = axis_words::order(self.machine).into_iter();
+                let Some(word) = order.position(|other| other == joint) else {
+                    return;
+                };
+                let word = word as u32;
+                self.writer.push(line, Event::Clamp { word, on });
+            }
+            None => return,
+        }
+        self.clamped = self.clamped & !bit | if on { bit } else { 0 };
     }
 }
 

@@ -111,6 +111,26 @@ impl<'a> Texts<'a> {
         });
     }
 
+    /// The warning that a text for operations was written nowhere, where the program has none.
+    pub(super) fn without_operations(&self) -> Option<Diagnostic> {
+        let places = [TextPlace::BeforeOperation, TextPlace::AfterOperation];
+        let unwritten = places
+            .into_iter()
+            .filter(|place| self.operations == 0 && self.rules.text(*place).is_some());
+        let names: Vec<&str> = unwritten.map(TextPlace::key).collect();
+        if names.is_empty() {
+            return None;
+        }
+        let message = format!(
+            "[program] {} is written nowhere: the CL file names no operation",
+            names.join(" and ")
+        );
+        Some(
+            Diagnostic::warning("program-text", message)
+                .help("after_tool_change comes behind every tool change"),
+        )
+    }
+
     /// By how much the control may leave the path from here on.
     pub(super) fn smoothing(&mut self, smoothing: Option<Smoothing>) {
         self.facts.tolerance = smoothing.map(|smoothing| smoothing.tolerance);

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 use post_machine::axis_words::unit_length;
 use post_machine::description::{FeedLength, FeedMode, InverseTime, Machine, Tcp, TcpFeedLength};
 use post_machine::kinematics::Joints;
-use post_plugin::{Feed, Format};
+use post_plugin::{Capabilities, Feed, Format};
 
 use crate::blocks::{Block, Kinds, MotionKind, STILL};
 use crate::program::Pace;
@@ -47,9 +47,9 @@ pub(super) struct Written {
 }
 
 impl FeedWriter {
-    /// Feeds of `machine` as a dialect's `format` prints them. `None` if the machine asks for inverse time
+    /// Feeds of `machine` as a dialect's `format` prints them, which `writes` says the control counts. `None` if the machine asks for inverse time
     /// and the dialect has none.
-    pub(super) fn new(machine: &Machine, format: &Format) -> Option<Self> {
+    pub(super) fn new(machine: &Machine, format: &Format, writes: Capabilities) -> Option<Self> {
         let wanted = match machine.control.feed {
             FeedMode::Auto => machine.control.tcp == Tcp::Post && format.inverse_time.is_some(),
             FeedMode::PerMinute => false,
@@ -58,7 +58,12 @@ impl FeedWriter {
         if wanted && format.inverse_time.is_none() {
             return None;
         }
-        let (tcp, length) = (machine.control.tcp, machine.control.feed_length);
+        let tcp = machine.control.tcp;
+        let usual = match writes.has(Capabilities::FEED_ALL_AXES) {
+            true => FeedLength::Combined,
+            false => FeedLength::Linear,
+        };
+        let length = machine.control.feed_length.unwrap_or(usual);
         Some(Self {
             degrees: Kinds::new(machine),
             kinds: Kinds::counted(machine, unit_length(machine.control.units)),

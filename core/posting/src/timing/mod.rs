@@ -11,7 +11,7 @@ mod rapids;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Extreme};
 use post_machine::kinematics::Joints;
-use post_plugin::{Feed, Format};
+use post_plugin::{Capabilities, Feed, Format};
 
 use crate::blocks::{Block, MotionKind};
 use crate::findings::Findings;
@@ -26,6 +26,7 @@ use rapids::Rapids;
 pub(crate) struct Timing<'a> {
     base: &'a Machine,
     format: Format,
+    writes: Capabilities,
     feeds: FeedWriter,
     limits: Vec<Box<dyn Limit>>,
     rapids: Rapids,
@@ -44,6 +45,8 @@ pub(crate) struct Durations {
     pub other: f64,
     /// Blocks slowed down by a limit.
     pub limited: u64,
+    /// Those of them that are slowed down because the control takes no larger F by time.
+    pub capped: u64,
 }
 
 /// Feeds below the least that is printed.
@@ -61,8 +64,12 @@ struct LowFeeds {
 impl<'a> Timing<'a> {
     /// # Errors
     /// The machine asks for inverse time, and the dialect has none.
-    pub(crate) fn new(machine: &'a Machine, format: &Format) -> Result<Self, Box<Diagnostic>> {
-        let feeds = FeedWriter::new(machine, format).ok_or_else(|| {
+    pub(crate) fn new(
+        machine: &'a Machine,
+        format: &Format,
+        writes: Capabilities,
+    ) -> Result<Self, Box<Diagnostic>> {
+        let feeds = FeedWriter::new(machine, format, writes).ok_or_else(|| {
             Diagnostic::error(
                 "feed-mode",
                 format!(
@@ -76,6 +83,7 @@ impl<'a> Timing<'a> {
         Ok(Self {
             base: machine,
             format: format.clone(),
+            writes,
             feeds,
             limits: limits::of(machine),
             rapids: Rapids::new(machine),
@@ -134,7 +142,7 @@ impl<'a> Timing<'a> {
                 let Some(head) = self.base.head(name) else {
                     return;
                 };
-                if let Some(feeds) = FeedWriter::new(&head.machine, &self.format) {
+                if let Some(feeds) = FeedWriter::new(&head.machine, &self.format, self.writes) {
                     self.feeds = feeds;
                 }
                 self.limits = limits::of(&head.machine);
@@ -194,6 +202,7 @@ impl<'a> Timing<'a> {
         let written = self.feeds.write(block, &self.last, least);
         if written.capped {
             block.time.limit = Some("most_inverse_time");
+            self.statistics.capped += 1;
         }
         self.put(block, written, needed, findings);
         self.statistics.limited += u64::from(block.time.limit.is_some());

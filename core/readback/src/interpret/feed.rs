@@ -89,7 +89,11 @@ impl Control {
         if let Way::Arc { .. } | Way::Spline(_) = way {
             return tip;
         }
-        match self.machine.control.feed_length {
+        let usual = match self.lexicon.counts_all_axes() {
+            true => FeedLength::Combined,
+            false => FeedLength::Linear,
+        };
+        match self.machine.control.feed_length.unwrap_or(usual) {
             FeedLength::Linear if squares > 0.0 => squares.sqrt(),
             FeedLength::Linear => turned.sqrt(),
             FeedLength::Combined => (squares + turned).sqrt(),

@@ -28,7 +28,9 @@ impl Control {
             Meaning::PlaneXy => self.modal.plane = ArcPlane::Xy,
             Meaning::PlaneZx => self.modal.plane = ArcPlane::Zx,
             Meaning::PlaneYz => self.modal.plane = ArcPlane::Yz,
-            Meaning::FeedPerMinute => self.feed_mode(FeedMode::PerMinute),
+            Meaning::FeedPerMinute | Meaning::FeedPerMinuteAllAxes => {
+                self.feed_mode(FeedMode::PerMinute)
+            }
             Meaning::InverseTime => self.feed_mode(FeedMode::Inverse),
             Meaning::FeedPerRevolution => self.feed_mode(FeedMode::PerRevolution),
             Meaning::MachineCoordinates => asked.machine = true,

@@ -111,6 +111,7 @@ impl Engine {
             tcp: setup.tcp,
             work_offset,
             cancel: text(setup, "cancel", table.cancel),
+            cancel_due: false,
             retract: text(setup, "retract", ""),
             tcp_on: text(setup, "tcp_on", tcp_on),
             tcp_off,

@@ -1,8 +1,9 @@
 //! Single cases, their numbers worked out by hand.
 
 use post_machine::description::{Source, load};
-use post_plugin::Feed;
-use post_testkit::posted::{Bench, Run};
+use post_plugin::{Capabilities, Feed};
+use post_posting::Job;
+use post_testkit::posted::{Bench, Recorder, Run, Samples, watched};
 
 /// A fork head of 500 mm; `more` goes to `[control]`.
 pub fn fork(tcp: &str, more: &str) -> String {
@@ -254,5 +255,42 @@ fn rapids_are_fed_where_every_axis_has_a_largest_feed_alone() {
         faults.iter().any(
             |fault| fault.code == "machine-feed" && fault.message.contains("Z has no max_feed")
         )
+    );
+}
+
+/// Where a dialect says that its control divides along all axes together, that is the default: 10 mm and 20° of B.
+#[test]
+fn a_dialect_says_along_what_a_feed_counts() {
+    let feed = |more: &str, writes: Capabilities| {
+        let text = fork("post", &format!("feed = \"per-minute\"\n{more}"));
+        let text = text.replace("\ntolerance = 0.005", "\ntolerance = 10");
+        let text = text.replace("max_feed = 2000\n", "max_feed = 20000\n");
+        let bench = Bench::new(&text, 4, 0.0);
+        let mut recorder = Recorder::new(&bench.machine, 4);
+        recorder.capabilities = writes;
+        let job = Job {
+            tool_length: Some(0.0),
+            ..Job::default()
+        };
+        let cl = swing(10.0, -10.0, "FEDRAT/300,MMPM");
+        feed_of(&watched(
+            &bench.machine,
+            recorder,
+            &cl,
+            job,
+            &mut Samples,
+            &mut [],
+        ))
+    };
+    let linear = feed("", Capabilities::NONE);
+    let combined = feed("", Capabilities::FEED_ALL_AXES);
+    assert!(combined > linear + 1.0, "{combined} {linear}");
+    assert_eq!(
+        combined,
+        feed("feed_length = \"combined\"", Capabilities::NONE)
+    );
+    assert_eq!(
+        linear,
+        feed("feed_length = \"linear\"", Capabilities::FEED_ALL_AXES)
     );
 }

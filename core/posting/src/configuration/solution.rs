@@ -72,7 +72,7 @@ pub(crate) struct Found {
     pub latitude: (f64, f64),
     /// Solutions, inside travel or not.
     pub solutions: usize,
-    /// Why the first solution that is no stand is none.
+    /// Why the solution that fails least is no stand.
     pub over: Option<OverTravel>,
 }
 
@@ -190,6 +190,17 @@ impl Axes {
         from_least && from_most
     }
 
+    /// Keeps what fails least of two solutions: a length, which mount and tool may mend, before an angle.
+    fn keep_least(&self, kept: &mut Option<OverTravel>, over: OverTravel) {
+        let by = |over: &OverTravel| {
+            let angle = self.linear.iter().all(|limit| limit.joint != over.joint);
+            (angle, libm::fabs(over.value - over.limit))
+        };
+        if kept.as_ref().is_none_or(|kept| by(&over) < by(kept)) {
+            *kept = Some(over);
+        }
+    }
+
     /// Adds the stands at `pose` to `stands`; `last` is kept by joints that are free there, and `going` says
     /// which branches are asked for.
     ///
@@ -234,7 +245,7 @@ impl Axes {
                 set.keep(last);
             }
             if let Err(over) = self.at_rest(&mut set.joints) {
-                found.over.get_or_insert(over);
+                self.keep_least(&mut found.over, over);
                 continue;
             }
             // Where an angle was brought onto a position its sine is not that of the set: a little off, and
@@ -246,7 +257,7 @@ impl Axes {
                 continue;
             }
             if let Some(over) = self.beyond(&joints) {
-                found.over.get_or_insert(over);
+                self.keep_least(&mut found.over, over);
                 continue;
             }
             stands.push(Stand {
@@ -315,7 +326,7 @@ impl Axes {
                     free: 0,
                 }),
                 Some(over) => {
-                    found.over.get_or_insert(over);
+                    self.keep_least(&mut found.over, over);
                 }
             }
         }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
 use serde::Serialize;
 
 /// What a plan came to.
@@ -16,6 +17,8 @@ pub struct PlanReport {
     pub blocks_added: u64,
     /// Blocks that have the feed of the CL file although a plan was asked for: too short, or not to be planned.
     pub blocks_unplanned: u64,
+    /// Those of them whose plan was slower than standing still at both of their ends.
+    pub blocks_too_slow: u64,
     /// Time of the planned blocks at the feed that the CL file asks for, s, as if the tool never had to slow down.
     pub asked_s: f64,
     /// By the plan, s.
@@ -45,11 +48,16 @@ pub struct LimitShare {
 pub(super) struct Account {
     report: PlanReport,
     times: BTreeMap<(&'static str, Option<u16>), f64>,
+    /// Of the block in hand.
+    pending: Vec<((&'static str, Option<u16>), f64)>,
 }
 
 impl Account {
     /// A block became so many.
     pub(super) fn block(&mut self, count: usize, asked: f64, planned: f64, printed: f64) {
+        for (limit, seconds) in self.pending.drain(..) {
+            *self.times.entry(limit).or_default() += seconds;
+        }
         let report = &mut self.report;
         report.blocks += 1;
         report.blocks_cut += u64::from(count > 1);
@@ -62,12 +70,36 @@ impl Account {
     /// So many blocks go on without a plan.
     pub(super) fn give_up(&mut self, count: usize) {
         self.report.blocks_unplanned += count as u64;
+        self.pending.clear();
+    }
+
+    /// A block goes on without its plan, which is slower than none.
+    pub(super) fn too_slow(&mut self) {
+        self.give_up(1);
+        self.report.blocks_too_slow += 1;
+    }
+
+    /// The warning that blocks were planned slower than they are without a plan.
+    pub(super) fn slower_than_none(&self) -> Option<Diagnostic> {
+        let blocks = match self.report.blocks_too_slow {
+            0 => return None,
+            1 => "1 block".to_owned(),
+            count => format!("{count} blocks"),
+        };
+        let message = format!(
+            "the plan of {blocks} is slower than standing still at both ends, as where CL points lie closer together than \
+             they are exact: the feed there is that of the CL file"
+        );
+        Some(
+            Diagnostic::warning("plan", message)
+                .help("[accuracy] reduce = true leaves needless points out"),
+        )
     }
 
     /// A limit is used most for so long.
     pub(super) fn limited(&mut self, limit: &'static str, axis: Option<u16>, seconds: f64) {
         if seconds.is_finite() {
-            *self.times.entry((limit, axis)).or_default() += seconds;
+            self.pending.push(((limit, axis), seconds));
         }
     }
 

@@ -32,6 +32,12 @@ impl Axes {
         self.limits.programmed.is_some()
     }
 
+    /// Velocities, accelerations and jerks of the axes of the chain.
+    pub(super) fn of_joints(&self) -> [Vec<f64>; 3] {
+        let limits = &self.limits;
+        [&limits.velocity, &limits.acceleration, &limits.jerk].map(|of| of[..self.count].to_vec())
+    }
+
     /// Limits by place in the chain, those of the coordinates behind them.
     fn each(&self, of: &[f64]) -> Vec<f64> {
         let mut each = of[..self.count].to_vec();

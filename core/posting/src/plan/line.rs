@@ -17,8 +17,9 @@ use super::corner::Corner;
 use super::cut::Cutter;
 use super::graded::{at_least, evenly_bent, graded};
 use super::limits::{self, Axes};
-use super::pieces::{Cutting, Piece, Profile};
+use super::pieces::{Cutting, Piece, Profile, STANDING};
 use super::queue::{Queue, Start};
+use super::rest::FromRest;
 use super::samples::{Place, Said, Sampler, Stand};
 use super::solver::{Solver, Step};
 use super::watch::PlannedPoint;
@@ -130,6 +131,7 @@ impl<'a> Line<'a> {
                     shortest: rules.shortest_block.max(least_block),
                 },
                 cutter: Cutter { machine, placer },
+                rest: FromRest::new(&axes),
                 names: limits.iter().map(|limit| limit.name()).collect(),
                 pieces: Vec::new(),
                 slowest: None,
@@ -350,6 +352,7 @@ impl<'a> Line<'a> {
 struct Feeds<'a> {
     cutter: Cutter<'a>,
     cutting: Cutting,
+    rest: FromRest,
     /// Names of the limits, in order.
     names: Vec<&'static str>,
     pieces: Vec<Piece>,
@@ -431,6 +434,14 @@ impl Feeds<'_> {
         account: &mut Account,
         out: &mut dyn FnMut(Flow<Block>),
     ) {
+        let asked = block.asked() * 60.0;
+        let planned = profile.seconds();
+        let (from, to) = (&start.joints, &block.joints);
+        if self.rest.is_passed(planned, asked, from, to) {
+            account.too_slow();
+            out(Flow::Point(*block));
+            return;
+        }
         // Where the tip makes most of the way, its feed is what the block keeps.
         let by_tip = block.way >= MOSTLY * profile.length();
         let length = match by_tip {
@@ -449,6 +460,13 @@ impl Feeds<'_> {
                 self.pieces.extend(profile.whole(length));
             }
         }
+        // Where samples lie closer together than they are exact, the tool may seem to stand at all of them.
+        if planned > 0.0 {
+            let floor = STANDING * length / planned;
+            for piece in &mut self.pieces {
+                piece.speed = piece.speed.max(floor);
+            }
+        }
         let mut printed = 0.0;
         let count = self
             .cutter
@@ -461,7 +479,6 @@ impl Feeds<'_> {
                 out(Flow::Point(Block { planned, ..piece }));
             });
         // What is written is never faster than the CL file asks for.
-        let asked = block.asked() * 60.0;
-        account.block(count, asked, profile.seconds(), printed.max(asked));
+        account.block(count, asked, planned, printed.max(asked));
     }
 }

@@ -18,6 +18,7 @@ mod limits;
 mod line;
 mod pieces;
 mod queue;
+mod rest;
 mod samples;
 mod solver;
 mod watch;
@@ -172,6 +173,9 @@ impl<'a> Plan<'a> {
     /// The program ends.
     pub(crate) fn finish(&mut self, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
         self.stop(out, findings);
+        if let Some(warning) = self.account.slower_than_none() {
+            findings.add(warning);
+        }
     }
 
     /// Blocks are made with another placer.

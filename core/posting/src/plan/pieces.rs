@@ -2,7 +2,7 @@
 
 /// Slower than this share of the fastest place of a piece, the tool counts as standing: there it comes from rest, or
 /// comes to rest, by the control's own acceleration.
-const STANDING: f64 = 0.02;
+pub(super) const STANDING: f64 = 0.02;
 
 /// No piece is slower than this share of its mean speed by the plan.
 const SLOWEST: f64 = 0.3;

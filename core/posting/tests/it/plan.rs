@@ -251,3 +251,42 @@ fn a_plan_leaves_the_path_as_it_is_and_makes_no_block_faster() {
     }
     assert!(pieces > 100, "{pieces}");
 }
+
+/// CL points that lie closer together than they are exact: no plan of them is written that is slower than none.
+#[test]
+fn points_a_micron_apart_keep_their_feed() {
+    let mut rng = Rng::new(26);
+    let bench = Bench::new(&machine("control", ""), 4, LENGTH);
+    let points: Vec<_> = (0..400)
+        .map(|index| {
+            let way = f64::from(index) * 0.001;
+            let noise = |rng: &mut Rng| (rng.range(-0.5, 0.5) * 1e3).round() * 1e-6;
+            let tip = V::new(way, noise(&mut rng), noise(&mut rng));
+            let lean = 0.3 + way + 1e-3 * rng.range(-1.0, 1.0);
+            let (sine, cosine) = libm::sincos(lean);
+            point(tip, V::new(sine, 0.0, cosine), index == 0)
+        })
+        .collect();
+    let text = cl(&points, 1200.0);
+    let found = run(&bench, &text, true);
+    let plan = found
+        .report
+        .as_ref()
+        .unwrap()
+        .plan
+        .as_ref()
+        .unwrap()
+        .clone();
+    let slowest = cuts(&found)
+        .iter()
+        .map(|asked| feed(asked))
+        .fold(f64::INFINITY, f64::min);
+    println!("{plan:?}, slowest F{slowest}");
+    assert!(slowest > 0.5, "F{slowest}");
+    assert!(plan.planned_s < 3600.0, "{} s", plan.planned_s);
+    let told = found
+        .findings
+        .iter()
+        .any(|finding| finding.message.contains("slower than standing still"));
+    assert_eq!(told, plan.blocks_too_slow > 0);
+}

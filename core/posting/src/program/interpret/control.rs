@@ -74,7 +74,7 @@ impl Interpreter {
         allowed
     }
 
-    /// A cutting speed that the control is to keep; false if there is none above zero.
+    /// A cutting speed that the control is to keep: a fault if it is not above zero.
     pub(super) fn surface_speed(
         &mut self,
         record: &Record<'_>,

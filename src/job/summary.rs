@@ -213,10 +213,7 @@ fn rows(
                     "; {} slower than the CL file asks",
                     counted(count, "block", "blocks")
                 ),
-                count => format!(
-                    "; {} slowed down by an axis' largest feed",
-                    counted(count, "block", "blocks")
-                ),
+                count => slowed(count, report.blocks_capped),
             }
         ),
     );
@@ -255,6 +252,21 @@ fn rows(
 /// So many of a thing.
 fn counted(count: u64, one: &str, several: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { several })
+}
+
+/// Blocks that are slowed down, `capped` of them because the control takes no larger F by time.
+fn slowed(count: u64, capped: u64) -> String {
+    let by_axes = count - capped.min(count);
+    let mut by = Vec::new();
+    if by_axes > 0 {
+        let blocks = counted(by_axes, "block", "blocks");
+        by.push(format!("{blocks} slowed down by an axis' largest feed"));
+    }
+    if capped > 0 {
+        let blocks = counted(capped, "block", "blocks");
+        by.push(format!("{blocks} by the largest F under inverse time"));
+    }
+    format!("; {}", by.join(", "))
 }
 
 /// What a plan came to.

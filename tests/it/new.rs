@@ -365,3 +365,37 @@ fn flags_are_used_or_refused_in_every_class() {
         run.err
     );
 }
+
+/// What the check would refuse is not written: each dialect gets what it must be told of its control.
+#[test]
+fn every_dialect_passes_the_check() {
+    for dialect in crate::dialects::dialects() {
+        for class in ["three-axis", "table-table-ac"] {
+            for units in ["mm", "inch"] {
+                let folder = folder();
+                let new = [
+                    "new",
+                    "mill",
+                    "--class",
+                    class,
+                    "--dialect",
+                    &dialect,
+                    "--units",
+                    units,
+                ];
+                let new = post_in(folder.path(), &new, "");
+                assert_eq!(
+                    (new.code, new.err.as_str()),
+                    (0, ""),
+                    "{dialect} {class} {units}"
+                );
+                let check = post_in(folder.path(), &["check", "mill.toml"], "");
+                assert_eq!(
+                    (check.code, check.err.as_str()),
+                    (0, ""),
+                    "{dialect} {class} {units}"
+                );
+            }
+        }
+    }
+}

@@ -200,3 +200,21 @@ fn a_template_with_a_slip_shows_its_place() {
     }
     assert_eq!(done.out, "");
 }
+
+/// Lines for operations of a file that names none are not lost in silence.
+#[test]
+fn texts_for_operations_want_operations() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "extends = \"vmc\"\n[program]\nbefore_operation = \"M1\"\n";
+    let plain: String = CL
+        .lines()
+        .filter(|line| !line.starts_with("TOOL PATH") && !line.starts_with("END-OF"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let done = post(folder.path(), machine, &["-o", "-", "-"], &plain);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let told = "before_operation is written nowhere: the CL file names no operation";
+    assert!(done.err.contains(told), "{}", done.err);
+    let done = post(folder.path(), machine, &["-o", "-", "-"], CL);
+    assert!(!done.err.contains("written nowhere"), "{}", done.err);
+}

@@ -112,6 +112,7 @@ fn check_summary(summary: &Value, program: &str, machine: &str) {
         "time_s",
         "cutting_time_s",
         "blocks_limited",
+        "blocks_capped",
         "fast_rapids",
         "ignored_words",
         "plugins",
@@ -227,4 +228,35 @@ fn no_progress_and_no_colour_in_a_pipe() {
     for text in [&done.out, &done.err] {
         assert!(!text.contains('\u{1b}') && !text.contains('\r') && !text.contains("left"));
     }
+}
+
+/// Who is held by the control's largest F by time is not held by its axes.
+#[test]
+fn the_summary_says_what_slows_blocks_down() {
+    let slow = [
+        "-m",
+        "ac-trunnion",
+        "--tcp",
+        "post",
+        "--tool-length",
+        "100",
+        "-o",
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("slow.nc");
+    let mut all = slow.to_vec();
+    let source = crate::common::sample("blade.cls");
+    all.extend([
+        program.to_str().unwrap(),
+        "--set",
+        "control.fanuc.most_inverse_time=60",
+    ]);
+    all.push(source.to_str().unwrap());
+    let done = crate::common::post(&all);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let told = format!("{}{}", done.out, done.err);
+    assert!(
+        told.contains("by the largest F under inverse time"),
+        "{told}"
+    );
 }

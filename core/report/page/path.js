@@ -262,12 +262,20 @@ P.path.tell = () => {
   };
   const told = [el("b", {}, mode.title)];
   if (mode.kinds) {
-    const seen = mode.kinds.map((name, kind) => (has((row) => mode.value(row) === kind, m.rows) ? el("span", {}, strip(12, () => kind * 12 + 6), name) : null));
+    const seen = mode.kinds.map((name, kind) => (has((row) => mode.value(row) === kind, m.rows) ? el("span", {}, strip(12, () => colour.place(mode, kind)), name) : null));
     told.push(el("div", { class: "kinds" }, seen));
   } else if (mode.unit) {
     const limit = mode.fixed || (mode.id === "axis_deviation" ? m.turn : m.tolerance);
     const ends = mode.top === null ? [`tolerance ${limit ? P.short(limit) + " " + P.unit(mode.unit) : ""}`, "above"] : [P.quantity(mode.top, mode.unit)];
-    told.push(strip(170, (share) => share * (mode.top === null ? 255 : colour.top)), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));
+    // As far as blocks are drawn in these colours; the tolerance stands where they change.
+    const { top, over } = colour;
+    const change = top / 255;
+    const drawn = (share) => (mode.top !== null ? share * top : share <= change ? (share / change) * top : over + ((share - change) / (1 - change)) * (255 - over));
+    const [least, ...most] = ["0", ...ends].map((text) => el("span", {}, text));
+    const upto = el("span", { class: "ends" }, least, most.shift());
+    if (most.length) upto.style.width = `${change * 100}%`;
+    else upto.style.flex = "1";
+    told.push(strip(170, drawn), el("div", { class: "ends" }, upto, most));
   }
   const { vectors, path } = scene;
   const notes = [];

@@ -61,6 +61,10 @@ impl Made<'_> {
                 .extend(super::predicted_maxima(self.machine, found));
             meta.facts.extend(super::predicted_facts(found));
             meta.excludes.extend(found.assumed.iter().cloned());
+            if super::is_exceeded(&meta.maxima) {
+                meta.verdict.kind = "warn";
+                meta.verdict.word = "Within tolerance, predicted beyond a limit".to_owned();
+            }
         }
         let mut parts = Parts::of(self.machine, &mut meta)?;
         if let Some(predicted) = predicted {

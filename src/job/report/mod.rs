@@ -32,7 +32,7 @@ pub use old_path::OldPath;
 pub use parts::{Parts, excludes};
 pub use predicted_lines::PredictedLines;
 pub use predicted_parts::PredictedParts;
-pub use told_by_prediction::{predicted_facts, predicted_maxima};
+pub use told_by_prediction::{is_exceeded, predicted_facts, predicted_maxima};
 
 use std::fs::File;
 use std::path::Path;

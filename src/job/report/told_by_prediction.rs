@@ -51,6 +51,15 @@ pub fn predicted_maxima(machine: &Machine, found: &Prediction) -> Vec<Maximum> {
     maxima
 }
 
+/// Something is larger than its limit, by more than rounding.
+pub fn is_exceeded(maxima: &[Maximum]) -> bool {
+    let mut maxima = maxima.iter();
+    maxima.any(|one| {
+        one.limit
+            .is_some_and(|limit| one.value > limit * (1.0 + 1e-6))
+    })
+}
+
 /// Times and feeds.
 pub fn predicted_facts(found: &Prediction) -> Vec<[String; 2]> {
     let time = &found.time;

@@ -150,11 +150,16 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
         Err(format!("there is no machine {parent}"))
     })?;
     let checked = job::derive(&machine, 0.0)?;
+    let stranger = plugin_finder::not_built_in(&machine.control.dialect);
+    if stranger.is_none() {
+        // Nor what `post check` would refuse.
+        job::try_opening(&machine, &plugin_finder::finder(&[])?, 0.0)?;
+    }
     // Answers take their time.
     refuse_existing(arguments, &path)?;
     files::write(&[(MACHINE, &path.clone().into(), &text)])?;
     terminal::findings(&checked.findings());
-    terminal::findings(plugin_finder::not_built_in(&machine.control.dialect).as_slice());
+    terminal::findings(stranger.as_slice());
     terminal::print(&format!(
         "{}: {}\nMeasure what its remarks ask for, then: post check {}\n",
         path.display(),

@@ -291,6 +291,14 @@ pub fn write(choices: &Choices) -> String {
             "of the NC program; this file stays in mm",
         );
     }
+    let options = options(choices);
+    if !options.is_empty() {
+        line("", "");
+        line(&format!("[control.{}]", choices.dialect), "");
+        for (said, remark) in options {
+            line(said, remark);
+        }
+    }
     line("", "");
     line("# [spindle]", "");
     line(
@@ -304,6 +312,26 @@ pub fn write(choices: &Choices) -> String {
         "mm, the tip in cuts",
     );
     text
+}
+
+/// What a dialect must be told of its control, and why: without it no program is written.
+fn options(choices: &Choices) -> Vec<(&'static str, &'static str)> {
+    match choices.dialect.as_str() {
+        "okuma" => {
+            let units = match choices.units {
+                OutputUnits::Mm => "unit_system = \"1 mm\"",
+                OutputUnits::Inch => "unit_system = \"1 inch\"",
+            };
+            vec![(
+                units,
+                "a parameter of the control: compare, a point does not override it",
+            )]
+        }
+        "grbl" if choices.class.turns() => {
+            vec![("hal = true", "grblHAL: GRBL 1.1 has X, Y and Z alone")]
+        }
+        _ => Vec::new(),
+    }
 }
 
 fn travel(line: &mut impl FnMut(&str, &str), choices: &Choices, axis: &str) {

@@ -67,10 +67,13 @@ impl Shown<'_> {
             None => "the commanded path",
         };
         let far = tip.largest > self.machine.accuracy.tolerance;
-        let (kind, word) = match (far, self.findings.is_empty()) {
+        let maxima = report::predicted_maxima(self.machine, found);
+        let over = report::is_exceeded(&maxima);
+        let (kind, word) = match (far, over || !self.findings.is_empty()) {
             (true, _) => ("warn", "Predicted, beyond the tolerance"),
-            (false, false) => ("warn", "Predicted, with warnings"),
-            (false, true) => ("good", "Predicted, within the tolerance"),
+            (false, true) if over => ("warn", "Predicted, beyond a limit"),
+            (false, true) => ("warn", "Predicted, with warnings"),
+            (false, false) => ("good", "Predicted, within the tolerance"),
         };
         Verdict {
             kind,

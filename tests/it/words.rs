@@ -336,7 +336,7 @@ fn cycles_of_other_systems_are_read() {
         let native = posted(&[], &text);
         told(&native, 0, &[]);
         let code = if kind == "CHIP" { "G99 G73" } else { "G99 G83" };
-        let cycle = format!("{code} X5.000 Y5.000 Z-5.000 R3.000 Q2000 F80.");
+        let cycle = format!("{code} X5.000 Y5.000 Z-5.000 R3.000 Q2.000 F80.");
         assert!(native.out.contains(&cycle), "{kind}\n{}", native.out);
         let done = posted(&["--set", "control.cycles=moves"], &text);
         told(&done, 0, &[]);

@@ -71,7 +71,7 @@ impl Turned {
 /// A helix, a whole circle where it ends, and a straight way on: each is as near to the CL file as its block certifies.
 #[test]
 fn told_by_their_turn_they_are_as_near_as_certified() {
-    let (rounds, mut rng) = randomised(300, 26);
+    let (rounds, mut rng) = randomised(60, 26);
     let (mut helices, mut beside, mut circles): (u32, f64, u32) = (0, 0.0, 0);
     for round in rounds {
         let tcp = ["post", "control"][rng.pick(2)];
@@ -118,9 +118,9 @@ fn told_by_their_turn_they_are_as_near_as_certified() {
                 None => begins * (1.0 - t) + ends[1] * t,
             };
             let mut worst: f64 = 0.0;
-            for step in 0..=200 {
+            for step in 0..=50 {
                 let mut words = to.words.clone();
-                words[..3].copy_from_slice(place(f64::from(step) / 200.0).as_slice());
+                words[..3].copy_from_slice(place(f64::from(step) / 50.0).as_slice());
                 let (tip, _) = bench.reference.forward(&bench.joints(&in_mm(&words, unit)));
                 worst = worst.max(off(tip, &helix, &circle, away));
             }
@@ -147,7 +147,7 @@ fn told_by_their_turn_they_are_as_near_as_certified() {
     println!(
         "{helices} helices, {circles} arcs in a plane; ends up to {beside:.6} mm beside their words"
     );
-    assert!(helices > 50 && circles > 100 && beside > 1e-4);
+    assert!(helices > 20 && circles > 60 && beside > 1e-4);
 }
 
 /// How far a place is from the whole way.
@@ -155,11 +155,14 @@ fn off(place: V, helix: &Wanted, circle: &Wanted, away: V) -> f64 {
     let along = |arc: &Wanted| {
         let looks = 64 * arc.turns;
         let shares = (0..=looks).map(|look| f64::from(look) / f64::from(looks));
-        let nearest = shares.min_by(|a, b| {
-            let off = |t: f64| (arc.at(t) - place).norm();
-            off(*a).total_cmp(&off(*b))
-        });
-        nearest.map_or(f64::INFINITY, |share| arc.nearest(place, share))
+        let mut near: Vec<(f64, f64)> = shares
+            .map(|share| ((arc.at(share) - place).norm(), share))
+            .collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // A place of the next turn may be nearer than those looked at on its own.
+        let nearest = near.iter().take(6);
+        let nearest = nearest.map(|(_, share)| arc.nearest(place, *share));
+        nearest.fold(f64::INFINITY, f64::min)
     };
     let line = |from: V, to: V| {
         let way = to - from;

@@ -118,9 +118,9 @@ fn what_was_in_force_before_is_cancelled_first() {
         &[
             "G21",
             "G17 G40 G80 G90 G94",
-            "G50 G50.1 G69",
             "G53 G0 Z120.000",
             "G49",
+            "G69",
             "T1 M6",
         ],
     );
@@ -480,7 +480,7 @@ fn lines_of_the_users_own_are_not_undone() {
     let more = "[control.fanuc]\nretract = \"G91 G28 Z0.\"\n";
     assert_run(
         &self::lines("vmc", more, &[], UPRIGHT),
-        &["G91 G28 Z0.", "G90", "G49", "T1 M6"],
+        &["G91 G28 Z0.", "G90", "G49", "G69", "T1 M6"],
     );
 }
 
@@ -490,12 +490,12 @@ fn a_retract_goes_up_before_it_goes_aside() {
     let more = "[control]\nretract = { X = 300 }\n";
     assert_run(
         &lines("vmc", more, &[], UPRIGHT),
-        &["G53 G0 Z20.000", "G49", "G53 G0 X300.000", "T1 M6"],
+        &["G53 G0 Z20.000", "G49", "G69", "G53 G0 X300.000", "T1 M6"],
     );
     let more = "[control]\nretract = { X = 300, Z = -10 }\n";
     assert_run(
         &lines("vmc", more, &[], UPRIGHT),
-        &["G53 G0 Z-10.000", "G49", "G53 G0 X300.000", "T1 M6"],
+        &["G53 G0 Z-10.000", "G49", "G69", "G53 G0 X300.000", "T1 M6"],
     );
     // A quill comes in with the axis beside it.
     let lines = lines(

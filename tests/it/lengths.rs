@@ -201,6 +201,18 @@ fn a_head_that_the_operator_swaps_is_read_back() {
     assert!(text.contains("(CHANGE TO HEAD SIDE)\nM0\n"), "{text}");
 }
 
+/// Its words have the whole tool in them, and G43 shifts none of them.
+#[test]
+fn an_arm_is_read_back_from_its_first_position_on() {
+    let arm = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/chains/six-axis-arm.toml"
+    );
+    let machine = format!("extends = {arm:?}\n");
+    let cl = cut("0,0,1").replace(",10,50,", ",10,40,");
+    good(&machine, &cl, &LONG);
+}
+
 /// Two tools; between the second and its speed the next is made ready.
 const TWO: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,15000,CLW\nRAPID\nGOTO/20,10,50\nFEDRAT/600,MMPM\nGOTO/20,10,15\nRAPID\n\
     GOTO/20,10,50\nLOADTL/2\nSELECT/TOOL,3\nSPINDL/RPM,800,CLW\nRAPID\nGOTO/-20,10,50\nFEDRAT/600,MMPM\nGOTO/-20,10,15\n\

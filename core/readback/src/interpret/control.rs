@@ -276,7 +276,11 @@ impl Control {
         self.machine = machine;
         self.solvers.clear();
         self.at.joints = joints;
-        self.solver_changed()
+        match self.tools.length_on {
+            true => self.solver_changed(),
+            // Whether it counts without being called is the head's.
+            false => self.length_changed(),
+        }
     }
 
     /// The machine stands at `joints`, nothing moves.

@@ -44,11 +44,17 @@ impl Control {
         if self.tools.by_tool && self.tools.length_on {
             return self.length_changed();
         }
-        match self.machine.length_axis {
-            // The work offset is that of the tool, whether its length is called or not.
-            LengthAxis::None => self.solver_changed(),
-            LengthAxis::Dialect | LengthAxis::Said(_) => Ok(()),
+        match self.is_whole() {
+            true => self.length_changed(),
+            false => Ok(()),
         }
+    }
+
+    /// The words have the whole tool in them, whether its length is called or not: the work offset was measured with it in
+    /// the spindle, or no linear axis is there that could be shifted.
+    fn is_whole(&self) -> bool {
+        let mut axes = self.machine.axes.iter();
+        self.machine.length_axis == LengthAxis::None || axes.all(|axis| axis.joint.rotary)
     }
 
     /// The length in force may be another: finds it, and what the words count from with it.
@@ -56,10 +62,10 @@ impl Control {
     /// # Errors
     /// It matters and nobody knows it.
     pub fn length_changed(&mut self) -> Result<(), Box<Diagnostic>> {
-        let length = if self.tools.length_on {
-            self.length_in_force()? + self.tools.longer
-        } else {
-            0.0
+        let length = match self.tools.length_on {
+            true => self.length_in_force()? + self.tools.longer,
+            false if self.is_whole() => self.length_of(self.state.tool).unwrap_or(0.0),
+            false => 0.0,
         };
         self.state.length = length;
         self.state_changed();

@@ -15,8 +15,8 @@ const MOST: usize = 64;
 const SAME_LINE: f64 = 1e-3;
 
 /// Where a tool goes between two cuts: to the places that are asked for, and on the line of the tool at one of them as
-/// far off as it likes. Anywhere else each axis stands where it stands at one of those places, or where the machine file
-/// sends it (`retract`, `change`, `park`); the depth may be drawn back farther than at all of them. A retract in
+/// far off as it likes. Anywhere else each axis that it moves stands between where it stands at those places, or where
+/// the machine file sends it (`retract`, `change`, `park`); the depth may be drawn back farther than at all of them. A retract in
 /// positions of the machine leads as far as the machine file says.
 #[derive(Debug, Default)]
 pub(super) struct Detour {
@@ -81,6 +81,9 @@ impl Detour {
         }
         let asked = std::mem::take(&mut self.asked);
         let open = std::mem::take(&mut self.open);
+        if asked.is_empty() {
+            return None;
+        }
         open.iter()
             .find_map(|end| end.astray(machine, &asked, slack, lean + SAME_LINE))
     }
@@ -135,6 +138,8 @@ impl End {
                 by = by.min(libm::fabs(apart));
             };
             asked.iter().for_each(|(joints, _)| allow(joints[place]));
+            let [least, most] = span(asked, place);
+            allow(value.clamp(least, most.max(least)));
             let frame = &machine.frame;
             let named = [&frame.retract, &frame.aside, &frame.change, &frame.park];
             for (other, value) in named.into_iter().flatten() {
@@ -179,4 +184,13 @@ impl End {
             && along >= -slack
             && (way - asked.axis * along).norm() <= slack + lean * along
     }
+}
+
+/// The least and the largest value of an axis at all places that are asked for.
+fn span(asked: &[(Joints, Pose)], place: usize) -> [f64; 2] {
+    let values = asked.iter().map(|(joints, _)| joints[place]);
+    let ends = [f64::INFINITY, f64::NEG_INFINITY];
+    values.fold(ends, |[least, most], value| {
+        [least.min(value), most.max(value)]
+    })
 }

@@ -77,6 +77,8 @@ pub struct Spoken {
     pub words: Vec<VocabularyWord>,
     /// Largest F by time, 1/min.
     pub most_inverse_time: Option<f64>,
+    /// Decimals of a feed a minute.
+    pub feed_decimals: u8,
 }
 
 /// The words of a machine's control, ready to be looked up.
@@ -101,6 +103,7 @@ pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
     Ok(Spoken {
         words,
         most_inverse_time: dialect.format().most_inverse_time,
+        feed_decimals: dialect.format().feed,
     })
 }
 

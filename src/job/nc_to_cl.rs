@@ -1,6 +1,8 @@
 //! What an NC program did, written as a CL file.
 
 use post_machine::diagnostic::Diagnostic;
+use post_motion::Corner;
+use post_readback::Corners;
 use post_readback::convert::{ClWriter, Tool};
 use post_readback::course::Course;
 use post_readback::course::done::{DoneCourse, Program};
@@ -46,12 +48,14 @@ pub fn write<P: Program>(
     let mut writer = ClWriter::new(chord);
     let mut written = Written::default();
     let mut text = String::with_capacity(2 * BUFFER);
+    let mut smooths = false;
     writer.begin(part, &mut text);
     loop {
         let done = match course.next() {
             Ok(None) => break,
             Ok(Some(item)) => {
                 let state = course.state();
+                smooths |= state.is_some_and(|state| leaves_the_path(state.corners));
                 let compensated = state
                     .map(|state| state.length)
                     .filter(|length| *length != 0.0);
@@ -85,5 +89,18 @@ pub fn write<P: Program>(
     writer.end(&mut text);
     sink(text.as_bytes())?;
     written.notes.extend(writer.notes().iter().cloned());
+    if smooths {
+        let message = "the program lets the control leave the path (CYCLE832, G187, CYCL DEF 32, G64 P, G5.1): a CL file has no word for that, and it is not carried over";
+        written.notes.push(Diagnostic::warning("convert", message));
+    }
     Ok(written)
+}
+
+/// The control was told to smooth the path, or by how much.
+fn leaves_the_path(corners: Corners) -> bool {
+    match corners {
+        Corners::Own => true,
+        Corners::Said(Corner::Blend { tolerance }) => tolerance.is_some(),
+        _ => false,
+    }
 }

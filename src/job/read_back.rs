@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 
 use post_host::Finder;
-use post_machine::description::Machine;
+use post_machine::description::{Machine, OutputUnits};
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 use post_plugin::{Meaning, VocabularyWord};
 use post_posting::program::{ToldSpindle, Unknown};
@@ -152,6 +152,15 @@ pub fn offsets(arguments: &JobArguments, machine: &Machine, tools: &[ClTool]) ->
     offsets
 }
 
+/// The last place of a feed a minute, mm/min.
+fn feed_place(machine: &Machine, decimals: u8) -> f64 {
+    let unit = match machine.control.units {
+        OutputUnits::Mm => 1.0,
+        OutputUnits::Inch => 25.4,
+    };
+    unit * libm::pow(0.1, f64::from(decimals))
+}
+
 /// Holds the program `name` from `input` against the CL file.
 ///
 /// # Errors
@@ -237,9 +246,17 @@ pub fn hold<C: Course, R: Read + Seek>(
             .offsets
             .as_ref()
             .is_some_and(|offsets| !offsets.work.is_empty()),
-        lengths: (!in_the_offset).then(|| offsets.clone()),
+        // What stands in the control's tables is one thing, how long the tools are another.
+        lengths: (!in_the_offset).then(|| match reading.arguments.tool_length {
+            Some(length) => Offsets {
+                length: Some(length),
+                ..Offsets::default()
+            },
+            None => offsets.clone(),
+        }),
         solutions: reading.solutions,
         planned: reading.planned,
+        feed_place: feed_place(machine, spoken.feed_decimals),
         least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
         tool_registers: tools
             .iter()

@@ -841,8 +841,8 @@ pub const CODES: &[CodeGroup] = &[
             ),
             code(
                 "rapid",
-                "A rapid comes nearer to what is cut than the CL file allows, or ends in it.",
-                "Look at the way at the machine before it runs.",
+                "A rapid comes nearer to what is cut than the CL file allows, or ends in it; leaves the way of the CL file's; leads where neither the CL file nor the machine file sends the axis; or is made at feed.",
+                "Look at the way at the machine before it runs. `[control] retract`, `change` and `park` name places of the machine, `rapid = \"linear\"` lets rapids be feed moves as fast as the axes go.",
             ),
             code(
                 "register",

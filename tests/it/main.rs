@@ -51,6 +51,7 @@ mod real_files;
 mod report;
 mod report_page;
 mod report_solids;
+mod right_jobs;
 #[cfg(unix)]
 mod rights;
 mod schema;

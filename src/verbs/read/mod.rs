@@ -1,5 +1,6 @@
 //! `post read`: what an NC program makes its machine do.
 
+mod beyond_travel;
 mod motions_csv;
 mod read_text;
 mod survey;
@@ -17,6 +18,7 @@ use crate::files::{AtomicFile, PathArg, Role};
 use crate::job::nc_program::{self, NcControl};
 use crate::job::nc_to_cl::{self, Tools};
 use crate::terminal;
+use beyond_travel::BeyondTravel;
 use motions_csv::MotionsCsv;
 use survey::Survey;
 
@@ -97,12 +99,14 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
         .map(|file| MotionsCsv::new(&control.machine, file));
     let mut survey = Survey::new(&control.machine);
     let mut refused: Vec<Diagnostic> = Vec::new();
+    let mut beyond = BeyondTravel::default();
     let mut done = Vec::new();
     loop {
         done.clear();
         let more = program.next(&mut done);
         for what in &done {
             survey.take(what);
+            beyond.take(&control.machine, what);
             if let Some(csv) = &mut csv {
                 csv.take(what)?;
             }
@@ -133,6 +137,7 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
         // A path with gaps is none.
         files.truncate(usize::from(arguments.csv.is_some()));
     }
+    refused.extend(beyond.findings(&name));
     let taken = files.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(files)?;
     let report = program.report();

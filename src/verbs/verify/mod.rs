@@ -19,7 +19,8 @@ use crate::terminal;
 ///
 /// Each block is run as the control runs it, and the chain of the machine says where the tool goes. The program keeps to
 /// the CL file if tip and tool axis can be gone along together with its path, in order and never back, within the
-/// tolerance. Between the cuts rapids pass the points of the CL file; tool, spindle, coolant, feed, dwells and stops are
+/// tolerance. Between the cuts rapids pass the points of the CL file and keep to its ways; else they lead along the tool's
+/// own line, or where the machine file retracts, changes and parks; tool, spindle, coolant, feed, dwells and stops are
 /// those that it asks for; no axis leaves its travel or passes its largest feed.
 ///
 /// What `post` was told for the job must be told here too (--mount, --tool-length, --units, …).
@@ -52,7 +53,8 @@ pub struct VerifyArguments {
     axis_tolerance: Option<f64>,
 
     /// What stands in the control's tables, a TOML file: work offsets, lengths by register or tool. Without it lengths are
-    /// those of --tool-length, the machine file and the CL file.
+    /// those of --tool-length, the machine file and the CL file; beside it --tool-length is how long the tools really are,
+    /// and what is compensated is held against that.
     #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "Machine")]
     offsets: Option<PathArg>,
 

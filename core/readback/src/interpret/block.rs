@@ -464,6 +464,10 @@ impl Control {
                     format!("{name} says nothing beside these words, and might change the motion"),
                 ));
             }
+            if letter == b'O' {
+                let message = "O within a block: the name of a program stands first, and in a number it is no zero";
+                return Err(self.refuse("nc-word", message));
+            }
             if self.lexicon.letter(letter) != Some(Meaning::Nothing) {
                 self.unknown(&name.to_string());
             }

@@ -27,6 +27,12 @@ const MOST_LOOKS: u32 = 4096;
 /// A fault: its code, what it is, and by how much a limit is passed.
 pub(super) type AxisFault = (&'static str, String, f64);
 
+/// Where a motion takes an axis beyond its travel: which, and by how much, mm or degrees.
+pub fn over_travel(machine: &Machine, motion: &Motion) -> Option<(String, f64)> {
+    let (_, message, by) = Axes::new(machine).over_travel(machine, motion)?;
+    Some((message, by))
+}
+
 /// What is known of the axes of a machine.
 #[derive(Clone, Debug)]
 pub(super) struct Axes {

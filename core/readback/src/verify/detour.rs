@@ -1,29 +1,27 @@
-//! Between two cuts: rapids that go where neither of them, nor any point of the course, leads.
+//! Between two cuts: rapids that go where neither the course nor the machine file leads.
 
-use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
 use post_machine::axis_words::is_depth;
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, Pose};
 
 use crate::Motion;
 
-/// So many ends of rapids are remembered between two cuts.
+/// So many ends of rapids are remembered between two cuts, and as many places that are asked for.
 const MOST: usize = 64;
 
-/// Where a tool goes between two cuts. It may draw back and come down along its depth or its own axis as far as it likes;
-/// across, all that it passes lies between the places that are asked for, in the machine's axes or against the part. Where
-/// rotary axes turn between the two cuts nothing is said: how it goes round then is the machine's business.
+/// A tool that leans by less than this, radians, is on the same line.
+const SAME_LINE: f64 = 1e-3;
+
+/// Where a tool goes between two cuts: to the places that are asked for, and on the line of the tool at one of them as
+/// far off as it likes. Anywhere else each axis that it moves stands between where it stands at those places, or where
+/// the machine file sends it (`retract`, `change`, `park`); the depth may be drawn back farther than at all of them. A retract in
+/// positions of the machine leads as far as the machine file says.
 #[derive(Debug, Default)]
 pub(super) struct Detour {
-    asked: Option<Reach>,
+    asked: Vec<(Joints, Pose)>,
     open: Vec<End>,
-}
-
-/// Least and largest values of what is asked for.
-#[derive(Clone, Copy, Debug)]
-struct Reach {
-    joints: [Joints; 2],
-    tips: [Vector3<f64>; 2],
 }
 
 /// Where a rapid ends that nothing asks for.
@@ -31,8 +29,10 @@ struct Reach {
 struct End {
     line: u64,
     number: Option<u64>,
+    from: Joints,
     joints: Joints,
     pose: Pose,
+    machine: bool,
 }
 
 /// A rapid that went astray.
@@ -40,88 +40,157 @@ struct End {
 pub(super) struct Astray {
     pub line: u64,
     pub number: Option<u64>,
-    /// The axis and how far it is beyond, mm or degrees.
+    /// The axis, and how far it is from all where it could stand, mm or degrees.
     pub axis: usize,
     pub by: f64,
+    /// It is a retract that is too short.
+    pub short: bool,
 }
 
 impl Detour {
-    /// A rapid ended; `asked` if the course leads there too.
-    pub fn take(&mut self, motion: &Motion, asked: bool) {
-        if self.asked.is_none() {
+    /// A rapid ended; `asked` if the course leads there too, `known` if it does where the rapid began.
+    pub fn take(&mut self, motion: &Motion, asked: bool, known: bool) {
+        if known && self.asked.is_empty() {
             self.ask(&motion.from.joints, &motion.from.pose);
         }
         if asked {
             self.ask(&motion.to.joints, &motion.to.pose);
-        } else if !motion.machine && self.open.len() < MOST {
+        } else if self.open.len() < MOST {
             self.open.push(End {
                 line: motion.line,
                 number: motion.number,
+                from: motion.from.joints,
                 joints: motion.to.joints,
                 pose: motion.to.pose,
+                machine: motion.machine,
             });
         }
     }
 
-    /// A cut begins: was there a rapid that went farther than `slack` (mm, radians) beyond what is asked for? The first.
-    pub fn cut(&mut self, machine: &Machine, motion: &Motion, slack: [f64; 2]) -> Option<Astray> {
-        if self.asked.is_some() {
+    /// A cut begins with `motion`, or the program ends: was there a rapid that went farther than `slack` (mm, radians) from
+    /// all that is asked for, the tool leaning otherwise by `lean` at most? The first.
+    pub fn end(
+        &mut self,
+        machine: &Machine,
+        motion: Option<&Motion>,
+        slack: [f64; 2],
+        lean: f64,
+    ) -> Option<Astray> {
+        if let Some(motion) = motion {
             self.ask(&motion.from.joints, &motion.from.pose);
         }
-        let asked = self.asked.take();
-        let mut open = self.open.drain(..);
-        let asked = asked?;
-        open.find_map(|end| asked.beyond(machine, &end, slack))
+        let asked = std::mem::take(&mut self.asked);
+        let open = std::mem::take(&mut self.open);
+        if asked.is_empty() {
+            return None;
+        }
+        open.iter()
+            .find_map(|end| end.astray(machine, &asked, slack, lean + SAME_LINE))
     }
 
     fn ask(&mut self, joints: &Joints, pose: &Pose) {
-        let reach = self.asked.get_or_insert(Reach {
-            joints: [*joints; 2],
-            tips: [pose.tip; 2],
-        });
-        for (place, value) in joints.iter().enumerate() {
-            reach.joints[0][place] = reach.joints[0][place].min(*value);
-            reach.joints[1][place] = reach.joints[1][place].max(*value);
+        if self.asked.len() == MOST {
+            self.asked.remove(0);
         }
-        reach.tips = [reach.tips[0].inf(&pose.tip), reach.tips[1].sup(&pose.tip)];
+        self.asked.push((*joints, *pose));
     }
 }
 
-impl Reach {
-    fn beyond(&self, machine: &Machine, end: &End, slack: [f64; 2]) -> Option<Astray> {
-        let tip = end.pose.tip;
-        let out = tip - tip.sup(&self.tips[0]).inf(&self.tips[1]);
-        let across = out - end.pose.axis * out.dot(&end.pose.axis);
-        if across.norm() <= slack[0] {
+impl End {
+    /// The axis that is farthest from where it could stand.
+    fn astray(
+        &self,
+        machine: &Machine,
+        asked: &[(Joints, Pose)],
+        slack: [f64; 2],
+        lean: f64,
+    ) -> Option<Astray> {
+        if !self.machine
+            && asked
+                .iter()
+                .any(|(_, pose)| self.on_the_line(pose, slack[0], lean))
+        {
             return None;
         }
-        // While the part turns or the head swings, the linear axes go round with it.
-        let turning = |place: usize| {
-            let asked = self.joints[1][place] - self.joints[0][place];
-            machine.axes[place].joint.rotary && asked > slack[1]
+        let turns = |place: usize| {
+            let turned = libm::fabs(self.joints[place] - self.from[place]);
+            machine.axes[place].joint.rotary && turned > slack[1]
         };
-        if (0..machine.axes.len()).any(turning) {
+        if !self.machine && (0..machine.axes.len()).any(turns) {
+            // While the part turns or the head swings, the linear axes go round with it.
             return None;
         }
-        let mut worst: Option<(f64, usize)> = None;
+        let mut worst: Option<(f64, Astray)> = None;
         for (place, axis) in machine.axes.iter().enumerate() {
-            if is_depth(machine, place) {
+            let rotary = axis.joint.rotary;
+            let slack = slack[usize::from(rotary)];
+            let value = self.joints[place];
+            // What stands is led nowhere.
+            if libm::fabs(value - self.from[place]) <= slack {
                 continue;
             }
-            let value = end.joints[place];
-            let by = (self.joints[0][place] - value).max(value - self.joints[1][place]);
-            let share = by / slack[usize::from(axis.joint.rotary)];
-            if share > worst.map_or(1.0, |(most, _)| most) {
-                worst = Some((share, place));
+            let (mut by, mut short) = (f64::INFINITY, false);
+            let mut allow = |other: f64| {
+                let mut apart = value - other;
+                if rotary {
+                    apart -= TAU * libm::rint(apart / TAU);
+                }
+                by = by.min(libm::fabs(apart));
+            };
+            asked.iter().for_each(|(joints, _)| allow(joints[place]));
+            let [least, most] = span(asked, place);
+            allow(value.clamp(least, most.max(least)));
+            let frame = &machine.frame;
+            let named = [&frame.retract, &frame.aside, &frame.change, &frame.park];
+            for (other, value) in named.into_iter().flatten() {
+                if *other == place {
+                    allow(*value);
+                }
+            }
+            if is_depth(machine, place) {
+                let away = axis.joint.direction.dot(&machine.tool_axis).signum();
+                let retract = frame.retract.iter().find(|(other, _)| *other == place);
+                let least = match retract {
+                    Some((_, retract)) if self.machine => {
+                        short = true;
+                        away * retract
+                    }
+                    _ => {
+                        let asked = asked.iter().map(|(joints, _)| away * joints[place]);
+                        asked.fold(f64::INFINITY, f64::min)
+                    }
+                };
+                by = by.min((least - away * value).max(0.0));
+            }
+            if by > slack && worst.as_ref().is_none_or(|(most, _)| by / slack > *most) {
+                let astray = Astray {
+                    line: self.line,
+                    number: self.number,
+                    axis: place,
+                    by: by / axis.unit(),
+                    short,
+                };
+                worst = Some((by / slack, astray));
             }
         }
-        let (share, axis) = worst?;
-        let rotary = machine.axes[axis].joint.rotary;
-        Some(Astray {
-            line: end.line,
-            number: end.number,
-            axis,
-            by: share * slack[usize::from(rotary)] / machine.axes[axis].unit(),
-        })
+        worst.map(|(_, astray)| astray)
     }
+
+    /// The tool stands on its own line through a place, at it or farther off.
+    fn on_the_line(&self, asked: &Pose, slack: f64, lean: f64) -> bool {
+        let way = self.pose.tip - asked.tip;
+        let along = way.dot(&asked.axis);
+        (self.pose.axis - asked.axis).norm() <= lean
+            && along >= -slack
+            && (way - asked.axis * along).norm() <= slack + lean * along
+    }
+}
+
+/// The least and the largest value of an axis at all places that are asked for.
+fn span(asked: &[(Joints, Pose)], place: usize) -> [f64; 2] {
+    let values = asked.iter().map(|(joints, _)| joints[place]);
+    let ends = [f64::INFINITY, f64::NEG_INFINITY];
+    values.fold(ends, |[least, most], value| {
+        [least.min(value), most.max(value)]
+    })
 }

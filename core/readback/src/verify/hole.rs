@@ -153,6 +153,7 @@ impl<C: Course> Verifier<'_, C> {
             self.fault("hole", message, Some(motion), Some(cl_line), Some(from));
         }
         self.compare_cycle(motion, index);
+        self.look_for_detours(Some(motion));
         self.made = None;
         self.hole = Some(HoleRun {
             index,
@@ -208,7 +209,9 @@ impl<C: Course> Verifier<'_, C> {
         axis.top.point += run.shift;
         let bound = self.bound;
         let cl_line = Some(element.line);
-        let rapid = motion.kind == MotionKind::Rapid;
+        let (end, _) = axis.split(&places[places.len() - 1]);
+        let rapid = motion.kind == MotionKind::Rapid
+            || end <= run.deepest.max(run.at) && self.is_as_fast_as_rapids(motion);
         if !rapid {
             self.set_kind("hole");
         }

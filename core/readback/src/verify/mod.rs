@@ -27,12 +27,13 @@ mod track;
 
 use std::f64::consts::PI;
 
-use post_machine::description::Machine;
+use post_machine::description::{Machine, Rapid};
 use post_machine::diagnostic::Diagnostic;
 
 use crate::course::Course;
 use crate::{CycleKind, Done, Motion, MotionKind, Offsets, Spindle, Told};
 use axes::Axes;
+pub use axes::over_travel;
 pub use cut_path::CutPath;
 use detour::Detour;
 use hole::{HoleRun, Made};
@@ -60,6 +61,10 @@ pub struct Rules {
     pub lengths: Option<Offsets>,
     /// A feed by time cannot be so large that a block takes less than this, minutes.
     pub least_minutes: f64,
+    /// A rapid may be made at the highest feed that its axes hold (`[control] rapid = "linear"`).
+    pub linear_rapids: bool,
+    /// The last place of a printed feed, mm/min: it is rounded down.
+    pub feed_place: f64,
     /// The feed was planned: it may be below that of the CL file, whatever for.
     pub planned: bool,
     /// Each line of the program is told with the solution that it ends in.
@@ -92,6 +97,8 @@ impl Rules {
             work_offsets: false,
             lengths: None,
             least_minutes: 0.0,
+            linear_rapids: machine.control.rapid == Rapid::Linear,
+            feed_place: 0.0,
             planned: false,
             solutions: false,
             most_faults: 50,

@@ -8,10 +8,16 @@ use super::sweep::Stray;
 use super::track::{MOST, What};
 use super::{RAPID_TURN, Verifier, state};
 use crate::course::Course;
-use crate::{Motion, Told};
+use crate::{Motion, MotionKind, Told};
 
 /// So far ahead a cut is looked for that has no place where the program stands.
 const AHEAD: usize = 20_000;
+
+/// A rapid at feed may take so much longer than its axes need: feeds are rounded down.
+const SLOW: f64 = 0.1;
+
+/// And so much besides, minutes.
+const MOMENT: f64 = 1e-4;
 
 impl<C: Course> Verifier<'_, C> {
     /// A motion at rapid.
@@ -25,16 +31,62 @@ impl<C: Course> Verifier<'_, C> {
         let end = &places[places.len() - 1];
         // Before it passes them: points of the course where it ends.
         let asked = self.ends_on_the_course(end);
+        let follows = self.keeps_to_the_way(motion, places);
         self.pass(motion, places);
         self.apart = true;
-        if self.placed && !self.pecks_again(motion, places) {
+        let known = self.placed;
+        if known && self.pecks_again(motion, places) {
+            return;
+        }
+        let asked = asked || self.may_begin(end);
+        if known && !follows {
             self.look_how_near(motion, places);
-            let asked = asked || self.may_begin(end);
             if !asked {
                 self.look_where_it_ends(motion, end);
             }
-            self.detour.take(motion, asked);
         }
+        self.detour.take(motion, asked, known);
+    }
+
+    /// From one place of a rapid of the course to another a rapid goes as it does, and on. True if it does.
+    fn keeps_to_the_way(&mut self, motion: &Motion, places: &[Place]) -> bool {
+        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
+            return false;
+        };
+        let mut bound = self.rapid_bound;
+        bound.axis = 2.0;
+        let Some(element) = self.track.get(index) else {
+            return false;
+        };
+        if !matches!(element.what, What::Way) {
+            return false;
+        }
+        let (line, from, to) = (element.line, element.from, element.to);
+        let on = |place: &Place| free(place, &from, &to, &bound);
+        let (start, end) = (on(&places[0]), on(&places[places.len() - 1]));
+        if start.is_empty() || end.is_empty() {
+            return false;
+        }
+        let way = to.point - from.point;
+        let length = way.norm();
+        let off = |place: &Place| {
+            let offset = place.point - from.point;
+            let share = match length > 0.0 {
+                true => (offset.dot(&way) / (length * length)).clamp(0.0, 1.0),
+                false => 0.0,
+            };
+            (offset - way * share).norm()
+        };
+        let most = places.iter().map(off).fold(0.0, f64::max);
+        let message = if end.to < start.from {
+            "a rapid goes back on its way".to_owned()
+        } else if most > bound.point {
+            format!("a rapid strays by {most:.3} mm from the way of the CL file's")
+        } else {
+            return true;
+        };
+        self.fault("rapid", message, Some(motion), Some(line), Some(most));
+        false
     }
 
     /// A rapid must not come nearer to the cuts than its ends, unless the course's own does.
@@ -93,7 +145,12 @@ impl<C: Course> Verifier<'_, C> {
         let mut index = self.next.unwrap_or(0);
         while let Some(element) = self.track.get(index) {
             match element.what {
-                What::Way | What::Reach => {
+                What::Way | What::Reach(_) => {
+                    let mut bound = bound;
+                    if element.from.axis != element.to.axis {
+                        // How the axis goes from one end to the other is not asked for.
+                        bound.axis = 2.0;
+                    }
                     if !free(end, &element.from, &element.to, &bound).is_empty() {
                         return true;
                     }
@@ -143,13 +200,8 @@ impl<C: Course> Verifier<'_, C> {
             if span.is_empty() {
                 continue;
             }
-            let Some(element) = self.track.kept().get(index) else {
+            if self.track.kept().get(index).is_none() {
                 continue;
-            };
-            if matches!(element.what, What::Way) {
-                self.found.rapids_at_feed += 1;
-                self.next = Some(index + usize::from(span.to >= 1.0));
-                return;
             }
             if span.to < 1.0 {
                 return;
@@ -185,7 +237,7 @@ impl<C: Course> Verifier<'_, C> {
                 match &element.what {
                     // Whether it was met is asked before the next cut.
                     What::Event(..) => {}
-                    What::Way | What::Reach => {
+                    What::Way | What::Reach(_) => {
                         let span = free(&element.to, &ends[0], &ends[1], &bound);
                         if span.is_empty() || span.to < least {
                             break;
@@ -234,26 +286,99 @@ impl<C: Course> Verifier<'_, C> {
 
     /// A first point that the program comes to at feed. False if the motion is no such.
     pub(super) fn reaches_at_feed(&mut self, motion: &Motion, places: &[Place]) -> bool {
-        let Some(next) = self.next else {
-            return false;
-        };
-        let Some(index) = self.behind_events(next) else {
+        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
             return false;
         };
         let bound = self.bound;
-        let due = self.track.get(index).is_some_and(|element| {
-            matches!(element.what, What::Reach)
-                && places[places.len() - 1].within(&element.to, &bound)
+        let due = self.track.get(index).and_then(|element| {
+            let reached = places[places.len() - 1].within(&element.to, &bound);
+            match element.what {
+                What::Reach(kind) if reached => Some((kind, element.line)),
+                _ => None,
+            }
         });
-        if due {
-            self.pass(motion, places);
-            self.set_kind("rapid");
+        let Some((kind, cl_line)) = due else {
+            return false;
+        };
+        if kind == MotionKind::Rapid {
+            self.rapid_at_feed(motion, cl_line);
         }
-        due
+        self.pass(motion, places);
+        self.set_kind("rapid");
+        true
+    }
+
+    /// A motion at feed where a rapid is due, along it. False if the motion is no such.
+    pub(super) fn follows_a_rapid(&mut self, motion: &Motion, places: &[Place]) -> bool {
+        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
+            return false;
+        };
+        let bound = self.rapid_bound;
+        let (from, to) = (&places[0], &places[places.len() - 1]);
+        let due = self.track.get(index).is_some_and(|element| {
+            let mut bound = bound;
+            if element.from.axis != element.to.axis {
+                // How the axis goes from one end to the other is not asked for.
+                bound.axis = 2.0;
+            }
+            let on = |place: &Place| free(place, &element.from, &element.to, &bound);
+            let (start, end) = (on(from), on(to));
+            matches!(element.what, What::Way) && !end.is_empty() && start.from <= end.to
+        });
+        if !due {
+            return false;
+        }
+        let cl_line = self.track.get(index).map_or(0, |element| element.line);
+        self.rapid_at_feed(motion, cl_line);
+        self.set_kind("rapid");
+        self.rapid(motion, places);
+        true
+    }
+
+    /// A motion at feed that the machine file lets a rapid be: as fast as its axes go.
+    pub(super) fn is_as_fast_as_rapids(&self, motion: &Motion) -> bool {
+        let least = || self.axes.least_minutes(self.machine, motion);
+        self.rules.linear_rapids
+            && motion.kind == MotionKind::Feed
+            && least().is_some_and(|(minutes, _)| motion.minutes <= minutes * (1.0 + SLOW) + MOMENT)
+    }
+
+    /// A rapid of the course is made at feed: where the machine file has it so, as fast as the axes hold.
+    fn rapid_at_feed(&mut self, motion: &Motion, cl_line: u64) {
+        self.found.rapids_at_feed += 1;
+        let feed = motion.feed;
+        if !self.rules.linear_rapids {
+            let message = "a rapid of the CL file is made at feed".to_owned();
+            let told = format!("{message}: {feed:.1} mm/min");
+            self.limit_fault("rapid", message, told, motion, cl_line, feed);
+            return;
+        }
+        let least = self.axes.least_minutes(self.machine, motion);
+        if let Some((minutes, joint)) = least
+            && !self.is_as_fast_as_rapids(motion)
+        {
+            let name = &self.machine.axes[joint].name;
+            let message = "a rapid of the CL file is made slower than its axes go".to_owned();
+            let share = minutes / motion.minutes * 100.0;
+            let told = format!("{message}: at {share:.0} % of the max_feed of {name}");
+            self.limit_fault("rapid", message, told, motion, cl_line, 100.0 - share);
+        }
+    }
+
+    /// A cut that was left goes on here, or the next one begins; or a rapid is due that passes here.
+    pub(super) fn may_begin(&mut self, place: &Place) -> bool {
+        let rapid = self.rapid_bound;
+        let due = self.next.and_then(|next| self.behind_events(next));
+        let due = due.and_then(|index| self.track.get(index));
+        let passes = due.is_some_and(|element| {
+            matches!(element.what, What::Way | What::Reach(_))
+                && !free(place, &element.from, &element.to, &rapid).is_empty()
+        });
+        passes || self.may_cut(place)
     }
 
     /// A cut that was left goes on here, or the next one begins.
-    pub(super) fn may_begin(&mut self, place: &Place) -> bool {
+    pub(super) fn may_cut(&mut self, place: &Place) -> bool {
         let bound = self.bound;
         let kept = self.reach.iter().zip(self.track.kept());
         let goes_on = kept.filter(|(span, element)| !span.is_empty() && element.is_cut());
@@ -265,21 +390,17 @@ impl<C: Course> Verifier<'_, C> {
         let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
             return false;
         };
-        let rapid = self.rapid_bound;
-        self.track
-            .get(index)
-            .is_some_and(|element| match element.what {
-                What::Way | What::Reach => {
-                    !free(place, &element.from, &element.to, &rapid).is_empty()
-                }
-                _ => place.within(&element.from, &bound),
-            })
+        self.track.get(index).is_some_and(|element| {
+            !matches!(element.what, What::Way | What::Reach(_))
+                && place.within(&element.from, &bound)
+        })
     }
 
-    /// Rapids between the cuts must not swing out of where the course leads.
-    fn look_for_detours(&mut self, motion: &Motion) {
+    /// Rapids between the cuts must not lead where neither the course nor the machine file sends them.
+    pub(super) fn look_for_detours(&mut self, motion: Option<&Motion>) {
         let slack = [self.rapid_bound.point, RAPID_TURN];
-        let Some(astray) = self.detour.cut(self.machine, motion, slack) else {
+        let lean = self.rules.axis_tolerance;
+        let Some(astray) = self.detour.end(self.machine, motion, slack, lean) else {
             return;
         };
         let axis = &self.machine.axes[astray.axis];
@@ -287,22 +408,22 @@ impl<C: Course> Verifier<'_, C> {
             true => "°",
             false => " mm",
         };
-        let message = format!(
-            "a rapid takes {} {:.3}{unit} beyond all that the CL file asks for between two cuts",
-            axis.name, astray.by
-        );
-        self.fault_at(
-            "rapid",
-            message,
-            Some((astray.line, astray.number)),
-            None,
-            Some(astray.by),
-        );
+        let (name, by) = (&axis.name, astray.by);
+        let message = match astray.short {
+            true => {
+                format!("a retract ends {by:.3}{unit} short of where the machine file has {name}")
+            }
+            false => format!(
+                "a rapid takes {name} {by:.3}{unit} from all where the CL file and the machine file send it"
+            ),
+        };
+        let place = Some((astray.line, astray.number));
+        self.fault_at("rapid", message, place, None, Some(by));
     }
 
     /// A cut begins: where on the course may that be?
     pub(super) fn begin_cut(&mut self, motion: &Motion, place: &Place) {
-        let (bound, rapid) = (self.bound, self.rapid_bound);
+        let bound = self.bound;
         let mut reach = std::mem::take(&mut self.reach);
         // Behind what was cut so far.
         let stood = reach.iter().rposition(|span| !span.is_empty());
@@ -318,15 +439,9 @@ impl<C: Course> Verifier<'_, C> {
             && let Some(index) = self.behind_events(next)
             && let Some(element) = self.track.get(index)
         {
-            let bound = match element.what {
-                What::Way => Some(rapid),
-                What::Cut | What::Thread => Some(bound),
-                _ => None,
-            };
-            if let Some(bound) = bound {
+            if element.is_cut() {
                 let span = free(place, &element.from, &element.to, &bound);
-                let begins = !element.is_cut() || span.from <= 0.0;
-                if begins && !span.is_empty() {
+                if span.from <= 0.0 && !span.is_empty() {
                     if reach.len() <= index {
                         reach.resize(index + 1, Span::EMPTY);
                     }
@@ -340,7 +455,7 @@ impl<C: Course> Verifier<'_, C> {
             self.found.excursions += 1;
             self.detour = Detour::default();
         } else {
-            self.look_for_detours(motion);
+            self.look_for_detours(Some(motion));
         }
         if self.reach.iter().all(Span::is_empty) {
             self.find_cut(motion, place, self.next.unwrap_or(stood));
@@ -415,7 +530,7 @@ impl<C: Course> Verifier<'_, C> {
             };
             let lines = match element.what {
                 What::Cut | What::Thread | What::Hole(_) => &mut cuts,
-                What::Way | What::Reach => &mut ways,
+                What::Way | What::Reach(_) => &mut ways,
                 What::Event(..) => continue,
             };
             let first = lines.map_or(element.line, |[first, _]| first);
@@ -526,6 +641,7 @@ impl<C: Course> Verifier<'_, C> {
     /// The program is at its end; is the course?
     pub(super) fn look_at_the_rest(&mut self) {
         self.leave_cut();
+        self.look_for_detours(None);
         let from = match self.next {
             Some(next) => next,
             None => self
@@ -540,7 +656,7 @@ impl<C: Course> Verifier<'_, C> {
         while let Some(element) = self.track.get(index) {
             let line = element.line;
             let place = match &element.what {
-                What::Way | What::Reach => Some(1),
+                What::Way | What::Reach(_) => Some(1),
                 What::Event(_, true) => None,
                 What::Event(told, false) => {
                     let message = format!("{} is left out", state::event_name(told));

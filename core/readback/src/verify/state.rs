@@ -14,7 +14,7 @@ use crate::{Coolants, Motion, MotionKind, Spindle, Told, Way};
 const SHARE: f64 = 0.005;
 
 /// Half of the last place of a feed or speed without decimals.
-const PLACE: f64 = 0.51;
+pub(super) const PLACE: f64 = 0.51;
 
 /// The ends of a way are rounded: so much of it, mm.
 const ROUNDED: f64 = 0.003;
@@ -46,6 +46,8 @@ impl<C: Course> Verifier<'_, C> {
             2 => places[0].between(&places[1], 0.5),
             count => places[count / 2],
         };
+        let before = &places[(places.len() - 1) / 2];
+        let ahead = places[places.len() / 2].point - before.point;
         let mut best: Option<(f64, usize)> = None;
         let mut differ = false;
         let mut first: Option<&Element> = None;
@@ -56,7 +58,9 @@ impl<C: Course> Verifier<'_, C> {
             let one = first.get_or_insert(element);
             differ |= !Arc::ptr_eq(&one.asked, &element.asked) || one.feed != element.feed;
             let span = free(&middle, &element.from, &element.to, &bound);
-            if span.is_empty() {
+            // The way back lies on the same line.
+            let back = ahead.dot(&(element.to.point - element.from.point)) < 0.0;
+            if span.is_empty() || back {
                 continue;
             }
             let near = super::place::nearest(&middle, &element.from, &element.to, &span).point;
@@ -321,13 +325,14 @@ impl<C: Course> Verifier<'_, C> {
             self.limit_fault("feed", message, told, motion, element.line, feed - asked);
             return;
         }
-        if feed < asked * (1.0 - SHARE - rounded) - PLACE {
+        let place = self.rules.feed_place.max(PLACE);
+        if feed < asked * (1.0 - SHARE - rounded) - place {
             let needed = self.axes.least_minutes(self.machine, motion);
             match needed {
                 // Of a slow feed the last place is much, and it is rounded down.
                 Some((minutes, joint))
                     if motion.minutes <= minutes * 1.05
-                        || feed + 2.0 * PLACE >= 0.95 * way / minutes =>
+                        || feed + 2.0 * place >= 0.95 * way / minutes =>
                 {
                     self.found.limited += 1;
                     let name = &self.machine.axes[joint].name;

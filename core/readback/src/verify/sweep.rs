@@ -54,24 +54,38 @@ impl<C: Course> Verifier<'_, C> {
             return self.hole_motion(motion, places);
         }
         self.come_back_to_the_course(&places[0]);
+        let fast = self.is_as_fast_as_rapids(motion);
+        if fast && !self.apart && self.next.is_none() {
+            // A rapid behind the cut, not the cut's way back.
+            self.leave_cut();
+            if self.follows_a_rapid(motion, places) {
+                return;
+            }
+            self.next = None;
+        }
         if self.apart {
             // Where a hole is due, a feed motion is its business unless the tool is elsewhere.
-            if self.hole_is_due() && self.begins_hole(motion, places) {
+            if !fast && self.hole_is_due() && self.begins_hole(motion, places) {
                 return self.hole_motion(motion, places);
             }
-            if self.reaches_at_feed(motion, places) {
+            if self.reaches_at_feed(motion, places) || self.follows_a_rapid(motion, places) {
                 return;
             }
             // What is due goes first.
-            if !self.may_begin(&places[0]) {
+            if !self.may_cut(&places[0]) {
                 if self.pecks_again(motion, places) {
                     return;
                 }
-                if draws_back(places, &self.bound)
+                if draws_back(places, &self.rapid_bound)
                     || self.comes_down(places)
                     || turns(places, self.rapid_bound.point)
                 {
                     return self.set_kind("rapid");
+                }
+                if fast {
+                    self.found.rapids_at_feed += 1;
+                    self.set_kind("rapid");
+                    return self.rapid(motion, places);
                 }
             }
             self.begin_cut(motion, &places[0]);
@@ -193,13 +207,13 @@ impl<C: Course> Verifier<'_, C> {
     fn sweep(&mut self, motion: &Motion, places: &[Place], factor: f64, measured: bool) -> Swept {
         let mut reach = std::mem::take(&mut self.reach);
         let mut spare = std::mem::take(&mut self.spare);
-        let bounds = [self.bound.times(factor), self.rapid_bound.times(factor)];
+        let bound = self.bound.times(factor);
         let mut worst = Apart::default();
         let mut asked = 0;
         let mut swept = Swept::Through;
         for ends in places.windows(2) {
             spare.clear();
-            let column = self.column(&ends[0], &ends[1], &bounds, &reach, &mut spare);
+            let column = self.column(&ends[0], &ends[1], bound, &reach, &mut spare);
             std::mem::swap(&mut reach, &mut spare);
             let Some((apart, line)) = column.here else {
                 swept = column.stopped.map_or(Swept::Nowhere, Swept::Stopped);
@@ -230,7 +244,7 @@ impl<C: Course> Verifier<'_, C> {
         &mut self,
         from: &Place,
         to: &Place,
-        bounds: &[Bound; 2],
+        bound: Bound,
         reach: &[Span],
         out: &mut Vec<Span>,
     ) -> Column {
@@ -243,7 +257,6 @@ impl<C: Course> Verifier<'_, C> {
         let (mut line, mut off) = (0, f64::INFINITY);
         // What can be reached of the program's piece at the beginning of the element.
         let mut below = Span::EMPTY;
-        let mut below_bound = bounds[0];
         let mut index = 0;
         while index < reach.len() || !below.is_empty() {
             let left = reach.get(index).copied().unwrap_or(Span::EMPTY);
@@ -255,26 +268,24 @@ impl<C: Course> Verifier<'_, C> {
             let Some(element) = self.track.get(index) else {
                 break;
             };
-            let bound = match &element.what {
-                What::Cut | What::Thread => bounds[0],
-                What::Way => bounds[1],
+            match &element.what {
+                What::Cut | What::Thread => {}
                 // It was met: nothing of the way.
                 What::Event(_, true) => {
                     out.push(Span::EMPTY);
                     index += 1;
                     continue;
                 }
-                What::Event(_, false) | What::Hole(_) | What::Reach => {
+                What::Event(_, false) | What::Hole(_) | What::Reach(_) | What::Way => {
                     column.stopped = Some(index);
                     out.push(Span::EMPTY);
                     below = Span::EMPTY;
                     index += 1;
                     continue;
                 }
-            };
+            }
             if left.from <= 0.0 {
-                let tight = smaller(&bound, &below_bound);
-                let edge = free(&element.from, from, to, &tight);
+                let edge = free(&element.from, from, to, &bound);
                 if edge.from <= 0.0 && !edge.is_empty() {
                     below = match below.is_empty() {
                         true => edge,
@@ -313,7 +324,7 @@ impl<C: Course> Verifier<'_, C> {
                 element.near = element.near.smaller(&nearest(&element.to, from, to, &top));
             }
             out.push(right);
-            (below, below_bound) = (top, bound);
+            below = top;
             index += 1;
         }
         column.here = apart.map(|apart| (apart, line));
@@ -425,7 +436,7 @@ impl<C: Course> Verifier<'_, C> {
                 self.hole_motion(motion, places);
                 true
             }
-            What::Reach => {
+            What::Reach(_) => {
                 self.next = Some(index);
                 if !self.reaches_at_feed(motion, places) {
                     self.next = None;
@@ -433,6 +444,14 @@ impl<C: Course> Verifier<'_, C> {
                 }
                 self.leave_cuts();
                 true
+            }
+            What::Way => {
+                self.leave_cut();
+                if self.follows_a_rapid(motion, places) {
+                    return true;
+                }
+                self.next = None;
+                false
             }
             _ => false,
         }
@@ -446,7 +465,7 @@ impl<C: Course> Verifier<'_, C> {
     /// Along its own axis at feed to where a cut may begin, or a point of the course stands.
     fn comes_down(&mut self, places: &[Place]) -> bool {
         let (from, to) = (&places[0], &places[places.len() - 1]);
-        draws_back(&[*to, *from], &self.bound) && self.may_begin(to)
+        draws_back(&[*to, *from], &self.bound) && self.may_cut(to)
     }
 }
 
@@ -456,7 +475,7 @@ fn draws_back(places: &[Place], bound: &Bound) -> bool {
     let way = to.point - from.point;
     let along = way.dot(&from.axis);
     along > 0.0
-        && (way - from.axis * along).norm() <= bound.point
+        && (way - from.axis * along).norm() <= bound.point + bound.axis * along
         && (to.axis - from.axis).norm() <= bound.axis
 }
 
@@ -482,11 +501,4 @@ struct Column {
     here: Option<(Apart, u64)>,
     /// An element that no cut passes.
     stopped: Option<usize>,
-}
-
-fn smaller(a: &Bound, b: &Bound) -> Bound {
-    Bound {
-        point: a.point.min(b.point),
-        axis: a.axis.min(b.axis),
-    }
 }

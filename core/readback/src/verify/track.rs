@@ -53,8 +53,8 @@ pub(super) enum What {
     Thread,
     /// A point that is passed at rapid, and the straight way to it.
     Way,
-    /// A point that is reached by whatever way.
-    Reach,
+    /// A point that is reached by whatever way; at rapid, or at feed too.
+    Reach(MotionKind),
     /// A hole of a cycle.
     Hole(Box<Hole>),
     /// The program stops or waits; it was met.
@@ -180,7 +180,7 @@ impl<C: Course> Track<C> {
                     return;
                 }
                 let to = Place::new(&reach.to, self.along);
-                self.push(reach.line, What::Reach, (to, to), None);
+                self.push(reach.line, What::Reach(reach.kind), (to, to), None);
             }
             Item::Away { line } => {
                 self.line = line;

@@ -51,7 +51,7 @@ pub(super) fn run(control: &mut Control, block: &NcBlock, words: &mut Gathered) 
     match &**first {
         "L" => path::line(control, &said, words),
         "LN" => path::line_with_normal(control, &said, words),
-        "CC" => path::pole(control, words),
+        "CC" => path::pole(control, &said, words),
         "C" | "CR" | "CT" | "CP" | "LP" => path::curve(control, first, &said, words),
         "TOOL CALL" => tool::call(control, &said, words),
         "TOOL DEF" => tool::prepare(control, &said),
@@ -140,6 +140,17 @@ impl Said<'_> {
             NcItem::Number(number) => Some(*number),
             _ => None,
         })
+    }
+
+    /// Refuses a number without a letter: `X+77..105` is X+77. and what nobody means.
+    fn no_number(&self, control: &Control) -> Answer<()> {
+        match self.number() {
+            Some(number) => {
+                let message = format!("the number {} belongs to no word", number.value);
+                Err(control.refuse("nc-conversational", message))
+            }
+            None => Ok(()),
+        }
     }
 
     /// The text alone.

@@ -20,6 +20,7 @@ const SHARED: f64 = 1e-6;
 
 /// `L`: straight to the words of the block.
 pub(super) fn line(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+    said.no_number(control)?;
     said.only(control, NAMES, &["MB"])?;
     let kind = modes(control, said, words)?;
     straight(control, kind, said, words, None)
@@ -27,6 +28,7 @@ pub(super) fn line(control: &mut Control, said: &Said<'_>, words: &mut Gathered)
 
 /// Words without the name of a path function: M functions, feed, compensation; `M140 MB MAX`.
 pub(super) fn alone(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+    said.no_number(control)?;
     said.only(control, NAMES, &["MB"])?;
     if words.present & control.axes.mask != 0 && !words.m.has(94) {
         return Err(control.refuse(
@@ -44,6 +46,7 @@ pub(super) fn line_with_normal(
     said: &Said<'_>,
     words: &mut Gathered,
 ) -> Answer<()> {
+    said.no_number(control)?;
     said.only(control, NAMES, &["NX", "NY", "NZ", "TX", "TY", "TZ"])?;
     let mut vector = Vector3::zeros();
     let mut any = false;
@@ -108,7 +111,8 @@ fn travel(control: &mut Control, kind: MotionKind, path: &go::Path, target: &Tar
 }
 
 /// `CC X+10 Y+5`: the pole; without words where the tool stands.
-pub(super) fn pole(control: &mut Control, words: &mut Gathered) -> Answer<()> {
+pub(super) fn pole(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+    said.no_number(control)?;
     let here = control.point();
     let mut any = false;
     for (row, letter) in [b'X', b'Y', b'Z'].into_iter().enumerate() {
@@ -135,6 +139,7 @@ pub(super) fn curve(
     said: &Said<'_>,
     words: &mut Gathered,
 ) -> Answer<()> {
+    said.no_number(control)?;
     said.only(control, NAMES, &["PR", "PA", "IPR", "IPA"])?;
     let kind = modes(control, said, words)?;
     let mut asked = Asked::default();

@@ -8,7 +8,7 @@ use crate::{CycleCall, CycleKind};
 const MOST: usize = 100_000;
 
 /// Two levels nearer than this are one, mm.
-const SAME: f64 = 1e-9;
+pub(super) const SAME: f64 = 1e-9;
 
 /// A hole: levels along the tool axis, in the coordinates of the words, mm; feeds in mm/min.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,7 +2,7 @@
 
 use post_machine::diagnostic::Diagnostic;
 
-use super::hole::{Hole, Out, Pecks, Wait};
+use super::hole::{Hole, Out, Pecks, SAME, Wait};
 use crate::CycleKind;
 
 /// What the control knows besides the arguments; lengths in mm, feeds in mm/min.
@@ -113,7 +113,9 @@ pub(crate) fn hole(
         feed: around.feed,
         ..Hole::default()
     };
-    if (away - hole.clearance) * (bottom - hole.clearance) > 0.0 {
+    // Levels that are the same come out of different sums.
+    let above = away - hole.clearance;
+    if libm::fabs(above) > SAME && above * (bottom - hole.clearance) > 0.0 {
         return Err(arguments.refuse(&format!(
             "the retraction plane {away:.4} lies below the level {:.4} where the feed begins",
             hole.clearance

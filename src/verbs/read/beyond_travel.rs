@@ -1,0 +1,68 @@
+//! Axes that a program takes beyond their travel.
+
+use post_machine::description::Machine;
+use post_machine::diagnostic::{Diagnostic, Place};
+use post_readback::Done;
+use post_readback::verify::over_travel;
+
+/// Of each end of each axis the farthest.
+#[derive(Debug, Default)]
+pub struct BeyondTravel {
+    found: Vec<Beyond>,
+}
+
+/// An axis beyond one end.
+#[derive(Debug)]
+struct Beyond {
+    axis: String,
+    message: String,
+    by: f64,
+    line: u64,
+    count: u64,
+}
+
+impl BeyondTravel {
+    /// Takes what a program did.
+    pub fn take(&mut self, machine: &Machine, done: &Done) {
+        let Done::Motion(motion) = done else {
+            return;
+        };
+        let Some((message, by)) = over_travel(machine, motion) else {
+            return;
+        };
+        let axis = message.split(' ').next().unwrap_or_default().to_owned();
+        let beyond = Beyond {
+            axis,
+            message,
+            by,
+            line: motion.line,
+            count: 1,
+        };
+        match self
+            .found
+            .iter_mut()
+            .find(|found| found.axis == beyond.axis)
+        {
+            None => self.found.push(beyond),
+            Some(found) => {
+                let count = found.count + 1;
+                if beyond.by > found.by {
+                    *found = beyond;
+                }
+                found.count = count;
+            }
+        }
+    }
+
+    /// What is wrong with the program `name`.
+    pub fn findings(&self, name: &str) -> impl Iterator<Item = Diagnostic> {
+        self.found.iter().map(move |found| {
+            let mut message = found.message.clone();
+            if found.count > 1 {
+                message.push_str(&format!("; so in {} motions", found.count));
+            }
+            let place = Place::new(name, found.line, "", 0..0);
+            Diagnostic::error("over-travel", message).at(Some(place))
+        })
+    }
+}

@@ -127,6 +127,9 @@ capabilities! {
     39 LENGTH_ALONG_DEPTH;
     /// No length is put on: it is in the work offset.
     40 LENGTH_IN_OFFSET;
+    /// No retract of the host's own: where the control's machine coordinates end is not where the axis is known to
+    /// stand clear (its zero is the builder's, or lies on a switch), so that the machine file must say where to.
+    41 RETRACT_SAID;
 }
 
 impl Capabilities {

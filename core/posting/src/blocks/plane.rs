@@ -26,8 +26,8 @@ pub(super) struct Planes {
     wanted: Option<Vector3<f64>>,
     /// Where the rotary axes stand in the present one, or where none is needed, as printed.
     stands: Option<Joints>,
-    /// A plane was told.
-    told: bool,
+    /// Normal of the plane that was told.
+    told: Option<Vector3<f64>>,
 }
 
 impl Planes {
@@ -37,7 +37,7 @@ impl Planes {
             outside: None,
             wanted: None,
             stands: None,
-            told: false,
+            told: None,
         }
     }
 
@@ -68,7 +68,7 @@ impl Blocks<'_> {
     /// Another placer comes; the tool leaves a plane with the one that it is in it with.
     pub(super) fn take_placer(&mut self, placer: &Rc<Placer>, to: &mut Surroundings<'_, '_>) {
         self.planes.outside = Some(Rc::clone(placer));
-        if !self.planes.told {
+        if self.planes.told.is_none() {
             self.use_placer(Some(Rc::clone(placer)), to);
         }
         self.planes.stands = None;
@@ -90,7 +90,7 @@ impl Blocks<'_> {
     fn leave_plane(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
         self.planes.stands = None;
         self.use_placer(self.planes.outside.clone(), to);
-        if std::mem::take(&mut self.planes.told) {
+        if self.planes.told.take().is_some() {
             to.out.command(line, Command::Plane(None));
         }
     }
@@ -163,12 +163,17 @@ impl Blocks<'_> {
             return;
         };
         self.use_placer(Some(Rc::new(inside)), to);
-        self.planes.told = true;
+        self.planes.told = Some(plane.normal());
         to.out.command(line, Command::Plane(Some(Box::new(plane))));
     }
 
     /// The words are those of a tilted plane.
     pub(super) fn in_plane(&self) -> bool {
+        self.planes.told.is_some()
+    }
+
+    /// Normal of the plane of the words, unit vector, part frame; none outside a plane.
+    pub(super) fn plane_normal(&self) -> Option<Vector3<f64>> {
         self.planes.told
     }
 }

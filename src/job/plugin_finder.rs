@@ -94,7 +94,7 @@ pub fn dialect_knowing(
     let plugin = finder.find(&control.dialect).map_err(fault)?;
     let setup = ProgramSetup {
         program: program.to_owned(),
-        machine: machine.name.clone(),
+        machine: called(machine),
         units: match control.units {
             OutputUnits::Mm => Units::Millimetre,
             OutputUnits::Inch => Units::Inch,
@@ -270,4 +270,14 @@ fn meant(fault: &PluginFault) -> Option<&str> {
         _ => return None,
     };
     nearest(written, known.iter().map(String::as_str))
+}
+
+/// The machine's name for the program's head, and on which place of the part it depends, if it does.
+fn called(machine: &Machine) -> String {
+    if !machine.holds_on_mount_alone() {
+        return machine.name.clone();
+    }
+    let [x, y, z] = [machine.mount.x, machine.mount.y, machine.mount.z]
+        .map(|value| libm::rint(value * 1e3) / 1e3 + 0.0);
+    format!("{}, for the part at X{x} Y{y} Z{z} alone", machine.name)
 }

@@ -16,8 +16,8 @@ pub const KINDS: [&str; 7] = [
 ];
 
 /// What [`Blocks::reason`] counts.
-pub const REASONS: [&str; 7] = [
-    "point", "eased", "put_in", "leave", "stage", "rewind", "feed",
+pub const REASONS: [&str; 8] = [
+    "point", "eased", "put_in", "leave", "stage", "rewind", "feed", "above",
 ];
 
 /// A row of each block; mm, degrees, s, part frame.
@@ -144,6 +144,7 @@ impl<'m> BlockColumns<'m> {
             Reason::Stage => 4,
             Reason::Rewind => 5,
             Reason::Feed => 6,
+            Reason::Above => 7,
         });
         blocks.time.push(self.time);
         for place in &self.places {

@@ -37,7 +37,13 @@ pub fn samples() -> impl Iterator<Item = &'static str> {
 /// What the machine file of a control must name, since its maker's default is beyond doubt nowhere.
 pub fn named(dialect: &str) -> &'static [&'static str] {
     match dialect {
-        "grbl" => &["--set", "control.grbl.hal=true"],
+        "grbl" => &[
+            "--set",
+            "control.grbl.hal=true",
+            "--set",
+            "control.retract={Z=0}",
+        ],
+        "hurco" => &["--set", "control.hurco.tcp_on=[\"G69\", \"M128\"]"],
         "siemens" => &["--set", "control.siemens.swivel=true"],
         "okuma" => &[
             "--set",
@@ -46,6 +52,8 @@ pub fn named(dialect: &str) -> &'static [&'static str] {
             "control.okuma.tcp_on=\"G169 HL={h}\"",
             "--set",
             "control.okuma.tcp_off=\"G170\"",
+            "--set",
+            "control.retract={Z=0}",
         ],
         _ => &[],
     }

@@ -127,7 +127,7 @@ fn what_was_in_force_before_is_cancelled_first() {
     assert_run(
         &lines("xyzac-trt", LINUXCNC, &["--mount", "0,0,-60"], UPRIGHT),
         &[
-            "G17 G40 G80 G90 G94 G54",
+            "G8 G17 G40 G80 G90 G91.1 G94 G97 G54",
             "G92.2",
             "G61",
             "M429",
@@ -155,12 +155,17 @@ fn length_and_tcp_are_switched_in_the_order_of_the_control() {
     let linuxcnc = lines("xyzbc-trt", LINUXCNC, &["--mount", "0,0,-60"], &tilted);
     let at =
         |lines: &[String], word: &str| lines.iter().rposition(|line| line.contains(word)).unwrap();
-    let across = linuxcnc
-        .iter()
-        .position(|line| line.starts_with("G53 G0 X"))
-        .unwrap();
-    assert_eq!(linuxcnc[across + 1..across + 3], ["G43 H1", "M428"]);
-    assert!(linuxcnc[across + 3].contains('X') && linuxcnc[across + 3].contains('Z'));
+    let on = at(&linuxcnc, "M428");
+    assert_eq!(linuxcnc[on - 1], "G43 H1");
+    assert!(linuxcnc[on + 1].contains('X') && linuxcnc[on + 1].contains('Z'));
+    // From above the first position down to it.
+    assert!(
+        linuxcnc[on + 2].ends_with("Z50.0000"),
+        "{}",
+        linuxcnc[on + 2]
+    );
+    let across = |line: &String| line.starts_with("G53") && line.contains(['X', 'Y']);
+    assert!(!linuxcnc.iter().any(across), "{}", linuxcnc.join("\n"));
     assert!(
         at(&linuxcnc, "M429") < at(&linuxcnc, "G53") && at(&linuxcnc, "G53") < at(&linuxcnc, "G49")
     );
@@ -170,15 +175,9 @@ fn length_and_tcp_are_switched_in_the_order_of_the_control() {
         &["--mount", "0,0,-60"],
         &tilted,
     );
-    let across = fanuc
-        .iter()
-        .position(|line| line.starts_with("G53 G0 X"))
-        .unwrap();
-    assert!(
-        fanuc[across + 1].starts_with("G0 G43.4 H1 X"),
-        "{}",
-        fanuc[across + 1]
-    );
+    assert!(!fanuc.iter().any(across), "{}", fanuc.join("\n"));
+    let on = at(&fanuc, "G43.4 H1 X");
+    assert!(fanuc[on].contains('Z') && fanuc[on + 1].ends_with("Z50.000"));
     assert!(at(&fanuc, "G53") < at(&fanuc, "G49"));
     // With nothing turned words are positions: first across, then down.
     let upright = lines(
@@ -534,13 +533,154 @@ fn the_tool_goes_up_again_behind_what_may_have_lowered_it() {
 fn a_way_that_depends_on_the_length_needs_it() {
     let leaning = leaning(30.0);
     let mut with = command();
-    with.args(["-q", "-m", "head-head", "--tcp", "control", "-o", "-", "-"]);
+    with.args(["-q", "-m", "head-head", "--tcp", "post", "-o", "-", "-"]);
     let done = run(&mut with, leaning.as_bytes());
     assert_eq!(done.code, 1, "{}", done.out);
     assert!(done.err.contains("error[tool-length]"), "{}", done.err);
-    // The TNC switches M128 on and then goes across.
-    with = command();
-    with.args(["-q", "-m", "gantry", "--tcp", "control", "-o", "-", "-"]);
-    let done = run(&mut with, leaning.as_bytes());
-    assert_eq!(done.code, 0, "{}", done.err);
+    // Where the control keeps the tip, no word of the approach depends on it.
+    for machine in ["head-head", "gantry"] {
+        with = command();
+        with.args(["-q", "-m", machine, "--tcp", "control", "-o", "-", "-"]);
+        let done = run(&mut with, leaning.as_bytes());
+        assert_eq!(done.code, 0, "{}", done.err);
+    }
+}
+
+/// Where the control keeps the tip no linear axis is placed in machine coordinates: the way leads to a point above the
+/// first one, below the end of travel, and down by the depth axis alone.
+#[test]
+fn the_first_position_is_come_to_from_above_under_the_control_s_own_frame() {
+    let tilted = leaning(20.0);
+    for (machine, dialect) in [
+        ("bc-trunnion", "fanuc"),
+        ("bc-trunnion", "haas"),
+        ("bc-trunnion", "mazak"),
+        ("bc-trunnion", "mitsubishi"),
+        ("bc-trunnion", "heidenhain"),
+        ("bc-trunnion", "siemens"),
+        ("nutating-head-45", "fanuc"),
+        ("nutating-head-45", "mazak"),
+        ("head-table-bc", "haas"),
+    ] {
+        let control = format!("[control]\ndialect = {dialect:?}\ntcp = \"control\"\n");
+        let lines = lines(machine, &control, &[], &tilted);
+        let placed = |line: &&String| {
+            let machine = ["G53 ", "SUPA", "M91"]
+                .iter()
+                .any(|word| line.contains(word));
+            machine && line.split(' ').any(|word| word.starts_with(['X', 'Y']))
+        };
+        let found = lines.iter().find(placed);
+        assert_eq!(found, None, "{machine} {dialect}");
+    }
+}
+
+/// A head's work offset is the one that was measured with it.
+#[test]
+fn swapped_heads_have_an_offset_each() {
+    let cl = "UNITS/MM\nMULTAX/ON\nHEAD/STRAIGHT\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/ 0,0,50,0,0,1\nFEDRAT/600,MMPM\nGOTO/ 0,0,15,0,0,1\n\
+              RAPID\nGOTO/ 0,0,50,0,0,1\nHEAD/ANGLE\nLOADTL/2\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/ -80,0,20,-1,0,0\nFEDRAT/600,MMPM\nGOTO/ -50,0,20,-1,0,0\n\
+              RAPID\nGOTO/ -80,0,20,-1,0,0\nEND\nFINI\n";
+    let program = lines("head-change", "", &[], cl);
+    let at = |word: &str| program.iter().position(|line| line == word);
+    let [first, swapped, second] = ["G54", "M62", "G55"].map(at);
+    assert!(
+        first < swapped && swapped < second,
+        "{}",
+        program.join("\n")
+    );
+    // Without one the tip would be elsewhere.
+    let file = fs::read_to_string(crate::common::root().join("machines/head-change.toml")).unwrap();
+    let shared: String = file
+        .lines()
+        .filter(|line| !line.starts_with("offset"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("shared.toml");
+    fs::write(&path, shared).unwrap();
+    let mut with = command();
+    with.args([
+        "-q",
+        "-m",
+        path.to_str().unwrap(),
+        "--tool-length",
+        "100",
+        "-o",
+        "-",
+        "-",
+    ]);
+    let done = run(&mut with, cl.as_bytes());
+    assert_eq!(done.code, 1, "{}", done.out);
+    assert!(
+        done.err.contains("error[work-offset]: head ANGLE"),
+        "{}",
+        done.err
+    );
+}
+
+/// Where the zero of the machine is the builder's own, or a switch, the end of travel is no retract.
+#[test]
+fn a_retract_is_said_where_the_control_s_zero_is_not_known_to_be_clear() {
+    for dialect in ["okuma", "grbl"] {
+        let system = if dialect == "okuma" {
+            "[control.okuma]\nunit_system = \"1 mm\"\n"
+        } else {
+            ""
+        };
+        let control = format!("[control]\ndialect = {dialect:?}\n");
+        let refused = post("vmc", &format!("{control}{system}"), &[], UPRIGHT);
+        assert!(
+            refused.err.contains("error[retract]: no retract is said"),
+            "{}",
+            refused.err
+        );
+        let said = lines(
+            "vmc",
+            &format!("{control}retract = {{ Z = -3 }}\n{system}"),
+            &[],
+            UPRIGHT,
+        );
+        assert!(
+            said.iter().any(|line| line.ends_with("G0 Z-3.000")),
+            "{}",
+            said.join("\n")
+        );
+    }
+}
+
+/// An offset that turns with the part knows nothing of a head, and G49 may lower the axis.
+#[test]
+fn what_a_control_does_not_do_by_itself_is_not_left_to_it() {
+    let planes = "[control]\ndialect = \"haas\"\ntcp = \"post\"\nplanes = true\n";
+    let tilted = leaning(20.0);
+    for (machine, written) in [
+        ("bc-trunnion", true),
+        ("head-table-bc", false),
+        ("head-head", false),
+    ] {
+        let program = lines(machine, planes, &[], &tilted);
+        assert_eq!(
+            program.iter().any(|line| line.contains("G254")),
+            written,
+            "{machine}"
+        );
+    }
+    for dialect in ["mazak", "mitsubishi"] {
+        let program = lines(
+            "vmc",
+            &format!("[control]\ndialect = {dialect:?}\n"),
+            &[],
+            UPRIGHT,
+        );
+        assert_run(&program, &["G53 G0 Z20.000", "G49", "G53 G0 Z20.000"]);
+    }
+    let hurco = post(
+        "bc-trunnion",
+        "[control]\ndialect = \"hurco\"\n",
+        &[],
+        &tilted,
+    );
+    assert_eq!(hurco.code, 1);
+    assert!(hurco.err.contains("tcp_on"), "{}", hurco.err);
 }

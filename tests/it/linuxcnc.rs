@@ -4,6 +4,7 @@
 
 mod arcs;
 mod flow;
+mod offset;
 mod read;
 mod set_points;
 
@@ -53,6 +54,9 @@ const TOOLS: [f64; 2] = [40.0, 25.0];
 
 /// Of a rapid, mm.
 const RAPID_TOLERANCE: f64 = 0.5;
+
+/// So far below its end the depth axis comes over a first position at most, mm.
+const ACROSS: f64 = 50.0;
 
 /// What is the same but for the interpolation's last digits, mm or degrees.
 const SAME: f64 = 0.002;
@@ -141,6 +145,8 @@ struct Row {
     feed: bool,
     arc: bool,
     length: f64,
+    /// Of the program, of the motion in progress.
+    line: usize,
 }
 
 /// A program is run so often before what is wrong with its runs is believed.
@@ -152,6 +158,10 @@ struct Begin {
     start: String,
     /// TCP is still on.
     tcp_on: bool,
+    /// Where G54 stands against where the machine file takes it to be, mm.
+    moved: Vector3<f64>,
+    /// What the program before has left in force.
+    left: Vec<&'static str>,
 }
 
 impl Begin {
@@ -159,7 +169,7 @@ impl Begin {
     fn aside(machine: &Machine) -> Self {
         Self {
             start: format!("Z=-5,{}=-30,C=90", machine.tilting),
-            tcp_on: false,
+            ..Self::at("")
         }
     }
 
@@ -167,6 +177,8 @@ impl Begin {
         Self {
             start: start.to_owned(),
             tcp_on: false,
+            moved: Vector3::zeros(),
+            left: Vec::new(),
         }
     }
 }
@@ -207,7 +219,9 @@ fn joints(machine: &Machine, program: &Path, begin: &Begin) -> Option<Result<Vec
     linuxcnc.arg(program).args(["--machine", machine.name]);
     linuxcnc.args(["--tool", "1=40,10", "--tool", "2=25,10"]);
     linuxcnc.args(["--start", &begin.start]);
-    linuxcnc.args(["--before", &format!("G10 L2 P1 X0 Y0 Z{}", machine.part)]);
+    let part = begin.moved + Vector3::z() * machine.part;
+    let part = format!("G10 L2 P1 X{} Y{} Z{}", part.x, part.y, part.z);
+    linuxcnc.args(["--before", &part]);
     for axis in ['X', 'Y', 'Z'] {
         linuxcnc.args(["--max-feed", &format!("{axis}={LINEAR}")]);
     }
@@ -222,6 +236,9 @@ fn joints(machine: &Machine, program: &Path, begin: &Begin) -> Option<Result<Vec
             "G43 H1",
             "--tcp-on-at-start",
         ]);
+    }
+    for left in &begin.left {
+        linuxcnc.args(["--before", left]);
     }
     linuxcnc.arg("-o").arg(&recorded);
     let done = linuxcnc.output().unwrap();
@@ -242,7 +259,7 @@ fn joints(machine: &Machine, program: &Path, begin: &Begin) -> Option<Result<Vec
     let column = |name: &str| header.iter().position(|known| *known == name).unwrap();
     let places = ["X", "Y", "Z"].map(column);
     let turning = [column(&tilting.to_string()), column("C")];
-    let (motion, length) = (column("motion"), column("tool_z"));
+    let (motion, length, block) = (column("motion"), column("tool_z"), column("line"));
     let rows = lines.map(|line| {
         let fields: Vec<&str> = line.split(',').collect();
         let number = |place: usize| fields[place].parse::<f64>().unwrap();
@@ -252,6 +269,7 @@ fn joints(machine: &Machine, program: &Path, begin: &Begin) -> Option<Result<Vec
             feed: fields[motion] == "feed",
             arc: fields[motion] == "arc",
             length: number(length),
+            line: number(block) as usize,
         }
     });
     Some(Ok(rows.collect()))
@@ -297,7 +315,11 @@ fn off(point: &Vector3<f64>, [from, to]: &[Vector3<f64>; 2]) -> f64 {
 fn judge(machine: &Machine, rows: &[Row], rapids_hold: bool) -> Vec<String> {
     let mut wrong = Vec::new();
     let paths = rapid_paths(TWO_TOOLS);
+    // Where it turns; standing, it goes across somewhat lower too, to the point above the first one.
     let at_top = |row: &Row| (row.linear.z - machine.top).abs() < 2.0 * SAME;
+    let across = |row: &Row, end: Option<&Row>| {
+        row.linear.z > machine.top - ACROSS && end.is_some_and(|end| turned(row, end) < SAME)
+    };
     let beside = |row: &Row, other: &Row| {
         (row.linear.xy() - other.linear.xy()).norm() < SAME && turned(row, other) < SAME
     };
@@ -317,7 +339,8 @@ fn judge(machine: &Machine, rows: &[Row], rapids_hold: bool) -> Vec<String> {
         }
         // Turning points at the top, under which the tool may go up and down.
         let mut tops: Vec<&Row> = Vec::new();
-        for row in segment.iter().filter(|row| at_top(row)) {
+        let end = segment.last();
+        for row in segment.iter().filter(|row| at_top(row) || across(row, end)) {
             if tops.last().is_none_or(|last| !beside(row, last)) {
                 tops.push(row);
             }
@@ -346,7 +369,8 @@ fn judge(machine: &Machine, rows: &[Row], rapids_hold: bool) -> Vec<String> {
             });
             let stays = cut_end
                 .is_some_and(|cut| beside(row, &cut) && (row.linear.z - cut.linear.z).abs() < SAME);
-            let on_retract = stays || at_top(row) || tops.iter().any(|top| beside(row, top));
+            let on_retract =
+                stays || at_top(row) || across(row, end) || tops.iter().any(|top| beside(row, top));
             if !on_way && !on_retract {
                 wrong.push(format!(
                     "between the cuts at X {:.3} Y {:.3} Z {:.3} {:.3}° C {:.3}°",

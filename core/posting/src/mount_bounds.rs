@@ -76,8 +76,9 @@ impl<'m> MountBounds<'m> {
         let Some((_, room)) = self.rooms.get_mut(self.at) else {
             return;
         };
-        // A way off the part is as long as travel lets it be: on a machine whose travel is opened it says nothing.
-        if block.reason == Reason::Leave {
+        // A way off the part, or from above it, is as long as travel lets it be: on a machine whose travel is opened it
+        // says nothing.
+        if matches!(block.reason, Reason::Leave | Reason::Above) {
             self.last = None;
             return;
         }

@@ -189,6 +189,7 @@ impl<'a> Post<'a> {
         let fault = refusal::too_fine(machine, &format)
             .or_else(|| refusal::depth_counts_down(machine))
             .or_else(|| refusal::no_way_off(machine))
+            .or_else(|| refusal::retract_not_said(machine, dialect.capabilities()))
             .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()))
             .or_else(|| refusal::no_instead(machine, dialect.capabilities()));
         if let Some(fault) = fault {
@@ -197,20 +198,12 @@ impl<'a> Post<'a> {
         let writes = dialect.capabilities();
         let planes = machine.control.planes && writes.has(Capabilities::PLANE);
         let ahead = job.ahead.filter(|_| planes);
-        // A plane is come to in machine coordinates where a head turns.
-        let tcp_still = writes.has(Capabilities::TCP_STILL) && ahead.is_none();
         let mut stages = Stages {
             expand: Expand::new(machine, job.reading.chord_tolerance, writes, ahead),
             shift: None,
             lines: Vec::new(),
             timing: Timing::new(machine, &format, writes)?,
-            configuration: Configuration::new(
-                machine,
-                &format,
-                job.tool_length,
-                writes,
-                tcp_still,
-            )?,
+            configuration: Configuration::new(machine, &format, job.tool_length, writes)?,
             configured: Vec::new(),
             blocks: Blocks::new(machine, writes, &format, model, job.trust_model),
             made: Vec::new(),

@@ -61,6 +61,27 @@ pub(crate) fn no_way_off(machine: &Machine) -> Option<Diagnostic> {
     })
 }
 
+/// A control whose zero of the machine is the builder's, or a switch, is told by the machine file where to retract.
+pub(crate) fn retract_not_said(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
+    let lacks = writes.has(Capabilities::RETRACT_SAID) && !machine.frame.retract_said;
+    let (joint, end) = machine.frame.retract.first().filter(|_| lacks)?;
+    let axis = &machine.axes[*joint];
+    Some(
+        Diagnostic::error(
+            "retract",
+            format!(
+                "no retract is said, and on this control {} at {:.3} mm, the end of its travel in the machine file, need not be where it stands clear: its zero of the machine is the builder's own, or a switch",
+                axis.name,
+                axis.reading(*end)
+            ),
+        )
+        .help(format!(
+            "[control] retract = {{ {} = … }} with the position as the control shows it (Okuma: from the zero of G16 H0; GRBL: minus the pull-off, or lower), or [control.{}] retract with a block of its own",
+            axis.name, machine.control.dialect
+        )),
+    )
+}
+
 /// Why a point has no axis values.
 pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
     match *refused {

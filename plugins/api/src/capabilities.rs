@@ -133,6 +133,9 @@ capabilities! {
     /// A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
     /// along the linear ones.
     42 FEED_ALL_AXES;
+    /// No retract of the host's own: where the control's machine coordinates end is not where the axis is known to
+    /// stand clear (its zero is the builder's, or lies on a switch), so that the machine file must say where to.
+    43 RETRACT_SAID;
 }
 
 impl Capabilities {

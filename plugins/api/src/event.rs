@@ -225,8 +225,10 @@ events! { <'a>
         /// Feed of the last approach; none is rapid.
         feed: Option<Feed>,
         /// The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the
-        /// plane comes first, the depth last. Else (under tool centre point control) an [`Event::Park`] has brought it
-        /// across, and all linear words stand in one block, which leads it down.
+        /// plane comes first, the depth last. Else (in a tilted plane under a head that leans, or under tool centre
+        /// point control where the part is turned or the control has no block of its own that begins it) all linear
+        /// words stand in one block, which leads to a point as high above the part as the machine allows; the next move
+        /// comes down from there by the depth axis alone.
         plane_first: bool,
         /// All axis words, in the order of [`Setup::words`](crate::Setup::words).
         words: &'a [f64],
@@ -266,8 +268,7 @@ events! { <'a>
     14 STOP "a stop" Stop;
     /// Optional stop (M1).
     15 OPTIONAL_STOP "an optional stop" OptionalStop;
-    /// After a [`Event::Retract`]: axes go at rapid to a position of the machine (for a tool change, at the end, above
-    /// a first position).
+    /// After a [`Event::Retract`]: axes go at rapid to a position of the machine (for a tool change, at the end).
     16 PARK "a position of the machine" Park {
         /// Which words: bit n is word n.
         axes: u32,

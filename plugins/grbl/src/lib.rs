@@ -10,6 +10,8 @@ use post_plugin::{Capabilities, Event, Meaning, OptionSpec, Setup, export_dialec
 
 struct Grbl {
     hal: bool,
+    /// A block of the machine file's own retracts the tool.
+    retracts: bool,
 }
 
 impl Control for Grbl {
@@ -30,6 +32,9 @@ impl Control for Grbl {
             at_start: true,
             ..Table::ISO.offset
         },
+        // A sender's G43.1 or G92 may be left over.
+        safe: "G17 G40 G49 G80 G90 G94",
+        cancel: "G92.1",
         // The length is in the work offset: the operator sets it after each change.
         length: Length {
             on: "",
@@ -61,12 +66,20 @@ impl Control for Grbl {
                 "axis {}: GRBL 1.1 has the axes X Y Z alone; the option `hal` is for grblHAL, which may have more",
                 word.name
             )),
-            _ => Ok(Grbl { hal }),
+            _ => Ok(Grbl {
+                hal,
+                retracts: !setup.text("retract").is_empty(),
+            }),
         }
     }
 
+    /// The end of travel is the homing switch: a homed machine stands off it by the pull-off.
     fn capabilities(&self) -> Capabilities {
-        Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET
+        let all = Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET;
+        match self.retracts {
+            true => all,
+            false => all | Capabilities::RETRACT_SAID,
+        }
     }
 
     fn write(

@@ -14,9 +14,9 @@ impl Control for Hurco {
         title: Some(("O", 4)),
         relies: RELIES,
         feed_all_axes: true,
-        // G69 ahead of M128: no transform plane.
+        // Whether M128 alone keeps the tip, or G8.2 and G43.4 behind it, is not settled: the machine file names it.
         tcp: Tcp::Blocks {
-            on: "G69\nM128",
+            on: "",
             off: "M129",
             length_first: false,
         },
@@ -45,8 +45,8 @@ const OPTIONS: &[OptionSpec] = iso_options![
     OptionSpec::text("work_offset", "G54", "G54 to G59."),
     OptionSpec::lines(
         "tcp_on",
-        "G69\nM128",
-        "Blocks that switch tool centre point control on.",
+        "",
+        "Blocks that switch tool centre point control on, {h} for the register of the length: must be named under tcp = \"control\".",
     ),
     OptionSpec::lines(
         "tcp_off",

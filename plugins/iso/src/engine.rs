@@ -508,24 +508,19 @@ impl Engine {
     /// The tool leaves the part, and what was in force is cancelled, in the order of the table.
     fn leave(&mut self, axes: u32, words: &[f64], out: &mut String) {
         self.motion.settle(out);
+        let mut cancelled = false;
         for step in self.table.leave {
             match step {
-                Leave::Retract if self.retract.is_empty() => {
-                    self.motion.machine(self.table.machine, axes, words, out);
-                }
-                Leave::Retract => {
-                    self.motion.line(&self.retract, out);
-                    if counts_on(&self.retract) {
-                        self.motion.line("G90", out);
-                    }
-                    self.motion.moved_by_line();
-                }
+                Leave::Retract => self.go_up(axes, words, out),
                 Leave::Length => {
-                    if self.length_active.set(false) {
+                    cancelled = self.length_active.set(false);
+                    if cancelled {
                         self.motion.line(self.table.length.off, out);
                     }
                     self.cancel_what_was(out);
                 }
+                Leave::Again if cancelled => self.go_up(axes, words, out),
+                Leave::Again => {}
                 Leave::Tcp => {
                     if self.tcp_active.set(false) {
                         self.motion.line(&self.tcp_off, out);
@@ -537,6 +532,19 @@ impl Engine {
         self.follows_vector = false;
         self.motion.follow_vector(None);
         self.motion.axes.forget();
+    }
+
+    /// The depth axes to where the tool is clear of the part.
+    fn go_up(&mut self, axes: u32, words: &[f64], out: &mut String) {
+        if self.retract.is_empty() {
+            self.motion.machine(self.table.machine, axes, words, out);
+            return;
+        }
+        self.motion.line(&self.retract, out);
+        if counts_on(&self.retract) {
+            self.motion.line("G90", out);
+        }
+        self.motion.moved_by_line();
     }
 
     fn end(&mut self, out: &mut String) {

@@ -177,6 +177,8 @@ pub enum Leave {
     Retract,
     /// The length compensation is cancelled.
     Length,
+    /// The depth goes to its end again, where the length was cancelled before: a parameter decides whether that moves it.
+    Again,
     /// The tool centre point control is switched off, where blocks of its own do that.
     Tcp,
 }
@@ -242,7 +244,7 @@ pub enum Plane {
         /// It ends.
         off: &'static str,
     },
-    /// Where the rotary words have turned the part: the work offset turns with it.
+    /// Where the rotary words have turned the part: the work offset turns with it. There is none where a head turns.
     Turned {
         /// It begins: `G254`.
         on: &'static str,

@@ -40,6 +40,8 @@ impl Control for LinuxCnc {
             by_itself: true,
             ..Table::ISO.length
         },
+        // G90.1 and G7 stay in force over M2.
+        safe: "G8 G17 G40 G80 G90 G91.1 G94 G97",
         // An offset of G92 shifts everything; G92.2 keeps its numbers.
         cancel: "G92.2",
         // G43 ahead of the switch, else the joints jump by the length.

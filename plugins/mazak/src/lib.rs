@@ -3,8 +3,8 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Control, Iso, Offset, Plane, Rigid, Subprogram, Table, Tcp, is_offset_beyond_six, iso_options,
-    offset_beyond_six, options, words,
+    Control, Iso, Leave, Offset, Plane, Rigid, Subprogram, Table, Tcp, is_offset_beyond_six,
+    iso_options, offset_beyond_six, options, words,
 };
 use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 
@@ -26,6 +26,8 @@ impl Control for Mazak {
         feed_all_axes: true,
         cancel: CANCEL,
         tcp: Tcp::Length("G43.4"),
+        // Whether G49 moves the axis by the length is a parameter: behind it the axis goes up once more.
+        leave: &[Leave::Retract, Leave::Length, Leave::Again],
         vector: "G43.5",
         // P0: I J K are Euler angles.
         plane: Plane::Euler {

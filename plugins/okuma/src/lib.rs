@@ -5,9 +5,14 @@
 use post_iso::{
     Codes, Control, Dwell, Iso, Leave, Length, Offset, Subprogram, Table, Tcp, iso_options, options,
 };
-use post_plugin::{Meaning, OptionKind, OptionSpec, Setup, Units, Value, export_dialect};
+use post_plugin::{
+    Capabilities, Meaning, OptionKind, OptionSpec, Setup, Units, Value, export_dialect,
+};
 
-struct Okuma;
+struct Okuma {
+    /// A block of the machine file's own retracts the tool.
+    retracts: bool,
+}
 
 impl Control for Okuma {
     const TABLE: &'static Table = &Table {
@@ -65,7 +70,9 @@ impl Control for Okuma {
             Units::Inch => "1 inch",
         };
         match setup.text("unit_system") {
-            named if named == wanted => Ok(Okuma),
+            named if named == wanted => Ok(Okuma {
+                retracts: !setup.text("retract").is_empty(),
+            }),
             "" => Err(
                 "what a number means is a parameter of this control, and a point does not override it: say which unit \
                  system it has by the option `unit_system`"
@@ -75,6 +82,14 @@ impl Control for Okuma {
                 "the numbers of this program count in units of {wanted}, and the unit system of the control is {other}: \
                  it would read them otherwise"
             )),
+        }
+    }
+
+    /// G16 H0 counts from a zero of the builder's own, which is the top of Z on hardly any machine.
+    fn capabilities(&self) -> Capabilities {
+        match self.retracts {
+            true => Capabilities::NONE,
+            false => Capabilities::RETRACT_SAID,
         }
     }
 }

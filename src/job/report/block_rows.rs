@@ -280,6 +280,7 @@ impl<'m> BlockRows<'m> {
             Reason::Stage => 4,
             Reason::Rewind => 5,
             Reason::Feed => 6,
+            Reason::Above => 7,
         };
         let limit = block.time.limit.or(block.planned.limit);
         let limit = limit.map_or(-1.0, |name| self.limit(name));

@@ -71,6 +71,23 @@ fn the_machine(
         "Part origin, all axes at zero",
         format!("X {x}, Y {y}, Z {z} mm in the machine frame"),
     );
+    row(
+        "The program holds",
+        match machine.holds_on_mount_alone() {
+            true => "for the part origin there alone: a table turns the part, and the words are axis positions",
+            false => "wherever the work offset is measured; travel was checked with the part origin there",
+        }
+        .to_owned(),
+    );
+    for head in &machine.heads {
+        if let Some(offset) = head.offset {
+            let name = format!("Work offset of head {}", head.name);
+            row(
+                &name,
+                format!("number {offset} (1 is G54), measured with it"),
+            );
+        }
+    }
     if machine.turn != 0.0 {
         row(
             "Part turned about its Z",

@@ -13,7 +13,7 @@ use super::file::{MachineFile, Rapid, Tcp};
 use super::keys::typed;
 use super::layers::{Merged, Source, Sources, overlay};
 use super::limits::{
-    MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_PARAMETERS, MOST_TURNS,
+    MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_OFFSETS, MOST_PARAMETERS, MOST_TURNS,
 };
 use super::numbers::EvaluatedAt;
 use super::options::take_options;
@@ -132,6 +132,7 @@ fn with_heads(
         machine.heads.push(Head {
             name: head.name,
             word: head.word,
+            offset: head.offset,
             machine: other,
         });
     }
@@ -143,6 +144,7 @@ struct HeadLayer<'i> {
     name: String,
     place: Option<Place>,
     word: Option<String>,
+    offset: Option<u32>,
     overrides: DeTable<'i>,
 }
 
@@ -186,6 +188,16 @@ fn take_heads<'i>(
                 None => return Err(fault(word.span())),
             },
         };
+        let offset = match overrides.remove("offset") {
+            None => None,
+            Some(offset) => {
+                let number = offset.get_ref().as_integer();
+                match number.and_then(|number| number.as_str().parse().ok()) {
+                    Some(number @ 1..=MOST_OFFSETS) => Some(number),
+                    _ => return Err(vec![no_offset(sources.place(offset.span()))]),
+                }
+            }
+        };
         let whole = |key: &str| matches!(key, "control" | "cl" | "program");
         if let Some((key, _)) = overrides.iter().find(|(key, _)| whole(key.get_ref())) {
             return Err(vec![
@@ -198,10 +210,19 @@ fn take_heads<'i>(
             place: sources.place(name.span()),
             name: name.into_inner().into_owned(),
             word,
+            offset,
             overrides,
         });
     }
     Ok(taken)
+}
+
+fn no_offset(place: Option<Place>) -> Diagnostic {
+    let message =
+        format!("the offset of a head is the number of a work offset, 1 to {MOST_OFFSETS}");
+    Diagnostic::error("machine-head", message)
+        .at(place)
+        .help("1 is G54, 2 is G55, and so on")
 }
 
 /// What a merged table means. `unread` says what of the texts could not be read; what is said of the rest is said beside

@@ -30,3 +30,6 @@ pub(super) const MOST_TURNS: f64 = 1_000.0;
 
 /// Faults of a file that are told.
 pub(super) const MOST_FAULTS: usize = 50;
+
+/// Number of a head's work offset: no control has as many.
+pub(super) const MOST_OFFSETS: u32 = 999;

@@ -142,6 +142,8 @@ pub struct Head {
     pub name: String,
     /// The line of the program that swaps it in, letter for letter; none if the operator does.
     pub word: Option<String>,
+    /// The work offset that was measured with it, from 1: G54 is 1, G55 is 2.
+    pub offset: Option<u32>,
     /// The machine with this head.
     pub machine: Machine,
 }
@@ -420,6 +422,13 @@ impl Machine {
             *slowness = 1.0 / axis.max_feed;
         }
         slowness
+    }
+
+    /// The words of a program hold for a part on `mount` alone: they are axis positions, and a rotary axis carries the
+    /// part.
+    pub fn holds_on_mount_alone(&self) -> bool {
+        let turns = |axis: &Axis| axis.joint.rotary && axis.carries_part;
+        self.control.tcp == Tcp::Post && self.axes.iter().any(turns)
     }
 
     /// The head that `HEAD/name` swaps in.

@@ -129,6 +129,12 @@ fn add_head(schema: &mut Value) {
         "description": "The line of the program that swaps the head in, letter for letter; without it the operator does.",
         "type": "string",
     });
+    properties["offset"] = json!({
+        "description": "The work offset that is measured with this head, from 1: 1 is G54, 2 is G55. Needed where a program of axis positions (tcp = \"post\") works with several heads.",
+        "type": "integer",
+        "minimum": 1,
+        "maximum": 999,
+    });
     schema["definitions"]["HeadFile"] = json!({
         "description": "What differs with another head.",
         "type": "object",

@@ -116,6 +116,8 @@ pub enum Reason {
     Rewind,
     /// The planned feed changes there.
     Feed,
+    /// A first position is come to from there, by the depth axis alone.
+    Above,
 }
 
 /// How long a block takes.

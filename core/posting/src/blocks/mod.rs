@@ -1,6 +1,7 @@
 //! Points whose axis values are chosen become blocks: points put in or left out, every block certified.
 
 mod along;
+mod approach;
 mod audience;
 mod between_words;
 mod block;
@@ -142,6 +143,8 @@ pub(crate) struct Blocks<'a> {
     placed: Option<Box<PlacedBatch>>,
     /// The last move was a cut: the tool is on the part.
     on_part: bool,
+    /// The control begins to keep the tip in a block that moves nothing.
+    tcp_still: bool,
     /// The control has cutter radius compensation, the way it keeps the tip here.
     compensates: bool,
     /// Cutter radius compensation is in force.
@@ -182,6 +185,7 @@ impl<'a> Blocks<'a> {
             spare: None,
             placed: None,
             on_part: false,
+            tcp_still: writes.has(Capabilities::TCP_STILL),
             compensates: !tcp || writes.has(Capabilities::COMPENSATE_TCP),
             compensating: false,
             compensation_due: false,
@@ -412,35 +416,17 @@ impl<'a> Blocks<'a> {
             self.end_run(to);
         }
         match self.last.take() {
-            None => self.first(leg, &node, MotionKind::Position, to),
+            None => self.first(placer, leg, &node, MotionKind::Position, to),
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
                 // An index axis turns with the tool retracted, not somewhere over the part.
                 let last = self.leave_part(placer, leg.line, last, to);
-                self.first(leg, &node, MotionKind::Reference, to);
+                self.first(placer, leg, &node, MotionKind::Reference, to);
                 self.spare = Some(last);
             }
             Some(last) => self.spare = Some(self.go(placer, leg, last, &mut node, gathers, to)),
         }
         self.on_part = leg.motion.pace != Pace::Rapid;
         self.last = Some(node);
-    }
-
-    /// The first position after the start, a tool change, or a turn of an index axis.
-    fn first(
-        &mut self,
-        leg: &Leg<'_>,
-        node: &Node,
-        kind: MotionKind,
-        to: &mut Surroundings<'_, '_>,
-    ) {
-        let block = self.block(leg, node, Bound::default());
-        to.out.push(Flow::Point(Block {
-            kind,
-            // Nobody knows the way: the feed is that of a millimetre.
-            way: 1.0,
-            nominal: Nominal::of(leg.motion.pace, 1.0, Travels::default),
-            ..block
-        }));
     }
 
     /// A move from where the tool stands to `node`; gives the node that it left.

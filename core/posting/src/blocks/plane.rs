@@ -29,9 +29,7 @@ pub(super) struct Planes {
     wanted: Option<Vector3<f64>>,
     /// Where the rotary axes stand in the present one, or where none is needed, as printed.
     stands: Option<Joints>,
-    /// A plane was told.
-    told: bool,
-    /// Its axes as columns, part frame, while one is in force.
+    /// Axes of the plane that was told as columns, part frame, while one is in force.
     axes: Option<Matrix3<f64>>,
 }
 
@@ -42,7 +40,6 @@ impl Planes {
             outside: None,
             wanted: None,
             stands: None,
-            told: false,
             axes: None,
         }
     }
@@ -74,7 +71,7 @@ impl Blocks<'_> {
     /// Another placer comes; the tool leaves a plane with the one that it is in it with.
     pub(super) fn take_placer(&mut self, placer: &Rc<Placer>, to: &mut Surroundings<'_, '_>) {
         self.planes.outside = Some(Rc::clone(placer));
-        if !self.planes.told {
+        if self.planes.axes.is_none() {
             self.use_placer(Some(Rc::clone(placer)), to);
         }
         self.planes.stands = None;
@@ -95,9 +92,8 @@ impl Blocks<'_> {
     /// No plane is in force any more; the tool has left the part.
     fn leave_plane(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
         self.planes.stands = None;
-        self.planes.axes = None;
         self.use_placer(self.planes.outside.clone(), to);
-        if std::mem::take(&mut self.planes.told) {
+        if self.planes.axes.take().is_some() {
             to.out.command(line, Command::Plane(None));
         }
     }
@@ -170,7 +166,6 @@ impl Blocks<'_> {
             return;
         };
         self.use_placer(Some(Rc::new(inside)), to);
-        self.planes.told = true;
         self.planes.axes = Some(plane.axes);
         to.out.command(line, Command::Plane(Some(Box::new(plane))));
     }
@@ -210,7 +205,12 @@ impl Blocks<'_> {
 
     /// The words are those of a tilted plane.
     pub(super) fn in_plane(&self) -> bool {
-        self.planes.told
+        self.planes.axes.is_some()
+    }
+
+    /// Normal of the plane of the words, unit vector, part frame; none outside a plane.
+    pub(super) fn plane_normal(&self) -> Option<Vector3<f64>> {
+        self.planes.axes.map(|axes| axes.column(2).into_owned())
     }
 }
 

@@ -80,9 +80,6 @@ pub(crate) struct Configuration<'a> {
     /// Commands among them.
     commands: usize,
     chosen: Vec<Chosen>,
-    /// The dialect switches tool centre point control on in a block that moves nothing, so that no first position is
-    /// come to in machine coordinates by a head that turns.
-    tcp_still: bool,
     /// Along which axis the control puts lengths.
     lengths: Lengths,
     /// What the user says of every tool.
@@ -113,10 +110,8 @@ impl<'a> Configuration<'a> {
         format: &Format,
         told_length: Option<f64>,
         writes: Capabilities,
-        tcp_still: bool,
     ) -> Result<Self, Box<Diagnostic>> {
         Ok(Self {
-            tcp_still,
             lengths: Lengths::new(writes),
             machine,
             base: machine,
@@ -480,11 +475,10 @@ impl<'a> Configuration<'a> {
         }
     }
 
-    /// Does the program depend on the tool length? On a machine whose head turns, if the control does not keep the tip,
-    /// or where a first position is come to in machine coordinates.
+    /// Does the program depend on the tool length? On a machine whose head turns, if the control does not keep the tip.
     fn length_matters(&self) -> bool {
         let machine = self.machine;
-        if machine.control.tcp == Tcp::Control && self.tcp_still {
+        if machine.control.tcp == Tcp::Control {
             return false;
         }
         let first_linear = machine.axes.iter().position(|axis| !axis.joint.rotary);

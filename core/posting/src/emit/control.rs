@@ -26,11 +26,35 @@ impl Emit<'_> {
         self.writer.push(line, event);
     }
 
+    /// The work offset that was measured with the head that is in.
+    pub(super) fn offset_of_head(&mut self, line: u64, number: u32, findings: &Findings) {
+        let event = Event::WorkOffset { number, name: "" };
+        match self.writer.knows(Capabilities::WORK_OFFSET) {
+            true => {
+                self.offset = Some(number);
+                self.writer.push(line, event);
+            }
+            false => refuse(line, &event, "the offset of a head", findings),
+        }
+    }
+
+    /// Axis positions count from where the axes stood when the offset was measured, with the head that was in.
+    pub(super) fn tell_shared_offset(&self, line: u64, head: &str, findings: &Findings) {
+        if self.machine.control.tcp == Tcp::Post {
+            findings.at(
+                line,
+                Diagnostic::error(
+                    "work-offset",
+                    format!("head {head} would work with the work offset that was measured with the head before it: the words are axis positions (tcp = \"post\"), and its tip is elsewhere"),
+                )
+                .help(format!("[head.{head}] offset = 2 names the one that is measured with it (2 is G55), and each head that a program works with has its own")),
+            );
+        }
+    }
+
     /// Travel, and axis positions, are those of the part on its one mount.
     fn tell_other_mount(&mut self, line: u64, [before, number]: [u32; 2], findings: &Findings) {
-        let machine = self.machine;
-        let turns = |axis: &post_machine::description::Axis| axis.joint.rotary && axis.carries_part;
-        if machine.control.tcp == Tcp::Post && machine.axes.iter().any(turns) {
+        if self.machine.holds_on_mount_alone() {
             findings.at(
                 line,
                 Diagnostic::error(

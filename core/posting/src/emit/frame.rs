@@ -1,25 +1,18 @@
 //! The frame around the moves: retracts, positions of the machine, the way to a first position.
 
 use post_machine::axis_words::{self, WordValues, Words};
-use post_machine::description::{Machine, Tcp, TextPlace};
+use post_machine::description::{Machine, TextPlace};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::Joints;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
-use super::{Emit, across, chain, cycles, stands};
-use crate::blocks::Block;
+use super::{Emit, across, cycles, stands};
+use crate::blocks::{Block, Reason};
 use crate::findings::Findings;
 use crate::program::Tool;
 
 /// Full turns that an axis may stand away from its park position before somebody is told, degrees.
 const TURN: f64 = 360.0;
-
-/// Directions and angles that differ by less are the same, radians.
-const SAME: f64 = 1e-9;
-
-/// One less the cosine of an angle that the rounding of a plane's angles can make.
-const SAME_WAY: f64 = 1e-8;
 
 /// What an axis does for the tool on its way to the part.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -228,10 +221,11 @@ impl Emit<'_> {
     }
 
     /// Another head: the machine is that of the head from here on.
-    pub(super) fn swap_head(&mut self, line: u64, name: &str) {
-        let Some(head) = self.base.head(name) else {
+    pub(super) fn swap_head(&mut self, line: u64, name: &str, findings: &Findings) {
+        let Some(place) = self.base.heads.iter().position(|head| head.name == name) else {
             return;
         };
+        let head = &self.base.heads[place];
         // Away first: a spindle that stops in the part tears.
         self.leave(line);
         self.rest(line);
@@ -239,7 +233,6 @@ impl Emit<'_> {
         self.tool = None;
         self.machine = &head.machine;
         self.words = Words::new(self.machine, self.writer.format());
-        self.chain = chain(self.machine);
         self.z_word = cycles::z_word(self.machine);
         self.depth_word = cycles::depth_word(self.machine);
         self.across = across(self.machine);
@@ -252,6 +245,12 @@ impl Emit<'_> {
             }
         }
         self.clear = false;
+        let other = self.head.replace(place) != Some(place);
+        match head.offset {
+            Some(number) => self.offset_of_head(line, number, findings),
+            None if other && self.worked => self.tell_shared_offset(line, name, findings),
+            None => {}
+        }
     }
 
     /// Home: retracted, and parked.
@@ -278,6 +277,7 @@ impl Emit<'_> {
     /// part, are clamped, and then it comes near.
     pub(super) fn position(&mut self, block: &Block, findings: &Findings) {
         let line = block.line;
+        self.worked = true;
         self.extremes.reach(&block.joints);
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
         self.retract(line);
@@ -297,12 +297,6 @@ impl Emit<'_> {
             }
         }
         self.smooth(line);
-        let plane_first = self.plane_first(&block.joints);
-        if !plane_first {
-            // Across in machine coordinates, before the words mean the tip; then down.
-            let across = self.plane(&block.joints);
-            self.go(line, &across, parks);
-        }
         // In a plane the length alone is in force.
         if self.plane.is_some() {
             self.keep_tip(line, false);
@@ -323,12 +317,15 @@ impl Emit<'_> {
         if !self.plane_on {
             self.keep_tip(line, true);
         }
+        if block.reason != Reason::Above {
+            self.begin_compensation(line);
+        }
         self.writer.push(
             line,
             Event::Position {
                 tool: stands(block),
                 feed: block.time.feed,
-                plane_first,
+                plane_first: block.reason != Reason::Above,
                 words,
             },
         );
@@ -339,32 +336,6 @@ impl Emit<'_> {
         }
     }
 
-    /// Words of the plane move the tool across the spindle, and the word of the depth moves it along, from where the
-    /// dialect writes them.
-    fn plane_first(&self, joints: &Joints) -> bool {
-        let machine = self.machine;
-        let (Some(depth), Some(chain)) = (axis_words::depth(self.base), &self.chain) else {
-            return true;
-        };
-        if let Some(plane) = &self.plane {
-            // Along its normal, and not into the part.
-            return 1.0 - chain.way_of(depth, joints).dot(&plane.normal()) < SAME_WAY;
-        }
-        if machine.control.tcp == Tcp::Post {
-            return true;
-        }
-        // Ahead of a block that switches it on with a move, words are axis positions: the same where nothing is turned.
-        let mut axes = machine.axes.iter().zip(joints);
-        let turned = axes.any(|(axis, joint)| {
-            axis.joint.rotary && libm::fabs(axis.reading(*joint) * axis.unit()) > SAME
-        });
-        if turned && !self.writer.knows(Capabilities::TCP_STILL) {
-            return false;
-        }
-        let word = axis_words::coordinate(&machine.axes[depth].name);
-        1.0 - libm::fabs(chain.way_of(depth, joints)[word]) < SAME
-    }
-
     /// The words behind it are those of a plane, or of none: what the control was told before ends, the tool clear of the
     /// part.
     pub(super) fn set_plane(&mut self, line: u64, plane: Option<Box<TiltedPlane>>) {
@@ -372,15 +343,6 @@ impl Emit<'_> {
             self.retract(line);
         }
         self.plane = plane;
-    }
-
-    /// Where the linear axes across the spindle stand.
-    fn plane(&self, joints: &Joints) -> Vec<(usize, f64)> {
-        // The dialect knows the axes as the machine has them that carries the heads.
-        (0..self.base.axes.len())
-            .filter(|joint| Part::of(self.base, *joint) == Part::Plane)
-            .map(|joint| (joint, joints[joint]))
-            .collect()
     }
 
     /// Spindle and coolant on as the CL file takes them to be.

@@ -9,11 +9,11 @@ mod writer;
 
 use post_machine::axis_words::{self, Words};
 use post_machine::description::{Machine, Smoothing, TextPlace};
-use post_machine::kinematics::{Chain, Joints};
+use post_machine::kinematics::Joints;
 use post_machine::tilted_plane::TiltedPlane;
-use post_plugin::{Capabilities, Coolant, DialectSession, Event, List, ToolPose};
+use post_plugin::{Capabilities, Compensation, Coolant, DialectSession, Event, List, ToolPose};
 
-use crate::blocks::{Block, MotionKind};
+use crate::blocks::{Block, MotionKind, Reason};
 use crate::curve::{CurveWords, PrintedCurve};
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
@@ -41,8 +41,6 @@ pub(crate) struct Emit<'a> {
     free: u8,
     /// Prints positions in machine coordinates.
     words: Words,
-    /// The machine's, with any tool in it.
-    chain: Option<Chain>,
     /// The tool is retracted, and nothing is in force that a first position puts in force.
     clear: bool,
     /// The spindle was switched on since the last tool change.
@@ -83,6 +81,12 @@ pub(crate) struct Emit<'a> {
     smoothed: Option<Smoothing>,
     /// What a dialect was told that switches the keeping of the tip by itself.
     keeps_tip: Option<bool>,
+    /// The head in use, by its place among the machine's, once the CL file has named one.
+    head: Option<usize>,
+    /// The head that the tool has worked with last came to the part with its own or the program's work offset.
+    worked: bool,
+    /// Cutter compensation that begins once the tool is at the part.
+    compensation: Option<Compensation>,
 }
 
 impl<'a> Emit<'a> {
@@ -105,7 +109,6 @@ impl<'a> Emit<'a> {
             clamped: 0,
             free: 0,
             words,
-            chain: chain(machine),
             clear: false,
             turning: false,
             commanded: None,
@@ -127,6 +130,9 @@ impl<'a> Emit<'a> {
             smoothing: machine.smoothing.default,
             smoothed: None,
             keeps_tip: None,
+            head: None,
+            worked: false,
+            compensation: None,
         };
         emit.say(0, TextPlace::Header);
         // Nothing is known of where the tool stands, nor of what is in force.
@@ -229,6 +235,24 @@ impl<'a> Emit<'a> {
             }
         }
         self.last = block.joints;
+        if block.reason != Reason::Above {
+            self.begin_compensation(line);
+        }
+    }
+
+    /// Cutter compensation. None begins on the way down to a first position.
+    fn compensate(&mut self, line: u64, compensation: Compensation) {
+        self.compensation = Some(compensation).filter(|it| self.clear && *it != Compensation::Off);
+        if self.compensation.is_none() {
+            self.writer.push(line, Event::Compensate(compensation));
+        }
+    }
+
+    /// What waits of it.
+    fn begin_compensation(&mut self, line: u64) {
+        if let Some(compensation) = self.compensation.take() {
+            self.writer.push(line, Event::Compensate(compensation));
+        }
     }
 
     /// A block along a curve.
@@ -295,14 +319,14 @@ impl<'a> Emit<'a> {
                 return;
             }
             Command::Tool(tool) => return self.change(line, tool, findings),
-            Command::Head(name) => return self.swap_head(line, name),
+            Command::Head(name) => return self.swap_head(line, name, findings),
             Command::Operation(name) => return self.operation(line, name),
             Command::OperationEnd => return self.operation_end(line),
             Command::Preselect(_) if self.texts.preselects() => return,
             Command::Preselect(number) => Event::Preselect { number: *number },
             Command::Spindle(spindle) => return self.spindle(line, *spindle),
             Command::Coolant(coolant) => return self.coolant(line, *coolant),
-            Command::Compensate(compensation) => Event::Compensate(*compensation),
+            Command::Compensate(compensation) => return self.compensate(line, *compensation),
             Command::Comment(text) => Event::Comment { text },
             Command::Literal(text) => {
                 // Nobody knows what it does.
@@ -405,14 +429,6 @@ fn across(machine: &Machine) -> Vec<usize> {
         })
         .map(|(place, _)| place)
         .collect()
-}
-
-/// The chain, if the machine can be solved.
-fn chain(machine: &Machine) -> Option<Chain> {
-    machine
-        .solver(0.0)
-        .ok()
-        .map(|solver| solver.chain().clone())
 }
 
 /// Where the tool stands at the end of a block.

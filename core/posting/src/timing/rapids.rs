@@ -8,11 +8,14 @@ use post_machine::axis_words;
 use post_machine::description::{Machine, Rapid, Tcp};
 use post_machine::kinematics::{Chain, Joints, MAX_AXES};
 
-use crate::blocks::Block;
+use crate::blocks::{Block, Reason};
 use crate::report::FastRapids;
 
 /// What is over its largest feed by this factor is over it.
 const OVER: f64 = 1.01;
+
+/// Shares of a direction that are less are none.
+const SAME: f64 = 1e-9;
 
 /// Watches rapids.
 #[derive(Debug)]
@@ -99,6 +102,9 @@ impl Rapids {
     /// A first position is come to from above, by the depth axis alone: the feed, mm/min, if that is to be written as a
     /// feed move. If it is left to the control and the axis would be too fast, that is noted.
     pub(super) fn feed_down(&mut self, block: &Block) -> Option<f64> {
+        if block.reason == Reason::Above {
+            return self.feed_across(block);
+        }
         let (Tcp::Control, Some((chain, depth))) = (self.tcp, &self.down) else {
             return None;
         };
@@ -120,6 +126,29 @@ impl Rapids {
             self.found.line = block.line;
         }
         None
+    }
+
+    /// The same of the place above it, which is come to from anywhere: whichever way that is, no axis goes faster than
+    /// the tip. How fast the axes are then is told of the way down.
+    fn feed_across(&self, block: &Block) -> Option<f64> {
+        let (Rapid::Linear, Some((chain, _))) = (self.mode, &self.down) else {
+            return None;
+        };
+        let linear = (0..chain.joints().len()).filter(|joint| !self.rotary[*joint]);
+        let mut slowest: f64 = 0.0;
+        let mut fast = false;
+        for joint in linear {
+            let slow = self.slowness[joint];
+            slowest = slowest.max(slow);
+            let way = chain.way_of(joint, &block.joints);
+            let coordinates = way.iter().zip(self.coordinates);
+            let times = coordinates.filter(|(way, _)| libm::fabs(**way) > SAME);
+            fast |= times
+                .map(|(way, full)| libm::fabs(*way) * slow / full)
+                .sum::<f64>()
+                > OVER;
+        }
+        fast.then(|| 1.0 / slowest)
     }
 
     fn turns(&self, last: &Joints, block: &Block) -> bool {

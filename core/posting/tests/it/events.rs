@@ -125,12 +125,7 @@ fn what_the_control_keeps_ends_before_a_tool_change() {
     let writes = Capabilities::SMOOTHING | Capabilities::TCP_SWITCH;
     let cl = format!("LOADTL/1;{CUT};LOADTL/2;{CUT};GOHOME;{CUT}");
     let run = posted(&machine, writes, &cl).good("two tools");
-    let near = "Turn Smoothing Park Tcp Position";
-    let near = if kinds(&run).contains(near) {
-        near
-    } else {
-        "Turn Smoothing Tcp Position"
-    };
+    let near = "Turn Smoothing Tcp Position";
     let away = "Tcp Retract SmoothingOff";
     let of = kinds(&run);
     assert_eq!(of.matches(near).count(), 3, "{of}");

@@ -181,11 +181,11 @@ fn a_plane_begins_and_ends_with_the_tool_clear_of_the_part() {
         let recorder = Recorder::new(&machine, 3).with_planes(PlaneAngles::Zxz, 3);
         let run = run(&machine, recorder, &job.cl).good(name);
         let kinds: Vec<_> = run.asked.iter().map(|asked| asked.kind).collect();
-        // A head that leans comes across in machine coordinates first.
-        let across = if name == "table" {
+        // A head that leans comes down by all words of the plane.
+        let down = if name == "table" {
             &[][..]
         } else {
-            &["Park"][..]
+            &["Rapid"][..]
         };
         let expected = [
             &[
@@ -196,10 +196,9 @@ fn a_plane_begins_and_ends_with_the_tool_clear_of_the_part() {
                 "Retract",
                 "Turn",
             ][..],
-            across,
-            &[
-                "Plane", "Position", "Linear", "Linear", "Linear", "Linear", "Rapid",
-            ],
+            &["Plane", "Position"],
+            down,
+            &["Linear", "Linear", "Linear", "Linear", "Rapid"],
             &["Retract", "PlaneOff", "Spindle", "End"],
         ]
         .concat();

@@ -282,6 +282,12 @@ impl Modal {
             Statement::Head(name) => {
                 self.lost();
                 self.tell(record, Told::Head(name.clone()), out);
+                let mut offsets = self.settings.head_offsets.iter();
+                if let Some((_, number)) = offsets.find(|(head, _)| head == name) {
+                    let number = *number;
+                    self.offset = Some(number);
+                    self.tell(record, Told::WorkOffset(number.to_string()), out);
+                }
                 Ok(())
             }
             Statement::ToolPath { name, tool } => {

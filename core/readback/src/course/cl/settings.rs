@@ -36,6 +36,8 @@ pub struct Settings {
     pub surface_speed: bool,
     /// Where the leading edge of a knife points; none for a tool that turns.
     pub edge: Option<EdgeSource>,
+    /// Heads that have a work offset of their own, and its number: `head.NAME.offset`.
+    pub head_offsets: Vec<(String, u32)>,
 }
 
 impl Settings {
@@ -49,6 +51,9 @@ impl Settings {
             print: machine.control.print,
             surface_speed: machine.spindle.surface_speed,
             edge: machine.edge.map(|_| machine.solution.edge),
+            head_offsets: (machine.heads.iter())
+                .filter_map(|head| Some((head.name.clone(), head.offset?)))
+                .collect(),
             ..Self::default()
         }
     }

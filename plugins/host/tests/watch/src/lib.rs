@@ -32,7 +32,9 @@ impl Dialect for Watch {
     }
 
     fn capabilities(&self) -> Capabilities {
+        // It retracts wherever it is sent.
         let all = CAPABILITIES.iter().map(|spec| spec.set);
+        let all = all.filter(|set| *set != Capabilities::RETRACT_SAID);
         all.fold(Capabilities::NONE, |all, set| all | set)
     }
 

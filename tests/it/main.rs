@@ -63,6 +63,7 @@ mod snapshots;
 mod strangers;
 mod study;
 mod summary;
+mod threads;
 mod verified;
 mod vocabularies;
 mod words;

@@ -79,6 +79,16 @@ pub enum Spindle {
     },
 }
 
+impl Spindle {
+    /// Its speed, revolutions a minute, where it turns at a constant one.
+    pub fn rpm(self) -> Option<f64> {
+        match self {
+            Self::Clockwise(rpm) | Self::CounterClockwise(rpm) => Some(rpm),
+            _ => None,
+        }
+    }
+}
+
 /// Which coolants flow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Coolants {

@@ -161,11 +161,11 @@ impl Engine {
         Ok(())
     }
 
-    /// The feed of a thread is its pitch, times the speed where it counts by the minute.
+    /// The feed of a thread is its pitch, times the speed as S says it where it counts by the minute.
     fn cycle_feed(&self, kind: Cycle, feed: Feed, pitch: Option<f64>) -> Feed {
         match (feed, pitch, self.turning) {
             (Feed::PerMinute(_), Some(pitch), Some(Spindle::On { rpm, .. })) if taps(kind) => {
-                Feed::PerMinute(pitch * rpm)
+                Feed::PerMinute(pitch * rpm.round())
             }
             (Feed::PerRevolution(_), Some(pitch), _) if taps(kind) => Feed::PerRevolution(pitch),
             _ => feed,

@@ -306,7 +306,7 @@ impl<C: Course> Verifier<'_, C> {
             }
             if down {
                 self.compare_with(motion, &element);
-                self.compare_feed(motion, places, &element);
+                self.compare_feed(motion, places, &at_the_speed_of(motion, &element));
             }
         }
         self.hole = Some(run);
@@ -448,4 +448,17 @@ impl<C: Course> Verifier<'_, C> {
         }
         true
     }
+}
+
+/// What is asked of a hole, a thread's feed by the speed that is printed: its pitch counts, and S has no decimals.
+fn at_the_speed_of(motion: &Motion, element: &Element) -> Element {
+    let mut element = element.clone();
+    let speeds = (motion.state.spindle.rpm(), element.asked.spindle.rpm());
+    if let (What::Hole(hole), (Some(printed), Some(asked))) = (&element.what, speeds)
+        && matches!(hole.kind, CycleKind::Tap | CycleKind::TapLeft)
+        && asked > 0.0
+    {
+        element.feed = element.feed.map(|feed| feed * printed / asked);
+    }
+    element
 }

@@ -383,10 +383,7 @@ pub(super) fn same_event(asked: &Told, done: &Told, spindle: Spindle) -> bool {
             },
             Told::Dwell { time, revolutions },
         ) => {
-            let rpm = match spindle {
-                Spindle::Clockwise(rpm) | Spindle::CounterClockwise(rpm) => rpm,
-                _ => 0.0,
-            };
+            let rpm = spindle.rpm().unwrap_or(0.0);
             let [asked, time] = match turns == revolutions {
                 true => [*asked, *time],
                 false if rpm > 0.0 => {

@@ -12,6 +12,11 @@ use crate::program::{CycleStep, DrillCycle, Pace, Step};
 /// Pitch and feed a turn agree but for so much: a feed a minute is written without decimals.
 const SAME_PITCH: f64 = 0.01;
 
+/// The speed that the control is told, rpm: S has no decimals.
+fn printed_speed(rpm: f64) -> f64 {
+    libm::round(rpm).max(1.0)
+}
+
 impl Interpreter {
     /// The cycle in force at a point; nothing if its thread cannot be.
     pub(super) fn drill(
@@ -36,11 +41,12 @@ impl Interpreter {
                 return;
             }
         };
-        let Some(drill) = (match drill.taps() {
-            true => self.thread(record, drill, feed),
-            false => Some(drill),
-        }) else {
-            return;
+        let (drill, feed) = match drill.taps() {
+            false => (drill, feed),
+            true => match self.thread(record, drill, feed) {
+                Some(threaded) => threaded,
+                None => return,
+            },
         };
         // Behind it the tool stands at the level between the holes.
         self.arrive(point + self.axis * drill.retract());
@@ -50,8 +56,14 @@ impl Interpreter {
         })));
     }
 
-    /// A thread with its pitch, which is what the tool goes in one turn of the spindle.
-    fn thread(&mut self, record: &Record<'_>, drill: DrillCycle, feed: Pace) -> Option<DrillCycle> {
+    /// A thread with its pitch, which is what the tool goes in one turn of the spindle, and the feed that makes it at the speed
+    /// that is printed.
+    fn thread(
+        &mut self,
+        record: &Record<'_>,
+        drill: DrillCycle,
+        feed: Pace,
+    ) -> Option<(DrillCycle, Pace)> {
         let (Pace::PerMinute(feed), Some(rpm)) = (feed, self.rpm.filter(|rpm| *rpm > 0.0)) else {
             self.fault(
                 record,
@@ -91,7 +103,8 @@ impl Interpreter {
             );
             return None;
         }
-        Some(drill.threaded(pitch, left))
+        let feed = Pace::PerMinute(libm::fabs(pitch) * printed_speed(rpm));
+        Some((drill.threaded(pitch, left), feed))
     }
 
     /// A point of a cycle that was refused: the tool is taken to stand there, so that nothing is said of its moves.

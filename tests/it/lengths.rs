@@ -277,3 +277,54 @@ fn a_spindle_with_the_speed_of_the_tool_before_is_seen() {
         found.err
     );
 }
+
+/// The linear words of a block.
+fn linear(block: &str) -> Vec<char> {
+    let first = |word: &str| word.chars().next().filter(|letter| "XYZ".contains(*letter));
+    block.split_whitespace().filter_map(first).collect()
+}
+
+/// The mill-turn's depth is X, and with B at 0 its tool lies along Z: nothing comes in along X while Z is short of the
+/// tool's length.
+#[test]
+fn the_length_stands_before_another_axis_brings_the_tool_in() {
+    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nMULTAX/ON\nRAPID\nGOTO/0,0,150,0,0,1\nRAPID\nGOTO/0,0,82\n\
+              FEDRAT/200,MMPM\nGOTO/0,0,75\nGOTO/20,0,75\nRAPID\nGOTO/20,0,150\nFINI\n";
+    for dialect in ["fanuc", "haas", "mazak", "mitsubishi", "linuxcnc"] {
+        let machine = format!("extends = \"mill-turn\"\n[control]\ndialect = \"{dialect}\"\n");
+        let (_, text) = good(&machine, cl, &["--tool-length", "120"]);
+        let mut blocks = text
+            .lines()
+            .skip_while(|block| !block.contains("G43") && !block.contains("G234"));
+        let mut stated: Vec<char> = Vec::new();
+        let depth = blocks.find(|block| {
+            let words = linear(block);
+            stated.extend(words.iter().filter(|word| **word != 'X'));
+            words.contains(&'X')
+        });
+        assert_eq!(stated, ['Y', 'Z'], "{text}");
+        assert_eq!(depth.map(linear), Some(vec!['X']), "{text}");
+    }
+}
+
+/// In a plane the depth is Z, whichever axis of the machine that is.
+#[test]
+fn a_tilted_plane_comes_near_by_its_own_z() {
+    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nMULTAX/ON\nRAPID\nGOTO/150,5,40,1,0,0\nRAPID\nGOTO/82,5,40\n\
+              FEDRAT/200,MMPM\nGOTO/75,5,40\nGOTO/75,20,40\nRAPID\nGOTO/150,20,40\nFINI\n";
+    for (dialect, plane) in [
+        ("fanuc", "G53.1"),
+        ("mazak", "G53.1"),
+        ("heidenhain", "PLANE SPATIAL"),
+    ] {
+        let machine =
+            format!("extends = \"mill-turn\"\n[control]\ndialect = \"{dialect}\"\nplanes = true\n");
+        let (_, text) = good(&machine, cl, &["--tool-length", "120"]);
+        // Another such word switches planes off at the start.
+        let behind = text.split("B90.").last().unwrap();
+        let (_, behind) = behind.split_once(plane).expect(&text);
+        let mut blocks = behind.lines().map(linear).filter(|words| !words.is_empty());
+        assert_eq!(blocks.next(), Some(vec!['X', 'Y', 'Z']), "{text}");
+        assert_eq!(blocks.next(), Some(vec!['Z']), "{text}");
+    }
+}

@@ -292,6 +292,12 @@ impl Axes {
             .map(|axis| axis.name.as_str())
     }
 
+    /// The word of this place is a linear one, and not that of the depth.
+    pub fn is_plane(&self, place: usize) -> bool {
+        let axis = self.axes.get(place);
+        axis.is_some_and(|axis| axis.group == Group::Plane)
+    }
+
     /// Where the axes stand is not known any more: the next move writes all its words.
     pub fn forget(&mut self) {
         for axis in &mut self.axes {

@@ -1,12 +1,15 @@
 //! Writes a program by a [`Table`].
 
+mod approach;
 mod opening;
 mod spindle;
 
 use post_plugin::{
-    Capabilities, Compensation, Event, Feed, Format, Meaning, Modal, NumberStyle, Spindle,
-    Standstill, ToolPose, Units,
+    Capabilities, Compensation, Event, Format, Meaning, Modal, NumberStyle, Spindle, Standstill,
+    Units,
 };
+
+use approach::leaning;
 
 use crate::cycles::Cycles;
 use crate::lines::{fits, remark_lines};
@@ -410,50 +413,6 @@ impl Engine {
         }
     }
 
-    fn position(
-        &mut self,
-        words: &[f64],
-        tool: Option<ToolPose>,
-        feed: Option<Feed>,
-        plane_first: bool,
-        out: &mut String,
-    ) -> Result<(), String> {
-        let keeps_tip = self.tcp && !self.plane.is_on();
-        let mut length = self.length()?;
-        self.cancel_what_was(out);
-        self.settings.smoothing_due(&mut self.motion, out);
-        self.offset_before_position(out);
-        // The rotary axes have been turned; what is left of them here moves nothing else.
-        self.motion.turn(words, out);
-        if plane_first {
-            self.motion.plane(words, out);
-        }
-        if let (true, Tcp::Blocks { length_first, .. }) = (keeps_tip, self.table.tcp) {
-            if self.tcp_on.contains("{h}") {
-                // Its words name the register themselves.
-                length.clear();
-            } else if length_first {
-                self.motion.line(&std::mem::take(&mut length), out);
-            }
-            self.motion
-                .line(&self.tcp_on.replace("{h}", &self.h()), out);
-        }
-        if keeps_tip {
-            self.tcp_active.set(true);
-        }
-        let axis = match self.vector.filter(|_| keeps_tip) {
-            Some(decimals) => {
-                self.follows_vector = true;
-                self.motion.follow_vector(Some(decimals));
-                Some(leaning(tool)?)
-            }
-            None => None,
-        };
-        self.motion.arrive(words, axis, feed, &length, out);
-        self.length_active.set(true);
-        Ok(())
-    }
-
     /// The number of the length's register, for the words of the user's own.
     fn h(&self) -> String {
         self.register
@@ -573,12 +532,6 @@ impl Engine {
         self.coolant.forget();
         self.cycles.forget();
     }
-}
-
-/// The direction of the tool, where its words are written.
-fn leaning(tool: Option<ToolPose>) -> Result<[f64; 3], String> {
-    tool.map(|tool| tool.axis)
-        .ok_or_else(|| "nobody knows the direction of the tool here".to_owned())
 }
 
 /// Own lines that end with counting from where the tool stands (`G91 G28 Z0.`) leave that in force.

@@ -71,6 +71,9 @@ const FEED_STYLE: NumberStyle = NumberStyle {
     trim: true,
 };
 
+/// An axis that is measured, and not drawn, leans by less: 0.1 degrees.
+const MEASURED: f64 = 1.8e-3;
+
 impl Motion {
     /// Nothing is known to be in force.
     pub fn new(
@@ -311,6 +314,35 @@ impl Motion {
             self.block.end(out);
         }
         self.stands(words);
+    }
+
+    /// The control moves a word of the plane by the length of a tool that lies along `axis`.
+    pub(crate) fn lies_across(&self, axis: [f64; 3]) -> bool {
+        let words = self.linear.into_iter().zip(axis);
+        let mut words = words.filter_map(|(place, part)| Some((place?, part)));
+        words.any(|(place, part)| part.abs() > MEASURED && self.axes.is_plane(place))
+    }
+
+    /// The words of the plane at rapid, each of them, with `length` (`G43.4 H1`); with the tool's `axis` where its vector is
+    /// written.
+    pub(crate) fn across(
+        &mut self,
+        words: &[f64],
+        axis: Option<[f64; 3]>,
+        length: &str,
+        out: &mut String,
+    ) {
+        self.plane_xy();
+        self.motion(self.codes.motion[0]);
+        self.forget_linear();
+        if !length.is_empty() {
+            self.block.word(length);
+        }
+        self.axes.write_group(&mut self.block, words, Group::Plane);
+        if let Some(axis) = axis {
+            self.write_vector(axis);
+        }
+        self.block.end(out);
     }
 
     /// What is left of the way to `words`, with `length` (`G43 H1`), at `feed` or at rapid; with the tool's `axis` where

@@ -2,7 +2,7 @@
 
 use post_machine::axis_words;
 use post_machine::description::Tcp;
-use post_machine::kinematics::{Joints, Pose};
+use post_machine::kinematics::Pose;
 
 use super::nominal::{Nominal, Travels};
 use super::{Block, Blocks, Leg, MotionKind, Reason, Surroundings};
@@ -21,6 +21,12 @@ const LEAST: f64 = 1.0;
 /// Angles that differ by less are the same, radians; of directions, one less their cosine.
 const SAME: f64 = 1e-9;
 
+/// The word of a plane along its normal.
+const DEPTH: usize = 2;
+
+/// A tool that is measured, and not drawn, leans by less: 0.1 degrees.
+const MEASURED: f64 = 1.8e-3;
+
 /// One less the cosine of an angle that the rounding of a plane's angles can make.
 const SAME_WAY: f64 = 1e-8;
 
@@ -34,7 +40,7 @@ impl Blocks<'_> {
         kind: MotionKind,
         to: &mut Surroundings<'_, '_>,
     ) {
-        if !self.comes_from_above(placer, &node.trace.joints) {
+        if !self.comes_from_above(placer, node) {
             return self.come(leg, node, kind, to);
         }
         let above = match self.above(placer, node) {
@@ -81,16 +87,19 @@ impl Blocks<'_> {
     }
 
     /// No word moves the depth axis alone, as X and Y move the others: the words are those of a part that is turned, or
-    /// the control begins to keep the tip with the very move. Else the words across the tool come first.
-    fn comes_from_above(&self, placer: &Placer, joints: &Joints) -> bool {
+    /// of a plane whose Z is not the depth's word, or the control begins to keep the tip with the very move. Else the words
+    /// across the tool come first.
+    fn comes_from_above(&self, placer: &Placer, node: &Node) -> bool {
         let machine = self.machine;
+        let joints = &node.trace.joints;
         let Some(depth) = axis_words::depth(self.base) else {
             return false;
         };
         let way = placer.solver().chain().way_of(depth, joints);
+        let word = axis_words::coordinate(&machine.axes[depth].name);
         if let Some(normal) = self.plane_normal() {
-            // Along it, and not into the part, it is the plane's own Z.
-            return 1.0 - way.dot(&normal) >= SAME_WAY;
+            // Along it, and not into the part, it is the plane's own Z: the others come first where that is its word.
+            return word != DEPTH || 1.0 - way.dot(&normal) >= SAME_WAY;
         }
         if machine.control.tcp == Tcp::Post {
             return false;
@@ -104,8 +113,10 @@ impl Blocks<'_> {
         if turned && !self.tcp_still {
             return true;
         }
-        let word = axis_words::coordinate(&machine.axes[depth].name);
-        1.0 - libm::fabs(way[word]) >= SAME
+        // With a move that puts the length on, a tool that lies aslant moves the depth as well as the others.
+        let axis = node.target.axis;
+        let aslant = libm::fabs(way.dot(&axis)).min(way.cross(&axis).norm()) > MEASURED;
+        (aslant && !self.tcp_still) || 1.0 - libm::fabs(way[word]) >= SAME
     }
 
     /// The same stance with the depth axis drawn back, as high as the retract and `ROOM` below the end of travel allow:

@@ -6,7 +6,7 @@ use std::io::{self, Read as _, Seek, SeekFrom};
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{DialectSession as _, VocabularyWord};
+use post_plugin::{Capabilities, DialectSession as _, VocabularyWord};
 use post_readback::Offsets;
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
@@ -79,6 +79,8 @@ pub struct Spoken {
     pub most_inverse_time: Option<f64>,
     /// Decimals of a feed a minute.
     pub feed_decimals: u8,
+    /// A joint may pass its largest feed in a rapid under tool centre point control.
+    pub rapids_pass: bool,
 }
 
 /// The words of a machine's control, ready to be looked up.
@@ -104,6 +106,7 @@ pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
         words,
         most_inverse_time: dialect.format().most_inverse_time,
         feed_decimals: dialect.format().feed,
+        rapids_pass: dialect.capabilities().has(Capabilities::TCP_RAPIDS_PASS),
     })
 }
 

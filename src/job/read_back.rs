@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 
 use post_host::Finder;
-use post_machine::description::{Machine, OutputUnits};
+use post_machine::description::{Machine, OutputUnits, Rapid};
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 use post_plugin::{Meaning, VocabularyWord};
 use post_posting::program::{ToldSpindle, Unknown};
@@ -257,6 +257,7 @@ pub fn hold<C: Course, R: Read + Seek>(
         solutions: reading.solutions,
         planned: reading.planned,
         feed_place: feed_place(machine, spoken.feed_decimals),
+        linear_rapids: machine.rapid(spoken.rapids_pass) == Rapid::Linear,
         least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
         tool_registers: tools
             .iter()

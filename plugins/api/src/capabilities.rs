@@ -136,6 +136,9 @@ capabilities! {
     /// No retract of the host's own: where the control's machine coordinates end is not where the axis is known to
     /// stand clear (its zero is the builder's, or lies on a switch), so that the machine file must say where to.
     43 RETRACT_SAID;
+    /// Under tool centre point control rapids hold what the axes of the program can do, and a joint may pass its own
+    /// largest feed.
+    44 TCP_RAPIDS_PASS;
 }
 
 impl Capabilities {

@@ -94,9 +94,13 @@ impl Control for LinuxCnc {
         Ok(LinuxCnc { blend })
     }
 
-    /// Its interpreter makes arcs and cycles, and offsets the programmed path, ahead of whatever kinematics is switched on.
+    /// Its interpreter makes arcs and cycles, and offsets the programmed path, ahead of whatever kinematics is switched on;
+    /// its trajectory planner knows the axes of the program, and not the joints behind them.
     fn capabilities(&self) -> Capabilities {
-        Capabilities::COMPENSATE_TCP | Capabilities::ARC_TCP | Capabilities::CYCLE_TCP
+        Capabilities::COMPENSATE_TCP
+            | Capabilities::ARC_TCP
+            | Capabilities::CYCLE_TCP
+            | Capabilities::TCP_RAPIDS_PASS
     }
 
     fn begin(&self, engine: &mut Engine, out: &mut String) {

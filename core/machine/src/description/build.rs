@@ -541,7 +541,7 @@ impl Builder<'_> {
     /// A rapid is written as a feed move at the feed of its slowest axis, so that each must have one.
     fn check_rapid(&mut self, axes: &[Axis], file: &MachineFile) {
         let endless = axes.iter().find(|axis| axis.max_feed.is_infinite());
-        if let (Rapid::Linear, Some(axis)) = (file.control.get_ref().rapid, endless) {
+        if let (Some(Rapid::Linear), Some(axis)) = (file.control.get_ref().rapid, endless) {
             self.fault(
                 "machine-feed",
                 file.control.span(),

@@ -409,11 +409,10 @@ pub enum TcpFeedLength {
 }
 
 /// How a rapid is written.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rapid {
     /// As a rapid: how its axes go is for the control.
-    #[default]
     Rapid,
     /// As a feed move at the highest feed that holds every `max_feed`, where a rotary axis turns or an axis would go
     /// too fast.
@@ -514,9 +513,9 @@ pub(crate) struct ControlFile {
     /// The length that the control divides by F when it keeps the tip; tip if not said.
     #[serde(default)]
     pub tcp_feed_length: TcpFeedLength,
-    /// How a rapid is written in which a rotary axis turns, or an axis would pass its max_feed; rapid if not said.
-    #[serde(default)]
-    pub rapid: Rapid,
+    /// How a rapid is written in which a rotary axis turns, or an axis would pass its max_feed; if not said linear where the
+    /// control keeps the tip without looking at its joints (LinuxCNC) and every axis has its max_feed, else rapid.
+    pub rapid: Option<Rapid>,
     /// Which of the lengths that the CL file knows is the tool length; assembly if not said.
     #[serde(default)]
     pub tool_length: ToolLength,

@@ -293,8 +293,9 @@ pub struct Control {
     pub tcp_feed_length: TcpFeedLength,
     /// What F means under inverse time.
     pub inverse_time: InverseTime,
-    /// How a rapid is written in which a rotary axis turns, or an axis would pass its largest feed.
-    pub rapid: Rapid,
+    /// How a rapid is written in which a rotary axis turns, or an axis would pass its largest feed; none: as the control
+    /// asks for ([`Machine::rapid`]).
+    pub rapid: Option<Rapid>,
     /// Which tool length counts.
     pub tool_length: ToolLength,
     /// How the holes of drilling cycles are written.
@@ -422,6 +423,17 @@ impl Machine {
             *slowness = 1.0 / axis.max_feed;
         }
         slowness
+    }
+
+    /// How a rapid is written in which a rotary axis turns, or an axis would pass its largest feed, on a control where one
+    /// may (`passes`) while it keeps the tip: as a feed move, if every axis has such a feed.
+    pub fn rapid(&self, passes: bool) -> Rapid {
+        let kept = self.control.tcp == Tcp::Control;
+        let known = self.axes.iter().all(|axis| axis.max_feed.is_finite());
+        self.control.rapid.unwrap_or(match passes && kept && known {
+            true => Rapid::Linear,
+            false => Rapid::Rapid,
+        })
     }
 
     /// The words of a program hold for a part on `mount` alone: they are axis positions, and a rotary axis carries the

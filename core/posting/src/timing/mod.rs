@@ -86,7 +86,7 @@ impl<'a> Timing<'a> {
             writes,
             feeds,
             limits: limits::of(machine),
-            rapids: Rapids::new(machine),
+            rapids: Rapids::new(machine, writes),
             last: Joints::default(),
             statistics: Durations::default(),
             low: LowFeeds::default(),

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use post_machine::axis_words;
 use post_machine::description::{Machine, Rapid, Tcp};
 use post_machine::kinematics::{Chain, Joints, MAX_AXES};
+use post_plugin::Capabilities;
 
 use crate::blocks::{Block, Reason};
 use crate::report::FastRapids;
@@ -36,10 +37,10 @@ pub(crate) struct Rapids {
 }
 
 impl Rapids {
-    pub(super) fn new(machine: &Machine) -> Self {
+    pub(super) fn new(machine: &Machine, writes: Capabilities) -> Self {
         let mut rapids = Self {
             tcp: machine.control.tcp,
-            mode: machine.control.rapid,
+            mode: machine.rapid(writes.has(Capabilities::TCP_RAPIDS_PASS)),
             slowness: Joints::default(),
             coordinates: [0.0; 3],
             rotary: [false; MAX_AXES],

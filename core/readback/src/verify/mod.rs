@@ -61,7 +61,7 @@ pub struct Rules {
     pub lengths: Option<Offsets>,
     /// A feed by time cannot be so large that a block takes less than this, minutes.
     pub least_minutes: f64,
-    /// A rapid may be made at the highest feed that its axes hold (`[control] rapid = "linear"`).
+    /// A rapid may be made at the highest feed that its axes hold ([`Machine::rapid`]).
     pub linear_rapids: bool,
     /// The last place of a printed feed, mm/min: it is rounded down.
     pub feed_place: f64,
@@ -97,7 +97,7 @@ impl Rules {
             work_offsets: false,
             lengths: None,
             least_minutes: 0.0,
-            linear_rapids: machine.control.rapid == Rapid::Linear,
+            linear_rapids: machine.rapid(false) == Rapid::Linear,
             feed_place: 0.0,
             planned: false,
             solutions: false,

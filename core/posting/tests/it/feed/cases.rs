@@ -243,6 +243,33 @@ fn rapids_that_are_too_fast_are_named_or_fed() {
     assert_eq!(run.motions().last().unwrap().kind, "Rapid");
 }
 
+/// A control that looks at the axes of the program alone while it keeps the tip.
+#[test]
+fn a_dialect_says_that_joints_may_be_too_fast_in_a_rapid() {
+    let last = |machine: &str| {
+        let bench = Bench::new(machine, 4, 0.0);
+        let mut recorder = Recorder::new(&bench.machine, 4);
+        recorder.capabilities = Capabilities::TCP_RAPIDS_PASS;
+        let job = Job {
+            tool_length: Some(0.0),
+            ..Job::default()
+        };
+        let cl = swing(1.0, -10.0, "RAPID");
+        let run = watched(&bench.machine, recorder, &cl, job, &mut Samples, &mut []);
+        (
+            run.motions().last().unwrap().kind,
+            run.report.unwrap().fast_rapids.count,
+        )
+    };
+    assert_eq!(last(&fork("control", "")), ("Linear", 0));
+    assert_eq!(last(&fork("control", "rapid = \"rapid\"")), ("Rapid", 1));
+    // The axes of the program are all there are.
+    assert_eq!(last(&fork("post", "")), ("Rapid", 0));
+    // There is no feed to write.
+    let unknown = fork("control", "").replace("max_feed = 2000\n", "");
+    assert_eq!(last(&unknown).0, "Rapid");
+}
+
 #[test]
 fn rapids_are_fed_where_every_axis_has_a_largest_feed_alone() {
     let text = fork("control", "rapid = \"linear\"").replace("max_feed = 2000\n", "");

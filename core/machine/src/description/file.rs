@@ -543,10 +543,10 @@ pub(crate) struct ControlFile {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Number>")]
     pub retract: Positions,
-    /// Where axes stand before a tool change, machine coordinates, mm or degrees; the rotary axes of park if not said.
-    #[serde(default)]
-    #[schemars(with = "BTreeMap<String, Number>")]
-    pub change: Positions,
+    /// Where axes stand before a tool change, machine coordinates, mm or degrees; if not said the rotary axes of park there,
+    /// and those that swivel the tool at 0. `{}` leaves all where they are.
+    #[schemars(with = "Option<BTreeMap<String, Number>>")]
+    pub change: Option<Positions>,
     /// Where axes stand at the end and after GOHOME, machine coordinates, mm or degrees.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Number>")]

@@ -11,6 +11,9 @@ use crate::axis_words::is_depth;
 use crate::diagnostic::Short;
 use crate::kinematics::travel::passed;
 
+/// More rotary axes between bed and tool are those of an arm.
+const MOST_SWIVELS: usize = 3;
+
 /// The positions of a machine around a program's moves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
@@ -36,6 +39,26 @@ impl Machine {
                 *value = value.clamp(least, most);
             }
         }
+    }
+
+    /// Where the rotary axes stand for a tool change: as they do at the end (`park`), and those that swivel the tool at 0
+    /// where they can, as the changer finds the spindle.
+    fn usual_change(&self, park: &[(usize, f64)]) -> Vec<(usize, f64)> {
+        let rotary = park.iter().filter(|(at, _)| self.axes[*at].joint.rotary);
+        let mut change: Vec<(usize, f64)> = rotary.copied().collect();
+        let swivels = |axis: &Axis| axis.joint.rotary && !axis.carries_part;
+        // The joints of an arm stand where the machine file says.
+        if self.axes.iter().filter(|axis| swivels(axis)).count() > MOST_SWIVELS {
+            return change;
+        }
+        for (place, axis) in self.axes.iter().enumerate() {
+            let zero = -axis.zero;
+            let there = passed(axis.travel, zero, 0.0).is_none() && stands(axis, zero);
+            if swivels(axis) && there && !change.iter().any(|(at, _)| *at == place) {
+                change.push((place, zero));
+            }
+        }
+        change
     }
 
     /// The end of travel of each depth axis on the side of the holder: there the tool is as far from the part as these
@@ -73,13 +96,9 @@ impl Builder<'_> {
             }
         }
         let park = self.positions(&said.park, machine);
-        let change = match said.change.is_empty() {
-            // Rotary axes stand for a tool change as they do at the end.
-            true => {
-                let rotary = |place: &usize| machine.axes[*place].joint.rotary;
-                park.iter().copied().filter(|(at, _)| rotary(at)).collect()
-            }
-            false => self.positions(&said.change, machine),
+        let change = match &said.change {
+            None => machine.usual_change(&park),
+            Some(change) => self.positions(change, machine),
         };
         // The depth comes first, all of it: what the file does not say of it goes to the end of travel.
         let said_of = |place: usize| {

@@ -47,6 +47,7 @@ mod predict_measured;
 mod predict_numbers;
 mod predict_told;
 mod program_text;
+mod rapids;
 mod readiness;
 mod real_files;
 mod report;

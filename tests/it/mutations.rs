@@ -93,7 +93,9 @@ impl Job {
         if run.code != 0 {
             return None;
         }
-        let machine = machine(name, &settings);
+        let mut machine = machine(name, &settings);
+        // As its dialect declares it.
+        machine.control.rapid = Some(machine.rapid(dialect == "linuxcnc"));
         let words = vocabularies::vocabulary(dialect);
         let mut job = Self {
             name: format!("{dialect} {name} {file} {tcp}"),

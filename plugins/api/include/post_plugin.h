@@ -544,6 +544,12 @@ typedef struct {
 /* A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
  * along the linear ones. */
 #define POST_WRITES_FEED_ALL_AXES 0x0000040000000000u
+/* No retract of the host's own: where the control's machine coordinates end is not where the axis is known to
+ * stand clear (its zero is the builder's, or lies on a switch), so that the machine file must say where to. */
+#define POST_WRITES_RETRACT_SAID 0x0000080000000000u
+/* Under tool centre point control rapids hold what the axes of the program can do, and a joint may pass its own
+ * largest feed. */
+#define POST_WRITES_TCP_RAPIDS_PASS 0x0000100000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */
@@ -591,8 +597,10 @@ typedef struct {
 /* 2 numbers: Feed of the last approach; none is rapid. */
 #define POST_POSITION_FEED 6u
 /* The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the plane
- * comes first, the depth last. Else (under tool centre point control) an Event::Park has brought it across, and
- * all linear words stand in one block, which leads it down. */
+ * comes first, the depth last. Else (in a tilted plane under a head that leans, or under tool centre point
+ * control where the part is turned or the control has no block of its own that begins it) all linear words stand
+ * in one block, which leads to a point as high above the part as the machine allows; the next move comes down
+ * from there by the depth axis alone. */
 #define POST_POSITION_PLANE_FIRST 8u
 /* how many there are, and behind it as many: All axis words, in the order of Setup::words. */
 #define POST_POSITION_WORDS 9u
@@ -628,8 +636,7 @@ typedef struct {
 #define POST_EVENT_STOP 14u
 /* Optional stop (M1). */
 #define POST_EVENT_OPTIONAL_STOP 15u
-/* After a Event::Retract: axes go at rapid to a position of the machine (for a tool change, at the end, above a
- * first position). */
+/* After a Event::Retract: axes go at rapid to a position of the machine (for a tool change, at the end). */
 #define POST_EVENT_PARK 16u
 /* Which words: bit n is word n. */
 #define POST_PARK_AXES 0u

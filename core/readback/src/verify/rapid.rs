@@ -338,9 +338,25 @@ impl<C: Course> Verifier<'_, C> {
     /// A motion at feed that the machine file lets a rapid be: as fast as its axes go.
     pub(super) fn is_as_fast_as_rapids(&self, motion: &Motion) -> bool {
         let least = || self.axes.least_minutes(self.machine, motion);
+        let fast = || {
+            least().is_some_and(|(minutes, _)| motion.minutes <= minutes * (1.0 + SLOW) + MOMENT)
+        };
         self.rules.linear_rapids
             && motion.kind == MotionKind::Feed
-            && least().is_some_and(|(minutes, _)| motion.minutes <= minutes * (1.0 + SLOW) + MOMENT)
+            && (fast() || self.comes_from_anywhere(motion))
+    }
+
+    /// Off the cuts, by linear axes alone, at what the slowest of them goes: the way was not known when the feed was
+    /// written.
+    fn comes_from_anywhere(&self, motion: &Motion) -> bool {
+        let joints = motion.from.joints.iter().zip(&motion.to.joints);
+        let mut axes = self.machine.axes.iter().zip(joints);
+        let stands = axes.all(|(axis, (from, to))| !axis.joint.rotary || from == to);
+        let linear = self.machine.axes.iter().filter(|axis| !axis.joint.rotary);
+        let slowest = linear
+            .map(|axis| axis.max_feed)
+            .fold(f64::INFINITY, f64::min);
+        self.apart && stands && motion.feed >= slowest * (1.0 - SLOW)
     }
 
     /// A rapid of the course is made at feed: where the machine file has it so, as fast as the axes hold.

@@ -454,15 +454,14 @@ impl<C: Course> Verifier<'_, C> {
         if let Some(next) = self.next
             && let Some(index) = self.behind_events(next)
             && let Some(element) = self.track.get(index)
+            && element.is_cut()
         {
-            if element.is_cut() {
-                let span = free(place, &element.from, &element.to, &bound);
-                if span.from <= 0.0 && !span.is_empty() {
-                    if reach.len() <= index {
-                        reach.resize(index + 1, Span::EMPTY);
-                    }
-                    reach[index] = span;
+            let span = free(place, &element.from, &element.to, &bound);
+            if span.from <= 0.0 && !span.is_empty() {
+                if reach.len() <= index {
+                    reach.resize(index + 1, Span::EMPTY);
                 }
+                reach[index] = span;
             }
         }
         self.reach = reach;

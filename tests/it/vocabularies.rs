@@ -97,6 +97,7 @@ pub fn vocabulary(dialect: &str) -> Vec<VocabularyWord> {
             ("tcp_on", text("G169 HL={h}")),
             ("tcp_off", text("G170")),
         ],
+        "hurco" => &[("tcp_on", text("M128")), ("tcp_off", text("M129"))],
         _ => &[],
     };
     let setup = ProgramSetup {

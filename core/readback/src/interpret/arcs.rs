@@ -14,6 +14,10 @@ use super::state::Control;
 /// decimals of an inch program, and the rounding of a centre far away.
 const OFF: [f64; 2] = [0.02, 0.001];
 
+/// Start and end nearer to each other than this are one point, mm: no word is so fine, and in a tilted plane the start comes
+/// out of a computation.
+const SAME: f64 = 1e-6;
+
 /// A helix of more turns is none.
 const MOST_TURNS: f64 = 10_000.0;
 
@@ -114,7 +118,7 @@ impl Control {
             return Err(self.refuse("nc-arc", message));
         }
         let turn = libm::atan2(ax * by - ay * bx, ax * bx + ay * by);
-        let same = libm::hypot(x1 - x0, y1 - y0) < 1e-9 * (1.0 + start);
+        let same = libm::hypot(x1 - x0, y1 - y0) < SAME;
         Ok(if same {
             if clockwise { -TAU } else { TAU }
         } else if clockwise {

@@ -21,6 +21,8 @@ const SAME_LINE: f64 = 1e-3;
 #[derive(Debug, Default)]
 pub(super) struct Detour {
     asked: Vec<(Joints, Pose)>,
+    /// Places of the course that were passed on the way to others.
+    passed: Vec<Pose>,
     open: Vec<End>,
 }
 
@@ -67,6 +69,13 @@ impl Detour {
         }
     }
 
+    /// A rapid passed a place of the course: another may end there.
+    pub fn passes(&mut self, pose: Pose) {
+        if self.passed.len() < MOST {
+            self.passed.push(pose);
+        }
+    }
+
     /// A cut begins with `motion`, or the program ends: was there a rapid that went farther than `slack` (mm, radians) from
     /// all that is asked for, the tool leaning otherwise by `lean` at most? The first.
     pub fn end(
@@ -81,11 +90,16 @@ impl Detour {
         }
         let asked = std::mem::take(&mut self.asked);
         let open = std::mem::take(&mut self.open);
+        let passed = std::mem::take(&mut self.passed);
         if asked.is_empty() {
             return None;
         }
-        open.iter()
-            .find_map(|end| end.astray(machine, &asked, slack, lean + SAME_LINE))
+        let lean = lean + SAME_LINE;
+        let mut open = open.iter().filter(|end| {
+            let mut passed = passed.iter();
+            end.machine || !passed.any(|pose| end.on_the_line(pose, slack[0], lean))
+        });
+        open.find_map(|end| end.astray(machine, &asked, slack, lean))
     }
 
     fn ask(&mut self, joints: &Joints, pose: &Pose) {

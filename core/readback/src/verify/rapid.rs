@@ -1,6 +1,7 @@
 //! Between the cuts: rapids past the points of the course, and where the next cut begins.
 
 use nalgebra::Vector3;
+use post_machine::kinematics::Pose;
 
 use super::detour::Detour;
 use super::place::{Apart, Place, Span, free, nearest};
@@ -248,12 +249,17 @@ impl<C: Course> Verifier<'_, C> {
                         });
                         let near = nearest(&element.to, &ends[0], &ends[1], &span);
                         least = span.from;
-                        let line = element.line;
+                        let (line, place) = (element.line, element.to);
                         if matches!(element.what, What::Way) {
                             let (from, to) = (element.from.point, element.to.point);
                             let point = self.cut_path.distance(to);
                             self.course_near = self.course_near.min(self.dips(from, to)).min(point);
                         }
+                        self.detour.passes(Pose {
+                            tip: place.point - place.axis * self.along,
+                            axis: place.axis,
+                            edge: motion.to.pose.edge,
+                        });
                         self.placed = true;
                         self.found.rapid.take(near.point, motion.line, line);
                         self.block.cl_line = Some(line);

@@ -25,6 +25,8 @@ pub(crate) struct Hole {
     pub away: f64,
     /// Down.
     pub feed: f64,
+    /// The cycle states its feed itself, or the pitch that it follows from: that of the program does not matter.
+    pub own_feed: bool,
     /// Feed of the first peck against the others.
     pub first_share: Option<f64>,
     /// Its feed, or that of a thread, is stated by the revolution.

@@ -169,7 +169,7 @@ fn feed_a_minute(control: &Control) -> f64 {
 
 /// Makes a hole where the tool stands.
 fn drill(control: &mut Control, hole: &Hole) -> Result<(), Box<Diagnostic>> {
-    if control.modal.feed_mode == FeedMode::Inverse {
+    if control.modal.feed_mode == FeedMode::Inverse && !hole.own_feed {
         return Err(control.refuse(
             "nc-cycle",
             "a cycle under inverse-time feed: how fast it drills is not known",

@@ -308,6 +308,7 @@ fn thread(
         },
         wait: arguments.wait(6),
         feed: libm::fabs(value) * speed,
+        own_feed: true,
         out: Out::Thread(libm::fabs(value) * back),
         ..hole
     })

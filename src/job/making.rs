@@ -89,6 +89,7 @@ impl Part {
             tolerances: [moved, None],
             planned,
             solutions: false,
+            any_coolant: false,
             lines: self.lines.clone(),
         };
         read_back::verify(&reading, source, &name, text, &mut |_| {})

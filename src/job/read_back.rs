@@ -40,6 +40,8 @@ pub struct Reading<'a> {
     pub tolerances: [Option<f64>; 2],
     /// The feed was planned: it may be below that of the CL file.
     pub planned: bool,
+    /// Which coolant flows is the program's own business.
+    pub any_coolant: bool,
     /// Each line is told with the solution of the machine that it ends in.
     pub solutions: bool,
     /// Lines of the CL file that the program is made of; none: all.
@@ -256,6 +258,7 @@ pub fn hold<C: Course, R: Read + Seek>(
         }),
         solutions: reading.solutions,
         planned: reading.planned,
+        coolants: !reading.any_coolant,
         feed_place: feed_place(machine, spoken.feed_decimals),
         linear_rapids: machine.rapid(spoken.rapids_pass) == Rapid::Linear,
         least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
@@ -326,6 +329,15 @@ pub fn hold<C: Course, R: Read + Seek>(
         };
         let place = Place::new(name, *line, "", 0..0);
         findings.push(Diagnostic::warning("rapid", format!("{message}{more}")).at(Some(place)));
+    }
+    for left in &found.left_on {
+        let more = match left.count {
+            1 => String::new(),
+            count => format!("; so in {count} places"),
+        };
+        let place = Place::new(name, left.line, "", 0..0);
+        let message = format!("{}{more}", left.message);
+        findings.push(Diagnostic::warning(left.code, message).at(Some(place)));
     }
     let texts = lines_of(&mut input, &found.faults).map_err(unreadable)?;
     for fault in &found.faults {

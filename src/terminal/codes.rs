@@ -801,8 +801,8 @@ pub const CODES: &[CodeGroup] = &[
             ),
             code(
                 "coolant",
-                "Coolant is another in a cut.",
-                "Look at both lines.",
+                "Coolant is another in a cut, or flows while the tool is changed.",
+                "Look at both lines; `--ignore coolant` where coolants are yours.",
             ),
             code(
                 "deviation",
@@ -851,7 +851,7 @@ pub const CODES: &[CodeGroup] = &[
             ),
             code(
                 "spindle",
-                "The spindle stands, or turns otherwise.",
+                "The spindle stands, turns otherwise, or turns while the tool is changed.",
                 "Look at both lines.",
             ),
             code("tool", "Another tool.", "Look at both lines."),

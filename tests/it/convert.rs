@@ -205,6 +205,49 @@ fn holes_arcs_and_compensation_come_over_as_such() {
 }
 
 #[test]
+fn what_no_cl_file_has_a_word_for_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("smooth.mpf");
+    let words = "G71 G90 G17 G94\nT1 M6\nS1000 M3\nG0 X0 Y0 Z50 D1\nCYCLE832(0.02,1,1)\nG1 X10 F100\n\
+                 X20 Y5\nCYCLE832()\nG0 Z50\nM30\n";
+    fs::write(&program, words).unwrap();
+    let target = folder.path().join("target.nc");
+    let run = done(&[
+        "convert",
+        text(&program),
+        "--from",
+        "vmc",
+        "--from-set",
+        "control.dialect=siemens",
+        "--to",
+        "vmc",
+        "--tool-length",
+        "80",
+        "-o",
+        text(&target),
+    ]);
+    assert!(run.err.contains("warning[convert]"), "{}", run.err);
+    assert!(run.err.contains("CYCLE832"), "{}", run.err);
+}
+
+#[test]
+fn a_program_that_leaves_the_travel_is_not_read_as_good() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("far.nc");
+    let words = "G21 G17 G90 G94\nT1 M6\nS1000 M3\nG0 G43 H1 X900. Y0. Z50.\nG1 X10. F100.\nM30\n";
+    fs::write(&program, words).unwrap();
+    let arguments = ["read", text(&program), "-m", "vmc", "--tool-length", "80"];
+    let run = run(command().args(arguments), b"");
+    assert_eq!(run.code, 1, "{}", run.out);
+    assert!(
+        run.err
+            .contains("error[over-travel]: X would be at 900.000 mm"),
+        "{}",
+        run.err
+    );
+}
+
+#[test]
 fn a_program_that_the_other_machine_cannot_make_is_not_written() {
     let folder = tempfile::tempdir().unwrap();
     let program = posted(&folder, "ac-trunnion", "control", "blade.cls");

@@ -109,6 +109,38 @@ fn the_verb_tells_what_it_finds_and_where() {
 }
 
 #[test]
+fn coolants_of_ones_own_need_not_be_compared() {
+    let (folder, program) = plate();
+    let text = fs::read_to_string(&program).unwrap();
+    let own = folder.path().join("own.nc");
+    let own_name = own.to_str().unwrap();
+    fs::write(&own, text.replace("\nM8\n", "\n")).unwrap();
+    let length = ["--tool-length", "80"];
+    let found = verify(own_name, &length);
+    assert_eq!(found.code, 1);
+    assert!(found.err.contains("error[coolant]"), "{}", found.err);
+    let ignored = verify(own_name, &[&length[..], &["--ignore", "coolant"]].concat());
+    assert_eq!(
+        (ignored.code, ignored.err.as_str()),
+        (0, ""),
+        "{}",
+        ignored.out
+    );
+}
+
+#[test]
+fn the_length_of_the_tool_is_held_against_that_of_the_tables() {
+    let (folder, program) = plate();
+    let tables = folder.path().join("tables.toml");
+    fs::write(&tables, "[length]\n5 = 100\n7 = 80\n").unwrap();
+    let tables = ["--offsets", tables.to_str().unwrap()];
+    assert_eq!(verify(&program, &tables).code, 0);
+    let told = verify(&program, &[&tables[..], &["--tool-length", "80"]].concat());
+    assert_eq!(told.code, 1);
+    assert!(told.err.contains("error[length]"), "{}", told.err);
+}
+
+#[test]
 fn the_map_leads_from_the_program_to_the_cl_file() {
     let (folder, program) = plate();
     let map = folder.path().join("map.json");

@@ -255,6 +255,7 @@ impl OneJob<'_> {
             tolerances: [None, None],
             planned: self.study.options.plan,
             solutions: false,
+            any_coolant: false,
             lines: None,
         };
         let name = plugin_finder::cl_name(target);

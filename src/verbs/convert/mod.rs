@@ -273,6 +273,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         tolerances: [Some(tolerance), Some(axis_tolerance)],
         planned: false,
         solutions: false,
+        any_coolant: false,
         lines: None,
     };
     let told = program.name().to_owned();

@@ -3,7 +3,7 @@
 mod verify_page;
 mod verify_text;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use post_readback::interpret::Limits;
 
 use crate::arguments::flag_values::positive;
@@ -74,6 +74,11 @@ pub struct VerifyArguments {
     #[arg(long)]
     planned: bool,
 
+    /// Is not compared: `coolant`, where words of the machine or of yours (`[codes]`, `INSERT`, a plugin) switch it, and the
+    /// control knows more of them than the CL file names. Repeatable.
+    #[arg(long, value_name = "WHAT", value_enum)]
+    ignore: Vec<Ignored>,
+
     /// So many blocks are run once more, by loops, jumps and subprograms; more are refused.
     #[arg(long, value_name = "N", default_value_t = Limits::default().blocks)]
     most_blocks: u64,
@@ -81,6 +86,13 @@ pub struct VerifyArguments {
     /// No table, messages alone.
     #[arg(short, long)]
     quiet: bool,
+}
+
+/// What need not be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Ignored {
+    /// Which coolant flows, and whether.
+    Coolant,
 }
 
 const MAP: Role = Role {
@@ -131,6 +143,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         tolerances: [None, arguments.axis_tolerance.map(f64::to_radians)],
         planned: arguments.planned,
         solutions: arguments.map.is_some(),
+        any_coolant: arguments.ignore.contains(&Ignored::Coolant),
         lines: None,
     };
     let once_more = Again {

@@ -18,6 +18,7 @@ mod chop;
 mod cut_path;
 mod detour;
 mod hole;
+mod left_on;
 mod place;
 mod rapid;
 mod report;
@@ -37,8 +38,9 @@ pub use axes::over_travel;
 pub use cut_path::CutPath;
 use detour::Detour;
 use hole::{HoleRun, Made};
+use left_on::Running;
 use place::{Apart, Bound, Place, Span};
-pub use report::{BlockReport, Fault, Verification, Worst};
+pub use report::{BlockReport, Fault, LeftOn, Verification, Worst};
 use sweep::Stray;
 use track::{Track, What};
 
@@ -67,6 +69,8 @@ pub struct Rules {
     pub feed_place: f64,
     /// The feed was planned: it may be below that of the CL file, whatever for.
     pub planned: bool,
+    /// Coolants are compared; else which of them flows is the program's own business.
+    pub coolants: bool,
     /// Each line of the program is told with the solution that it ends in.
     pub solutions: bool,
     /// So many faults are told apart; then it is given up.
@@ -100,6 +104,7 @@ impl Rules {
             linear_rapids: machine.rapid(false) == Rapid::Linear,
             feed_place: 0.0,
             planned: false,
+            coolants: true,
             solutions: false,
             most_faults: 50,
         }
@@ -152,6 +157,7 @@ pub struct Verifier<'m, C> {
     turned: Vec<(Spindle, u64)>,
     worked: Vec<(Option<u32>, String)>,
     detour: Detour,
+    running: Running,
     axes: Axes,
     block: BlockReport,
     found: Verification,
@@ -199,6 +205,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             worked: Vec::new(),
             turned: Vec::new(),
             detour: Detour::default(),
+            running: Running::default(),
             axes: Axes::new(machine),
             block: BlockReport::default(),
             found: Verification::default(),
@@ -225,19 +232,26 @@ impl<'m, C: Course> Verifier<'m, C> {
                 }
                 self.motion(motion);
             }
-            Done::Told { line, told } => match told {
-                Told::Dwell { .. } | Told::Stop | Told::OptionalStop => self.event(*line, told),
-                Told::Cycle(call) => self.cycle = Some(call.kind),
-                Told::CycleEnd => self.cycle = None,
-                Told::ToolChange { .. } => self.turned.clear(),
-                Told::Spindle(spindle) if self.turned.len() < track::MOST_SPEEDS => {
-                    self.turned.push((*spindle, *line));
-                }
-                _ => {}
-            },
+            Done::Told { line, told } => {
+                self.runs(*line, told);
+                self.told(*line, told);
+            }
             Done::State(_) => {}
         }
         self.drop_behind();
+    }
+
+    fn told(&mut self, line: u64, told: &Told) {
+        match told {
+            Told::Dwell { .. } | Told::Stop | Told::OptionalStop => self.event(line, told),
+            Told::Cycle(call) => self.cycle = Some(call.kind),
+            Told::CycleEnd => self.cycle = None,
+            Told::ToolChange { .. } => self.turned.clear(),
+            Told::Spindle(spindle) if self.turned.len() < track::MOST_SPEEDS => {
+                self.turned.push((*spindle, line));
+            }
+            _ => {}
+        }
     }
 
     /// The program is at its end: what was found.
@@ -246,6 +260,7 @@ impl<'m, C: Course> Verifier<'m, C> {
         if !self.found.gave_up {
             self.flush_stray();
             self.look_at_the_rest();
+            self.tell_change(None);
         }
         self.found
     }

@@ -20,6 +20,9 @@ pub struct Verification {
     pub near_rapids: u64,
     /// Line of the first of them, and how near.
     pub nearest_rapid: Option<(u64, String)>,
+    /// What still runs where a tool is changed, and the CL file does not have it off: a control may stop it by itself.
+    #[serde(skip)]
+    pub left_on: Vec<LeftOn>,
     /// Times that the tool left a cut and came back to where it left.
     pub excursions: u64,
     /// Cuts that are slower than the course asks, because an axis could not go faster, the control takes no larger F by
@@ -39,6 +42,19 @@ pub struct Verification {
     pub faults: Vec<Fault>,
     /// It was given up: there are more faults.
     pub gave_up: bool,
+}
+
+/// Something that still runs where a tool is changed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LeftOn {
+    /// The first line of the program.
+    pub line: u64,
+    /// What: the code of its warning.
+    pub code: &'static str,
+    /// As it is told.
+    pub message: String,
+    /// At so many tool changes.
+    pub count: u64,
 }
 
 /// A deviation and where it stands.

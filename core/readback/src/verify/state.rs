@@ -103,7 +103,8 @@ impl<C: Course> Verifier<'_, C> {
             self.fault("spindle", message, Some(motion), cl_line, None);
         }
         self.compare_speeds(motion, element);
-        if state.coolants != asked.coolants {
+        self.compare_change(element);
+        if self.rules.coolants && state.coolants != asked.coolants {
             let message = format!(
                 "cuts with {}, and the CL file asks for {}",
                 coolant_name(state.coolants),
@@ -439,7 +440,7 @@ fn same_spindle(has: Spindle, wants: Spindle) -> bool {
     }
 }
 
-fn spindle_name(spindle: Spindle) -> String {
+pub(super) fn spindle_name(spindle: Spindle) -> String {
     match spindle {
         Spindle::Off => "stands".to_owned(),
         Spindle::Oriented => "stands at an angle".to_owned(),
@@ -457,7 +458,7 @@ fn spindle_name(spindle: Spindle) -> String {
     }
 }
 
-fn coolant_name(coolants: Coolants) -> String {
+pub(super) fn coolant_name(coolants: Coolants) -> String {
     let names = [
         (coolants.flood, "flood"),
         (coolants.mist, "mist"),

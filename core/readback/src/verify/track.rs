@@ -16,6 +16,8 @@ use crate::{Coolants, CycleCall, CycleKind, MotionKind, Spindle, Told};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Asked {
     pub tool: Option<u32>,
+    /// What the spindle and the coolants did as the tool came.
+    pub at_change: (Spindle, Coolants),
     pub spindle: Spindle,
     /// What the spindle was told since the tool came.
     pub turned: Vec<Spindle>,
@@ -296,6 +298,7 @@ impl<C: Course> Track<C> {
                 self.end_hole();
                 let asked = Arc::make_mut(&mut self.asked);
                 asked.tool = number;
+                asked.at_change = (asked.spindle, asked.coolants);
                 asked.turned.clear();
             }
             Told::Spindle(spindle) => {

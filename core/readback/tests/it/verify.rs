@@ -581,6 +581,79 @@ fn what_holds_in_a_cut_is_compared() {
     }
 }
 
+/// A tool change with the spindle and the coolant as they are.
+fn changed(number: u32) -> Told {
+    Told::ToolChange {
+        number: Some(number),
+        name: None,
+    }
+}
+
+#[test]
+fn a_tool_is_not_changed_while_something_runs_that_should_stand() {
+    let flood = Coolants {
+        flood: true,
+        ..Coolants::default()
+    };
+    let on = Told::Spindle(Spindle::Clockwise(8000.0));
+    let asks = |before: &[Told]| {
+        let mut asks = Asks::default().tell(changed(3)).tell(on.clone());
+        asks = asks.tell(Told::Coolant(flood));
+        asks = asks.rapid(0.0, 0.0, 10.0).cut(0.0, 0.0, -2.0);
+        asks = asks.rapid(0.0, 0.0, 10.0);
+        for told in before {
+            asks = asks.tell(told.clone());
+        }
+        asks = asks.tell(changed(4)).tell(on.clone());
+        asks = asks.tell(Told::Coolant(flood));
+        asks.cut(0.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0)
+    };
+    let does = |first: &[Told], between: &[Told]| {
+        let with = |does: Does, tool: u32| {
+            does.with(|state| {
+                state.tool = Some(tool);
+                state.length_register = Some(tool);
+                state.spindle = Spindle::Clockwise(8000.0);
+                state.coolants = flood;
+            })
+        };
+        let mut does = Does::at(0.0, 0.0, 15.0);
+        for told in first {
+            does = does.tell(told.clone());
+        }
+        does = with(does.tell(changed(3)), 3).tell(on.clone());
+        does = does.tell(Told::Coolant(flood));
+        does = does.rapid(0.0, 0.0, 10.0).cut(0.0, 0.0, -2.0);
+        does = does.rapid(0.0, 0.0, 10.0);
+        for told in between {
+            does = does.tell(told.clone());
+        }
+        does = with(does.tell(changed(4)), 4).tell(on.clone());
+        does = does.tell(Told::Coolant(flood));
+        does.cut(0.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0)
+    };
+    let off = [
+        Told::Spindle(Spindle::Off),
+        Told::Coolant(Coolants::default()),
+    ];
+    let found = |does: &Does, asks: Asks| {
+        let (found, _) = verify(does, asks);
+        let faults: Vec<&str> = found.faults.iter().map(|fault| fault.code).collect();
+        let told: Vec<&str> = found.left_on.iter().map(|left| left.code).collect();
+        (faults, told)
+    };
+    let none = (vec![], vec![]);
+    assert_eq!(found(&does(&[], &off), asks(&off)), none);
+    assert_eq!(found(&does(&[], &off), asks(&[])), none);
+    // The CL file has them off: a fault. It says nothing: the control may stop them by itself.
+    let both = vec!["spindle", "coolant"];
+    assert_eq!(found(&does(&[], &[]), asks(&off)), (both.clone(), vec![]));
+    assert_eq!(found(&does(&[], &[]), asks(&[])), (vec![], both));
+    // Before the first tool nothing is on.
+    let started = does(std::slice::from_ref(&on), &off);
+    assert_eq!(found(&started, asks(&[])), (vec!["spindle"], vec![]));
+}
+
 #[test]
 fn stops_and_dwells_stand_where_they_are_asked_for() {
     let asks = || {

@@ -1,0 +1,134 @@
+//! What still runs where a tool is changed, or where the program ends.
+
+use super::Verifier;
+use super::state::{coolant_name, spindle_name};
+use super::track::Element;
+use crate::course::Course;
+use crate::{Coolants, Spindle, Told};
+
+/// What of the program runs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Running {
+    tool: Option<u32>,
+    spindle: Spindle,
+    coolants: Coolants,
+    /// Line at which one of them was told last.
+    line: u64,
+    /// What ran as the tool came; until it is held against the course.
+    change: Option<Change>,
+}
+
+/// A tool change with something still on.
+#[derive(Clone, Copy, Debug)]
+struct Change {
+    line: u64,
+    tool: Option<u32>,
+    spindle: Spindle,
+    coolants: Coolants,
+}
+
+impl Change {
+    /// What runs and should not, each with its code.
+    fn faults(
+        &self,
+        spindle: bool,
+        coolants: bool,
+    ) -> impl Iterator<Item = (&'static str, String)> {
+        let turns = (spindle && turns(self.spindle)).then(|| {
+            let name = spindle_name(self.spindle);
+            (
+                "spindle",
+                format!("the tool is changed while the spindle {name}"),
+            )
+        });
+        let flows = (coolants && self.coolants != Coolants::default()).then(|| {
+            let name = coolant_name(self.coolants);
+            ("coolant", format!("the tool is changed under {name}"))
+        });
+        turns.into_iter().chain(flows)
+    }
+}
+
+/// A spindle that turns its tool.
+fn turns(spindle: Spindle) -> bool {
+    matches!(
+        spindle,
+        Spindle::Clockwise(_) | Spindle::CounterClockwise(_)
+    )
+}
+
+impl<C: Course> Verifier<'_, C> {
+    /// The program tells of its spindle, its coolants or a tool.
+    pub(super) fn runs(&mut self, line: u64, told: &Told) {
+        let running = &mut self.running;
+        match told {
+            Told::Spindle(spindle) => (running.spindle, running.line) = (*spindle, line),
+            Told::Coolant(coolants) if self.rules.coolants => {
+                (running.coolants, running.line) = (*coolants, line)
+            }
+            Told::ToolChange { number, .. } => {
+                let same = number.is_some() && running.tool == *number;
+                running.tool = *number;
+                // What stands in the block of the change is on behind it.
+                if same || running.line == line {
+                    return;
+                }
+                let change = Change {
+                    line,
+                    tool: *number,
+                    spindle: running.spindle,
+                    coolants: running.coolants,
+                };
+                self.tell_change(None);
+                self.running.change = Some(change);
+            }
+            _ => {}
+        }
+    }
+
+    /// The tool cuts: what ran as it came should have stood still, if the course has it so. Many controls stop it by
+    /// themselves, and programs that count on that are told of only.
+    pub(super) fn compare_change(&mut self, element: &Element) {
+        let Some(change) = self.running.change else {
+            return;
+        };
+        let asked = &element.asked;
+        if asked.tool != change.tool {
+            return;
+        }
+        let (spindle, coolants) = asked.at_change;
+        let off = [!turns(spindle), coolants == Coolants::default()];
+        self.tell_change(Some((off, element.line)));
+    }
+
+    /// Tells what ran as a tool was changed: where the course has it off, as a fault.
+    pub(super) fn tell_change(&mut self, off: Option<([bool; 2], u64)>) {
+        let Some(change) = self.running.change.take() else {
+            return;
+        };
+        let ([spindle, coolants], cl_line) = match off {
+            Some((off, line)) => (off, Some(line)),
+            None => ([false; 2], None),
+        };
+        for (code, message) in change.faults(spindle, coolants) {
+            let message = format!("{message}, and the CL file has it off");
+            self.fault_at(code, message, Some((change.line, None)), cl_line, None);
+        }
+        for (code, message) in change.faults(!spindle, !coolants) {
+            self.left_on(change.line, code, message);
+        }
+    }
+
+    fn left_on(&mut self, line: u64, code: &'static str, message: String) {
+        let known = &mut self.found.left_on;
+        match known.iter_mut().find(|known| known.code == code) {
+            Some(known) => known.count += 1,
+            None => known.push(super::LeftOn {
+                line,
+                code,
+                message,
+                count: 1,
+            }),
+        }
+    }
+}

@@ -156,7 +156,7 @@ fn a_machine_is_found_by_name_by_path_and_in_folders() {
         folder.path(),
         &[&arguments[..], &["--machines", own]].concat(),
     );
-    assert_contains(&named.out, &["(MINE)"]);
+    assert_contains(&named.out, &["(MINE, FOR THE PART AT X0 Y0 Z0 ALONE)"]);
     let environment = run(
         command()
             .current_dir(folder.path())

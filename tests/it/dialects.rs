@@ -10,6 +10,7 @@ use crate::real_files;
 
 use std::path::Path;
 
+use post_testkit::read_back::table;
 use post_testkit::shared;
 
 /// What a job shows, its machine, sample and further arguments.
@@ -68,6 +69,13 @@ pub fn dialects() -> Vec<String> {
         .filter(|(_, kind)| *kind == "dialect")
         .map(|(name, _)| name.to_owned())
         .collect()
+}
+
+/// The end of travel of the depth axis, as a setting.
+fn top(machine: &str) -> String {
+    let machine = table(machine);
+    let top = machine["axis"]["Z"]["travel"][1].clone();
+    format!("control.retract={{Z={top}}}")
 }
 
 fn post(dialect: &str, machine: &str, file: &Path, with: &[&str]) -> Run {
@@ -154,6 +162,11 @@ fn every_file_is_posted_in_every_dialect_and_does_what_it_asks_for() {
                 all.extend(["--tool-length", "0"]);
             }
             all.extend(with.split_whitespace());
+            // Where the axis stands clear is the machine's own, on whatever control.
+            let top = top(machine);
+            if matches!(dialect.as_str(), "grbl" | "okuma") {
+                all.extend(["--set", &top]);
+            }
             let done = post(&dialect, machine, &data.join(file), &all);
             let refused = REFUSED
                 .iter()

@@ -78,7 +78,8 @@ fn controls_that_turn_the_plane_put_the_length_along_the_tool() {
     let (_, tnc) = good(&lying("heidenhain", ""), &cut("0,1,0"), &LONG);
     assert!(tnc.contains("TOOL CALL 1 Y S3000"), "{tnc}");
     // Nothing is put on: it is in the work offset.
-    good(&lying("grbl", ""), &cut("0,1,0"), &LONG);
+    let retract = ["--tool-length", "100", "--set", "control.retract={Y=250}"];
+    good(&lying("grbl", ""), &cut("0,1,0"), &retract);
 }
 
 #[test]
@@ -168,7 +169,7 @@ const HEADS: &str = "extends = \"head-change\"\n[tools]\n1 = 100\n2 = 200\n";
 /// The tool comes behind its head, and its length from the machine file.
 #[test]
 fn a_head_whose_tool_lies_across_the_compensated_axis_answers_for_it_or_is_refused() {
-    let side = "[head.SIDE]\nword = \"M63\"\n[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\n";
+    let side = "[head.SIDE]\nword = \"M63\"\noffset = 2\n[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\n";
     let said = refused(&format!("{HEADS}{side}"), &swapped("SIDE"), &[]);
     assert!(said.contains("the tool of head SIDE lies along"), "{said}");
     good(
@@ -195,8 +196,7 @@ fn a_head_whose_tool_lies_across_the_compensated_axis_answers_for_it_or_is_refus
 /// The stop at which the operator swaps it is none that the CL file asks for.
 #[test]
 fn a_head_that_the_operator_swaps_is_read_back() {
-    let side =
-        "[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\nlength_axis = \"none\"\n";
+    let side = "[head.SIDE]\noffset = 2\n[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\nlength_axis = \"none\"\n";
     let (_, text) = good(&format!("{HEADS}{side}"), &swapped("SIDE"), &[]);
     assert!(text.contains("(CHANGE TO HEAD SIDE)\nM0\n"), "{text}");
 }

@@ -118,7 +118,7 @@ P.colour.find = () => {
     if (has(name) && words.length) modes.push({ id: name, title, kinds: words, make: () => ({ value: ((values) => (row) => values[row])(column(name)) }) });
   };
   share("deviation", "tip deviation", () => column("tolerance") || P.m.tolerance);
-  share("axis_deviation", "tool axis deviation", () => P.m.axis_limits || P.m.turn);
+  share("axis_deviation", "axis deviation", () => P.m.axis_limits || P.m.turn);
   share("contour", "contour error", () => P.m.tolerance);
   share("feed", "feed");
   kinds("limit", "what limits the feed", meta.limits);

@@ -267,15 +267,9 @@ P.path.tell = () => {
   } else if (mode.unit) {
     const limit = mode.fixed || (mode.id === "axis_deviation" ? m.turn : m.tolerance);
     const ends = mode.top === null ? [`tolerance ${limit ? P.short(limit) + " " + P.unit(mode.unit) : ""}`, "above"] : [P.quantity(mode.top, mode.unit)];
-    // As far as blocks are drawn in these colours; the tolerance stands where they change.
+    // The tolerance stands in the middle, where the colours change.
     const { top, over } = colour;
-    const change = top / 255;
-    const drawn = (share) => (mode.top !== null ? share * top : share <= change ? (share / change) * top : over + ((share - change) / (1 - change)) * (255 - over));
-    const [least, ...most] = ["0", ...ends].map((text) => el("span", {}, text));
-    const upto = el("span", { class: "ends" }, least, most.shift());
-    if (most.length) upto.style.width = `${change * 100}%`;
-    else upto.style.flex = "1";
-    told.push(strip(170, drawn), el("div", { class: "ends" }, upto, most));
+    told.push(strip(170, (share) => (mode.top !== null ? share * top : share < 0.5 ? share * 2 * top : over + (share * 2 - 1) * (255 - over))), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));
   }
   const { vectors, path } = scene;
   const notes = [];

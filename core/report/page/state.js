@@ -211,19 +211,14 @@ P.next_by_worth = (worse) => {
   if (best >= 0) P.select(best);
 };
 
-// What the verdict calls the quantities that blocks are coloured by.
-P.verdict_names = { deviation: "tip deviation", axis_deviation: "axis deviation", contour: "predicted contour error" };
-
 // The worst block of all: the one that the verdict names for what is looked at; -1 where nothing can be compared.
 P.worst = () => {
   const worth = P.worth();
   const { maxima } = P.m.meta;
-  const mode = P.colour.mode();
-  const own = mode.bad ? maxima.find(({ name }) => name === P.verdict_names[mode.id]) : maxima[0];
-  if (own) {
-    if (own.row != null) return own.row;
-    if (own.nc) return P.m.rowOf("nc", own.nc);
-  }
+  const { bad, title } = P.colour.mode();
+  const { row, nc } = (bad ? maxima.find(({ name }) => name.includes(title)) : maxima[0]) || {};
+  if (row != null) return row;
+  if (nc) return P.m.rowOf("nc", nc);
   if (!worth) return -1;
   let best = -1;
   for (let at = 0; at < P.m.rows; at++) {

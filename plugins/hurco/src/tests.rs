@@ -27,7 +27,8 @@ fn five_axes_with_axis_positions() {
 
 #[test]
 fn five_axes_with_tcp() {
-    insta::assert_snapshot!(bench().tcp().write_job().unwrap());
+    let bench = bench().with("tcp_on", Value::Text("M128"));
+    insta::assert_snapshot!(bench.tcp().write_job().unwrap());
 }
 
 /// `M29` stands alone, and P is not optional there; without a rigid holder it is left out.

@@ -291,6 +291,11 @@ pub fn write(choices: &Choices) -> String {
             "of the NC program; this file stays in mm",
         );
     }
+    if let Some((below, remark)) = stands_clear(choices)
+        && let Some([_, top]) = z_travel(choices)
+    {
+        line(&format!("retract = {{ Z = {} }}", top - below), remark);
+    }
     let options = options(choices);
     if !options.is_empty() {
         line("", "");
@@ -332,6 +337,26 @@ fn options(choices: &Choices) -> Vec<(&'static str, &'static str)> {
         }
         _ => Vec::new(),
     }
+}
+
+/// How far below the end of its travel Z is taken to stand clear, mm, on a control whose machine coordinates do not end where
+/// the axis does; and why it must be looked at.
+fn stands_clear(choices: &Choices) -> Option<(f64, &'static str)> {
+    match choices.dialect.as_str() {
+        "okuma" => Some((
+            0.0,
+            "where Z stands clear, from the zero of G16 H0: read it off the machine",
+        )),
+        "grbl" => Some((
+            2.0,
+            "Z at its end is on the homing switch: minus the pull-off ($27), or lower",
+        )),
+        _ => None,
+    }
+}
+
+fn z_travel(choices: &Choices) -> Option<[f64; 2]> {
+    given(&choices.travel, "Z").or_else(|| choices.class.usual_travel("Z", choices.gauge))
 }
 
 fn travel(line: &mut impl FnMut(&str, &str), choices: &Choices, axis: &str) {

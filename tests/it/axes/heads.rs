@@ -72,7 +72,7 @@ fn a_head_is_swapped_between_retract_and_next_position() {
 #[test]
 fn a_head_without_a_word_stops_the_program() {
     let setup = on("head-change").file(
-        "[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\nlength_axis = \"none\"\n",
+        "[head.SIDE]\noffset = 2\n[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\nlength_axis = \"none\"\n",
     );
     let made = setup.made(&heads("SIDE"));
     let lines: Vec<&str> = made.text.lines().collect();

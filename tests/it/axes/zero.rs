@@ -19,7 +19,9 @@ fn a_shifted_rotary_zero_shifts_the_words_of_its_axis_alone() {
         if let Some(travel) = travel {
             shifted = shifted.with(&format!("axis.{axis}.travel"), travel);
         }
-        let shifted = shifted.made(&cl);
+        let mut shifted = shifted.made(&cl);
+        // Where an axis shows something, a first position is come to from a point over it.
+        shifted.blocks.remove(0);
         let place = base.place(axis);
         for words in base.differences(&shifted) {
             for (other, by) in words.iter().enumerate() {
@@ -212,11 +214,12 @@ fn half_a_turn_is_made_in_pieces() {
         .end();
     let setup = || on("ac-trunnion").with("control.tcp", "control");
     let endless = setup().made(&cl).words("C");
-    assert_eq!((endless[1] - endless[0]).abs(), 180.0, "{endless:?}");
+    let [from, to] = [endless[endless.len() - 2], endless[endless.len() - 1]];
+    assert_eq!((to - from).abs(), 180.0, "{endless:?}");
     let shown = setup().with("axis.C.range", "[0, 360]").made(&cl);
     let words = shown.words("C");
     let last = words.len() - 1;
-    assert_eq!(shorter(words[last], endless[1]), endless[1], "{words:?}");
+    assert_eq!(shorter(words[last], to), to, "{words:?}");
     assert!(words.len() > 2, "{words:?}");
 }
 

@@ -129,6 +129,8 @@ fn ours(file: &Path) -> Vec<End> {
     let done = run(
         command()
             .args(["read", "-m", "vmc", "--dialect", "linuxcnc", "--csv", "-"])
+            // Deeper than the machine goes.
+            .args(["--set", "axis.Z.travel=[-1000, 100]"])
             .arg(file),
         b"",
     );

@@ -18,6 +18,9 @@ const ROOM: f64 = 50.0;
 /// A shorter way down is none, mm.
 const LEAST: f64 = 1.0;
 
+/// A tool lies across an axis where the cosine of the angle between them is less.
+const LYING: f64 = 0.01;
+
 /// Angles that differ by less are the same, radians; of directions, one less their cosine.
 const SAME: f64 = 1e-9;
 
@@ -127,8 +130,14 @@ impl Blocks<'_> {
         let mut retract = machine.frame.retract.iter();
         let (_, retract) = retract.find(|(joint, _)| *joint == depth)?;
         let joints = &node.trace.joints;
-        let away = libm::copysign(1.0, retract - joints[depth]);
-        let to_retract = libm::fabs(retract - joints[depth]);
+        let chain = placer.solver().chain();
+        // Along the tool to its holder; where it lies across the axis, to the retract.
+        let along = chain.way_of(depth, joints).dot(&node.target.axis);
+        let away = match libm::fabs(along) > LYING {
+            true => libm::copysign(1.0, along),
+            false => libm::copysign(1.0, retract - joints[depth]),
+        };
+        let to_retract = (retract - joints[depth]) * away;
         let end =
             machine.axes[depth].travel.map_or(
                 *retract,
@@ -137,7 +146,6 @@ impl Blocks<'_> {
                 },
             );
         let to_end = (end - joints[depth]) * away;
-        let chain = placer.solver().chain();
         // A tool without a length is one that nobody has measured.
         let measured = chain.tip() != machine.gauge;
         let room = (to_end / 2.0).min(if measured { ROOM } else { f64::INFINITY });

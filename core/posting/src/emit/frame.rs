@@ -278,7 +278,10 @@ impl Emit<'_> {
     pub(super) fn position(&mut self, block: &Block, findings: &Findings) {
         let line = block.line;
         self.worked = true;
-        self.extremes.reach(&block.joints);
+        match block.reason {
+            Reason::Above => self.extremes.reach_first(&block.joints, line),
+            _ => self.extremes.reach(&block.joints),
+        }
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
         self.retract(line);
         self.wake(line, findings);

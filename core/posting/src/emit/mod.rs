@@ -204,6 +204,7 @@ impl<'a> Emit<'a> {
     #[inline]
     fn block(&mut self, block: &Block, findings: &Findings) {
         let line = block.line;
+        self.extremes.follow(line);
         match block.kind {
             MotionKind::Position => self.position(block, findings),
             MotionKind::Reference => {

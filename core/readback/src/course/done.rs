@@ -10,7 +10,7 @@ use std::io::{Read, Seek};
 use std::sync::Arc;
 
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::{MAX_AXES, Pose};
+use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 
 use super::{Course, Curve, Item, Piece, Reach};
 use crate::interpret::Interpreter;
@@ -64,6 +64,9 @@ impl Chords {
 /// Poses nearer than this are one: mm, and of unit vectors.
 const SAME: f64 = 1e-9;
 
+/// What an axis moves by less is the rounding of words, mm or degrees.
+const ROUNDED: f64 = 0.01;
+
 /// Ways shorter than this take no time at a feed, mm.
 const NO_WAY: f64 = 1e-9;
 
@@ -87,6 +90,8 @@ pub struct DoneCourse<P> {
     stands: Option<Pose>,
     /// Bits of the linear axes that have no place of the part.
     astray: u32,
+    /// Axis values behind the last way in machine coordinates.
+    retracted: Option<Joints>,
     ended: bool,
 }
 
@@ -104,6 +109,7 @@ impl<P: Program> DoneCourse<P> {
             latest: None,
             stands: None,
             astray: u32::MAX,
+            retracted: None,
             ended: false,
         }
     }
@@ -180,9 +186,12 @@ impl<P: Program> DoneCourse<P> {
 
     fn motion(&mut self, motion: &Motion) {
         self.latest = Some(Arc::clone(&motion.state));
+        // A program that retracts first moves nothing where the tool stands up there.
+        self.retracted.get_or_insert(motion.from.joints);
         let moved = moved(motion);
         if motion.machine {
             self.astray |= moved;
+            self.retracted = Some(motion.to.joints);
             if moved != 0 && self.stands.take().is_some() {
                 self.hand_on(Item::Away { line: motion.line });
             }
@@ -223,8 +232,42 @@ impl<P: Program> DoneCourse<P> {
                 return;
             }
         }
-        self.pieces(motion, feed);
+        if !self.comes_down(motion) {
+            self.pieces(motion, feed);
+        }
         self.stands = Some(motion.to.pose);
+    }
+
+    /// The tool comes on to its first position, by the depth axis alone from about where it was retracted: the pose that is
+    /// reached is the one below.
+    fn comes_down(&mut self, motion: &Motion) -> bool {
+        let Some(retracted) = self.retracted.filter(|_| motion.kind == MotionKind::Rapid) else {
+            return false;
+        };
+        let [from, to] = [&motion.from.joints, &motion.to.joints];
+        let mut moved =
+            (0..from.len()).filter(|joint| libm::fabs(to[*joint] - from[*joint]) > ROUNDED);
+        let (Some(joint), None) = (moved.next(), moved.next()) else {
+            return false;
+        };
+        let by = to[joint] - from[joint];
+        let above = from[joint] - retracted[joint];
+        if motion.state.solver.chain().joints()[joint].rotary
+            || above * by < 0.0
+            || libm::fabs(above) > libm::fabs(by) + ROUNDED
+        {
+            return false;
+        }
+        let held = self.held.iter_mut().rev();
+        let Some(Item::Reach(reach)) = held
+            .map(|(_, item)| item)
+            .find(|item| matches!(item, Item::Reach(_)))
+        else {
+            return false;
+        };
+        reach.to = motion.to.pose;
+        reach.line = motion.line;
+        true
     }
 
     /// The pieces of a motion.

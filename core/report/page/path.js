@@ -268,8 +268,7 @@ P.path.tell = () => {
     const limit = mode.fixed || (mode.id === "axis_deviation" ? m.turn : m.tolerance);
     const ends = mode.top === null ? [`tolerance ${limit ? P.short(limit) + " " + P.unit(mode.unit) : ""}`, "above"] : [P.quantity(mode.top, mode.unit)];
     // The tolerance stands in the middle, where the colours change.
-    const { top, over } = colour;
-    told.push(strip(170, (share) => (mode.top !== null ? share * top : share < 0.5 ? share * 2 * top : over + (share * 2 - 1) * (255 - over))), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));
+    told.push(strip(170, (share) => (mode.top !== null ? share * colour.top : share < 0.5 ? share * 2 * colour.top : colour.over)), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));
   }
   const { vectors, path } = scene;
   const notes = [];

@@ -70,9 +70,10 @@ P.verdict.travel = ({ name, unit, min, max, travel, way }) => {
   const over = travel && (min < low - 1e-9 || max > high + 1e-9);
   const bar = el("span", { class: `way${over ? " over" : ""}` }, el("i"));
   const share = (value) => P.clamp(((value - low) / room) * 100, 0, 100);
-  bar.firstChild.style.left = travel ? `${share(min)}%` : "0";
+  const { style } = bar.firstChild;
+  style.left = travel ? `${share(min)}%` : "0";
   // Without ends: as a share of a turn.
-  bar.firstChild.style.width = travel ? `${Math.max(share(max) - share(min), 1)}%` : `${P.clamp(((max - min) / 360) * 100, 0, 100)}%`;
+  style.width = travel ? `${Math.max(share(max) - share(min), 1)}%` : `${Math.min((max - min) / 3.6, 100)}%`;
   const text = `${P.short(min)} … ${P.short(max)} ${P.unit(unit)}`;
   const told = travel ? `of ${P.short(low)} … ${P.short(high)}${over ? ", exceeded" : ""}` : "endless";
   const all = Number.isFinite(way) && way !== null ? `, ${P.short(way)} ${P.unit(unit)} in all` : "";

@@ -81,7 +81,7 @@ fn a_head_without_a_word_stops_the_program() {
         .position(|line| *line == "(CHANGE TO HEAD SIDE)")
         .unwrap();
     assert_eq!(lines[told + 1], "M0");
-    let moved = |line: &&str| line.contains(['X', 'Y', 'C']) && line.contains("G0");
+    let moved = |line: &&str| line.contains(['X', 'Y', 'C']) && line.starts_with("G0");
     let next = lines[told + 2..].iter().find(|line| moved(line)).unwrap();
     assert_eq!(*next, "G0 C-90.000");
     assert!(

@@ -37,6 +37,8 @@ fn posted(machine: &Machine, folder: &Path) -> std::path::PathBuf {
     let mut with = command();
     with.current_dir(folder);
     with.args(["-q", "-m", "fast.toml", "leaning.cls", "-o", "leaning.ngc"]);
+    // The way down is what stands ahead of the first feed move.
+    with.args(["--set", "control.rapid=rapid"]);
     let done = run(&mut with, b"");
     assert_eq!(done.code, 0, "{}", done.err);
     folder.join("leaning.ngc")

@@ -9,13 +9,17 @@ use super::sweep::Stray;
 use super::track::{MOST, What};
 use super::{RAPID_TURN, Verifier, state};
 use crate::course::Course;
-use crate::{Motion, MotionKind, Told};
+use crate::{Motion, MotionKind, Told, Way};
 
 /// So far ahead a cut is looked for that has no place where the program stands.
 const AHEAD: usize = 20_000;
 
 /// A rapid at feed may take so much longer than its axes need: feeds are rounded down.
 const SLOW: f64 = 0.1;
+
+/// Where the control keeps the tip and the axes turn, a linear axis may go so much faster on the way than from end to end, as a
+/// share of that.
+const BENT: f64 = 1.0;
 
 /// And so much besides, minutes.
 const MOMENT: f64 = 1e-4;
@@ -344,8 +348,10 @@ impl<C: Course> Verifier<'_, C> {
     /// A motion at feed that the machine file lets a rapid be: as fast as its axes go.
     pub(super) fn is_as_fast_as_rapids(&self, motion: &Motion) -> bool {
         let least = || self.axes.least_minutes(self.machine, motion);
+        let bent = motion.turns() && motion.way != Way::Axes;
+        let slack = if bent { BENT } else { SLOW };
         let fast = || {
-            least().is_some_and(|(minutes, _)| motion.minutes <= minutes * (1.0 + SLOW) + MOMENT)
+            least().is_some_and(|(minutes, _)| motion.minutes <= minutes * (1.0 + slack) + MOMENT)
         };
         self.rules.linear_rapids
             && motion.kind == MotionKind::Feed

@@ -92,7 +92,6 @@ pub fn vocabulary(dialect: &str) -> Vec<VocabularyWord> {
     let text = |text: &str| GivenValue::Text(text.to_owned());
     let options: &[(&str, GivenValue)] = match dialect {
         "grbl" => &[("hal", GivenValue::Flag(true))],
-        "hurco" => &[("tcp_on", text("M128"))],
         "okuma" => &[
             ("unit_system", text("1 mm")),
             ("tcp_on", text("G169 HL={h}")),

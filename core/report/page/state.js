@@ -214,9 +214,8 @@ P.next_by_worth = (worse) => {
 // The worst block of all: the one that the verdict names for what is looked at; -1 where nothing can be compared.
 P.worst = () => {
   const worth = P.worth();
-  const { maxima } = P.m.meta;
   const { bad, title } = P.colour.mode();
-  const { row, nc } = (bad ? maxima.find(({ name }) => name.includes(title)) : maxima[0]) || {};
+  const { row, nc } = P.m.meta.maxima.find(({ name }) => !bad || name.includes(title)) || {};
   if (row != null) return row;
   if (nc) return P.m.rowOf("nc", nc);
   if (!worth) return -1;

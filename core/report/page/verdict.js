@@ -71,9 +71,9 @@ P.verdict.travel = ({ name, unit, min, max, travel, way }) => {
   const bar = el("span", { class: `way${over ? " over" : ""}` }, el("i"));
   const share = (value) => P.clamp(((value - low) / room) * 100, 0, 100);
   const { style } = bar.firstChild;
-  style.left = travel ? `${share(min)}%` : "0";
+  style.left = `${travel ? share(min) : 0}%`;
   // Without ends: as a share of a turn.
-  style.width = travel ? `${Math.max(share(max) - share(min), 1)}%` : `${Math.min((max - min) / 3.6, 100)}%`;
+  style.width = `${travel ? Math.max(share(max) - share(min), 1) : Math.min((max - min) / 3.6, 100)}%`;
   const text = `${P.short(min)} … ${P.short(max)} ${P.unit(unit)}`;
   const told = travel ? `of ${P.short(low)} … ${P.short(high)}${over ? ", exceeded" : ""}` : "endless";
   const all = Number.isFinite(way) && way !== null ? `, ${P.short(way)} ${P.unit(unit)} in all` : "";

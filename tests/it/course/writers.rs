@@ -242,8 +242,8 @@ fn an_arc_by_its_angle_says_its_way_or_is_refused() {
             "179",
             "-9.99848,0.17452,0",
             [
-                10.0 * (89.5_f64).to_radians().cos(),
-                10.0 * (89.5_f64).to_radians().sin(),
+                10.0 * libm::cos(89.5_f64.to_radians()),
+                10.0 * libm::sin(89.5_f64.to_radians()),
                 0.0,
             ],
         ),

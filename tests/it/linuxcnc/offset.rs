@@ -100,9 +100,12 @@ fn the_tip_comes_down_its_line_wherever_the_part_is() {
     }
 }
 
+/// A line of the program; where it ends, and the least and largest values on it.
+type LineEnd = (usize, [f64; 15]);
+
 /// Where each line of the program ends in its cuts, and how far they reach: joints in mm and degrees.
-fn course(rows: &[Row]) -> Vec<(usize, [f64; 15])> {
-    let mut course: Vec<(usize, [f64; 15])> = Vec::new();
+fn course(rows: &[Row]) -> Vec<LineEnd> {
+    let mut course: Vec<LineEnd> = Vec::new();
     for row in rows.iter().filter(|row| row.feed || row.arc) {
         let at = [
             row.linear.x,
@@ -161,7 +164,7 @@ fn what_the_program_before_left_in_force_changes_nothing() {
                 *found.borrow_mut() = course;
                 return Ok(());
             }
-            let off = |(one, other): (&(usize, [f64; 15]), &(usize, [f64; 15]))| {
+            let off = |(one, other): (&LineEnd, &LineEnd)| {
                 let apart = one.1.iter().zip(&other.1).map(|(a, b)| (a - b).abs());
                 if one.0 == other.0 {
                     apart.fold(0.0, f64::max)

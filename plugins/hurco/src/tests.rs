@@ -27,7 +27,7 @@ fn five_axes_with_axis_positions() {
 
 #[test]
 fn five_axes_with_tcp() {
-    let bench = bench().with("tcp_on", Value::Text("M128"));
+    let bench = bench().with("tcp_on", Value::Text("G69\nM128"));
     insta::assert_snapshot!(bench.tcp().write_job().unwrap());
 }
 

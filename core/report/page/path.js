@@ -268,7 +268,8 @@ P.path.tell = () => {
     const limit = mode.fixed || (mode.id === "axis_deviation" ? m.turn : m.tolerance);
     const ends = mode.top === null ? [`tolerance ${limit ? P.short(limit) + " " + P.unit(mode.unit) : ""}`, "above"] : [P.quantity(mode.top, mode.unit)];
     // The tolerance stands in the middle, where the colours change.
-    told.push(strip(170, (share) => (mode.top !== null ? share * colour.top : share < 0.5 ? share * 2 * colour.top : colour.over)), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));
+    const by = mode.top ? 1 : 2;
+    told.push(strip(170, (share) => ((share *= by) > 1 ? colour.over : share * colour.top)), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));
   }
   const { vectors, path } = scene;
   const notes = [];

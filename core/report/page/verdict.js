@@ -65,15 +65,15 @@ P.verdict.warnings = (warnings) => {
 // How much of its travel an axis uses.
 P.verdict.travel = ({ name, unit, min, max, travel, way }) => {
   const { el } = P;
-  const [low, high] = travel || [min, max];
+  // Without ends: as a share of a turn.
+  const [low, high] = travel || [min, min + 360];
   const room = high - low || 1;
   const over = travel && (min < low - 1e-9 || max > high + 1e-9);
   const bar = el("span", { class: `way${over ? " over" : ""}` }, el("i"));
   const share = (value) => P.clamp(((value - low) / room) * 100, 0, 100);
   const { style } = bar.firstChild;
-  style.left = `${travel ? share(min) : 0}%`;
-  // Without ends: as a share of a turn.
-  style.width = `${travel ? Math.max(share(max) - share(min), 1) : Math.min((max - min) / 3.6, 100)}%`;
+  style.left = `${share(min)}%`;
+  style.width = `${Math.max(share(max) - share(min), 1)}%`;
   const text = `${P.short(min)} … ${P.short(max)} ${P.unit(unit)}`;
   const told = travel ? `of ${P.short(low)} … ${P.short(high)}${over ? ", exceeded" : ""}` : "endless";
   const all = Number.isFinite(way) && way !== null ? `, ${P.short(way)} ${P.unit(unit)} in all` : "";

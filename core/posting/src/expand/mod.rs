@@ -307,8 +307,13 @@ impl Expand {
         let CycleStep { cycle, point } = *step;
         let native = cycle.native();
         let known = native.filter(|native| self.cycles.has(capability(native.kind)));
-        if native.is_some_and(|native| native.alone) && known.is_none() {
-            findings.at(line, no_moves());
+        if let (Some(kind), None) = (
+            native
+                .filter(|native| native.alone)
+                .map(|native| native.kind),
+            known,
+        ) {
+            findings.at(line, no_moves(kind));
             return;
         }
         let rapid = |tip| Motion {
@@ -380,11 +385,16 @@ fn capability(kind: Cycle) -> Capabilities {
 }
 
 /// A cycle that no moves can do, and the control is not told.
-fn no_moves() -> Diagnostic {
-    Diagnostic::error(
+fn no_moves(kind: Cycle) -> Diagnostic {
+    let refused = Diagnostic::error(
         "cycle",
         "this cycle ties the feed to the spindle's turns, or stops the spindle in the hole, which moves cannot do, \
          and this dialect has no words for it or [control] cycles = \"moves\" leaves them out",
-    )
-    .help("cycles = \"native\" and a control that has it, or thread milling in the CAM system")
+    );
+    refused.help(match kind {
+        Cycle::BoreFine | Cycle::BoreBack => {
+            "[program] bore_shift, on the controls that have it, says which way the cycle draws the tool off the wall: it is not written without; or CYCLE/BORE without ORIENT"
+        }
+        _ => "cycles = \"native\" and a control that has it, or thread milling in the CAM system",
+    })
 }

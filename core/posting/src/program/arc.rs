@@ -1,6 +1,6 @@
 //! Arcs become chords within a tolerance.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
@@ -25,6 +25,18 @@ pub struct Arc {
 
 /// Ends nearer than this are one point, so the arc is a whole turn: mm. No CAM system writes arcs so short.
 const CLOSED: f64 = 1e-3;
+
+/// An end that lies less ahead of the start is the start: what is left of it in numbers of ten digits, mm.
+const ROUNDED: f64 = 1e-7;
+
+/// An arc whose end lies so little ahead of its start that the other reading may be meant: by how much, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ArcDoubt {
+    /// It is made as the short arc between them.
+    Short(f64),
+    /// It is made as a whole turn.
+    Turn(f64),
+}
 
 impl Arc {
     /// The arc from `start` to `end`, right-handed about `axis`, over `turns` passes of its end (1 is the usual arc).
@@ -88,11 +100,18 @@ impl Arc {
         libm::fabs(self.radii[1] - self.radii[0])
     }
 
-    /// The distance between ends so near that a whole turn may be meant, mm.
-    pub fn doubtful(&self) -> Option<f64> {
-        let rise = self.axis * (self.heights[1] - self.heights[0]);
-        let gap = (self.at(1.0) - self.at(0.0) - rise).norm();
-        (CLOSED..10.0 * CLOSED).contains(&gap).then_some(gap)
+    /// What else may be meant where the end lies just ahead of the start; an end just behind it is nearly a whole turn
+    /// either way. `end` is the point that the file gives, in the frame of the arc.
+    pub fn doubt(&self, end: Vector3<f64>) -> Option<ArcDoubt> {
+        let ahead = self.axis.cross(&self.radial).dot(&(end - self.centre));
+        if !(ROUNDED..10.0 * CLOSED).contains(&ahead) || self.radial.dot(&(end - self.centre)) < 0.0
+        {
+            return None;
+        }
+        Some(match self.sweep < PI {
+            true => ArcDoubt::Short(ahead),
+            false => ArcDoubt::Turn(ahead),
+        })
     }
 
     /// The largest of its radii, mm.
@@ -178,6 +197,27 @@ mod tests {
         )
         .unwrap();
         assert!((two.at(0.5) - point(10.0, 0.0, 1.5)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn an_end_just_ahead_of_the_start_is_doubtful() {
+        let start = point(10.0, 0.0, 0.0);
+        let doubt = |end: Vector3<f64>, axis: f64| {
+            let axis = Vector3::z() * axis;
+            Arc::new(start, end, Vector3::zeros(), axis, 1)
+                .unwrap()
+                .doubt(end)
+        };
+        let turn = doubt(point(10.0, 2e-4, 0.0), 1.0);
+        assert!(matches!(turn, Some(ArcDoubt::Turn(ahead)) if (ahead - 2e-4).abs() < 1e-9));
+        let short = doubt(point(10.0, 4e-3, 1.0), 1.0);
+        assert!(matches!(short, Some(ArcDoubt::Short(ahead)) if (ahead - 4e-3).abs() < 1e-9));
+        // The start itself, an end behind it, an arc, and a half turn are what they are.
+        assert_eq!(doubt(start, 1.0), None);
+        assert_eq!(doubt(point(10.0, 2e-4, 0.0), -1.0), None);
+        assert_eq!(doubt(point(10.0, 4e-3, 0.0), -1.0), None);
+        assert_eq!(doubt(point(9.998, 0.2, 0.0), 1.0), None);
+        assert_eq!(doubt(point(-10.0, 1e-3, 0.0), 1.0), None);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use post_grammar::{Circle, Record, Sense, Statement};
 
 use super::{Interpreter, Pending};
+use crate::program::arc::ArcDoubt;
 use crate::program::limits::MOST_SPLINE_NUMBERS;
 use crate::program::{Arc, ArcStep, Spline, SplineStep, Step};
 use post_machine::diagnostic::Short;
@@ -56,12 +57,17 @@ impl Interpreter {
                 "put a CYCLE/OFF before it",
             );
         }
-        if let Some(gap) = arc.doubtful() {
-            self.warn(
-                record,
-                "arc",
-                format!("the ends of this arc lie {gap:.4} mm apart: it is made as that short arc, not as a whole turn"),
-            );
+        if let Some(doubt) = arc.doubt(end) {
+            let message = match doubt {
+                ArcDoubt::Short(ahead) => format!(
+                    "this arc ends {ahead:.4} mm ahead of its start: it is made as that short arc, not as a whole turn"
+                ),
+                ArcDoubt::Turn(ahead) => format!(
+                    "this arc ends {} mm ahead of its start: it is made as a whole turn, not as so short an arc",
+                    Short(ahead)
+                ),
+            };
+            self.warn(record, "arc", message);
         }
         if arc.mismatch() > self.reading.chord_tolerance && arc.mismatch() <= ARC_MISMATCH {
             self.warn(

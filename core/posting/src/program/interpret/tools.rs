@@ -161,6 +161,16 @@ impl Interpreter {
             return;
         }
         self.loaded = loaded;
+        if self.cycle.is_some() {
+            self.warn(
+                record,
+                "cycle",
+                format!(
+                    "the cycle before this tool change goes on behind it: tool {} makes a hole at every point until CYCLE/OFF",
+                    tool.number
+                ),
+            );
+        }
         self.measured |= tool.length.is_some();
         self.register = None;
         self.cutter_changed = false;

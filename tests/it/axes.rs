@@ -17,7 +17,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use common::{Run, check_numbers, post, root};
-use post_testkit::read_back::{Block, Model, Pose, V, angle, blocks, overlay, table};
+use post_testruns::read_back::{Block, Model, Pose, V, angle, blocks, overlay, table};
 use toml::{Table, Value};
 
 /// Words that are rounded move the tip by so much, mm.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use nalgebra::Vector3;
-use post_testkit::read_back::{Model, angle, blocks, overlay, points, table};
+use post_testruns::read_back::{Model, angle, blocks, overlay, points, table};
 use serde_json::Value;
 use tempfile::TempDir;
 use toml::Table;

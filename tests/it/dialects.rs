@@ -10,8 +10,8 @@ use crate::real_files;
 
 use std::path::Path;
 
-use post_testkit::read_back::table;
 use post_testkit::shared;
+use post_testruns::read_back::table;
 
 /// What a job shows, its machine, sample and further arguments.
 const JOBS: &[(&str, &str, &str, &[&str])] = &[

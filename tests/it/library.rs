@@ -7,8 +7,8 @@ use std::fs;
 use std::path::Path;
 
 use common::{check_numbers, post, read_json, root};
-use post_testkit::read_back::{Model, Point, V, angle, blocks, points, table};
 use post_testkit::shared;
+use post_testruns::read_back::{Model, Point, V, angle, blocks, points, table};
 
 /// A machine with its program, `tests/machines/<machine>.<ending>`, and the one that it must refuse,
 /// `tests/machines/<machine>.refused.<ending>`.
@@ -228,7 +228,7 @@ fn read_back(row: &Row, points: &[Point], program: &str) -> Vec<String> {
 }
 
 /// The leading edge must point along one of the pieces that meet in a CL point, or between them.
-fn edge_faults(points: &[Point], poses: &[post_testkit::read_back::Pose]) -> Vec<String> {
+fn edge_faults(points: &[Point], poses: &[post_testruns::read_back::Pose]) -> Vec<String> {
     let mut faults = Vec::new();
     let cuts: Vec<&[Point]> = points
         .chunk_by(|_, point| !point.rapid)

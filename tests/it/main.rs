@@ -56,7 +56,6 @@ mod report_solids;
 mod right_jobs;
 #[cfg(unix)]
 mod rights;
-mod schema;
 mod settings;
 mod shells;
 #[cfg(unix)]

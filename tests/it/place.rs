@@ -8,7 +8,7 @@ use std::path::Path;
 
 use common::{Run, command, post, read_json, run};
 use nalgebra::{Rotation3, Vector3};
-use post_testkit::read_back::{Model, blocks, table};
+use post_testruns::read_back::{Model, blocks, table};
 use serde_json::Value;
 
 /// `post place` with these words on a CL file of that text.

@@ -292,7 +292,7 @@ fn skip_further_blanks(text: &[u8], mut at: usize) -> usize {
 mod tests {
     use super::*;
     use crate::{MajorWord, Reader, parse_record};
-    use proptest::prelude::*;
+    use post_testkit::{Rng, randomised};
     use std::collections::BTreeMap;
     use std::fmt::Write;
 
@@ -392,21 +392,18 @@ mod tests {
     const BLANKS: &str = "[ \t]{0,2}";
 
     /// Words of the table in any letters, words with something behind them, and words that nobody knows.
-    fn word() -> impl Strategy<Value = String> {
-        let spellings: Vec<&str> = MajorWord::all()
-            .iter()
-            .flat_map(|word| word.spellings)
-            .copied()
-            .collect();
-        let known = prop::sample::select(spellings);
-        prop_oneof![
-            6 => known.clone().prop_map(str::to_owned),
-            1 => known.clone().prop_map(str::to_lowercase),
-            1 => (known, "[A-Z._-]").prop_map(|(word, more)| word.to_owned() + &more),
-            1 => "[A-Za-z$][A-Z0-9_.-]{0,9}",
-            1 => Just("$$".to_owned()),
-            1 => Just("REMARK ->FEATNO".to_owned()),
-        ]
+    fn word(rng: &mut Rng) -> String {
+        let words = MajorWord::all();
+        let word = rng.choose(words);
+        let known = *rng.choose(word.spellings);
+        match rng.pick(11) {
+            0..6 => known.to_owned(),
+            6 => known.to_lowercase(),
+            7 => known.to_owned() + &rng.text("[A-Z._-]"),
+            8 => rng.text("[A-Za-z$][A-Z0-9_.-]{0,9}"),
+            9 => "$$".to_owned(),
+            _ => "REMARK ->FEATNO".to_owned(),
+        }
     }
 
     /// Words behind the slash.
@@ -417,51 +414,57 @@ mod tests {
         "RTRCTO", "STEP", "DWELL", "REV", "MM", "INCH", "MILL", "COLOR", "a/b", "1x", "-", "1e",
     ];
 
-    fn item() -> impl Strategy<Value = String> {
-        prop_oneof![
-            8 => NUMBER,
-            6 => prop::sample::select(&NAMES[..]).prop_map(str::to_owned),
-            1 => "[ -~]{0,3}",
-            1 => "[\u{1}-\u{FF}]",
-            1 => Just(String::new()),
-        ]
+    fn item(rng: &mut Rng) -> String {
+        match rng.pick(17) {
+            0..8 => rng.text(NUMBER),
+            8..14 => (*rng.choose(&NAMES)).to_owned(),
+            14 => rng.text("[ -~]{0,3}"),
+            15 => rng.text("[\u{1}-\u{FF}]"),
+            _ => String::new(),
+        }
     }
 
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(2048))]
-
-        /// Whatever the scanner takes, pest reads the same; what it leaves is for pest alone to say.
-        #[test]
-        fn scanner_and_pest_agree(
-            word in word(),
-            items in prop::collection::vec((BLANKS, item(), BLANKS, "(,|,|,|,|,| )"), 0..12),
-            (before, between, slash, tail) in (BLANKS, BLANKS, "(/|/|/|/|)", "(|||,| ,| \\$\\$ x|\\$\\$|\\$|x)"),
-        ) {
-            let mut line = format!("{before}{word}{between}{slash}");
-            for (index, (a, item, b, comma)) in items.iter().enumerate() {
-                line += &format!("{a}{item}{b}");
-                if index + 1 < items.len() {
-                    line += comma;
+    /// Whatever the scanner takes, pest reads the same; what it leaves is for pest alone to say.
+    #[test]
+    fn scanner_and_pest_agree() {
+        let (rounds, mut rng) = randomised(2048, 3);
+        for _ in rounds {
+            let mut line = rng.text(BLANKS) + &word(&mut rng) + &rng.text(BLANKS);
+            line += &rng.text("(/|/|/|/|)");
+            let count = rng.pick(12);
+            for index in 0..count {
+                line += &rng.text(BLANKS);
+                line += &item(&mut rng);
+                line += &rng.text(BLANKS);
+                if index + 1 < count {
+                    line += &rng.text("(,|,|,|,|,| )");
                 }
             }
-            line += &tail;
+            line += &rng.text("(|||,| ,| \\$\\$ x|\\$\\$|\\$|x)");
             if let Some(scanned) = record(line.as_bytes()) {
                 let expected = parse_record(&line).map(|statement| told(&statement));
-                prop_assert_eq!(Ok(told(&scanned)), expected, "{}", line);
+                assert_eq!(Ok(told(&scanned)), expected, "{line}");
             }
         }
+    }
 
-        #[test]
-        fn points_are_taken_whatever_blanks_and_numbers(
-            numbers in prop::collection::vec((BLANKS, NUMBER, BLANKS), 1..8),
-            (before, between, tail) in (BLANKS, BLANKS, "(|,| ,| \\$\\$ x|x|,A)"),
-        ) {
-            let numbers: Vec<String> = numbers.into_iter().map(|(a, number, b)| format!("{a}{number}{b}")).collect();
+    #[test]
+    fn points_are_taken_whatever_blanks_and_numbers() {
+        let (rounds, mut rng) = randomised(2048, 4);
+        for _ in rounds {
+            let numbers = rng.some([1, 8], |rng| {
+                rng.text(BLANKS) + &rng.text(NUMBER) + &rng.text(BLANKS)
+            });
+            let [before, between] = [(); 2].map(|()| rng.text(BLANKS));
+            let tail = rng.text("(|,| ,| \\$\\$ x|x|,A)");
             let line = format!("{before}GOTO{between}/{}{tail}", numbers.join(","));
             let expected = parse_record(&line);
             match record(line.as_bytes()) {
-                Some(scanned) => prop_assert_eq!(Ok(told(&scanned)), expected.map(|found| told(&found)), "{}", line),
-                None => prop_assert!(!matches!(expected, Ok(Statement::Goto { .. })), "{}", line),
+                Some(scanned) => {
+                    let expected = expected.map(|found| told(&found));
+                    assert_eq!(Ok(told(&scanned)), expected, "{line}");
+                }
+                None => assert!(!matches!(expected, Ok(Statement::Goto { .. })), "{line}"),
             }
         }
     }

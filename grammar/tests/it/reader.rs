@@ -1,7 +1,7 @@
 //! Logical lines: ends, continuations, comments, chunks, faults between good records.
 
 use post_grammar::{ReadError, Reader, Record, Statement};
-use proptest::prelude::*;
+use post_testkit::randomised;
 use std::io::{self, Cursor, Read};
 
 /// Hands out at most so many bytes at a time, in turn.
@@ -243,38 +243,56 @@ fn a_failing_input_is_passed_on() {
 const SAMPLE: &str = "\u{FEFF}PARTNO blade\r\nUNITS / MM\r\n\r\n$$-> CSYS / 1, 0, 0, 0, $\r\n 0, 1, 0, 0, $\r\n 0, 0, 1, 0\r\n\
     GOTO / 1, 2, 3, $\n0, 0, 1\nGOTO/1,2\rRAPID\rGOTO/4.5,-.5,1.E-3\n\rCIRCLE/0,0,0,0,0,1 $$ c $\nFINI";
 
-proptest! {
-    #![proptest_config(crate::cases())]
-
-    #[test]
-    fn chunks_of_points_do_not_matter(
-        lines in prop::collection::vec(
-            "( ?GOTO/|GOTO / |GOTO/|GOTO/|GOTO/|RAPID|\\$\\$ |FEDRAT/)(-?[0-9]{1,3}(\\.[0-9]{0,11})?,?){0,7}( ?\\$| \\$\\$ x|x|)(\n|\n|\r\n|\r|\n\n)",
-            0..12,
-        ),
-        sizes in prop::collection::vec(1..200usize, 1..6),
-    ) {
-        let text = lines.concat();
-        let trickle = Trickle { bytes: text.as_bytes(), sizes: sizes.into_iter().cycle() };
-        prop_assert_eq!(all(trickle), all(text.as_bytes()));
+#[test]
+fn chunks_of_points_do_not_matter() {
+    let (rounds, mut rng) = randomised(256, 1);
+    for _ in rounds {
+        let text = rng.text(
+            "(( ?GOTO/|GOTO / |GOTO/|GOTO/|GOTO/|RAPID|\\$\\$ |FEDRAT/)(-?[0-9]{1,3}(\\.[0-9]{0,11})?,?){0,7}( ?\\$| \\$\\$ x|x|)(\n|\n|\r\n|\r|\n\n)){0,11}",
+        );
+        let sizes = rng.some([1, 6], |rng| 1 + rng.pick(199));
+        let trickle = Trickle {
+            bytes: text.as_bytes(),
+            sizes: sizes.into_iter().cycle(),
+        };
+        assert_eq!(all(trickle), all(text.as_bytes()), "{text:?}");
     }
+}
 
-    #[test]
-    fn chunks_do_not_matter(sizes in prop::collection::vec(1..40usize, 1..6)) {
-        let trickle = Trickle { bytes: SAMPLE.as_bytes(), sizes: sizes.into_iter().cycle() };
-        prop_assert_eq!(all(trickle), all(SAMPLE.as_bytes()));
+#[test]
+fn chunks_do_not_matter() {
+    let (rounds, mut rng) = randomised(256, 2);
+    for _ in rounds {
+        let sizes = rng.some([1, 6], |rng| 1 + rng.pick(39));
+        let trickle = Trickle {
+            bytes: SAMPLE.as_bytes(),
+            sizes: sizes.into_iter().cycle(),
+        };
+        assert_eq!(all(trickle), all(SAMPLE.as_bytes()));
     }
+}
 
-    #[test]
-    fn random_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..400), sizes in prop::collection::vec(1..40usize, 1..4)) {
-        let trickle = Trickle { bytes: &bytes, sizes: sizes.into_iter().cycle() };
-        prop_assert_eq!(all(trickle), all(bytes.as_slice()));
+#[test]
+fn random_bytes_are_read_or_refused() {
+    let (rounds, mut rng) = randomised(256, 3);
+    for _ in rounds {
+        let bytes = rng.bytes(400);
+        let sizes = rng.some([1, 4], |rng| 1 + rng.pick(39));
+        let trickle = Trickle {
+            bytes: &bytes,
+            sizes: sizes.into_iter().cycle(),
+        };
+        assert_eq!(all(trickle), all(bytes.as_slice()), "{bytes:?}");
     }
+}
 
-    #[test]
-    fn random_text_is_read_or_refused(
-        text in "((GOTO|CYCLE|FEDRAT|ROTABL|CUTCOM|SPINDL|LOAD|TLDATA|CIRCLE|REMARK|\\$\\$->|TOOL PATH|KNOT|DELAY|[A-Z]{1,6})?[ /]{0,2}([A-Z0-9.,+$ -]|CLW|TOOL,|INCR,|DRILL,|AAXIS,|\\$\n|\n|é){0,12}\n){0,20}",
-    ) {
+#[test]
+fn random_text_is_read_or_refused() {
+    let (rounds, mut rng) = randomised(256, 4);
+    for _ in rounds {
+        let text = rng.text(
+            "((GOTO|CYCLE|FEDRAT|ROTABL|CUTCOM|SPINDL|LOAD|TLDATA|CIRCLE|REMARK|\\$\\$->|TOOL PATH|KNOT|DELAY|[A-Z]{1,6})?[ /]{0,2}([A-Z0-9.,+$ -]|CLW|TOOL,|INCR,|DRILL,|AAXIS,|\\$\n|\n|é){0,12}\n){0,20}",
+        );
         all(text.as_bytes());
     }
 }

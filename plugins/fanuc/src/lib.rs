@@ -127,6 +127,3 @@ const OWN: &[(&str, Meaning)] = &[
 ];
 
 export_dialect!(fanuc, Iso<Fanuc>);
-
-#[cfg(test)]
-mod tests;

@@ -180,6 +180,3 @@ const OWN: &[(&str, Meaning)] = &[
 ];
 
 export_dialect!(grbl, Iso<Grbl>);
-
-#[cfg(test)]
-mod tests;

@@ -107,6 +107,3 @@ const OWN: &[(&str, Meaning)] = &[
 ];
 
 export_dialect!(haas, Iso<Haas>);
-
-#[cfg(test)]
-mod tests;

@@ -275,6 +275,3 @@ fn places(setup: &Setup<'_>) -> Option<[usize; 3]> {
 }
 
 export_dialect!(heidenhain, Heidenhain);
-
-#[cfg(test)]
-mod tests;

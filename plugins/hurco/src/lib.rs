@@ -82,6 +82,3 @@ const OWN: &[(&str, Meaning)] = &[
 ];
 
 export_dialect!(hurco, Iso<Hurco>);
-
-#[cfg(test)]
-mod tests;

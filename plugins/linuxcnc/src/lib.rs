@@ -234,6 +234,3 @@ const OWN: &[(&str, Meaning)] = &[
 ];
 
 export_dialect!(linuxcnc, Iso<LinuxCnc>);
-
-#[cfg(test)]
-mod tests;

@@ -98,6 +98,3 @@ const OWN: &[(&str, Meaning)] = &[
 ];
 
 export_dialect!(mazak, Iso<Mazak>);
-
-#[cfg(test)]
-mod tests;

@@ -107,6 +107,3 @@ const OWN: &[(&str, Meaning)] = &[
 ];
 
 export_dialect!(mitsubishi, Iso<Mitsubishi>);
-
-#[cfg(test)]
-mod tests;

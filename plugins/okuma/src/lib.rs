@@ -190,6 +190,3 @@ const OWN: &[(&str, Meaning)] = &[
 ];
 
 export_dialect!(okuma, Iso<Okuma>);
-
-#[cfg(test)]
-mod tests;

@@ -181,6 +181,3 @@ fn across(setup: &Setup<'_>) -> &'static str {
 }
 
 export_dialect!(siemens, Iso<Siemens>);
-
-#[cfg(test)]
-mod tests;

@@ -265,7 +265,7 @@ fn a_knife_that_goes_round_and_round_is_drawn_out_where_an_axis_ends() {
         assert!(over.is_none(), "line {}: {over:?}", block.line);
     }
     let mut at = 0;
-    let points = post_testkit::read_back::points(&text);
+    let points = post_testruns::read_back::points(&text);
     for point in &points[2..points.len() - 2] {
         let tangent = V::z()
             .cross(&V::new(point.tip.x, point.tip.y, 0.0))

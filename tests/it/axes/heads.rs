@@ -37,7 +37,7 @@ fn a_head_is_swapped_between_retract_and_next_position() {
     let blocks = blocks(&made.text, &names, &swaps);
     let models = [None, Some("ANGLE"), Some("STRAIGHT")].map(|head| setup.model(head));
     let mut at = 0;
-    for point in post_testkit::read_back::points(&text) {
+    for point in post_testruns::read_back::points(&text) {
         let model = match point.head.as_deref() {
             None => 0,
             Some("ANGLE") => 1,

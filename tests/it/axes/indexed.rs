@@ -100,7 +100,7 @@ fn an_index_table_turns_at_the_reference_let_go_and_is_clamped_in_cuts() {
         assert_eq!(stood, [0.0, 90.0, 35.0, 270.0, 271.0], "{dialect}");
         // The tip is where the CL file has it: on each side, both ends of the cut.
         let poses = made.poses();
-        for point in post_testkit::read_back::points(&cl) {
+        for point in post_testruns::read_back::points(&cl) {
             let met = poses.iter().any(|pose| {
                 (pose.tip - point.tip).norm() < ROUNDING && angle(pose.axis, point.axis) < 0.002
             });
@@ -198,7 +198,7 @@ fn two_indexed_axes_make_facets_and_refuse_simultaneous_cuts() {
         assert!(!stood.is_empty());
     }
     let poses = made.poses();
-    for point in post_testkit::read_back::points(&cl) {
+    for point in post_testruns::read_back::points(&cl) {
         let met = poses.iter().any(|pose| {
             (pose.tip - point.tip).norm() < ROUNDING && angle(pose.axis, point.axis) < 0.002
         });
@@ -289,7 +289,7 @@ fn an_index_move_of_the_file_sets_the_sixth_axis() {
         .position(|line| line.starts_with("ROTABL"))
         .unwrap();
     let mut at = 0;
-    for point in post_testkit::read_back::points(&cl) {
+    for point in post_testruns::read_back::points(&cl) {
         let met = (at..poses.len()).find(|at| {
             (poses[*at].tip - point.tip).norm() < 4e-4 && angle(poses[*at].axis, point.axis) < 2e-4
         });
@@ -360,7 +360,7 @@ fn the_sixth_axis_is_set_so_that_the_others_stay_in_travel() {
         }
     }
     let poses = made.poses();
-    for point in post_testkit::read_back::points(&cl) {
+    for point in post_testruns::read_back::points(&cl) {
         let met = poses.iter().any(|pose| {
             (pose.tip - point.tip).norm() < 4e-4 && angle(pose.axis, point.axis) < 2e-4
         });

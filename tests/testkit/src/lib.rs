@@ -1,11 +1,6 @@
-//! What the tests share, so that they judge by nothing of the crates under test:
+//! What all tests share, and no crate under test stands behind:
 //!
-//! - [`Reference`], a forward product of isometries, and [`Random`] machines; [`randomised`] says how many rounds a
-//!   test takes and from which seed;
-//! - [`posted`]: whole runs of posting, with the recorder of events, the sink and the models that go with them;
-//! - [`walk`]: a run's words held against the path of its CL file;
-//! - [`frechet`]: how far a curve and a path are apart, both gone along in order;
-//! - [`read_back`]: NC programs read back by a kinematics built from the machine's TOML;
+//! - [`Rng`], numbers that are the same everywhere; [`randomised`] says how many rounds a test takes and from which seed;
 //! - [`repository`] and [`shared`]: where files are.
 #![allow(
     missing_docs,
@@ -16,17 +11,8 @@
 )]
 
 mod data;
-pub mod frechet;
-mod geometry;
-mod papers;
-pub mod posted;
 mod random;
-pub mod read_back;
-mod reference;
-pub mod walk;
+mod text;
 
 pub use data::{repository, shared};
-pub use geometry::{angle, between, distance, slerp, turned};
-pub use papers::blade;
-pub use random::{Kind, Random, Rng, SIZE, across, randomised, rounds, seed, seeded};
-pub use reference::{Reference, nearest};
+pub use random::{Rng, randomised, rounds, seed, seeded};

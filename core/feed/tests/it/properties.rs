@@ -5,144 +5,176 @@ use post_feed::limits::{AxisJerk, Collocation, Limit};
 use post_feed::problem::{Ends, Row};
 use post_feed::reach::{self, Stream};
 use post_feed::{Infeasible, Problem, linear_program, profile};
-use post_testkit::Rng;
-use proptest::prelude::*;
+use post_testkit::{Rng, randomised};
 
 use crate::support::oracle::{self, Unsolved};
 use crate::support::random::{Limits, samples};
 
 /// A number of any size from a millionth to a thousand, or 0.
-fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        1 => Just(0.0),
-        6 => (-6.0..3.0_f64).prop_map(|power| libm::pow(10.0, power)),
-    ]
+fn number(random: &mut Rng) -> f64 {
+    match random.pick(7) {
+        0 => 0.0,
+        _ => random.order(-6.0, 3.0),
+    }
 }
 
-fn signed() -> impl Strategy<Value = f64> {
-    (number(), any::<bool>()).prop_map(|(size, up)| if up { size } else { -size })
+fn signed(random: &mut Rng) -> f64 {
+    let size = number(random);
+    if random.pick(2) == 0 { size } else { -size }
 }
 
 /// Up to 20 samples with up to 3 rows an interval, and ends at rest or at a share of their bounds.
-fn problem() -> impl Strategy<Value = Problem> {
-    (2..20_usize, 0..4_usize, any::<bool>()).prop_flat_map(|(count, stride, rest)| {
-        let upper = prop::collection::vec(number(), count);
-        let rows = prop::collection::vec((signed(), signed()), stride * (count - 1));
-        let ends = (0.0..1.0_f64, 0.0..1.0_f64);
-        (upper, rows, ends).prop_map(move |(upper, rows, (start, end))| {
-            let rows = rows
-                .into_iter()
-                .map(|(here, next)| Row { here, next })
-                .collect();
-            let ends = Ends {
-                start: if rest { 0.0 } else { start * upper[0] },
-                end: if rest { 0.0 } else { end * upper[count - 1] },
-            };
-            let mut problem = Problem::from_rows(vec![1.0; count - 1], upper, stride, rows);
-            problem.ends = ends;
-            problem
+fn problem(random: &mut Rng) -> Problem {
+    let (count, stride) = (2 + random.pick(18), random.pick(4));
+    let upper: Vec<f64> = (0..count).map(|_| number(random)).collect();
+    let rows = (0..stride * (count - 1))
+        .map(|_| Row {
+            here: signed(random),
+            next: signed(random),
         })
-    })
+        .collect();
+    let mut ends = Ends::default();
+    if random.pick(2) == 0 {
+        ends.start = random.range(0.0, 1.0) * upper[0];
+        ends.end = random.range(0.0, 1.0) * upper[count - 1];
+    }
+    let mut problem = Problem::from_rows(vec![1.0; count - 1], upper, stride, rows);
+    problem.ends = ends;
+    problem
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
-
-    /// At rest at both ends there is always a plan; elsewhere what is refused names a limit. Plans keep all limits, and
-    /// no plan is above the proven bound.
-    #[test]
-    fn plans_keep_every_limit_and_none_is_above_the_bound(problem in problem()) {
+/// At rest at both ends there is always a plan; elsewhere what is refused names a limit. Plans keep all limits, and
+/// no plan is above the proven bound.
+#[test]
+fn plans_keep_every_limit_and_none_is_above_the_bound() {
+    let (rounds, mut random) = randomised(1000, 1);
+    for _ in rounds {
+        let problem = problem(&mut random);
         let weights = vec![1.0; problem.upper.len()];
         let fast = reach::solve(&problem);
         let best = linear_program::solve(&problem, &weights);
         match (fast, best) {
             (Ok(fast), Ok(best)) => {
-                prop_assert!(problem.worst(&fast).share <= 1.0 + 1e-11, "{:?}", problem.worst(&fast));
-                prop_assert!(problem.worst(&best.q).share <= 1.0 + 1e-11, "{:?}", problem.worst(&best.q));
+                assert!(problem.worst(&fast).share <= 1.0 + 1e-11, "{problem:?}");
+                assert!(problem.worst(&best.q).share <= 1.0 + 1e-11, "{problem:?}");
                 let sum: f64 = fast.iter().sum();
-                prop_assert!(sum <= best.bound * (1.0 + 1e-9), "{} {}", sum, best.bound);
-                prop_assert!(best.objective <= best.bound * (1.0 + 1e-9));
+                assert!(sum <= best.bound * (1.0 + 1e-9), "{problem:?}");
+                assert!(best.objective <= best.bound * (1.0 + 1e-9), "{problem:?}");
                 // An optimum, or numbers so far apart that it is said how near.
-                prop_assert!(best.gap() < 1e-6, "{}", best.gap());
+                assert!(best.gap() < 1e-6, "{} {problem:?}", best.gap());
             }
             (Err(fault), other) => {
-                prop_assert!(problem.ends != Ends::default());
-                prop_assert!(fault.source().is_some());
-                prop_assert_eq!(other.unwrap_err(), fault);
+                assert!(problem.ends != Ends::default(), "{problem:?}");
+                assert!(fault.source().is_some(), "{problem:?}");
+                assert_eq!(other.unwrap_err(), fault, "{problem:?}");
             }
-            (Ok(_), Err(fault)) => prop_assert!(false, "{:?}", fault),
-        }
-    }
-
-    /// Clarabel's tolerances are those of its own scaling, so numbers lie closer together here.
-    #[test]
-    fn the_optimum_is_that_of_clarabel(seed in 0..u64::MAX, count in 2..60_usize) {
-        let mut random = Rng::new(seed);
-        let upper = (0..count).map(|_| random.range(1.0, 100.0)).collect();
-        let rows = (0..2 * (count - 1))
-            .map(|_| Row { here: random.range(-0.3, 0.3), next: random.range(-0.3, 0.3) })
-            .collect();
-        let mut problem = Problem::from_rows(vec![1.0; count - 1], upper, 2, rows);
-        if random.range(0.0, 1.0) < 0.5 {
-            problem.ends = Ends { start: random.range(0.0, 8.0).min(problem.upper[0]), end: 0.0 };
-        }
-        let weights: Vec<f64> = (0..count).map(|_| random.range(0.0, 2.0)).collect();
-        let ours = linear_program::solve(&problem, &weights);
-        let oracle = oracle::solve(&problem, &weights);
-        prop_assume!(!matches!(oracle, Err(Unsolved::Undecided)));
-        prop_assert_eq!(ours.is_ok(), oracle.is_ok());
-        if let (Ok(ours), Ok((_, oracle))) = (ours, oracle) {
-            prop_assert!((ours.objective - oracle).abs() <= 1e-6 * oracle.abs().max(1.0), "{} {}", ours.objective, oracle);
-        }
-    }
-
-    /// From rest to rest, whatever the look-ahead.
-    #[test]
-    fn a_stream_keeps_every_limit_with_any_look_ahead(problem in problem(), lookahead in 1..12_usize) {
-        let mut problem = problem;
-        problem.ends = Ends::default();
-        let whole = reach::solve(&problem).unwrap();
-        let mut stream = Stream::new(problem.stride(), lookahead);
-        let mut plan = Vec::new();
-        stream.push(&problem, &mut |sample| plan.push(sample.q)).unwrap();
-        stream.finish(0.0, &mut |sample| plan.push(sample.q)).unwrap();
-        prop_assert!(problem.worst(&plan).share <= 1.0 + 1e-11, "{:?}", problem.worst(&plan));
-        if stream.all_certain() {
-            prop_assert_eq!(plan, whole);
+            (Ok(_), Err(fault)) => panic!("{fault:?} {problem:?}"),
         }
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+/// Clarabel's tolerances are those of its own scaling, so numbers lie closer together here.
+#[test]
+fn the_optimum_is_that_of_clarabel() {
+    let (rounds, mut random) = randomised(1000, 2);
+    for _ in rounds {
+        let count = 2 + random.pick(58);
+        let upper = (0..count).map(|_| random.range(1.0, 100.0)).collect();
+        let rows = (0..2 * (count - 1))
+            .map(|_| Row {
+                here: random.range(-0.3, 0.3),
+                next: random.range(-0.3, 0.3),
+            })
+            .collect();
+        let mut problem = Problem::from_rows(vec![1.0; count - 1], upper, 2, rows);
+        if random.range(0.0, 1.0) < 0.5 {
+            problem.ends = Ends {
+                start: random.range(0.0, 8.0).min(problem.upper[0]),
+                end: 0.0,
+            };
+        }
+        let weights: Vec<f64> = (0..count).map(|_| random.range(0.0, 2.0)).collect();
+        let ours = linear_program::solve(&problem, &weights);
+        let oracle = oracle::solve(&problem, &weights);
+        if matches!(oracle, Err(Unsolved::Undecided)) {
+            continue;
+        }
+        assert_eq!(ours.is_ok(), oracle.is_ok(), "{problem:?}");
+        if let (Ok(ours), Ok((_, oracle))) = (ours, oracle) {
+            let apart = (ours.objective - oracle).abs();
+            assert!(
+                apart <= 1e-6 * oracle.abs().max(1.0),
+                "{} {oracle} {problem:?}",
+                ours.objective
+            );
+        }
+    }
+}
 
-    /// On random smooth paths, with a stop on the way: the jerk of each axis by what the samples say, and the order of
-    /// the times.
-    #[test]
-    fn plans_with_jerk_limits_keep_them_and_are_no_faster(seed in 0..u64::MAX, axes in 1..4_usize) {
+/// From rest to rest, whatever the look-ahead.
+#[test]
+fn a_stream_keeps_every_limit_with_any_look_ahead() {
+    let (rounds, mut random) = randomised(1000, 3);
+    for _ in rounds {
+        let mut problem = problem(&mut random);
+        let lookahead = 1 + random.pick(11);
+        problem.ends = Ends::default();
+        let whole = reach::solve(&problem).unwrap();
+        let mut stream = Stream::new(problem.stride(), lookahead);
+        let mut plan = Vec::new();
+        stream
+            .push(&problem, &mut |sample| plan.push(sample.q))
+            .unwrap();
+        stream
+            .finish(0.0, &mut |sample| plan.push(sample.q))
+            .unwrap();
+        assert!(problem.worst(&plan).share <= 1.0 + 1e-11, "{problem:?}");
+        if stream.all_certain() {
+            assert_eq!(plan, whole, "{problem:?}");
+        }
+    }
+}
+
+/// On random smooth paths, with a stop on the way: the jerk of each axis by what the samples say, and the order of
+/// the times.
+#[test]
+fn plans_with_jerk_limits_keep_them_and_are_no_faster() {
+    let (rounds, mut random) = randomised(12, 4);
+    for _ in rounds {
+        let seed = random.next();
+        let axes = 1 + random.pick(3);
         let mut random = Rng::new(seed);
         let samples = samples(&mut random, axes, 301, 30.0);
         let limits = Limits::new(&mut random, axes, Collocation::Throughout);
-        let jerk = AxisJerk { limits: (0..axes).map(|_| random.range(2e3, 4e4)).collect() };
+        let jerk = AxisJerk {
+            limits: (0..axes).map(|_| random.range(2e3, 4e4)).collect(),
+        };
         let mut all: Vec<&dyn Limit> = limits.all().to_vec();
         all.push(&jerk);
         let mut problem = Problem::new(&samples, &all, Ends::default()).unwrap();
         problem.upper[150] = 0.0;
         let plan = jerk::solve(&samples, &all, &problem, Settings::default()).unwrap();
-        prop_assert!(plan.seconds >= plan.bound * 0.999, "{} {}", plan.seconds, plan.bound);
-        prop_assert!((plan.law.q()[150]).abs() < 1e-12);
+        assert!(
+            plan.seconds >= plan.bound * 0.999,
+            "{seed}: {} {}",
+            plan.seconds,
+            plan.bound
+        );
+        assert!((plan.law.q()[150]).abs() < 1e-12, "{seed}");
         for (q, upper) in plan.law.q().iter().zip(&problem.upper) {
-            prop_assert!(*q <= upper * (1.0 + 1e-12));
+            assert!(*q <= upper * (1.0 + 1e-12), "{seed}");
         }
         for (interval, piece) in plan.law.pieces.iter().enumerate() {
             let step = plan.law.steps[interval];
             for share in [1e-9, 0.5] {
                 let [q, slope, bend] = piece.at(share, step);
                 for (axis, limit) in samples.axes.iter().zip(&jerk.limits) {
-                    let at = |all: &[f64]| profile::between(all[interval], all[interval + 1], share);
-                    let [first, second, third] = [&axis.first, &axis.second, &axis.third].map(|all| at(all));
+                    let at =
+                        |all: &[f64]| profile::between(all[interval], all[interval + 1], share);
+                    let [first, second, third] =
+                        [&axis.first, &axis.second, &axis.third].map(|all| at(all));
                     let value = q.sqrt() * (0.5 * first * bend + 1.5 * second * slope + third * q);
-                    prop_assert!(value.abs() < 1.02 * limit, "{} {}", value, limit);
+                    assert!(value.abs() < 1.02 * limit, "{seed}: {value} {limit}");
                 }
             }
         }

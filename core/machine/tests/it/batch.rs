@@ -2,7 +2,8 @@
 
 use post_machine::kinematics::batch::{Axes, LANES, Traces};
 use post_machine::kinematics::{Solver, Trace};
-use post_testkit::{Kind, Random, randomised};
+use post_testkit::randomised;
+use post_testmachines::{Kind, Random};
 
 /// Linear axes and forward product of a batch are those of its points, bit by bit.
 #[test]

@@ -7,7 +7,8 @@ use nalgebra::Vector3;
 use post_machine::check::{Check, Work, compare};
 use post_machine::description::{Machine, Source, load};
 use post_machine::diagnostic::Diagnostic;
-use post_testkit::{Reference, Rng, angle, randomised};
+use post_testkit::{Rng, randomised};
+use post_testmachines::{Reference, angle};
 
 /// What any check may ask of the inverse: poses, and steps of searches.
 const MOST: Work = Work {

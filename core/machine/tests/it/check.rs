@@ -4,7 +4,8 @@
 use nalgebra::{Matrix3, Vector3};
 use post_machine::check::{Check, compare};
 use post_machine::description::{Machine, Source, load};
-use post_testkit::{Reference, Rng, angle, randomised};
+use post_testkit::{Rng, randomised};
+use post_testmachines::{Reference, angle};
 
 /// Tool length, mm.
 const LENGTH: f64 = 90.0;

@@ -3,7 +3,8 @@
 
 use nalgebra::Vector3;
 use post_machine::kinematics::{Chain, Course, Joints, ORDERS, Solver, direction};
-use post_testkit::{Random, Rng, randomised};
+use post_testkit::{Rng, randomised};
+use post_testmachines::Random;
 
 /// A value that has these derivatives, so far on.
 fn on<T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(

@@ -4,7 +4,8 @@
 
 use nalgebra::Vector3;
 use post_machine::kinematics::{Chain, Joints, KeptTip, Solver, Trace};
-use post_testkit::{Random, Rng, between, randomised};
+use post_testkit::{Rng, randomised};
+use post_testmachines::{Random, between};
 
 /// A block along which the tip goes from one place to another.
 struct Block {

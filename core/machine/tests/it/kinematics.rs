@@ -8,7 +8,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use post_machine::kinematics::POLE;
 use post_machine::kinematics::orientation::RotarySet;
 use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
-use post_testkit::{Random, Rng, angle, randomised, turned};
+use post_testkit::{Rng, randomised};
+use post_testmachines::{Random, angle, turned};
 
 /// A pose of which the tool axis alone matters.
 fn towards(axis: Vector3<f64>) -> Pose {

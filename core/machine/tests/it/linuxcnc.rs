@@ -6,7 +6,8 @@ use std::fs;
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Setting, Source, load};
 use post_machine::kinematics::{Joints, Pose};
-use post_testkit::{angle, shared, turned};
+use post_testkit::shared;
+use post_testmachines::{angle, turned};
 
 /// A table that turns by `letter` under C, both the other way; R and d are the module's.
 fn table(letter: &str, direction: &str) -> String {

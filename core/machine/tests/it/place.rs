@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use post_machine::description::{Machine, Source, load};
 use post_machine::kinematics::Joints;
 use post_machine::place::{HalfSpace, Room, descend, most_room, nearest, rounded, shuffled};
-use post_testkit::{Reference, Rng, randomised};
+use post_testkit::{Rng, randomised};
+use post_testmachines::Reference;
 
 /// The nearest point by trying all: the wished point itself, its feet on planes and on the lines that two of them have in
 /// common, and the points that three of them do.

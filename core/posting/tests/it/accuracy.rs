@@ -15,9 +15,10 @@ use std::fmt::Write as _;
 use nalgebra::Vector3;
 use post_machine::kinematics::Joints;
 use post_plugin::Feed;
-use post_testkit::posted::{Bench, Run};
-use post_testkit::walk::{Shape, Stop, Walk, blocks, from_program, leaned, stop, text, wanted};
-use post_testkit::{Rng, across, angle, between, randomised, slerp};
+use post_testkit::{Rng, randomised};
+use post_testmachines::{across, angle, between, slerp};
+use post_testruns::posted::{Bench, Run};
+use post_testruns::walk::{Shape, Stop, Walk, blocks, from_program, leaned, stop, text, wanted};
 
 type V = Vector3<f64>;
 
@@ -449,7 +450,7 @@ fn hold(
 fn edge_stays_near(
     bench: &Bench,
     given: &Given,
-    block: &post_testkit::walk::Block,
+    block: &post_testruns::walk::Block,
     path: &[(V, V)],
     certified: f64,
 ) -> Result<(), String> {
@@ -481,7 +482,7 @@ fn edge_stays_near(
 }
 
 /// The largest deviation of the control point (mm) and the tool axis (radians) from a single leg at the same share.
-fn strays(bench: &Bench, block: &post_testkit::walk::Block, path: &[(V, V)]) -> [f64; 2] {
+fn strays(bench: &Bench, block: &post_testruns::walk::Block, path: &[(V, V)]) -> [f64; 2] {
     let mut most = [0.0f64; 2];
     for step in 0..=400 {
         let t = f64::from(step) / 400.0;

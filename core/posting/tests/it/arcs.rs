@@ -10,9 +10,9 @@ use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Feed};
 use post_posting::program::{Reading, ToldSpindle};
 use post_posting::{Block, Flow, Job, MotionKind, Observer};
-use post_testkit::frechet::keeps_within;
-use post_testkit::posted::{Asked, AskedArc, Bench, Recorder, Run, Samples, watched};
 use post_testkit::{Rng, randomised, repository, shared};
+use post_testmachines::frechet::keeps_within;
+use post_testruns::posted::{Asked, AskedArc, Bench, Recorder, Run, Samples, watched};
 
 type V = Vector3<f64>;
 

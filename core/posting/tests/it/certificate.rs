@@ -9,9 +9,8 @@ use nalgebra::Vector3;
 use post_machine::description::{Setting, Source, load};
 use post_machine::kinematics::{Chain, Joint, Joints, Pose, Solver, Trace};
 use post_posting::accuracy::certificate::{Bend, Course, chord_angle, deviation, quick, tight};
-use post_testkit::{
-    Random, Reference, Rng, angle, between, blade, distance, randomised, repository, slerp,
-};
+use post_testkit::{Rng, randomised, repository};
+use post_testmachines::{Random, Reference, angle, between, blade, distance, slerp};
 
 /// The chain at the ends of a block.
 fn traces(chain: &Chain, from: &Joints, to: &Joints) -> [Trace; 2] {
@@ -252,7 +251,7 @@ fn the_cutting_edge_is_held_against_the_circle_about_the_wanted_axis() {
         if angle(first.axis, last.axis) > 3.1 {
             continue;
         }
-        let side = post_testkit::across(&mut rng, chain.axis());
+        let side = post_testmachines::across(&mut rng, chain.axis());
         let other = chain.axis().cross(&side);
         let mut sampled = 0.0f64;
         for step in 0..=60 {

@@ -5,8 +5,8 @@ use std::fs;
 use post_machine::description::{Machine, Source, load};
 use post_plugin::Capabilities;
 use post_posting::{Job, JobFacts, LookedAhead};
-use post_testkit::posted::{Recorder, Run, Samples, watched};
 use post_testkit::repository;
+use post_testruns::posted::{Recorder, Run, Samples, watched};
 
 /// The machine `name` of the library, refined by `more`.
 fn machine(name: &str, more: &str) -> Machine {

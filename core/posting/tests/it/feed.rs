@@ -12,9 +12,10 @@ use nalgebra::Vector3;
 use post_machine::description::{InverseTime, Tcp};
 use post_machine::kinematics::{Joints, MAX_AXES};
 use post_plugin::Feed;
-use post_testkit::posted::{Asked, Bench, Run};
-use post_testkit::walk::{Stop, stop, text};
-use post_testkit::{Rng, between, randomised};
+use post_testkit::{Rng, randomised};
+use post_testmachines::between;
+use post_testruns::posted::{Asked, Bench, Run};
+use post_testruns::walk::{Stop, stop, text};
 
 type V = Vector3<f64>;
 

@@ -3,8 +3,8 @@
 
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 use post_plugin::Capabilities;
-use post_testkit::posted::{Asked, AskedArc, Bench};
 use post_testkit::randomised;
+use post_testruns::posted::{Asked, AskedArc, Bench};
 
 use super::arcs::{ALL, CHAINS, LENGTH, Wanted, in_mm, machine, point, posted, wanted};
 

@@ -5,8 +5,8 @@ use post_machine::description::{CompensationOnCentre, Machine, Source, load};
 use post_plugin::{Capabilities, Cycle, Feed};
 use post_posting::Job;
 use post_posting::program::{Reading, ToldSpindle};
-use post_testkit::posted::{Asked, Recorder, Run, Samples, watched};
 use post_testkit::{Rng, randomised};
+use post_testruns::posted::{Asked, Recorder, Run, Samples, watched};
 
 pub(crate) const LINEAR: &str = "
 [axis.X]

@@ -15,8 +15,9 @@ use post_machine::kinematics::{Joint, Joints};
 use post_plugin::Feed;
 use post_posting::program::Reading;
 use post_posting::{Job, MOST_FAULTS, Post};
-use post_testkit::posted::{self, Asked, Point, Run, Samples, cl, line, post};
-use post_testkit::{Reference, Rng, angle, between, distance, randomised, rounds, seeded, slerp};
+use post_testkit::{Rng, randomised, rounds, seeded};
+use post_testmachines::{Reference, angle, between, distance, slerp};
+use post_testruns::posted::{self, Asked, Point, Run, Samples, cl, line, post};
 
 fn run(machine: &Machine, cl: &str, job: Job) -> Run {
     let mut run = post(machine, 3, cl, job, &mut Samples);

@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 use nalgebra::Vector3;
 use post_plugin::Feed;
 use post_posting::Job;
-use post_testkit::posted::{Asked, Bench, Run, cl, point, post};
 use post_testkit::{Rng, randomised};
+use post_testruns::posted::{Asked, Bench, Run, cl, point, post};
 
 type V = Vector3<f64>;
 
@@ -51,7 +51,7 @@ fn run(bench: &Bench, text: &str, plans: bool) -> Run {
         3,
         text,
         job,
-        &mut post_testkit::posted::Samples,
+        &mut post_testruns::posted::Samples,
     )
     .good(text)
 }

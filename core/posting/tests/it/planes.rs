@@ -6,8 +6,8 @@ use post_machine::description::Machine;
 use post_plugin::{Capabilities, PlaneAngles};
 use post_posting::Job;
 use post_posting::program::{Reading, ToldSpindle};
-use post_testkit::posted::{AskedPlane, Recorder, Run, Samples, watched};
 use post_testkit::{Rng, randomised};
+use post_testruns::posted::{AskedPlane, Recorder, Run, Samples, watched};
 
 use crate::holes::{TABLE, machine};
 

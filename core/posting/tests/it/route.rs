@@ -14,9 +14,10 @@ use nalgebra::{Rotation3, Unit, Vector3};
 use post_machine::description::{Rule, Side};
 use post_machine::kinematics::{Joints, Pose, Solver};
 use post_plugin::Feed;
-use post_testkit::posted::Asked;
-use post_testkit::posted::{Bench, Point, Run, cl, line, point};
-use post_testkit::{Rng, across, angle, distance, randomised, repository, slerp, turned};
+use post_testkit::{Rng, randomised, repository};
+use post_testmachines::{across, angle, distance, slerp, turned};
+use post_testruns::posted::Asked;
+use post_testruns::posted::{Bench, Point, Run, cl, line, point};
 
 /// A machine of a class: chain, rotary axes with their lines, gauge and tool length.
 #[derive(Clone, Copy)]

@@ -11,7 +11,8 @@ use post_readback::course::{Course, Curve, Item, Piece};
 use post_readback::{
     Coolants, Corners, Done, Motion, MotionKind, Spindle, SplineWay, Stance, State, Told, Way,
 };
-use post_testkit::{Random, randomised, seeded};
+use post_testkit::{randomised, seeded};
+use post_testmachines::Random;
 
 type V = Vector3<f64>;
 

@@ -13,8 +13,8 @@ use post_readback::{
     Coolants, Corners, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State,
     Told, Way,
 };
-use post_testkit::frechet::frechet;
 use post_testkit::seeded;
+use post_testmachines::frechet::frechet;
 
 type V = Vector3<f64>;
 

@@ -2,8 +2,7 @@
 
 use super::{conversational, hash, names, read};
 use post_grammar::nc::{NcBlock, NcReader, NcSyntax, parse_block};
-use post_testkit::shared;
-use proptest::prelude::*;
+use post_testkit::{randomised, shared};
 use std::fs;
 use std::io::{Cursor, Read, Seek, SeekFrom};
 use std::time::{Duration, Instant};
@@ -190,59 +189,72 @@ fn real_lines() -> Vec<(Vec<u8>, NcSyntax)> {
     .into()
 }
 
-proptest! {
-    #![proptest_config(crate::cases())]
-
-    #[test]
-    fn any_bytes_are_read_to_their_end(bytes in prop::collection::vec(any::<u8>(), 0..2000)) {
+#[test]
+fn any_bytes_are_read_to_their_end() {
+    let (rounds, mut rng) = randomised(256, 1);
+    for _ in rounds {
+        let bytes = rng.bytes(2000);
         for syntax in families() {
             read(&bytes, &syntax);
         }
     }
+}
 
-    #[test]
-    fn any_text_of_a_program_is_read_to_its_end(
-        text in "([A-Z#]{1,3}[0-9=+.\\-]{0,3}|[\\[\\]()\"%~;:/<>$*,_]|\n|IF|GOTO|WHILE|CYCL DEF|LBL|SIN|AND| ){0,200}",
-    ) {
+#[test]
+fn any_text_of_a_program_is_read_to_its_end() {
+    let (rounds, mut rng) = randomised(256, 2);
+    for _ in rounds {
+        let text = rng.text(
+            "([A-Z#]{1,3}[0-9=+.\\-]{0,3}|[\\[\\]()\"%~;:/<>$*,_]|\n|IF|GOTO|WHILE|CYCL DEF|LBL|SIN|AND| ){0,200}",
+        );
         for syntax in families() {
             read(text.as_bytes(), &syntax);
         }
     }
+}
 
-    #[test]
-    fn real_programs_with_bytes_changed_are_read_to_their_end(
-        file in 0..4_usize,
-        from in 0.0..1.0_f64,
-        changes in prop::collection::vec((0.0..1.0_f64, any::<u8>(), 0..3_u8), 1..20),
-    ) {
-        let programs = real_lines();
-        if let Some((program, syntax)) = programs.get(file) {
-            let from = (from * program.len() as f64) as usize;
-            let mut text = program[from..program.len().min(from + 3000)].to_vec();
-            for (place, byte, kind) in changes {
-                let at = (place * text.len() as f64) as usize;
-                match kind {
-                    0 => text[at] = byte,
-                    1 => text.insert(at, byte),
-                    _ => {
-                        text.remove(at);
-                    }
+#[test]
+fn real_programs_with_bytes_changed_are_read_to_their_end() {
+    let programs = real_lines();
+    let (rounds, mut rng) = randomised(256, 3);
+    for _ in rounds {
+        let Some((program, syntax)) = programs.get(rng.pick(4)) else {
+            continue;
+        };
+        let from = rng.pick(program.len());
+        let mut text = program[from..program.len().min(from + 3000)].to_vec();
+        for _ in 0..1 + rng.pick(19) {
+            if text.is_empty() {
+                break;
+            }
+            let (at, byte) = (rng.pick(text.len()), rng.next() as u8);
+            match rng.pick(3) {
+                0 => text[at] = byte,
+                1 => text.insert(at, byte),
+                _ => {
+                    text.remove(at);
                 }
             }
-            let (blocks, faults) = read(&text, syntax);
-            let lines = text.split(|&byte| byte == b'\n' || byte == b'\r').count();
-            prop_assert!(blocks.len() + faults.len() <= lines);
         }
+        let (blocks, faults) = read(&text, syntax);
+        let lines = text.split(|&byte| byte == b'\n' || byte == b'\r').count();
+        assert!(blocks.len() + faults.len() <= lines, "{text:?}");
     }
+}
 
-    /// However the input hands over its bytes, the blocks are the same.
-    #[test]
-    fn small_helpings_change_nothing(file in 0..4_usize, helping in 1..40_usize) {
-        let programs = real_lines();
-        if let Some((program, syntax)) = programs.get(file) {
-            let program = &program[..program.len().min(6000)];
-            let whole = read(program, syntax);
-            let mut reader = NcReader::new(Helpings { input: Cursor::new(program), helping }, syntax.clone());
+/// However the input hands over its bytes, the blocks are the same.
+#[test]
+fn small_helpings_change_nothing() {
+    let programs = real_lines();
+    for (program, syntax) in programs.iter() {
+        let program = &program[..program.len().min(6000)];
+        let whole = read(program, syntax);
+        for helping in 1..40 {
+            let input = Helpings {
+                input: Cursor::new(program),
+                helping,
+            };
+            let mut reader = NcReader::new(input, syntax.clone());
             let mut block = NcBlock::default();
             let mut blocks = Vec::new();
             let mut faults = 0;
@@ -253,7 +265,7 @@ proptest! {
                     Err(_) => faults += 1,
                 }
             }
-            prop_assert_eq!((blocks, faults), (whole.0, whole.1.len()));
+            assert_eq!((&blocks, faults), (&whole.0, whole.1.len()), "{helping}");
         }
     }
 }

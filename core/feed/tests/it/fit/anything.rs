@@ -1,10 +1,9 @@
 //! What holds for any points whatever.
 
 use post_feed::fit::{Fit, MOST, Point, Rules};
-use proptest::prelude::*;
 
 use super::course::{checked, fitted};
-use post_testkit::Rng;
+use post_testkit::{Rng, randomised};
 
 /// A path of steps whose lengths span decades, with bends, corners, points that stand and turns alone.
 fn wild(seed: u64, count: usize, dimensions: usize, scale: f64) -> Vec<Point> {
@@ -61,27 +60,25 @@ fn rules(dimensions: usize, tolerance: f64, spacing: Option<f64>) -> Rules {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
-
-    #[test]
-    fn any_path_is_followed_within_its_tolerance(
-        seed in 0u64..1_000_000,
-        count in 1usize..700,
-        dimensions in 3usize..=8,
-        exponent in -3.0f64..-0.5,
-        scale in -1.0f64..1.0,
-        spaced in any::<bool>(),
-    ) {
-        let scale = libm::pow(10.0, scale);
+#[test]
+fn any_path_is_followed_within_its_tolerance() {
+    let (rounds, mut random) = randomised(96, 1);
+    for _ in rounds {
+        let (seed, count, dimensions) = (random.next(), 1 + random.pick(699), 3 + random.pick(6));
+        let (tolerance, scale) = (random.order(-3.0, -0.5), random.order(-1.0, 1.0));
+        let spaced = random.pick(2) == 0;
         let points = wild(seed, count, dimensions, scale);
-        let rules = rules(dimensions, libm::pow(10.0, exponent), spaced.then_some(scale));
+        let rules = rules(dimensions, tolerance, spaced.then_some(scale));
         checked(&rules, &points);
     }
+}
 
-    /// Where the path is cut for other reasons, nothing changes before the window.
-    #[test]
-    fn what_is_settled_does_not_depend_on_what_comes_later(seed in 0u64..1000, cut in 10usize..1500) {
+/// Where the path is cut for other reasons, nothing changes before the window.
+#[test]
+fn what_is_settled_does_not_depend_on_what_comes_later() {
+    let (rounds, mut random) = randomised(96, 2);
+    for _ in rounds {
+        let (seed, cut) = (random.next(), 10 + random.pick(1490));
         let points = wild(seed, 1500, 4, 1.0);
         let rules = rules(4, 0.01, None);
         let (whole, _) = fitted(&rules, &points);
@@ -91,7 +88,7 @@ proptest! {
             fit.push(point, &mut |leg| early.push(leg.samples.to_vec()));
         }
         for (early, whole) in early.iter().zip(&whole) {
-            prop_assert_eq!(early, &whole.samples);
+            assert_eq!(early, &whole.samples, "{seed} {cut}");
         }
     }
 }

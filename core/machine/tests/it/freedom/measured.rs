@@ -40,7 +40,7 @@ fn measured(rng: &mut Rng, class: usize, incline: f64, second: f64) -> Random {
         _ => (vec![c, xyz[0], xyz[1], xyz[2], a], [0, 4]),
     };
     Random {
-        reference: post_testkit::Reference {
+        reference: post_testmachines::Reference {
             joints,
             mount: Vector3::new(10.0, -20.0, 30.0),
             tip: Vector3::new(0.0, 0.0, 100.0),

@@ -184,7 +184,7 @@ fn a_numeric_chain_refuses_what_it_cannot_reach() {
             point: Vector3::from(point),
         };
     let machine = Random {
-        reference: post_testkit::Reference {
+        reference: post_testmachines::Reference {
             joints: vec![
                 joint(false, Vector3::x(), [0.0; 3]),
                 joint(false, Vector3::y(), [0.0; 3]),

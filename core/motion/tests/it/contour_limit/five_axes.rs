@@ -5,7 +5,8 @@ use post_feed::Samples;
 use post_feed::limits::{AxisAcceleration, Collocation, ContourError, Feed, Limit};
 use post_machine::kinematics::Chain;
 use post_machine::servo::{Response, Servo};
-use post_testkit::{Random, Rng, randomised};
+use post_testkit::{Rng, randomised};
+use post_testmachines::Random;
 
 use super::{Path, even, limit, of_the_paper, planned, samples, simulated, spread, transfer};
 

@@ -13,7 +13,7 @@ fn dual_table(tcp: &str, tolerance: f64, more: &str) -> Bench {
 
 /// The blade of Table 3.2 as a CL file: the first point is gone to, the others are cut.
 fn blade_stops() -> Option<Vec<Stop>> {
-    let points = post_testkit::blade()?;
+    let points = post_testmachines::blade()?;
     let stops = points
         .iter()
         .enumerate()

@@ -16,7 +16,7 @@ fn knife(rng: &mut Rng, usual: bool, more: &str) -> String {
             a = V::z();
             (c, b) = (V::z(), V::new(0.0, 1.0, rng.range(-0.3, 0.3)));
         }
-        edge = post_testkit::across(rng, V::z());
+        edge = post_testmachines::across(rng, V::z());
     }
     let mut out = format!(
         "name = \"knife\"\nchain = \"[w b X Y Z C B A t]\"\n[tool]\ngauge = [0, 0, 600]\naxis = [0, 0, 1]\nedge = {}\n",

@@ -2,8 +2,8 @@
 //! certified for it. The truth is the Fréchet distance, found in the free-space diagram.
 
 use post_posting::{Block, Flow, Job, MotionKind, Observer};
-use post_testkit::frechet::{frechet, keeps_within};
-use post_testkit::posted::{Recorder, watched};
+use post_testmachines::frechet::{frechet, keeps_within};
+use post_testruns::posted::{Recorder, watched};
 
 use super::*;
 

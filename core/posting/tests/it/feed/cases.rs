@@ -3,7 +3,7 @@
 use post_machine::description::{Source, load};
 use post_plugin::{Capabilities, Feed};
 use post_posting::Job;
-use post_testkit::posted::{Bench, Recorder, Run, Samples, watched};
+use post_testruns::posted::{Bench, Recorder, Run, Samples, watched};
 
 /// A fork head of 500 mm; `more` goes to `[control]`.
 pub fn fork(tcp: &str, more: &str) -> String {

@@ -34,7 +34,7 @@ fn arcs_are_within_tolerance() {
                 let mut turned = 0.0;
                 for pair in points.windows(2) {
                     let at = |point: &Vector3<f64>| libm::atan2(point.y, point.x);
-                    turned += post_testkit::turned(at(&pair[0]), at(&pair[1])).to_degrees();
+                    turned += post_testmachines::turned(at(&pair[0]), at(&pair[1])).to_degrees();
                 }
                 for point in &points {
                     let off = (libm::hypot(point.x, point.y) - 60.0)

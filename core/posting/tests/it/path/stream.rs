@@ -3,7 +3,7 @@
 use post_plugin::Capabilities;
 use post_posting::program::Command;
 use post_posting::{Block, Flow, MotionKind, Observer, Reason};
-use post_testkit::posted::{Recorder, watched};
+use post_testruns::posted::{Recorder, watched};
 
 use super::*;
 

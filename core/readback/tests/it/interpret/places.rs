@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_readback::{Offsets, Way, WorkOffset};
-use post_testkit::{Reference, randomised};
+use post_testkit::randomised;
+use post_testmachines::Reference;
 
 use super::{LETTERS, NAMES, letters, machine, ran};
 

@@ -1,0 +1,16 @@
+//! What each dialect writes, word for word: one binary for all of them.
+
+// Clippy lets test functions unwrap, but not the helpers beside them.
+#![allow(clippy::unwrap_used)]
+
+mod fanuc;
+mod grbl;
+mod haas;
+mod heidenhain;
+mod hurco;
+mod interpreter;
+mod linuxcnc;
+mod mazak;
+mod mitsubishi;
+mod okuma;
+mod siemens;

@@ -1,0 +1,40 @@
+use post_kit::{Bench, jobs};
+use post_plugin::Value;
+
+fn bench() -> Bench {
+    Bench::of(post_okuma::plugin()).with("unit_system", Value::Text("1 mm"))
+}
+
+#[test]
+fn three_axes_with_arcs_and_cycles() {
+    insta::assert_snapshot!(bench().write_declared(&jobs::three_axes()).unwrap());
+}
+
+#[test]
+fn tools_and_what_stands_between_them() {
+    insta::assert_snapshot!(
+        bench()
+            .with("clamps", Value::Text("C M10 M11"))
+            .with("smoothing", Value::Text("0 G131"))
+            .with("smoothing_off", Value::Text("G130"))
+            .write_declared(&jobs::tools())
+            .unwrap()
+    );
+}
+
+#[test]
+fn five_axes_with_axis_positions() {
+    insta::assert_snapshot!(bench().write_job().unwrap());
+}
+
+#[test]
+fn five_axes_with_tcp() {
+    insta::assert_snapshot!(
+        bench()
+            .with("tcp_on", Value::Text("G169 HL={h}"))
+            .with("tcp_off", Value::Text("G170"))
+            .tcp()
+            .write_job()
+            .unwrap()
+    );
+}

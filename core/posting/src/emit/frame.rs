@@ -45,6 +45,9 @@ impl Emit<'_> {
         if std::mem::replace(&mut self.clear, true) {
             return;
         }
+        if self.compensating {
+            self.left_compensating.get_or_insert(line);
+        }
         self.keep_tip(line, false);
         self.instead(line, TextPlace::Retract);
         let machine = self.machine;
@@ -57,6 +60,21 @@ impl Emit<'_> {
         }
         if !machine.frame.aside.is_empty() {
             self.go(line, &machine.frame.aside, parks);
+        }
+    }
+
+    /// Cutter compensation ends while the tool still cuts: on the way out the control would go aside, into what stands
+    /// there, or stop with an alarm.
+    fn tell_compensation(&mut self, findings: &Findings) {
+        if let Some(line) = self.left_compensating.take() {
+            findings.at(
+                line,
+                Diagnostic::error(
+                    "compensation",
+                    "the tool leaves the part here with cutter compensation on (CUTCOM/LEFT or RIGHT without an OFF)",
+                )
+                .help("let the CAM system end it, CUTCOM/OFF, with a move off the contour"),
+            );
         }
     }
 
@@ -265,6 +283,7 @@ impl Emit<'_> {
         self.leave(line);
         self.rest(line);
         self.go_home(line, findings);
+        self.tell_compensation(findings);
         self.tell_wound(line, findings);
         if let Some(warning) = self.texts.without_operations() {
             findings.add(warning);
@@ -284,6 +303,7 @@ impl Emit<'_> {
         }
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
         self.retract(line);
+        self.tell_compensation(findings);
         self.wake(line, findings);
         let words = &block.words[..self.writer.words()];
         // Nobody knows whether they are clamped.

@@ -87,6 +87,10 @@ pub(crate) struct Emit<'a> {
     worked: bool,
     /// Cutter compensation that begins once the tool is at the part.
     compensation: Option<Compensation>,
+    /// Cutter compensation is on.
+    compensating: bool,
+    /// Where the tool left the part with it on: nobody has been told yet.
+    left_compensating: Option<u64>,
 }
 
 impl<'a> Emit<'a> {
@@ -133,6 +137,8 @@ impl<'a> Emit<'a> {
             head: None,
             worked: false,
             compensation: None,
+            compensating: false,
+            left_compensating: None,
         };
         emit.say(0, TextPlace::Header);
         // Nothing is known of where the tool stands, nor of what is in force.
@@ -243,6 +249,7 @@ impl<'a> Emit<'a> {
 
     /// Cutter compensation. None begins on the way down to a first position.
     fn compensate(&mut self, line: u64, compensation: Compensation) {
+        self.compensating = compensation != Compensation::Off;
         self.compensation = Some(compensation).filter(|it| self.clear && *it != Compensation::Off);
         if self.compensation.is_none() {
             self.writer.push(line, Event::Compensate(compensation));

@@ -27,7 +27,13 @@ impl Interpreter {
         point: Vector3<f64>,
         emit: &mut impl FnMut(Step),
     ) {
-        self.rapid = false;
+        if std::mem::take(&mut self.rapid) {
+            self.warn(
+                record,
+                "cycle",
+                "RAPID ahead of a point while a cycle is on: a hole is made there all the same, until CYCLE/OFF".to_owned(),
+            );
+        }
         let (drill, point) = match drill.on_bottom(point, self.axis) {
             Ok(Some(above)) => above,
             Ok(None) => (drill, point),

@@ -16,6 +16,28 @@ fn arc(from: usize, count: usize) -> Vec<Stop> {
         .collect()
 }
 
+/// On a way out that nobody has ended it on, the control would go aside: no program.
+#[test]
+fn cutter_compensation_ends_before_the_tool_leaves_the_part() {
+    let more = "[accuracy]\ntolerance = 0.01\naxis_tolerance = 0.1";
+    let bench = Bench::new(&usual(true, "post", "cyclic = true", more), 4, 100.0);
+    for ends in [true, false] {
+        let mut stops = arc(0, 300);
+        stops[0].feed = None;
+        stops[0].before = "LOADTL/1\nSPINDL/3000,RPM,CLW\n".to_owned();
+        stops[100].before = "CUTCOM/LEFT,11\n".to_owned();
+        if ends {
+            stops[200].before = "CUTCOM/OFF\n".to_owned();
+        }
+        let (cl, _) = text(&stops);
+        let run = bench.run_with(&cl, &mut Shape::Fine, false);
+        assert_eq!(run.report.is_some(), ends);
+        let told = run.findings.iter();
+        let told = told.filter(|finding| finding.message.contains("with cutter compensation on"));
+        assert_eq!(told.count(), usize::from(!ends));
+    }
+}
+
 /// The control offsets the points that it is given: under cutter radius compensation each of them is one of the CL
 /// file, and none is missing; before and behind it they are left out.
 #[test]

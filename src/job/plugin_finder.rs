@@ -94,7 +94,11 @@ pub fn dialect_knowing(
     let plugin = finder.find(&control.dialect).map_err(fault)?;
     let setup = ProgramSetup {
         program: program.to_owned(),
-        machine: called(machine),
+        // Without a CL file there is no part: the axes move one by one.
+        machine: match cl_file {
+            Some(_) => called(machine),
+            None => machine.name.clone(),
+        },
         units: match control.units {
             OutputUnits::Mm => Units::Millimetre,
             OutputUnits::Inch => Units::Inch,

@@ -238,12 +238,11 @@ impl Axes {
         }
     }
 
-    /// Words of wrapped axes say that the control takes the shorter way: `C=DC(45.000)` with `=DC(` and `)`.
+    /// Words of wrapped axes say that the control takes the shorter way, and the place from 0 to below 360, whatever the
+    /// machine shows: `C=DC(260.000)` for -100 with `=DC(` and `)`.
     pub fn shorter_way(&mut self, open: &str, close: &'static str) {
         for axis in self.axes.iter_mut().filter(|axis| axis.wrapped) {
-            axis.name = axis.name.trim_end_matches('=').to_owned() + open;
-            axis.front = Front::blank(&axis.name);
-            axis.behind = close;
+            axis.within_turn([open; 3], close);
         }
     }
 
@@ -251,12 +250,7 @@ impl Axes {
     /// `C=ACP(280.000)` and `C=ACN(280.000)`, with these in front of the number and `close` behind it.
     pub fn modulo(&mut self, ways: [&str; 3], close: &'static str) {
         for axis in self.axes.iter_mut().filter(|axis| axis.endless) {
-            let name = axis.name.trim_end_matches('=');
-            axis.modulo = Some(Box::new(Modulo {
-                ways: ways.map(|way| format!("{name}{way}")),
-                at: None,
-            }));
-            axis.behind = close;
+            axis.within_turn(ways, close);
         }
     }
 
@@ -372,6 +366,16 @@ impl Axes {
 }
 
 impl Axis {
+    /// Its words say the place within a turn, behind one of `ways`.
+    fn within_turn(&mut self, ways: [&str; 3], close: &'static str) {
+        let name = self.name.trim_end_matches('=');
+        self.modulo = Some(Box::new(Modulo {
+            ways: ways.map(|way| format!("{name}{way}")),
+            at: None,
+        }));
+        self.behind = close;
+    }
+
     fn write(&mut self, block: &mut Block, value: f64, style: NumberStyle) {
         if self.last.set(value) {
             match &mut self.modulo {

@@ -3,8 +3,8 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Codes, Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, offset_of_six,
-    options, words,
+    Codes, Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, no_range,
+    offset_of_six, options, words,
 };
 use post_plugin::{Capabilities, Event, Meaning, OptionSpec, Setup, export_dialect, remark};
 
@@ -59,6 +59,10 @@ impl Control for Grbl {
     };
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        no_range(
+            setup,
+            "GRBL goes to the number of a rotary word, the long way round where that is one",
+        )?;
         let hal = setup.flag("hal");
         let beyond = |name: &str| !matches!(name, "X" | "Y" | "Z");
         match setup.words.iter().find(|word| beyond(word.name)) {

@@ -22,6 +22,7 @@ impl Control for Haas {
         },
         relies: RELIES,
         tcp: Tcp::Length("G234"),
+        tcp_at_rapid: true,
         plane: Plane::Turned {
             on: "G254",
             off: "G255",

@@ -2,10 +2,15 @@
 //!
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
-use post_iso::{Control, Iso, Leave, Rigid, Subprogram, Table, Tcp, iso_options, options, words};
-use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
+use post_iso::{
+    Control, Dwell, Engine, Iso, Leave, Rigid, Subprogram, Table, Tcp, iso_options, options, words,
+};
+use post_plugin::{Event, Meaning, OptionSpec, Setup, export_dialect};
 
-struct Hurco;
+struct Hurco {
+    /// Rotary words lie within one turn: the control takes the shorter way from the first line to the last.
+    shortest: bool,
+}
 
 impl Control for Hurco {
     const TABLE: &'static Table = &Table {
@@ -20,6 +25,7 @@ impl Control for Hurco {
             off: "M129",
             length_first: false,
         },
+        dwell: Dwell::Seconds("P", 3),
         leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
         // P is not optional there.
         rigid: Rigid::Alone("M29"),
@@ -32,8 +38,28 @@ impl Control for Hurco {
         ..Table::ISO
     };
 
-    fn open(_: &Setup<'_>) -> Result<Self, String> {
-        Ok(Hurco)
+    fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        Ok(Hurco {
+            shortest: setup.words.iter().any(|word| word.wrapped),
+        })
+    }
+
+    fn begin(&self, engine: &mut Engine, out: &mut String) {
+        if self.shortest {
+            engine.line("M126", out);
+        }
+    }
+
+    fn write(
+        &mut self,
+        event: &Event<'_>,
+        engine: &mut Engine,
+        out: &mut String,
+    ) -> Result<bool, String> {
+        if let (Event::End, true) = (event, self.shortest) {
+            engine.line("M127", out);
+        }
+        Ok(false)
     }
 }
 

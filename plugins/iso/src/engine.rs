@@ -120,10 +120,13 @@ impl Engine {
         if table.feed_all_axes {
             writes |= Capabilities::FEED_ALL_AXES;
         }
-        writes
-            | self.cycles.capabilities()
-            | self.plane.capabilities()
-            | self.settings.capabilities(table)
+        // Its cycles go along Z, across X and Y: on a machine without one of them holes are moves.
+        let drills =
+            self.motion.linear.iter().all(Option::is_some) && self.motion.axes.depth() == "Z";
+        if drills {
+            writes |= self.cycles.capabilities();
+        }
+        writes | self.plane.capabilities() | self.settings.capabilities(table)
     }
 
     /// A block of these words, or of each line of them; none for no words.
@@ -216,6 +219,7 @@ impl Engine {
     #[inline]
     pub fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
         match *event {
+            _ if self.cancel_due => return self.command(event, out),
             Event::Rapid { words, .. } if !self.follows_vector => self.motion.rapid(words, out),
             Event::Linear { words, feed, .. }
                 if self.motion.has(feed) && !self.follows_vector && !self.tapped =>
@@ -245,12 +249,27 @@ impl Engine {
             {
                 return Err(event.refusal());
             }
+            Event::Compensate(Compensation::Left { .. } | Compensation::Right { .. })
+                if self.plane.is_on() && !self.plane.curves() =>
+            {
+                return Err(
+                    "cutter compensation inside a tilted plane is not confirmed on this control: the option \
+                     `cycles_in_plane` says that yours has it, [control] planes = false does without the plane"
+                        .to_owned(),
+                );
+            }
             Event::Linear { words, feed, tool } => {
+                // A program that comes to no first position: the axes move one by one.
+                self.cancel_what_was(out);
                 self.turn_again(out)?;
                 match self.follows_vector {
                     true => self.motion.lead(words, leaning(tool)?, Some(feed), out),
                     false => self.motion.cut(words, feed, out),
                 }
+            }
+            Event::Rapid { words, .. } if !self.follows_vector => {
+                self.cancel_what_was(out);
+                self.motion.rapid(words, out);
             }
             Event::Rapid { words, tool } => self.motion.lead(words, leaning(tool)?, None, out),
             Event::Arc {

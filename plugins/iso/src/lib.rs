@@ -27,6 +27,21 @@ pub use table::{
     Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six, offset_beyond_six, offset_of_six,
 };
 
+/// Refuses words that lie within one turn, where the control would not go the shorter way between them; `why` says what it
+/// does.
+///
+/// # Errors
+/// The sentence for the user, about the first axis with such words.
+pub fn no_range(setup: &Setup<'_>, why: &str) -> Result<(), String> {
+    match setup.words.iter().find(|word| word.wrapped) {
+        Some(word) => Err(format!(
+            "axis {}: it has a range, but {why}: leave the range out, its words are endless",
+            word.name
+        )),
+        None => Ok(()),
+    }
+}
+
 /// A control of the family: its table, and what does not fit into one.
 pub trait Control: Sized + Send + 'static {
     /// How it differs from the others.

@@ -323,6 +323,13 @@ impl Motion {
         words.any(|(place, part)| part.abs() > MEASURED && self.axes.is_plane(place))
     }
 
+    /// These words with the word of rapid in front of them, in a block that moves nothing.
+    pub(crate) fn at_rapid(&mut self, words: &str, out: &mut String) {
+        self.motion.forget();
+        self.motion(self.codes.motion[0]);
+        self.block.word(words).end(out);
+    }
+
     /// The words of the plane at rapid, each of them, with `length` (`G43.4 H1`); with the tool's `axis` where its vector is
     /// written.
     pub(crate) fn across(

@@ -143,7 +143,7 @@ pub const fn cycles_in_plane(default: bool) -> OptionSpec {
     OptionSpec::flag(
         "cycles_in_plane",
         default,
-        "The control takes cycles and arcs in a tilted plane.",
+        "The control takes cycles, arcs and cutter compensation in a tilted plane.",
     )
 }
 /// Tilted planes, where they are not beyond doubt.

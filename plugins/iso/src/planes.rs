@@ -15,7 +15,7 @@ pub(crate) struct TiltedPlane {
     words: Plane,
     /// Decimals of the angles.
     decimals: u8,
-    /// Cycles and arcs in it.
+    /// Cycles, arcs and cutter compensation in it.
     cycles: bool,
     on: bool,
 }
@@ -60,6 +60,11 @@ impl TiltedPlane {
     /// The words that the options leave.
     pub(crate) fn words(&self) -> Plane {
         self.words
+    }
+
+    /// Cycles, arcs and cutter compensation stand in it.
+    pub(crate) fn curves(&self) -> bool {
+        self.cycles
     }
 
     /// One is in force.

@@ -54,6 +54,9 @@ pub struct Table {
     pub length: Length,
     /// Tool centre point control.
     pub tcp: Tcp,
+    /// Tool centre point control is switched on at rapid: ahead of a first move at feed its word stands behind one of
+    /// rapid, in a block of its own.
+    pub tcp_at_rapid: bool,
     /// In front of positions in machine coordinates, at rapid: `G53 G0`.
     pub machine: &'static str,
     /// The order in which the tool retracts and what is in force is cancelled.
@@ -391,6 +394,7 @@ impl Table {
             off: "G49",
         },
         tcp: Tcp::None,
+        tcp_at_rapid: false,
         machine: "G53 G0",
         leave: &[Leave::Retract, Leave::Length],
         stops: Stops {

@@ -4,7 +4,7 @@
 
 use post_iso::{
     Control, CycleCode, Dwell, Engine, Iso, Leave, Length, Offset, Rigid, Splines, Stops,
-    Subprogram, SurfaceSpeed, Table, Tcp, offset_of_six, options, words,
+    Subprogram, SurfaceSpeed, Table, Tcp, no_range, offset_of_six, options, words,
 };
 use post_plugin::{
     Capabilities, Cycle, Meaning, NumberStyle, OptionSpec, Setup, export_dialect, remark,
@@ -84,12 +84,10 @@ impl Control for LinuxCnc {
     };
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        if let Some(word) = setup.words.iter().find(|word| word.wrapped) {
-            return Err(format!(
-                "axis {}: it has a range, but LinuxCNC takes the sign of a wrapped rotary word for its direction: leave the range out, its words are endless",
-                word.name
-            ));
-        }
+        no_range(
+            setup,
+            "LinuxCNC takes the sign of a wrapped rotary word for its direction",
+        )?;
         let blend = setup.number("blend");
         Ok(LinuxCnc { blend })
     }

@@ -37,10 +37,10 @@ impl Control for Okuma {
             },
             at_start: false,
         },
-        // No word that ends it is beyond doubt: positions of the machine count without it, the next tool has its own.
+        // Where the tool is retracted: positions of the machine count without it either way.
         length: Length {
             on: "G56",
-            off: "",
+            off: "G53",
             ..Table::ISO.length
         },
         relies: RELIES,
@@ -80,7 +80,7 @@ impl Control for Okuma {
             ),
             other => Err(format!(
                 "the numbers of this program count in units of {wanted}, and the unit system of the control is {other}: \
-                 it would read them otherwise"
+                 it would read them otherwise; [control] units chooses the program's, `unit_system` says the control's"
             )),
         }
     }

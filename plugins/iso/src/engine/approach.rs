@@ -38,6 +38,10 @@ impl Engine {
             self.motion
                 .line(&self.tcp_on.replace("{h}", &self.h()), out);
         }
+        if keeps_tip && self.table.tcp_at_rapid && feed.is_some() && !length.is_empty() {
+            let length = std::mem::take(&mut length);
+            self.motion.at_rapid(&length, out);
+        }
         if keeps_tip {
             self.tcp_active.set(true);
         }

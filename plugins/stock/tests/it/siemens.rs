@@ -474,6 +474,8 @@ fn wrapped_axes_take_the_shorter_way() {
     batch.push(1, Event::Start);
     batch.push(2, turn(&[0.0, 0.0, 350.0]));
     batch.push(3, turn(&[0.0, 0.0, 10.0]));
+    // A machine that shows -180 to 180: the words of a modulo axis lie from 0 to 359.999 all the same.
+    batch.push(4, turn(&[0.0, 0.0, -100.0]));
     let promise = Promise {
         words: 3,
         inverse_time: true,
@@ -483,7 +485,9 @@ fn wrapped_axes_take_the_shorter_way() {
         .write(&batch, &promise, &mut out, &mut ends)
         .unwrap();
     assert!(
-        out.contains("G0 C=DC(350.000)\n") && out.contains(" C=DC(10.000)\n"),
+        out.contains("G0 C=DC(350.000)\n")
+            && out.contains(" C=DC(10.000)\n")
+            && out.contains(" C=DC(260.000)\n"),
         "{out}"
     );
 }

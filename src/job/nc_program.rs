@@ -4,12 +4,12 @@ use std::fs::File;
 use std::io::{self, Read as _, Seek, SeekFrom};
 
 use post_host::Finder;
-use post_machine::description::Machine;
+use post_machine::description::{Machine, Rapid};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, DialectSession as _, VocabularyWord};
-use post_readback::Offsets;
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
+use post_readback::{FedRapids, Offsets, turns_the_spindle};
 
 use super::{machine_files, plugin_finder, unused_options};
 use crate::arguments::ProgramArguments;
@@ -30,6 +30,9 @@ pub struct NcControl {
     pub offsets: Offsets,
     /// How far a program may go.
     pub limits: Limits,
+    /// Rapids may stand in its programs as feed moves at the highest feed of the axes; true: where the control keeps the
+    /// tip alone.
+    pub fed_rapids: Option<bool>,
 }
 
 impl NcControl {
@@ -47,8 +50,10 @@ impl NcControl {
             None => Offsets::default(),
         };
         offsets.length = arguments.tool_length;
+        let spoken = spoken(&finder, &machine)?;
         Ok(Self {
-            lexicon: lexicon(&finder, &machine)?,
+            lexicon: Lexicon::new(&spoken.words),
+            fed_rapids: fed_rapids(&machine, spoken.rapids_pass),
             machine,
             offsets,
             limits: Limits {
@@ -65,9 +70,24 @@ impl NcControl {
             lexicon,
             offsets,
             limits,
+            ..
         } = self;
         Interpreter::new(machine, lexicon, offsets, *limits, name, file)
             .map_err(|fault| Failure::from(*fault))
+    }
+
+    /// The same, its rapids at feed told from cuts. `again` gives the file from its beginning.
+    pub fn run_with_rapids(
+        &self,
+        name: &str,
+        mut again: impl FnMut() -> Result<File, Failure>,
+    ) -> Result<FedRapids<Interpreter<File>>, Failure> {
+        let Some(kept) = self.fed_rapids else {
+            return Ok(FedRapids::none(self.run(name, again()?)?));
+        };
+        let turns = turns_the_spindle(&mut self.run(name, again()?)?);
+        let program = self.run(name, again()?)?;
+        Ok(FedRapids::new(program, &self.machine, kept, turns))
     }
 }
 
@@ -83,9 +103,15 @@ pub struct Spoken {
     pub rapids_pass: bool,
 }
 
-/// The words of a machine's control, ready to be looked up.
-pub fn lexicon(finder: &Finder, machine: &Machine) -> Result<Lexicon, Failure> {
-    Ok(Lexicon::new(&spoken(finder, machine)?.words))
+/// Whether rapids stand at feed in programs of a machine, and whether only where the control keeps the tip: which of them
+/// does, a program says for itself.
+fn fed_rapids(machine: &Machine, passes: bool) -> Option<bool> {
+    let known = machine.axes.iter().all(|axis| axis.max_feed.is_finite());
+    match machine.control.rapid {
+        Some(Rapid::Linear) => Some(false),
+        Some(Rapid::Rapid) => None,
+        None => (passes && known).then_some(true),
+    }
 }
 
 /// What the dialect of a machine tells.

@@ -96,6 +96,21 @@ pub fn write<P: Program>(
     Ok(written)
 }
 
+/// Motions at feed that may be rapids, of which the first stands on a line, are cuts in the CL file.
+pub fn fed(left: Option<(u64, u64)>) -> Option<Diagnostic> {
+    let (count, line) = left?;
+    let message = format!(
+        "line {line}{} at feed and as fast as the axes go: a rapid or a cut, and it is carried over as a cut",
+        match count {
+            1 => " is".to_owned(),
+            _ => format!(" and {} more are", count - 1),
+        }
+    );
+    let help =
+        "where the control's own rapids are meant, [control] rapid = \"rapid\" writes them so";
+    Some(Diagnostic::warning("convert", message).help(help))
+}
+
 /// The control was told to smooth the path, or by how much.
 fn leaves_the_path(corners: Corners) -> bool {
     match corners {

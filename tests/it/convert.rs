@@ -84,9 +84,6 @@ fn the_boat_goes_to_another_trunnion_and_comes_back_as_itself() {
             from,
             "--to",
             to,
-            // Rapids at feed are cuts for who reads them.
-            "--set",
-            "control.rapid=rapid",
             "-o",
             text(target),
         ]);

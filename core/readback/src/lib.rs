@@ -19,6 +19,7 @@ pub mod convert;
 mod corners;
 pub mod course;
 pub mod diff;
+mod fed_rapids;
 pub mod interpret;
 pub mod lexicon;
 mod motion;
@@ -28,6 +29,7 @@ mod told;
 pub mod verify;
 
 pub use corners::Corners;
+pub use fed_rapids::{FedRapids, turns_the_spindle};
 pub use motion::{Motion, MotionKind};
 pub use offsets::{Offsets, Reference, WorkOffset};
 pub use post_motion::path::{SplineWay, Stance, Way};

@@ -50,6 +50,8 @@ pub struct Motion {
     /// It is asked for in positions of the machine, not of the part (G53, G28, G30, M91, SUPA): where it leads says
     /// something about this machine alone.
     pub machine: bool,
+    /// At feed, and as fast as a rapid of a machine whose rapids may stand so ([`crate::FedRapids`]).
+    pub fast: bool,
     /// What holds while it goes on.
     pub state: Arc<State>,
 }

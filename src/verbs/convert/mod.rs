@@ -146,7 +146,9 @@ const FINER: f64 = 0.1;
 pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
     let from = NcControl::new(&arguments.first())?;
     let (name, input) = nc_program::open(&arguments.input)?;
-    let run = || -> Result<_, Failure> { from.run(&name, nc_program::again(&name, &input)?) };
+    let run = || -> Result<_, Failure> {
+        from.run_with_rapids(&name, || Ok(nc_program::again(&name, &input)?))
+    };
     let job = arguments.second();
     let asked = job::machine(&job, &[])?;
     for machine in [&from.machine, &asked] {
@@ -210,7 +212,8 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         )
     })?;
     let mut notes = written.notes;
-    notes.extend(course.program().report().notes.iter().cloned());
+    notes.extend(nc_to_cl::fed(course.program().left()));
+    notes.extend(course.program().program().report().notes.iter().cloned());
     if !written.faults.is_empty() {
         notes.extend(written.faults);
         return Err(notes.into());

@@ -10,6 +10,7 @@ use std::io::{Seek as _, SeekFrom};
 
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
+use post_readback::FedRapids;
 use post_readback::diff::{Rules, Unread, compare};
 use post_readback::interpret::Interpreter;
 
@@ -113,17 +114,18 @@ impl Side {
     }
 
     /// From its beginning.
-    fn read(&self, control: &NcControl) -> Result<Interpreter<File>, Failure> {
+    fn read(&self, control: &NcControl) -> Result<FedRapids<Interpreter<File>>, Failure> {
         let again = || {
             let mut file = self.file.try_clone()?;
             file.seek(SeekFrom::Start(0))?;
             Ok(file)
         };
-        let file = again().map_err(|error| FileFault::Read {
-            name: self.name.clone(),
-            error,
-        })?;
-        control.run(&self.name, file)
+        control.run_with_rapids(&self.name, || {
+            again().map_err(|error| {
+                let name = self.name.clone();
+                Failure::from(FileFault::Read { name, error })
+            })
+        })
     }
 }
 

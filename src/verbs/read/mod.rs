@@ -9,6 +9,7 @@ use std::fs::File;
 
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
+use post_readback::FedRapids;
 use post_readback::course::done::{Chords, DoneCourse};
 use post_readback::interpret::Interpreter;
 
@@ -130,7 +131,7 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
         csv.finish()?;
     }
     if let (Some(file), true) = (cl_files.first_mut(), refused.is_empty()) {
-        let program = control.run(&name, nc_program::again(&name, &input)?)?;
+        let program = control.run_with_rapids(&name, || Ok(nc_program::again(&name, &input)?))?;
         write_cl(arguments, &control, program, file, &mut refused)?;
     }
     if !refused.is_empty() {
@@ -159,7 +160,7 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
 fn write_cl(
     arguments: &ReadArguments,
     control: &NcControl,
-    program: Interpreter<File>,
+    program: FedRapids<Interpreter<File>>,
     file: &mut AtomicFile,
     refused: &mut Vec<Diagnostic>,
 ) -> Result<(), Failure> {
@@ -186,6 +187,7 @@ fn write_cl(
         file.write_bytes(text)
     })?;
     terminal::findings(&written.notes);
+    terminal::findings(nc_to_cl::fed(course.program().left()).as_slice());
     refused.extend(written.faults);
     Ok(())
 }

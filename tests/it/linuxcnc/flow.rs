@@ -129,8 +129,8 @@ fn ours(file: &Path) -> Vec<End> {
     let done = run(
         command()
             .args(["read", "-m", "vmc", "--dialect", "linuxcnc", "--csv", "-"])
-            // Deeper than the machine goes.
-            .args(["--set", "axis.Z.travel=[-1000, 100]"])
+            // On the table itself there is no depth to drill: the part stands on a fixture.
+            .args(["--mount", "0,0,100"])
             .arg(file),
         b"",
     );

@@ -31,14 +31,15 @@ FINI
 /// Off the line of the way down, mm: chords of the interpolation, where the head turns nothing.
 const SIDEWAYS: f64 = 0.02;
 
+/// So near to its first point the tip is on the way down to it, mm.
+const NEARLY: f64 = 1.0;
+
 fn posted(machine: &Machine, folder: &Path) -> std::path::PathBuf {
     fs::write(folder.join("fast.toml"), fast(machine)).unwrap();
     fs::write(folder.join("leaning.cls"), LEANING).unwrap();
     let mut with = command();
     with.current_dir(folder);
     with.args(["-q", "-m", "fast.toml", "leaning.cls", "-o", "leaning.ngc"]);
-    // The way down is what stands ahead of the first feed move.
-    with.args(["--set", "control.rapid=rapid"]);
     let done = run(&mut with, b"");
     assert_eq!(done.code, 0, "{}", done.err);
     folder.join("leaning.ngc")
@@ -46,24 +47,25 @@ fn posted(machine: &Machine, folder: &Path) -> std::path::PathBuf {
 
 /// How far the tip goes down to the first point, and how far it strays from the line through it by which it does, mm.
 fn descent(machine: &Machine, rows: &[Row], moved: Vector3<f64>) -> [f64; 2] {
-    let cut = rows.iter().position(|row| row.feed).unwrap();
-    let line = rows[cut - 1].line;
     let stands = |row: &Row| {
         let [tilt, c] = row.rotary.map(f64::to_radians);
         let (tip, _) = (machine.law)(row.linear, tilt, c, row.length);
         tip - moved - Vector3::z() * machine.part
     };
-    let last = stands(&rows[cut - 1]);
-    let down: Vec<Vector3<f64>> = (rows[..cut].iter())
-        .filter(|row| row.line == line)
-        .map(stands)
-        .collect();
     // Where the table is turned that is the tool's own line; a fork head comes straight down.
     let way = match machine.name {
         "5axis" => Vector3::z(),
         _ => Vector3::new(0.0, 0.5, 0.866_025_4),
     };
     let point = Vector3::new(20.0, 10.0, 30.0);
+    // The block that comes to the point, at rapid or at feed, is the one in force shortly before.
+    let near = |row: &&Row| (stands(row) - point).norm() < NEARLY;
+    let line = rows.iter().find(near).unwrap().line;
+    let down: Vec<Vector3<f64>> = (rows.iter())
+        .filter(|row| row.line == line)
+        .map(stands)
+        .collect();
+    let last = down[down.len() - 1];
     let aside = |tip: &Vector3<f64>| (tip - point).cross(&way).norm();
     assert!((last - point).norm() < SIDEWAYS, "{last}");
     [

@@ -63,6 +63,7 @@ struct Told {
     tip: Vector3<f64>,
     arc: bool,
     rapid: bool,
+    kept: bool,
 }
 
 /// What `post read` says of a program.
@@ -79,7 +80,7 @@ fn told(machine: &Machine, folder: &Path, program: &str) -> Vec<Told> {
     let column = |name: &str| header.iter().position(|known| *known == name).unwrap();
     let axes = ["X", "Y", "Z", &machine.tilting.to_string(), "C"].map(column);
     let tip = ["tip_x", "tip_y", "tip_z"].map(column);
-    let (line, kind, way) = (column("line"), column("kind"), column("way"));
+    let [line, kind, way, tcp] = ["line", "kind", "way", "tcp"].map(column);
     lines
         .map(|row| {
             let fields: Vec<&str> = row.split(',').collect();
@@ -90,6 +91,7 @@ fn told(machine: &Machine, folder: &Path, program: &str) -> Vec<Told> {
                 tip: Vector3::from(tip.map(number)),
                 arc: fields[way] == "arc",
                 rapid: fields[kind] == "rapid",
+                kept: fields[tcp] == "1",
             }
         })
         .collect()
@@ -141,11 +143,16 @@ fn cuts_are_told(machine: &Machine, told: &[Told], rows: &[Row]) -> Result<(), S
         }
     }
     let mut first = 0;
+    // The table has ends alone: with the length and M428 the tip of the next motion begins elsewhere than the last ended.
+    let switched: Vec<usize> = (told.windows(2))
+        .filter(|pair| pair[0].kept != pair[1].kept)
+        .map(|pair| pair[1].line)
+        .collect();
     // The joints come some milliseconds behind the motion that LinuxCNC names.
-    for stretch in rows
-        .windows(LAG)
-        .filter(|rows| rows.iter().all(|row| row.feed))
-    {
+    for stretch in rows.windows(LAG).filter(|rows| {
+        rows.iter()
+            .all(|row| row.feed && !switched.contains(&row.line))
+    }) {
         let row = &stretch[LAG - 1];
         let [tilt, c] = row.rotary.map(f64::to_radians);
         let (tip, _) = (machine.law)(row.linear, tilt, c, row.length);
@@ -170,9 +177,6 @@ fn posted(folder: &Path, tcp: &str) {
             "fast.toml",
             "--tcp",
             tcp,
-            // Where a first way at feed begins is known to the machine alone.
-            "--set",
-            "control.rapid=rapid",
             "two.cls",
             "-o",
             "two.ngc",

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 
-use super::{Course, Curve, Item, Piece, Reach};
+use super::{Course, Curve, Item, Piece, Reach, descent};
 use crate::interpret::Interpreter;
 use crate::{Done, Motion, MotionKind, State, Told, Way};
 
@@ -63,9 +63,6 @@ impl Chords {
 
 /// Poses nearer than this are one: mm, and of unit vectors.
 const SAME: f64 = 1e-9;
-
-/// What an axis moves by less is the rounding of words, mm or degrees.
-const ROUNDED: f64 = 0.01;
 
 /// Ways shorter than this take no time at a feed, mm.
 const NO_WAY: f64 = 1e-9;
@@ -241,21 +238,9 @@ impl<P: Program> DoneCourse<P> {
     /// The tool comes on to its first position, by the depth axis alone from about where it was retracted: the pose that is
     /// reached is the one below.
     fn comes_down(&mut self, motion: &Motion) -> bool {
-        let Some(retracted) = self.retracted.filter(|_| motion.kind == MotionKind::Rapid) else {
-            return false;
-        };
-        let [from, to] = [&motion.from.joints, &motion.to.joints];
-        let mut moved =
-            (0..from.len()).filter(|joint| libm::fabs(to[*joint] - from[*joint]) > ROUNDED);
-        let (Some(joint), None) = (moved.next(), moved.next()) else {
-            return false;
-        };
-        let by = to[joint] - from[joint];
-        let above = from[joint] - retracted[joint];
-        if motion.state.solver.chain().joints()[joint].rotary
-            || above * by < 0.0
-            || libm::fabs(above) > libm::fabs(by) + ROUNDED
-        {
+        let known = self.retracted.as_ref();
+        let known = known.filter(|_| motion.kind == MotionKind::Rapid);
+        if !known.is_some_and(|retracted| descent::comes_down(motion, retracted)) {
             return false;
         }
         let held = self.held.iter_mut().rev();

@@ -11,6 +11,7 @@
 //! business.
 
 pub mod cl;
+pub(crate) mod descent;
 pub mod done;
 mod facts;
 mod legs;

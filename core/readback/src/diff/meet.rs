@@ -72,7 +72,7 @@ fn go_on_alike(steps: [&VecDeque<Step>; 2], from: [usize; 2], near: f64) -> bool
                 (Some(a), Some(b)) => a.dot(&b) > 0.9,
                 (a, b) => a.is_none() == b.is_none(),
             };
-            old.kind == new.kind && alike
+            old.is_like(new) && alike
         }
         // The end of both.
         (None, None) => true,

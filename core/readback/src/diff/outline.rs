@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 
 use super::Program;
-use crate::{Done, MotionKind, Told};
+use crate::{Done, Motion, MotionKind, Told};
 
 /// More operations than this are not aligned but compared one after the other.
 const MOST: usize = 1000;
@@ -56,7 +56,7 @@ impl Splitter {
         let begins = match done {
             Done::Motion(motion) => {
                 self.at = motion.to.pose.tip;
-                self.cut |= motion.kind != MotionKind::Rapid;
+                self.cut |= cuts(motion);
                 return None;
             }
             Done::Told { told, .. } => match told {
@@ -73,6 +73,11 @@ impl Splitter {
         self.number += 1;
         Some(self.number)
     }
+}
+
+/// At feed, and no rapid that may stand so.
+fn cuts(motion: &Motion) -> bool {
+    motion.kind != MotionKind::Rapid && !motion.fast
 }
 
 /// The operations of a program.
@@ -154,7 +159,7 @@ impl Outline {
             Done::Motion(motion) => {
                 self.lengths |= motion.state.length != 0.0;
                 part.motions += 1;
-                if motion.kind != MotionKind::Rapid {
+                if cuts(motion) {
                     part.start.get_or_insert(motion.from.pose.tip);
                     part.cut += (motion.to.pose.tip - motion.from.pose.tip).norm();
                 }

@@ -8,6 +8,7 @@ use post_machine::kinematics::{Joints, Pose};
 
 use super::Program;
 use super::outline::Splitter;
+use crate::course::descent::comes_down;
 use crate::{Done, Motion, MotionKind, State, Told, Way};
 
 /// Steps stray from the way by no more: mm, radians.
@@ -81,10 +82,26 @@ pub(super) struct Step {
     pub hole: bool,
     /// In positions of the machine.
     pub machine: bool,
+    /// At feed, and as fast as a rapid that stands so.
+    pub fast: bool,
     /// It comes from somewhere that is left out: only where it ends counts.
     pub arrives: bool,
     /// Way of the tip and, by an arm, of the tool axis, mm.
     pub length: f64,
+}
+
+impl Step {
+    /// At rapid, or at feed where a rapid may stand so.
+    pub fn may_be_rapid(&self) -> bool {
+        self.kind == MotionKind::Rapid || self.fast
+    }
+
+    /// Both are of one kind, or one is a rapid and the other may be.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let rapid = |step: &Self| step.kind == MotionKind::Rapid;
+        self.kind == other.kind
+            || (rapid(self) || rapid(other)) && self.may_be_rapid() && other.may_be_rapid()
+    }
 }
 
 /// Something that is told between steps and takes time or stops the program.
@@ -107,6 +124,17 @@ enum Next {
     Operation(usize),
 }
 
+/// What a motion is to the way from a retract to the first position of the part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Leg {
+    /// No part of it.
+    None,
+    /// Rapids where the tool stands clear.
+    Across,
+    /// Down to the first position.
+    Down,
+}
+
 /// The steps of a program, operation by operation.
 #[derive(Debug)]
 pub(super) struct Steps<P> {
@@ -120,6 +148,12 @@ pub(super) struct Steps<P> {
     pub steps: VecDeque<Step>,
     pub events: Vec<Event>,
     pub minutes: f64,
+    /// Axis values behind the last way in machine coordinates.
+    retracted: Option<Joints>,
+    /// It has not cut since, nor gone down.
+    above: bool,
+    /// Its rapids since.
+    held: Vec<Next>,
     operation: usize,
     /// The operation at hand has no further steps.
     pub ended: bool,
@@ -138,6 +172,9 @@ impl<P: Program> Steps<P> {
             steps: VecDeque::new(),
             events: Vec::new(),
             minutes: 0.0,
+            retracted: None,
+            above: true,
+            held: Vec::new(),
             operation: 0,
             ended: false,
             over: false,
@@ -213,11 +250,15 @@ impl<P: Program> Steps<P> {
         let done = std::mem::take(&mut self.done);
         for done in &done {
             if let Some(number) = self.splitter.take(done) {
+                self.release();
                 self.ready.push_back(Next::Operation(number));
             }
             self.take(done);
         }
         self.done = done;
+        if self.over {
+            self.release();
+        }
     }
 
     fn take(&mut self, done: &Done) {
@@ -250,8 +291,49 @@ impl<P: Program> Steps<P> {
         }
     }
 
+    /// What a motion is to the way from a retract to the first position.
+    fn leg(&mut self, motion: &Motion) -> Leg {
+        let retracted = *self.retracted.get_or_insert(motion.from.joints);
+        if motion.machine {
+            self.retracted = Some(motion.to.joints);
+            self.above = true;
+            return Leg::None;
+        }
+        let rapid = motion.kind == MotionKind::Rapid || motion.fast;
+        let down = self.above && rapid && comes_down(motion, &retracted);
+        self.above &= !down && rapid;
+        match (down, self.above) {
+            (true, _) => Leg::Down,
+            (_, true) => Leg::Across,
+            _ => Leg::None,
+        }
+    }
+
+    /// The tool did not come down by the ways that were held back.
+    fn release(&mut self) {
+        self.ready.extend(self.held.drain(..));
+    }
+
     /// Cuts a motion into steps.
     fn cut(&mut self, motion: &Motion) {
+        let leg = self.leg(motion);
+        match leg {
+            Leg::None => self.release(),
+            Leg::Across => {}
+            Leg::Down => {
+                // How the tool came there says something of the machine, and not of the part.
+                self.held.clear();
+                let to = Spot {
+                    pose: motion.to.pose,
+                    joints: motion.to.joints,
+                };
+                let step = Step {
+                    arrives: true,
+                    ..step(motion, to, to)
+                };
+                return self.ready.push_back(Next::Step(Box::new(step)));
+            }
+        }
         let count = steps_of(motion);
         let spot = |share: f64| Spot {
             pose: match share {
@@ -265,25 +347,35 @@ impl<P: Program> Steps<P> {
             }),
         };
         let mut from = spot(0.0);
-        for step in 1..=count {
-            let to = spot(step as f64 / count as f64);
-            let length = from.distance(&to);
-            if length > 0.0 {
-                self.ready.push_back(Next::Step(Box::new(Step {
-                    from,
-                    to,
-                    kind: motion.kind,
-                    feed: motion.feed,
-                    line: motion.line,
-                    state: Arc::clone(&motion.state),
-                    hole: motion.hole,
-                    machine: motion.machine,
-                    arrives: false,
-                    length,
-                })));
+        for place in 1..=count {
+            let to = spot(place as f64 / count as f64);
+            let step = step(motion, from, to);
+            if step.length > 0.0 {
+                let next = Next::Step(Box::new(step));
+                match leg {
+                    Leg::Across => self.held.push(next),
+                    _ => self.ready.push_back(next),
+                }
             }
             from = to;
         }
+    }
+}
+
+/// A step of a motion.
+fn step(motion: &Motion, from: Spot, to: Spot) -> Step {
+    Step {
+        from,
+        to,
+        kind: motion.kind,
+        feed: motion.feed,
+        line: motion.line,
+        state: Arc::clone(&motion.state),
+        hole: motion.hole,
+        machine: motion.machine,
+        fast: motion.fast,
+        arrives: false,
+        length: from.distance(&to),
     }
 }
 

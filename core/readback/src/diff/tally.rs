@@ -367,12 +367,15 @@ impl<'t> Tally<'t> {
 
     fn compare_states(&mut self, steps: [&Step; 2], lines: [u64; 2], way: f64) {
         let states = steps.map(|step| std::sync::Arc::as_ptr(&step.state));
-        let kinds = steps.map(|step| step.kind);
+        let kinds = match steps[0].is_like(steps[1]) {
+            true => [steps[0].kind; 2],
+            false => steps.map(|step| step.kind),
+        };
         if self.compared != Some((states, kinds)) {
             self.compared = Some((states, kinds));
             self.hold.clear();
-            let facts = steps.map(|step| facts(step, self.rules.one_control));
-            let [old, new] = facts;
+            let [old, new] =
+                [0, 1].map(|side| facts(steps[side], kinds[side], self.rules.one_control));
             for ((what, old), (_, new)) in old.into_iter().zip(new) {
                 if old == new {
                     continue;
@@ -450,7 +453,7 @@ impl<'t> Tally<'t> {
 const LEAST_SECONDS: f64 = 0.1;
 
 /// What holds during a step, in words.
-fn facts(step: &Step, one_control: bool) -> Vec<(&'static str, String)> {
+fn facts(step: &Step, kind: MotionKind, one_control: bool) -> Vec<(&'static str, String)> {
     let state = &step.state;
     let number = |number: Option<u32>| number.map_or_else(|| "none".to_owned(), |n| n.to_string());
     let spindle = match state.spindle {
@@ -488,7 +491,7 @@ fn facts(step: &Step, one_control: bool) -> Vec<(&'static str, String)> {
         side if side < 0 => "left",
         _ => "right",
     };
-    let motion = match step.kind {
+    let motion = match kind {
         MotionKind::Rapid => "rapid",
         MotionKind::Feed => "feed",
         MotionKind::Thread => "thread",

@@ -212,7 +212,7 @@ impl<P: Program> Walk<'_, '_, '_, P> {
             return false;
         };
         let there = step.to.distance(&place) <= self.rules.apart;
-        if step.kind != MotionKind::Rapid {
+        if !step.may_be_rapid() {
             return false;
         }
         path.go(1.0);
@@ -349,7 +349,14 @@ const ALIKE: f64 = 0.02;
 
 /// The kinds of motion of so many steps, each where it begins.
 fn kinds(steps: &VecDeque<Step>, count: usize) -> Vec<MotionKind> {
-    let mut kinds: Vec<MotionKind> = steps.iter().take(count).map(|step| step.kind).collect();
+    let mut kinds: Vec<MotionKind> = steps
+        .iter()
+        .take(count)
+        .map(|step| match step.fast {
+            true => MotionKind::Rapid,
+            false => step.kind,
+        })
+        .collect();
     kinds.dedup();
     kinds
 }

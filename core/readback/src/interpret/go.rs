@@ -405,6 +405,7 @@ impl Control {
             stops: self.exact_stop,
             hole: self.hole,
             machine: self.in_machine,
+            fast: false,
             state,
         }));
     }

@@ -35,7 +35,7 @@ pub fn over_travel(machine: &Machine, motion: &Motion) -> Option<(String, f64)> 
 
 /// What is known of the axes of a machine.
 #[derive(Clone, Debug)]
-pub(super) struct Axes {
+pub(crate) struct Axes {
     /// Minutes that each axis needs for one mm or radian.
     slowness: Joints,
     /// Some axis has a largest feed.

@@ -33,7 +33,7 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::course::Course;
 use crate::{CycleKind, Done, Motion, MotionKind, Offsets, Spindle, Told};
-use axes::Axes;
+pub(crate) use axes::Axes;
 pub use axes::over_travel;
 pub use cut_path::CutPath;
 use detour::Detour;

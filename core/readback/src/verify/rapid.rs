@@ -9,20 +9,10 @@ use super::sweep::Stray;
 use super::track::{MOST, What};
 use super::{RAPID_TURN, Verifier, state};
 use crate::course::Course;
-use crate::{Motion, MotionKind, Told, Way};
+use crate::{Motion, MotionKind, Told, fed_rapids};
 
 /// So far ahead a cut is looked for that has no place where the program stands.
 const AHEAD: usize = 20_000;
-
-/// A rapid at feed may take so much longer than its axes need: feeds are rounded down.
-const SLOW: f64 = 0.1;
-
-/// Where the control keeps the tip and the axes turn, a linear axis may go so much faster on the way than from end to end, as a
-/// share of that.
-const BENT: f64 = 1.0;
-
-/// And so much besides, minutes.
-const MOMENT: f64 = 1e-4;
 
 impl<C: Course> Verifier<'_, C> {
     /// A motion at rapid.
@@ -347,28 +337,11 @@ impl<C: Course> Verifier<'_, C> {
 
     /// A motion at feed that the machine file lets a rapid be: as fast as its axes go.
     pub(super) fn is_as_fast_as_rapids(&self, motion: &Motion) -> bool {
-        let least = || self.axes.least_minutes(self.machine, motion);
-        let bent = motion.turns() && motion.way != Way::Axes;
-        let slack = if bent { BENT } else { SLOW };
-        let fast = || {
-            least().is_some_and(|(minutes, _)| motion.minutes <= minutes * (1.0 + slack) + MOMENT)
-        };
+        let from_anywhere = || self.apart && fed_rapids::comes_from_anywhere(self.machine, motion);
         self.rules.linear_rapids
             && motion.kind == MotionKind::Feed
-            && (fast() || self.comes_from_anywhere(motion))
-    }
-
-    /// Off the cuts, by linear axes alone, at what the slowest of them goes: the way was not known when the feed was
-    /// written.
-    fn comes_from_anywhere(&self, motion: &Motion) -> bool {
-        let joints = motion.from.joints.iter().zip(&motion.to.joints);
-        let mut axes = self.machine.axes.iter().zip(joints);
-        let stands = axes.all(|(axis, (from, to))| !axis.joint.rotary || from == to);
-        let linear = self.machine.axes.iter().filter(|axis| !axis.joint.rotary);
-        let slowest = linear
-            .map(|axis| axis.max_feed)
-            .fold(f64::INFINITY, f64::min);
-        self.apart && stands && motion.feed >= slowest * (1.0 - SLOW)
+            && (fed_rapids::is_as_fast_as_rapids(&self.axes, self.machine, motion)
+                || from_anywhere())
     }
 
     /// A rapid of the course is made at feed: where the machine file has it so, as fast as the axes hold.

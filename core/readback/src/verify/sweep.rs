@@ -9,7 +9,7 @@
 
 use super::place::{Apart, Bound, Place, Span, free, nearest};
 use super::track::What;
-use super::{Verifier, state};
+use super::{COMPUTED, Verifier, state};
 use crate::Motion;
 use crate::course::Course;
 
@@ -70,6 +70,11 @@ impl<C: Course> Verifier<'_, C> {
             }
             if self.reaches_at_feed(motion, places) || self.follows_a_rapid(motion, places) {
                 return;
+            }
+            if fast && stands(places) {
+                // The part turns about the tool: no cut, though the next may begin here.
+                self.found.rapids_at_feed += 1;
+                return self.set_kind("rapid");
             }
             // What is due goes first.
             if !self.may_cut(&places[0]) {
@@ -477,6 +482,16 @@ fn draws_back(places: &[Place], bound: &Bound) -> bool {
     along > 0.0
         && (way - from.axis * along).norm() <= bound.point + bound.axis * along
         && (to.axis - from.axis).norm() <= bound.axis
+}
+
+/// The part sees the tool stand as it is.
+fn stands(places: &[Place]) -> bool {
+    let first = &places[0];
+    let same = |place: &Place| {
+        (place.point - first.point).norm() <= COMPUTED
+            && (place.axis - first.axis).norm() <= COMPUTED
+    };
+    places.iter().all(same)
 }
 
 /// The tool turns about where it stands, off the part: a rewind turns so at feed.

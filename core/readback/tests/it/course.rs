@@ -66,6 +66,7 @@ fn motion(state: &Arc<State>, way: Way, from: Joints, to: Joints) -> Motion {
         stops: false,
         hole: false,
         machine: false,
+        fast: false,
         state: Arc::clone(state),
     }
 }

@@ -186,6 +186,7 @@ impl Does {
             stops: false,
             hole: false,
             machine: false,
+            fast: false,
             state: Arc::clone(&self.state),
         }));
         self.at = to;

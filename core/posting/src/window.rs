@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::program::{Command, Step};
+use crate::program::{Command, Pace, Step};
 
 /// Lets through what lies in a range of lines, behind the last that the lines before it said of tool, spindle, coolant
 /// and the like. What the lines before it move is not made; what is modal in them the interpreter has read.
@@ -11,7 +11,7 @@ pub(crate) struct Window {
     lines: Range<u64>,
     /// What was said last before the range, of each kind.
     state: Vec<Command>,
-    /// Of it what was said of spindle and coolant before the tool came: another tool's, until this one moves without a
+    /// Of it what was said of spindle and coolant before the tool came: another tool's, until this one cuts without a
     /// word of its own.
     before_tool: Vec<Command>,
     /// The plane that points lie in, if the file names one.
@@ -65,6 +65,7 @@ impl Window {
         match &step {
             Step::Command(command) => self.said_anew(command),
             Step::Plane(_) | Step::EndCycle => {}
+            Step::Move(motion) if motion.pace == Pace::Rapid => {}
             Step::Move(_) | Step::Arc(_) | Step::Spline(_) | Step::Cycle(_) => {
                 let held = std::mem::take(&mut self.before_tool).into_iter();
                 to.extend(held.map(|command| (line, Step::Command(command))));
@@ -124,7 +125,7 @@ mod tests {
     use post_plugin::{Coolant, Spindle, SpindleSense};
 
     use super::*;
-    use crate::program::{Motion, Pace, Tool};
+    use crate::program::{Motion, Tool};
 
     #[test]
     fn a_part_begins_in_the_state_that_the_lines_before_it_set() {
@@ -163,7 +164,7 @@ mod tests {
         );
     }
 
-    /// The spindle of the tool before waits until the tool moves without a speed of its own.
+    /// The spindle of the tool before waits until the tool cuts without a speed of its own.
     #[test]
     fn a_tool_begins_with_its_own_speed() {
         let tool = || {
@@ -191,7 +192,7 @@ mod tests {
                 tip: Vector3::zeros(),
                 axis: Vector3::z(),
                 edge: Vector3::zeros(),
-                pace: Pace::Rapid,
+                pace: Pace::PerMinute(100.0),
                 chord: 0.0,
             };
             for command in said {

@@ -104,6 +104,9 @@ impl Emit<'_> {
             refuse(line, &event, "CALSUB", findings);
             return;
         }
+        if self.waits {
+            self.wake(line, findings);
+        }
         self.writer.push(line, event);
         self.clear = false;
         self.turning = false;

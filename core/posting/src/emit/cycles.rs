@@ -144,6 +144,9 @@ impl Emit<'_> {
             self.end_cycle(hole.line);
             self.replay(&hole.above, findings);
         }
+        if self.waits && native.is_some() {
+            self.wake(hole.line, findings);
+        }
         match native {
             None => self.replay(&hole.into, findings),
             Some(native) => {

@@ -9,7 +9,7 @@ use post_plugin::{Capabilities, Coolant, Event, Spindle};
 use super::{Emit, across, cycles, stands};
 use crate::blocks::{Block, Reason};
 use crate::findings::Findings;
-use crate::program::Tool;
+use crate::program::{Pace, Tool};
 
 /// Full turns that an axis may stand away from its park position before somebody is told, degrees.
 const TURN: f64 = 360.0;
@@ -196,7 +196,7 @@ impl Emit<'_> {
         }
         self.leave(line);
         self.rest(line);
-        self.changed = true;
+        (self.changed, self.waits) = (true, false);
         if self.texts.any_tool() {
             self.say(line, TextPlace::BetweenTools);
         }
@@ -247,7 +247,7 @@ impl Emit<'_> {
         // Away first: a spindle that stops in the part tears.
         self.leave(line);
         self.rest(line);
-        self.changed = true;
+        (self.changed, self.waits) = (true, false);
         self.tool = None;
         self.machine = &head.machine;
         self.words = Words::new(self.machine, self.writer.format());
@@ -304,7 +304,12 @@ impl Emit<'_> {
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
         self.retract(line);
         self.tell_compensation(findings);
-        self.wake(line, findings);
+        if self.changed && self.commanded.is_some() && block.pace == Pace::Rapid {
+            // The tool's own speed may stand behind its first position.
+            self.waits = true;
+        } else {
+            self.wake(line, findings);
+        }
         let words = &block.words[..self.writer.words()];
         // Nobody knows whether they are clamped.
         self.free = 0;
@@ -369,12 +374,13 @@ impl Emit<'_> {
     }
 
     /// Spindle and coolant on as the CL file takes them to be.
-    fn wake(&mut self, line: u64, findings: &Findings) {
+    pub(super) fn wake(&mut self, line: u64, findings: &Findings) {
+        self.waits = false;
         if let (false, Some(spindle)) = (self.turning, self.commanded) {
             // The tool change stopped it, and the CL file takes it to be turning.
             self.turning = true;
             self.writer.push(line, spindle);
-            if self.changed {
+            if std::mem::take(&mut self.changed) {
                 findings.at(
                     line,
                     Diagnostic::warning(
@@ -385,6 +391,11 @@ impl Emit<'_> {
                 );
             }
         }
+        self.flow(line);
+    }
+
+    /// Coolant on, if it was switched off in between.
+    fn flow(&mut self, line: u64) {
         if let (true, Some(coolant)) = (std::mem::take(&mut self.coolant_due), self.coolant) {
             self.writer.push(line, Event::Coolant(coolant));
         }
@@ -408,5 +419,8 @@ impl Emit<'_> {
         self.commanded = on;
         self.changed = false;
         self.writer.push(line, event);
+        if std::mem::take(&mut self.waits) {
+            self.flow(line);
+        }
     }
 }

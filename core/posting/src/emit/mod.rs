@@ -49,6 +49,8 @@ pub(crate) struct Emit<'a> {
     commanded: Option<Event<'static>>,
     /// The tool was changed since.
     changed: bool,
+    /// The tool has come near without a speed of its own, and the spindle stands until it has one, or cuts.
+    waits: bool,
     /// What the CL file last said of coolant.
     coolant: Option<Coolant>,
     /// Coolant was switched off in between.
@@ -127,6 +129,7 @@ impl<'a> Emit<'a> {
             depth_word: cycles::depth_word(machine),
             across: across(machine),
             changed: false,
+            waits: false,
             tool: None,
             offset: None,
             told_mount: false,
@@ -211,6 +214,9 @@ impl<'a> Emit<'a> {
     fn block(&mut self, block: &Block, findings: &Findings) {
         let line = block.line;
         self.extremes.follow(line);
+        if self.waits && cuts(block) {
+            self.wake(line, findings);
+        }
         match block.kind {
             MotionKind::Position => self.position(block, findings),
             MotionKind::Reference => {
@@ -437,6 +443,14 @@ fn across(machine: &Machine) -> Vec<usize> {
         })
         .map(|(place, _)| place)
         .collect()
+}
+
+/// At feed, from where the tool stands.
+fn cuts(block: &Block) -> bool {
+    matches!(
+        block.kind,
+        MotionKind::Linear | MotionKind::Arc | MotionKind::Spline
+    )
 }
 
 /// Where the tool stands at the end of a block.

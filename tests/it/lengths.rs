@@ -328,3 +328,135 @@ fn a_tilted_plane_comes_near_by_its_own_z() {
         assert_eq!(blocks.next(), Some(vec!['Z']), "{text}");
     }
 }
+
+/// A trunnion whose tool lies along Y where its axes show 0.
+fn lying_trunnion(dialect: &str, more: &str) -> String {
+    format!(
+        "extends = \"ac-trunnion\"\n[tool]\naxis = [0, 1, 0]\ngauge = [0, 100, 400]\n{more}\n\
+         [control]\ndialect = \"{dialect}\"\ntcp = \"control\"\n"
+    )
+}
+
+/// Their plane or tool call names the axis of the length, whoever keeps the tip.
+#[test]
+fn a_control_that_keeps_the_tip_is_not_told_another_axis_of_the_length() {
+    for dialect in ["siemens", "heidenhain"] {
+        let said = refused(&lying_trunnion(dialect, ""), &cut("0,1,0"), &LONG);
+        assert!(
+            said.contains("lies across Z where the rotary axes show 0"),
+            "{said}"
+        );
+        let answered = lying_trunnion(dialect, "length_axis = \"Y\"");
+        good(&answered, &cut("0,1,0"), &LONG);
+    }
+    // Its parameters say how the tool lies.
+    let (_, text) = good(&lying_trunnion("fanuc", ""), &cut("0,1,0"), &LONG);
+    assert!(text.contains("G43.4 H1 Y"), "{text}");
+    // Drawn along X, shown along Z.
+    let mill_turn =
+        "extends = \"mill-turn\"\n[workpiece]\nmount = [100, 0, 0]\n[control]\ndialect = ";
+    let (_, tnc) = good(
+        &format!("{mill_turn}\"heidenhain\"\n"),
+        &cut("0,0,1"),
+        &LONG,
+    );
+    assert!(tnc.contains("TOOL CALL 1 Z S3000"), "{tnc}");
+    good(&format!("{mill_turn}\"siemens\"\n"), &cut("0,0,1"), &LONG);
+}
+
+/// G43.4 turns a tool about the length and the direction that the control has of it.
+#[test]
+fn a_right_angle_head_under_tool_centre_point_control_is_answered_for_or_refused() {
+    let kept = "[control]\ntcp = \"control\"\n";
+    let said = refused(&format!("{HEADS}{kept}"), &swapped("ANGLE"), &[]);
+    assert!(
+        said.contains("the tool of head ANGLE lies otherwise than that of"),
+        "{said}"
+    );
+    let side = |more: &str| {
+        format!(
+            "{HEADS}[head.SIDE]\nword = \"M63\"\noffset = 2\n[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\n{more}\n{kept}"
+        )
+    };
+    for dialect in [
+        "fanuc",
+        "haas",
+        "mazak",
+        "mitsubishi",
+        "siemens",
+        "heidenhain",
+    ] {
+        let machine =
+            |more: &str| side(more).replace(kept, &format!("{kept}dialect = \"{dialect}\"\n"));
+        let said = refused(&machine(""), &swapped("SIDE"), &[]);
+        assert!(said.contains("the tool of head SIDE"), "{said}");
+        let (_, text) = good(&machine("length_axis = \"X\""), &swapped("SIDE"), &[]);
+        assert!(text.contains("M63"), "{text}");
+    }
+}
+
+/// Two tools; the second comes to its first position before its speed is said.
+const LATE: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,15000,CLW\nCOOLNT/ON\nRAPID\nGOTO/20,10,50\nFEDRAT/600,MMPM\n\
+    GOTO/20,10,15\nRAPID\nGOTO/20,10,50\nLOADTL/2\nRAPID\nGOTO/-20,10,50\nSPINDL/RPM,800,CLW\nFEDRAT/600,MMPM\n\
+    GOTO/-20,10,15\nRAPID\nGOTO/-20,10,50\nEND\nFINI\n";
+
+#[test]
+fn a_tool_begins_with_its_own_speed_though_that_stands_behind_its_first_position() {
+    for dialect in crate::dialects::dialects() {
+        let machine = format!(
+            "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n[control]\ndialect = \"{dialect}\"\n"
+        );
+        let named = [&LONG[..], crate::dialects::named(&dialect)].concat();
+        let (made, text) = good(&machine, LATE, &named);
+        assert!(!made.err.contains("no SPINDL"), "{}", made.err);
+        assert_eq!(text.matches("15000").count(), 1, "{dialect}:\n{text}");
+        let speed = text
+            .find("S800")
+            .or_else(|| text.find("S+800"))
+            .expect(&text);
+        // The coolant flows again with it, and the spindle turns before the tool goes down.
+        let coolant = text.rfind("M8").expect(&text);
+        let down = text.rfind("15.").expect(&text);
+        assert!(speed < down && coolant < down, "{dialect}:\n{text}");
+        // A tool without a speed of its own turns as the one before, and that is told.
+        let (made, text) = good(&machine, &LATE.replace("SPINDL/RPM,800,CLW\n", ""), &named);
+        assert!(
+            made.err.contains("no SPINDL since the tool change"),
+            "{}",
+            made.err
+        );
+        let again = text.rfind("15000").expect(&text);
+        assert!(
+            again < text.rfind("15.").expect(&text),
+            "{dialect}:\n{text}"
+        );
+    }
+}
+
+/// Where it is drilled, and where an arc comes first.
+#[test]
+fn a_spindle_that_waits_turns_before_whatever_cuts() {
+    let tail = LATE.find("SPINDL/RPM,800").unwrap();
+    let drilled = format!(
+        "{}CYCLE/DRILL,10,MMPM,100,2\nGOTO/-20,10,15\nCYCLE/OFF\nRAPID\nGOTO/-20,10,50\nEND\nFINI\n",
+        &LATE[..tail]
+    );
+    let (_, text) = good(
+        "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n",
+        &drilled,
+        &LONG,
+    );
+    let again = text.rfind("S15000 M3").expect(&text);
+    assert!(again < text.find("G81").expect(&text), "{text}");
+    let round = format!(
+        "{}FEDRAT/600,MMPM\nCIRCLE/0,10,50,0,0,1,20\nGOTO/20,10,50\nEND\nFINI\n",
+        &LATE[..tail]
+    );
+    let (_, text) = good(
+        "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n",
+        &round,
+        &LONG,
+    );
+    let again = text.rfind("S15000 M3").expect(&text);
+    assert!(again < text.find("G3 ").expect(&text), "{text}");
+}

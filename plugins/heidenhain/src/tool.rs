@@ -13,7 +13,11 @@ impl Heidenhain {
         match tool {
             Call::Tool(tool) => {
                 self.block.word("TOOL CALL").word(&tool);
-                self.block.word(self.axes.depth());
+                // A control that keeps the tip has its own drawing of where the tool lies.
+                self.block.word(match self.tcp {
+                    true => "Z",
+                    false => self.axes.depth(),
+                });
                 if let Some(speed) = speed {
                     self.block.number("S", speed, 0, NumberStyle::default());
                 }

@@ -112,9 +112,10 @@ pub(crate) struct ToolFile {
     /// direction of any length; leave it out for a tool that turns.
     #[schemars(with = "Option<[Number; 3]>")]
     pub edge: Option<[Quantity; 3]>,
-    /// The linear axis along which the control puts the tool's length, where tcp = "post": as its dialect does it if not
-    /// said. Another axis is a promise about the control (a parameter, or the tool's table); "none" says that its length
-    /// of each tool is 0 and that work offsets are measured with the tool in the spindle.
+    /// The linear axis along which the control puts the tool's length: as its dialect does it if not said. Another axis is
+    /// a promise about the control (a parameter, the tool's table, or with tcp = "control" its own data of the machine);
+    /// "none", where tcp = "post", says that its length of each tool is 0 and that work offsets are measured with the tool
+    /// in the spindle.
     #[schemars(with = "Option<String>")]
     pub length_axis: Option<Spanned<String>>,
     /// The point of the tool that must stay within tolerance; that of the CL file if not said.

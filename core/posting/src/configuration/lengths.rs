@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use post_machine::axis_words;
 use post_machine::description::{LengthAxis, Machine, Tcp};
 use post_machine::diagnostic::{Diagnostic, Short};
+use post_machine::kinematics::Joints;
 use post_plugin::Capabilities;
 
 /// What the control does with lengths, and what was told of it.
@@ -54,11 +55,11 @@ impl Lengths {
         (tool, length): (Option<u32>, Option<f64>),
     ) -> Option<Diagnostic> {
         let moves = machine.axes.iter().any(|axis| !axis.joint.rotary);
-        if machine.control.tcp != Tcp::Post || !moves || length == Some(0.0) {
+        if !moves || length == Some(0.0) || self.writes.has(Capabilities::LENGTH_IN_OFFSET) {
             return None;
         }
-        if self.writes.has(Capabilities::LENGTH_IN_OFFSET) {
-            return None;
+        if machine.control.tcp == Tcp::Control {
+            return self.check_kept(base, machine);
         }
         let depth = axis_words::depth(base);
         let compensated = match machine.length_axis {
@@ -121,6 +122,38 @@ impl Lengths {
         Some(Diagnostic::error("length-axis", message).help(help))
     }
 
+    /// Where the control keeps the tip it knows how the machine's own tool lies; of another head the machine file must
+    /// say that it does, and those whose plane or tool call names the axis of the length name Z there.
+    fn check_kept(&mut self, base: &Machine, machine: &Machine) -> Option<Diagnostic> {
+        if self.told.contains(&self.head) {
+            return None;
+        }
+        let whose = match self.head.as_str() {
+            "" => format!("the tool of {}", machine.name),
+            head => format!("the tool of head {head}"),
+        };
+        let named = self.writes.has(Capabilities::LENGTH_ALONG_DEPTH);
+        let (message, help) = match machine.length_axis {
+            LengthAxis::Said(_) => return None,
+            _ if named && lies_down(machine) => (
+                format!(
+                    "{whose} lies across Z where the rotary axes show 0, and this control's words put its length along Z (G17, TOOL CALL Z)"
+                ),
+                "tcp = \"post\"; or [tool] length_axis naming the axis along which the data of the control put it all the same (Siemens: SD 42940)",
+            ),
+            _ if turned(base, machine) => (
+                format!(
+                    "{whose} lies otherwise than that of {}, and nothing says that the control keeps the tip of this head",
+                    base.name
+                ),
+                "[head.….tool] length_axis naming the axis along which the control takes it to lie, if the head's own word switches it there; else tcp = \"post\"",
+            ),
+            _ => return None,
+        };
+        self.told.push(self.head.clone());
+        Some(Diagnostic::error("length-axis", message).help(help))
+    }
+
     /// The control has one length for a tool: with one head it cannot be 0 and with another its own.
     fn once(&mut self, tool: Option<u32>, zero: bool) -> Option<Diagnostic> {
         let tool = tool?;
@@ -167,6 +200,38 @@ impl Lengths {
         })
     }
 }
+
+/// The tool lies across Z, or points the other way, where the rotary axes show zero.
+fn lies_down(machine: &Machine) -> bool {
+    let z = machine.axes.iter().position(|axis| axis.name == "Z");
+    let stands = |z| {
+        let (zero, axis) = lies(machine)?;
+        let up = machine.solver(0.0).ok()?.chain().way_of(z, &zero);
+        Some(axis.dot(&up) > UPRIGHT)
+    };
+    z.and_then(stands) == Some(false)
+}
+
+/// The tool of one lies otherwise than that of the other where the rotary axes show zero.
+fn turned(base: &Machine, machine: &Machine) -> bool {
+    match (lies(base), lies(machine)) {
+        (Some((_, own)), Some((_, other))) => (own - other).norm() > TURNED,
+        _ => (base.tool_axis - machine.tool_axis).norm() > TURNED,
+    }
+}
+
+/// The axes where the rotary ones show zero, and how the tool lies then, as the part sees it.
+fn lies(machine: &Machine) -> Option<(Joints, Vector3<f64>)> {
+    let zero = machine.zero_of(0.0)?;
+    let axis = machine.solver(0.0).ok()?.chain().forward(&zero).axis;
+    Some((zero, axis))
+}
+
+/// A tool whose direction has less of Z than this lies down.
+const UPRIGHT: f64 = 0.5;
+
+/// Tools that lie otherwise by less were measured, and are not another way round: 1 degree.
+const TURNED: f64 = 0.0175;
 
 /// A tool that leans by as little as is measured.
 fn missed(machine: &Machine, miss: f64) -> Option<Diagnostic> {

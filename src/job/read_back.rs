@@ -231,7 +231,11 @@ pub fn hold<C: Course, R: Read + Seek>(
     let lexicon = Lexicon::new(&spoken.words);
     let mut findings = Vec::new();
     let offsets = match &reading.offsets {
-        Some(offsets) => offsets.clone(),
+        Some(offsets) => Offsets {
+            // Of tools whose length stands in no table.
+            length: offsets.length.or(reading.arguments.tool_length),
+            ..offsets.clone()
+        },
         None => offsets(reading.arguments, machine, &tools),
     };
     let machine = &as_counted(machine, &spoken.words, &offsets);

@@ -71,11 +71,14 @@ pub fn dialects() -> Vec<String> {
         .collect()
 }
 
-/// The end of travel of the depth axis, as a setting.
-fn top(machine: &str) -> String {
+/// Where the depth axis stands clear, as a setting: these controls have no program without it, and `post new` writes it so.
+fn top(dialect: &str, machine: &str) -> String {
     let machine = table(machine);
-    let top = machine["axis"]["Z"]["travel"][1].clone();
-    format!("control.retract={{Z={top}}}")
+    let end = &machine["axis"]["Z"]["travel"][1];
+    let end = end.as_float().or(end.as_integer().map(|end| end as f64));
+    // Its end is GRBL's homing switch.
+    let pull_off = if dialect == "grbl" { 2.0 } else { 0.0 };
+    format!("control.retract={{Z={}}}", end.unwrap() - pull_off)
 }
 
 fn post(dialect: &str, machine: &str, file: &Path, with: &[&str]) -> Run {
@@ -134,8 +137,8 @@ const COMPENSATION: &str = "no words for cutter radius compensation";
 /// What reading back finds in files of CAM systems, by its code and a part of one message: of no other code may be found.
 const FOUND: &[(&str, &str, &str)] = &[
     // They work from below, and come there straight from Z9000, and back: through what they cut.
-    ("nx_HumMan_ust_a.cls", "rapid", "of what is cut, from 9520"),
-    ("nx_HumMan_ust_a2.cls", "rapid", "of what is cut, from 9518"),
+    ("nx_HumMan_ust_a.cls", "rapid", "of what is cut, from 95"),
+    ("nx_HumMan_ust_a2.cls", "rapid", "of what is cut, from 95"),
 ];
 
 /// The run found what is known of the file, and nothing else.
@@ -162,8 +165,7 @@ fn every_file_is_posted_in_every_dialect_and_does_what_it_asks_for() {
                 all.extend(["--tool-length", "0"]);
             }
             all.extend(with.split_whitespace());
-            // Where the axis stands clear is the machine's own, on whatever control.
-            let top = top(machine);
+            let top = top(&dialect, machine);
             if matches!(dialect.as_str(), "grbl" | "okuma") {
                 all.extend(["--set", &top]);
             }

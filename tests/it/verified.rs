@@ -162,6 +162,28 @@ fn the_map_leads_from_the_program_to_the_cl_file() {
     assert_eq!(fs::read_to_string(&map).unwrap(), first);
 }
 
+/// Tables of work offsets alone say nothing of lengths.
+#[test]
+fn the_length_that_is_told_holds_beside_tables_without_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("blade.nc");
+    let tables = folder.path().join("tables.toml");
+    fs::write(&tables, "[work.G54]\nX = 0\nY = 0\nZ = 0\n").unwrap();
+    let [program, tables] = [&program, &tables].map(|path| path.to_str().unwrap());
+    let blade = "tests/samples/blade.cls";
+    let job = ["-m", "head-head", "--tool-length"];
+    let posted = post(&[&["-q"], &job[..], &["100", "-o", program, blade]].concat());
+    assert_eq!(posted.code, 0, "{}", posted.err);
+    let verify = ["verify", program, "--against", blade, "--offsets", tables];
+    let verify = |length: &str| post(&[&verify[..], &job[..], &[length]].concat());
+    let good = verify("100");
+    assert_eq!(good.code, 0, "{}", good.err);
+    assert!(!good.err.contains("nc-length"), "{}", good.err);
+    let bad = verify("100.5");
+    assert_eq!(bad.code, 1, "{}", bad.out);
+    assert!(bad.err.contains("error[deviation]"), "{}", bad.err);
+}
+
 #[test]
 fn a_wrong_length_in_the_tables_shows_where_the_head_turns() {
     let folder = tempfile::tempdir().unwrap();

@@ -17,6 +17,7 @@ use crate::files::{ClSource, PathArg};
 use crate::job::compensate::{self, Compensation, Moved};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::plan_rounds;
+use crate::job::plan_worth;
 use crate::job::plugin_finder;
 use crate::job::predict::{self, Against, Asked, Predicted};
 use crate::job::read_back::{self, Held, Reading};
@@ -129,11 +130,13 @@ impl Part {
 pub struct Ready<'a> {
     program: OneProgram<'a>,
     plan_rounds: Option<plan_rounds::Found>,
+    /// Its plan is left out, and why.
+    unplanned: Option<Diagnostic>,
     compensation: Option<Compensation>,
 }
 
 impl<'a> Ready<'a> {
-    /// Does what comes before.
+    /// Does what comes before. Where the plan itself is `shown`, it is written whatever it gains.
     ///
     /// # Errors
     /// The machine file does not allow it, or the program cannot be made.
@@ -142,12 +145,18 @@ impl<'a> Ready<'a> {
         making: &MakingArguments,
         ahead: Option<&LookedAhead>,
         source: &mut ClSource,
+        shown: bool,
     ) -> Result<Self, Failure> {
         let mut rounds = None;
         if let Some(most) = making.plan_rounds {
             let (tightening, found) = plan_rounds::plan(&program, most, ahead, source)?;
             program.tightening = tightening;
             rounds = Some(found);
+        }
+        let mut unplanned = None;
+        if program.plans && rounds.is_none() && !shown {
+            unplanned = plan_worth::gains_nothing(&program, ahead, source)?;
+            program.plans = unplanned.is_none();
         }
         let compensation = match making.compensate_servo {
             true => Some(compensate::compensate(&program, ahead, source)?),
@@ -156,13 +165,16 @@ impl<'a> Ready<'a> {
         Ok(Self {
             program,
             plan_rounds: rounds,
+            unplanned,
             compensation,
         })
     }
 
     /// What the user should know of the plan.
     pub fn warning(&self) -> Option<Diagnostic> {
-        self.plan_rounds.as_ref().and_then(plan_rounds::warning)
+        let rounds = self.plan_rounds.as_ref();
+        let unplanned = || self.unplanned.clone();
+        rounds.and_then(plan_rounds::warning).or_else(unplanned)
     }
 
     /// Its points are moved.

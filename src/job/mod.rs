@@ -13,6 +13,7 @@ pub mod one_program;
 pub mod other_dialect;
 pub mod plan;
 pub mod plan_rounds;
+mod plan_worth;
 pub mod plugin_finder;
 mod plugin_folders;
 pub mod predict;

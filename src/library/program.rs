@@ -196,7 +196,7 @@ impl JobLine {
             plans: self.making.plan,
             tightening: None,
         };
-        let ready = Ready::new(program, &self.making, ahead.as_ref(), source)?;
+        let ready = Ready::new(program, &self.making, ahead.as_ref(), source, false)?;
         let mut findings: Vec<Diagnostic> = ready.warning().into_iter().collect();
         let mut text = Text::default();
         let beside = Beside {

@@ -89,7 +89,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let looks_ahead =
         machine.program.looks_ahead || arguments.split.is_some() || arguments.setup_sheet.is_some();
     let twice = making.compensate_servo
-        || making.plan_rounds.is_some()
+        || making.plan
         || looks_ahead
         || machine.control.planes
         || arguments.verify
@@ -155,7 +155,8 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             plans: making.plan,
             tightening: None,
         };
-        let ready = Ready::new(program, making, ahead.as_ref(), &mut source)?;
+        let shown = !folders.is_empty() || !places.maps.is_empty();
+        let ready = Ready::new(program, making, ahead.as_ref(), &mut source, shown)?;
         findings.extend(ready.warning());
         let draws = !folders.is_empty();
         let page = pages.next();

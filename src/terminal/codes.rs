@@ -724,6 +724,11 @@ pub const CODES: &[CodeGroup] = &[
                 "Nothing.",
             ),
             code(
+                "nc-spline",
+                "Control points, knots or weights that make no spline, or in a way that is not run.",
+                "Let the post-processor write moves: the option `splines` of the dialect.",
+            ),
+            code(
                 "nc-subprogram",
                 "A subprogram is called that does not stand in this file.",
                 "Put it behind the program.",

@@ -9,6 +9,7 @@ use crate::plugins::libraries;
 use crate::real_files;
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use post_testkit::shared;
 use post_testruns::read_back::table;
@@ -59,6 +60,9 @@ pub fn named(dialect: &str) -> &'static [&'static str] {
         _ => &[],
     }
 }
+
+/// [`dialects`], asked for once.
+pub static DIALECTS: LazyLock<Vec<String>> = LazyLock::new(dialects);
 
 /// The dialects that are built in.
 pub fn dialects() -> Vec<String> {

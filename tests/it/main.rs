@@ -63,6 +63,7 @@ mod shells;
 #[cfg(unix)]
 mod signals;
 mod snapshots;
+mod splines;
 mod strangers;
 mod study;
 mod summary;

@@ -6,9 +6,6 @@ use post_motion::path::{arm_and_height, between, on_arc};
 
 use super::{Curve, Piece};
 
-/// Pieces of a spline whose chords are added up, for each span of its knots.
-const CHORDS: u32 = 64;
-
 impl Piece {
     /// The pose at `t` from 0 to 1.
     ///
@@ -52,20 +49,7 @@ impl Piece {
                 let radius = 0.5 * (from.0.norm() + to.0.norm());
                 libm::hypot(radius * sweep, rise)
             }
-            Curve::Spline(way) => {
-                let mut length = 0.0;
-                for span in way.spans() {
-                    let (low, high) = (way.knots[span], way.knots[span + 1]);
-                    let mut last = way.point(low);
-                    for piece in 1..=CHORDS {
-                        let u = low + (high - low) * f64::from(piece) / f64::from(CHORDS);
-                        let next = way.point(u);
-                        length += (next - last).norm();
-                        last = next;
-                    }
-                }
-                length
-            }
+            Curve::Spline(way) => way.length(),
         }
     }
 

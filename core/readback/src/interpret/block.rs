@@ -114,6 +114,7 @@ pub(super) fn run(
     if words.present == 0 && words.g.list().is_empty() && words.m.list().is_empty() && !words.more {
         return Ok(());
     }
+    control.within_spline(words)?;
     control.obey(words, &asked)?;
     control.left_over(words)
 }
@@ -373,7 +374,8 @@ impl Control {
         }
         let moving =
             words.present & self.axes.mask != 0 || words.vector.is_some() || words.named_axes != 0;
-        let shaped = words.present & SHAPES != 0;
+        let spline = self.spline.is_some() && words.present & bit(b'P') != 0;
+        let shaped = words.present & SHAPES != 0 || spline;
         if !moving && !shaped {
             return Ok(());
         }
@@ -396,6 +398,7 @@ impl Control {
             MotionMode::Linear | MotionMode::Clockwise | MotionMode::CounterClockwise => {
                 MotionKind::Feed
             }
+            MotionMode::Spline => return self.spline_block(words),
             MotionMode::None => {
                 return Err(self.refuse(
                     "nc-motion",

@@ -91,6 +91,7 @@ impl Control {
             tools: super::tools::Tools::default(),
             variables: super::variables::Variables::new(lexicon.language()),
             cycles: super::cycles::Cycles::default(),
+            spline: None,
             path: super::conversational::Path::default(),
             state: State {
                 solver: Arc::clone(&solver),

@@ -132,11 +132,6 @@ pub(super) fn tip_length(way: &Way, from: &Stance, to: &Stance) -> f64 {
             let along = normal.dot(&chord);
             libm::hypot(across.norm() * sweep, along)
         }
-        Way::Spline(spline) => {
-            let mut poles = spline.poles.iter().zip(spline.poles.iter().skip(1));
-            // The polygon of its poles is the longer way; the chord the shorter one.
-            let polygon: f64 = poles.by_ref().map(|((a, _), (b, _))| (b - a).norm()).sum();
-            0.5 * (polygon + chord.norm())
-        }
+        Way::Spline(spline) => spline.length(),
     }
 }

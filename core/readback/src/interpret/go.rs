@@ -1,13 +1,14 @@
 //! Motions: from where words lead to axis values, and to the tip and tool axis that they bring about.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 
 use super::state::{Axes, Control, Orientation};
-use crate::{Done, Motion, MotionKind, Stance, Way};
+use crate::{Done, Motion, MotionKind, SplineWay, Stance, Way};
 
 /// A tip that the axes miss by more than this is not reached, mm.
 const REACHED: f64 = 1e-6;
@@ -59,6 +60,8 @@ pub(super) enum Path {
         /// Turn about it, right-handed, radians.
         sweep: f64,
     },
+    /// On a spline of the program's coordinates.
+    Spline(Arc<SplineWay>),
 }
 
 impl Control {
@@ -117,6 +120,7 @@ impl Control {
                 normal,
                 sweep,
             } => self.arc(&from, *centre, *normal, *sweep)?,
+            Path::Spline(way) => self.spline_way(&from, way),
         };
         self.moved(kind, way, from);
         Ok(())

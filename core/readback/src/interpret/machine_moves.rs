@@ -46,10 +46,10 @@ impl Control {
                     "words of axes without a word that says how they move",
                 ));
             }
-            MotionMode::Clockwise | MotionMode::CounterClockwise => {
+            MotionMode::Clockwise | MotionMode::CounterClockwise | MotionMode::Spline => {
                 return Err(self.refuse(
                     "nc-machine",
-                    "machine coordinates are approached on a straight line, and an arc is in force",
+                    "machine coordinates are approached on a straight line, and a curve is in force",
                 ));
             }
         };

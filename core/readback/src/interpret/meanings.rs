@@ -148,8 +148,8 @@ impl Control {
                     "a subprogram begins or ends here in a way that is not run",
                 ));
             }
-            Meaning::Spline
-            | Meaning::Scale
+            Meaning::Spline => self.spline_word(code)?,
+            Meaning::Scale
             | Meaning::Mirror
             | Meaning::Polar
             | Meaning::FaceTransformation

@@ -9,7 +9,7 @@
 //! | `compensation`, `spindle` | lengths, radii, work offsets; tools, spindle, coolant, waits |
 //! | `corners` | how the control passes from one motion to the next |
 //! | `names` | names, calls and texts among the words |
-//! | `go`, `arcs`, `machine_moves` | from words to axis values, tip and tool axis |
+//! | `go`, `arcs`, `splines`, `machine_moves` | from words to axis values, tip and tool axis |
 //! | `feed`, `tools` | time, tool lengths |
 //! | `frame` | frames within one another |
 //! | `flow`, `astray`, `expression`, `variables` | what leads the program elsewhere, and numbers that are worked out |
@@ -37,6 +37,7 @@ mod meanings;
 mod names;
 mod planes;
 mod spindle;
+mod splines;
 mod state;
 mod tools;
 mod variables;
@@ -164,6 +165,10 @@ impl<R: Read + Seek> Interpreter<R> {
         runner.control.report.header = flow.reader().header_lines();
         runner.control.line = block.line;
         if !more.map_err(|finding| flow.show(runner.control.placed(*finding).boxed()))? {
+            if runner.control.spline.take().is_some() {
+                let message = "a spline begins that never ends";
+                return Err(runner.control.refuse("nc-spline", message));
+            }
             return Ok(false);
         }
         runner.control.report.blocks += 1;

@@ -9,6 +9,7 @@ use post_machine::kinematics::{Joints, Solver, Turns};
 use super::ReadReport;
 use super::cycles::Cycles;
 use super::frame::{Frame, Frames};
+use super::splines::Gathering;
 use super::tools::Tools;
 use super::variables::Variables;
 use crate::lexicon::Lexicon;
@@ -49,6 +50,8 @@ pub(super) struct Control {
     pub variables: Variables,
     /// The cycle that is in force, if there is one.
     pub cycles: Cycles,
+    /// The spline whose control points are told, if one is.
+    pub spline: Option<Box<Gathering>>,
     /// What conversational path functions remember.
     pub path: super::conversational::Path,
     /// What its motions share; handed on when something of it changes. After a change: [`Control::state_changed`].
@@ -172,6 +175,8 @@ pub(super) enum MotionMode {
     Clockwise,
     /// G3.
     CounterClockwise,
+    /// G6.2, G5.2.
+    Spline,
 }
 
 /// The plane of arcs and cycles.

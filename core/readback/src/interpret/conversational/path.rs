@@ -106,6 +106,7 @@ fn travel(control: &mut Control, kind: MotionKind, path: &go::Path, target: &Tar
             let tangent = normal.cross(&(to - centre)) * if *sweep < 0.0 { -1.0 } else { 1.0 };
             tangent.try_normalize(SHARED)
         }
+        go::Path::Spline(_) => None,
     };
     cycles::at_point(control)
 }

@@ -2,6 +2,7 @@
 
 mod modes;
 mod places;
+mod splines;
 
 use std::io::Cursor;
 

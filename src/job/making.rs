@@ -91,6 +91,7 @@ impl Part {
             planned,
             solutions: false,
             any_coolant: false,
+            own: true,
             lines: self.lines.clone(),
         };
         read_back::verify(&reading, source, &name, text, &mut |_| {})

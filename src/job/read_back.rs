@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 
 use post_host::Finder;
-use post_machine::description::{Machine, OutputUnits, Rapid};
+use post_machine::description::{Machine, OutputUnits, Rapid, TextPlace};
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 use post_plugin::{Meaning, VocabularyWord};
 use post_posting::program::{ToldSpindle, Unknown};
@@ -42,6 +42,8 @@ pub struct Reading<'a> {
     pub planned: bool,
     /// Which coolant flows is the program's own business.
     pub any_coolant: bool,
+    /// The program was posted for this machine file, in this run.
+    pub own: bool,
     /// Each line is told with the solution of the machine that it ends in.
     pub solutions: bool,
     /// Lines of the CL file that the program is made of; none: all.
@@ -263,6 +265,8 @@ pub fn hold<C: Course, R: Read + Seek>(
         solutions: reading.solutions,
         planned: reading.planned,
         coolants: !reading.any_coolant,
+        // A retract by lines of the user's own leads where they say.
+        own: reading.own && machine.program.text(TextPlace::Retract).is_none(),
         feed_place: feed_place(machine, spoken.feed_decimals),
         linear_rapids: machine.rapid(spoken.rapids_pass) == Rapid::Linear,
         least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),

@@ -256,6 +256,7 @@ impl OneJob<'_> {
             planned: self.study.options.plan,
             solutions: false,
             any_coolant: false,
+            own: true,
             lines: None,
         };
         let name = plugin_finder::cl_name(target);

@@ -277,6 +277,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         planned: false,
         solutions: false,
         any_coolant: false,
+        own: false,
         lines: None,
     };
     let told = program.name().to_owned();

@@ -144,6 +144,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         planned: arguments.planned,
         solutions: arguments.map.is_some(),
         any_coolant: arguments.ignore.contains(&Ignored::Coolant),
+        own: false,
         lines: None,
     };
     let once_more = Again {

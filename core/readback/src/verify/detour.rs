@@ -6,6 +6,7 @@ use post_machine::axis_words::is_depth;
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, Pose};
 
+use super::retract;
 use crate::Motion;
 
 /// So many ends of rapids are remembered between two cuts, and as many places that are asked for.
@@ -17,7 +18,9 @@ const SAME_LINE: f64 = 1e-3;
 /// Where a tool goes between two cuts: to the places that are asked for, and on the line of the tool at one of them as
 /// far off as it likes. Anywhere else each axis that it moves stands between where it stands at those places, or where
 /// the machine file sends it (`retract`, `change`, `park`); the depth may be drawn back farther than at all of them. A retract in
-/// positions of the machine leads as far as the machine file says.
+/// positions of the machine leads as far as the machine file says. In a program that was posted for this machine file, rotary
+/// axes turn where the tool is retracted, or with the tip on a way of the course or on the line of the tool at one of its
+/// places; elsewhere nothing is said of the other axes while one turns.
 #[derive(Debug, Default)]
 pub(super) struct Detour {
     asked: Vec<(Joints, Pose)>,
@@ -35,6 +38,19 @@ struct End {
     joints: Joints,
     pose: Pose,
     machine: bool,
+    /// A way of the course leads the tip past it.
+    led: bool,
+}
+
+/// How a rapid went astray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// An axis stands where nothing sends it.
+    Far,
+    /// A retract is too short.
+    Short,
+    /// A rotary axis turns where the tool is neither on the course nor retracted.
+    Turns,
 }
 
 /// A rapid that went astray.
@@ -42,16 +58,16 @@ struct End {
 pub(super) struct Astray {
     pub line: u64,
     pub number: Option<u64>,
-    /// The axis, and how far it is from all where it could stand, mm or degrees.
+    /// The axis, and how far it is from all where it could stand, or how far it turns: mm or degrees.
     pub axis: usize,
     pub by: f64,
-    /// It is a retract that is too short.
-    pub short: bool,
+    pub kind: Kind,
 }
 
 impl Detour {
-    /// A rapid ended; `asked` if the course leads there too, `known` if it does where the rapid began.
-    pub fn take(&mut self, motion: &Motion, asked: bool, known: bool) {
+    /// A rapid ended; `asked` if the course leads there too, `led` if it leads the tip past there, `known` if it leads to
+    /// where the rapid began.
+    pub fn take(&mut self, motion: &Motion, [asked, led]: [bool; 2], known: bool) {
         if known && self.asked.is_empty() {
             self.ask(&motion.from.joints, &motion.from.pose);
         }
@@ -65,6 +81,7 @@ impl Detour {
                 joints: motion.to.joints,
                 pose: motion.to.pose,
                 machine: motion.machine,
+                led,
             });
         }
     }
@@ -82,8 +99,8 @@ impl Detour {
         &mut self,
         machine: &Machine,
         motion: Option<&Motion>,
-        slack: [f64; 2],
-        lean: f64,
+        own: bool,
+        (slack, lean): ([f64; 2], f64),
     ) -> Option<Astray> {
         if let Some(motion) = motion {
             self.ask(&motion.from.joints, &motion.from.pose);
@@ -99,7 +116,14 @@ impl Detour {
             let mut passed = passed.iter();
             end.machine || !passed.any(|pose| end.on_the_line(pose, slack[0], lean))
         });
-        open.find_map(|end| end.astray(machine, &asked, slack, lean))
+        let passed = &passed;
+        open.find_map(|end| {
+            let poses = asked.iter().map(|(_, pose)| pose).chain(passed);
+            match end.turns(machine, slack) {
+                Some(turns) if own => end.turns_astray(machine, turns, poses, slack[0]),
+                _ => end.astray(machine, &asked, slack, lean),
+            }
+        })
     }
 
     fn ask(&mut self, joints: &Joints, pose: &Pose) {
@@ -111,6 +135,44 @@ impl Detour {
 }
 
 impl End {
+    /// The first rotary axis that turns, where words of the part say so.
+    fn turns(&self, machine: &Machine, slack: [f64; 2]) -> Option<usize> {
+        let turns = |place: &usize| {
+            let turned = libm::fabs(self.joints[*place] - self.from[*place]);
+            machine.axes[*place].joint.rotary && turned > slack[1]
+        };
+        let mut places = 0..machine.axes.len();
+        places.find(turns).filter(|_| !self.machine)
+    }
+
+    /// An axis turns neither on a way of the course, nor with the tip on the line of the tool at one of its places, nor with
+    /// the tool retracted.
+    fn turns_astray<'p>(
+        &self,
+        machine: &Machine,
+        axis: usize,
+        mut poses: impl Iterator<Item = &'p Pose>,
+        slack: f64,
+    ) -> Option<Astray> {
+        let retracted = retract::lacks(machine, &self.from, slack).is_none();
+        let on_line = |pose: &Pose| {
+            let way = self.pose.tip - pose.tip;
+            let along = way.dot(&pose.axis);
+            along >= -slack && (way - pose.axis * along).norm() <= slack
+        };
+        if retracted || self.led || poses.any(on_line) {
+            return None;
+        }
+        let turned = libm::fabs(self.joints[axis] - self.from[axis]);
+        Some(Astray {
+            line: self.line,
+            number: self.number,
+            axis,
+            by: turned / machine.axes[axis].unit(),
+            kind: Kind::Turns,
+        })
+    }
+
     /// The axis that is farthest from where it could stand.
     fn astray(
         &self,
@@ -126,11 +188,7 @@ impl End {
         {
             return None;
         }
-        let turns = |place: usize| {
-            let turned = libm::fabs(self.joints[place] - self.from[place]);
-            machine.axes[place].joint.rotary && turned > slack[1]
-        };
-        if !self.machine && (0..machine.axes.len()).any(turns) {
+        if !self.machine && self.turns(machine, slack).is_some() {
             // While the part turns or the head swings, the linear axes go round with it.
             return None;
         }
@@ -143,7 +201,7 @@ impl End {
             if libm::fabs(value - self.from[place]) <= slack {
                 continue;
             }
-            let (mut by, mut short) = (f64::INFINITY, false);
+            let (mut by, mut kind) = (f64::INFINITY, Kind::Far);
             let mut allow = |other: f64| {
                 let mut apart = value - other;
                 if rotary {
@@ -166,7 +224,7 @@ impl End {
                 let retract = frame.retract.iter().find(|(other, _)| *other == place);
                 let least = match retract {
                     Some((_, retract)) if self.machine => {
-                        short = true;
+                        kind = Kind::Short;
                         away * retract
                     }
                     _ => {
@@ -182,7 +240,7 @@ impl End {
                     number: self.number,
                     axis: place,
                     by: by / axis.unit(),
-                    short,
+                    kind,
                 };
                 worst = Some((by / slack, astray));
             }

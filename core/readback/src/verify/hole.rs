@@ -7,7 +7,7 @@ use super::place::{Apart, Place};
 use super::state;
 use super::track::{Element, Hole, What};
 use crate::course::Course;
-use crate::{CycleKind, Motion, MotionKind, Told};
+use crate::{CycleKind, Motion, MotionKind, Spindle, Told};
 
 /// A hole in the making.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +44,21 @@ struct Stroke {
 pub(super) struct Made {
     axis: Axis,
     deepest: f64,
+    /// How the spindle has turned in it.
+    spindle: Spindle,
+}
+
+impl Made {
+    /// A place on its axis or above it, mm of slack.
+    pub fn is_above(&self, place: &Place, slack: f64) -> bool {
+        self.axis.split(place).1.point <= slack
+    }
+
+    /// It has another direction than `up`, or lies on the line through `foot` along it.
+    pub fn stands_on(&self, foot: Vector3<f64>, up: Vector3<f64>, slack: f64) -> bool {
+        let offset = self.axis.top.point - foot;
+        (self.axis.top.axis - up).norm() > 1e-9 || (offset - up * offset.dot(&up)).norm() <= slack
+    }
 }
 
 /// The axis of a hole, from the level where the feed begins.
@@ -316,6 +331,7 @@ impl<C: Course> Verifier<'_, C> {
             self.made = run.bottom.then_some(Made {
                 axis,
                 deepest: run.deepest,
+                spindle: motion.state.spindle,
             });
             self.end_hole(motion, run, &element, axis.depth);
             if rapid {
@@ -327,10 +343,10 @@ impl<C: Course> Verifier<'_, C> {
     /// A further peck in the hole that was made last: one before may have come to the bottom within the tolerance. False
     /// if the motion is none.
     pub(super) fn pecks_again(&mut self, motion: &Motion, places: &[Place]) -> bool {
-        let Some(Made { axis, deepest }) = self.made else {
+        let Some(made) = self.made else {
             return false;
         };
-        let bound = self.bound;
+        let (axis, deepest, bound) = (made.axis, made.deepest, self.bound);
         let most = match motion.kind {
             MotionKind::Rapid => deepest,
             _ => axis.depth,
@@ -341,6 +357,19 @@ impl<C: Course> Verifier<'_, C> {
         });
         // Out of it other points may be due.
         let goes = axis.split(&places[places.len() - 1]).0 > bound.point;
+        let has = motion.state.spindle;
+        if in_it
+            && goes
+            && motion.kind != MotionKind::Rapid
+            && !state::same_spindle(has, made.spindle)
+        {
+            let message = format!(
+                "the spindle {} in a hole that was made, and as it was made it {}",
+                state::spindle_name(has),
+                state::spindle_name(made.spindle)
+            );
+            self.fault("spindle", message, Some(motion), None, None);
+        }
         if in_it && goes {
             self.set_kind(match motion.kind {
                 MotionKind::Rapid => "rapid",

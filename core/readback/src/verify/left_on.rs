@@ -12,8 +12,8 @@ pub(super) struct Running {
     tool: Option<u32>,
     spindle: Spindle,
     coolants: Coolants,
-    /// Line at which one of them was told last.
-    line: u64,
+    /// Lines at which the spindle and the coolants were told last.
+    lines: [u64; 2],
     /// What ran as the tool came; until it is held against the course.
     change: Option<Change>,
 }
@@ -62,15 +62,17 @@ impl<C: Course> Verifier<'_, C> {
     pub(super) fn runs(&mut self, line: u64, told: &Told) {
         let running = &mut self.running;
         match told {
-            Told::Spindle(spindle) => (running.spindle, running.line) = (*spindle, line),
+            Told::Spindle(spindle) => (running.spindle, running.lines[0]) = (*spindle, line),
             Told::Coolant(coolants) if self.rules.coolants => {
-                (running.coolants, running.line) = (*coolants, line)
+                (running.coolants, running.lines[1]) = (*coolants, line)
             }
+            // The end of a program stops both.
+            Told::End => (running.spindle, running.coolants) = Default::default(),
             Told::ToolChange { number, .. } => {
                 let same = number.is_some() && running.tool == *number;
                 running.tool = *number;
                 // What stands in the block of the change is on behind it.
-                if same || running.line == line {
+                if same || running.lines.contains(&line) {
                     return;
                 }
                 let change = Change {
@@ -116,6 +118,34 @@ impl<C: Course> Verifier<'_, C> {
         }
         for (code, message) in change.faults(!spindle, !coolants) {
             self.left_on(change.line, code, message);
+        }
+    }
+
+    /// The program is over: nothing stops what still runs.
+    pub(super) fn tell_end(&mut self) {
+        let running = self.running;
+        if !matches!(running.spindle, Spindle::Off | Spindle::Oriented) {
+            let name = spindle_name(running.spindle);
+            let message =
+                format!("the spindle {name} when the program is over, and nothing stops it");
+            self.fault_at(
+                "spindle",
+                message,
+                Some((running.lines[0], None)),
+                None,
+                None,
+            );
+        }
+        if running.coolants != Coolants::default() {
+            let name = coolant_name(running.coolants);
+            let message = format!("{name} flows when the program is over, and nothing stops it");
+            self.fault_at(
+                "coolant",
+                message,
+                Some((running.lines[1], None)),
+                None,
+                None,
+            );
         }
     }
 

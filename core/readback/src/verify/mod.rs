@@ -6,7 +6,7 @@
 //! block that strays, that has no place on the course, or that comes out of turn. This proves more than a comparison of
 //! end points or of nearest distances: neither sees that a path is cut twice, backwards, or not at all.
 //!
-//! Rapids are free but for what matters of them (`rapid`): they lead from where a cut ends to where the next begins,
+//! Rapids are free but for what matters of them (`rapid`, `near`, `fed_rapid`, `next_cut`): they lead from where a cut ends to where the next begins,
 //! past the points that the course asks for, in their order. A cut may be left for a while, if it goes on where it was
 //! left. In a hole the control pecks as it likes (`hole`), but in no larger pecks than asked for: the bottom is reached at
 //! feed, and no rapid goes where nothing was cut.
@@ -17,11 +17,15 @@ mod axes;
 mod chop;
 mod cut_path;
 mod detour;
+mod fed_rapid;
 mod hole;
 mod left_on;
+mod near;
+mod next_cut;
 mod place;
 mod rapid;
 mod report;
+mod retract;
 mod state;
 mod sweep;
 mod track;
@@ -30,6 +34,7 @@ use std::f64::consts::PI;
 
 use post_machine::description::{Machine, Rapid};
 use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Joints;
 
 use crate::course::Course;
 use crate::{CycleKind, Done, Motion, MotionKind, Offsets, Spindle, Told};
@@ -71,6 +76,9 @@ pub struct Rules {
     pub planned: bool,
     /// Coolants are compared; else which of them flows is the program's own business.
     pub coolants: bool,
+    /// The program was posted for this machine file, and is held to what posting promises of rapids besides: what that is
+    /// says `retract` and `detour`. A program of another hand leads the tool off the part as it likes.
+    pub own: bool,
     /// Each line of the program is told with the solution that it ends in.
     pub solutions: bool,
     /// So many faults are told apart; then it is given up.
@@ -105,6 +113,7 @@ impl Rules {
             feed_place: 0.0,
             planned: false,
             coolants: true,
+            own: false,
             solutions: false,
             most_faults: 50,
         }
@@ -158,6 +167,8 @@ pub struct Verifier<'m, C> {
     worked: Vec<(Option<u32>, String)>,
     detour: Detour,
     running: Running,
+    /// Where the axes stand; none: nothing has moved.
+    stands: Option<Joints>,
     axes: Axes,
     block: BlockReport,
     found: Verification,
@@ -206,6 +217,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             turned: Vec::new(),
             detour: Detour::default(),
             running: Running::default(),
+            stands: None,
             axes: Axes::new(machine),
             block: BlockReport::default(),
             found: Verification::default(),
@@ -246,7 +258,11 @@ impl<'m, C: Course> Verifier<'m, C> {
             Told::Dwell { .. } | Told::Stop | Told::OptionalStop => self.event(line, told),
             Told::Cycle(call) => self.cycle = Some(call.kind),
             Told::CycleEnd => self.cycle = None,
-            Told::ToolChange { .. } => self.turned.clear(),
+            Told::ToolChange { .. } => {
+                self.turned.clear();
+                self.look_for_retract(line, "where the tool is changed");
+            }
+            Told::End => self.look_for_retract(line, "where the program ends"),
             Told::Spindle(spindle) if self.turned.len() < track::MOST_SPEEDS => {
                 self.turned.push((*spindle, line));
             }
@@ -261,6 +277,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             self.flush_stray();
             self.look_at_the_rest();
             self.tell_change(None);
+            self.tell_end();
         }
         self.found
     }
@@ -311,6 +328,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             }
         }
         self.places = places;
+        self.stands = Some(motion.to.joints);
         if self.rules.solutions {
             self.block.solution = axes::solution(self.machine, motion);
         }

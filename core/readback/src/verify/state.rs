@@ -328,7 +328,7 @@ impl<C: Course> Verifier<'_, C> {
         }
         let place = self.rules.feed_place.max(PLACE);
         if feed < asked * (1.0 - SHARE - rounded) - place {
-            let needed = self.axes.least_minutes(self.machine, motion);
+            let needed = self.axes.least_minutes(self.machine, motion, 0.0);
             match needed {
                 // Of a slow feed the last place is much, and it is rounded down.
                 Some((minutes, joint))
@@ -410,7 +410,7 @@ fn number_of(name: &str) -> Option<u32> {
     (54..=59).contains(&code).then(|| code - 53)
 }
 
-fn same_spindle(has: Spindle, wants: Spindle) -> bool {
+pub(super) fn same_spindle(has: Spindle, wants: Spindle) -> bool {
     // Printed without decimals, or with some.
     let same = |a: f64, b: f64| libm::fabs(a - b) <= PLACE;
     match (has, wants) {

@@ -74,6 +74,8 @@ pub(super) struct Hole {
     pub dwell: Option<Told>,
     /// How the tool comes back.
     pub back: Option<MotionKind>,
+    /// How the course comes to it at rapid: a control may go otherwise.
+    pub approach: Vec<[Place; 2]>,
 }
 
 /// A course on its way to a program.
@@ -86,6 +88,8 @@ pub(super) struct Track<C> {
     asked: Arc<Asked>,
     cycle: Option<CycleCall>,
     hole: Option<Element>,
+    /// Rapids towards the next hole.
+    approach: Vec<[Place; 2]>,
     places: Vec<Place>,
     ended: bool,
     /// Line of the item read last.
@@ -99,6 +103,9 @@ pub(super) const MOST: usize = 60_000;
 
 /// So many commands of the spindle are kept of a tool.
 pub(super) const MOST_SPEEDS: usize = 64;
+
+/// So many rapids towards one hole are kept.
+const MOST_APPROACH: usize = 64;
 
 /// So many faults of a course are kept.
 const MOST_FAULTS: usize = 50;
@@ -119,6 +126,7 @@ impl<C: Course> Track<C> {
             asked: Arc::default(),
             cycle: None,
             hole: None,
+            approach: Vec::new(),
             places: Vec::new(),
             ended: false,
             line: 0,
@@ -204,7 +212,12 @@ impl<C: Course> Track<C> {
         self.end_hole();
         let what = match piece.kind {
             // Between holes a control goes its own ways; where their feed begins is looked at.
-            MotionKind::Rapid if piece.hole => return,
+            MotionKind::Rapid if piece.hole => {
+                if self.approach.len() < MOST_APPROACH {
+                    self.approach.push([from, to]);
+                }
+                return;
+            }
             MotionKind::Rapid => {
                 self.push(piece.line, What::Way, (from, to), None);
                 return;
@@ -243,6 +256,7 @@ impl<C: Course> Track<C> {
                     pecks: (cycle.peck > 0.0).then_some(pecks),
                     dwell: None,
                     back: None,
+                    approach: std::mem::take(&mut self.approach),
                 };
                 self.hole = Some(Element {
                     line: piece.line,
@@ -280,6 +294,7 @@ impl<C: Course> Track<C> {
     }
 
     fn push(&mut self, line: u64, what: What, ends: (Place, Place), feed: Option<f64>) {
+        self.approach.clear();
         self.elements.push_back(Element {
             line,
             what,

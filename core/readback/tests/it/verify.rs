@@ -591,6 +591,44 @@ fn changed(number: u32) -> Told {
 }
 
 #[test]
+fn nothing_runs_on_behind_the_end_of_a_program() {
+    let flood = Coolants {
+        flood: true,
+        ..Coolants::default()
+    };
+    let on = [
+        Told::Spindle(Spindle::Clockwise(8000.0)),
+        Told::Coolant(flood),
+    ];
+    let asks = || {
+        let asks = Asks::default().tell(on[0].clone()).tell(on[1].clone());
+        asks.rapid(0.0, 0.0, 10.0)
+            .cut(0.0, 0.0, -2.0)
+            .rapid(0.0, 0.0, 10.0)
+    };
+    let found = |ends: &[Told]| {
+        let mut does = Does::at(0.0, 0.0, 15.0).with(|state| {
+            state.spindle = Spindle::Clockwise(8000.0);
+            state.coolants = flood;
+        });
+        does = does.tell(on[0].clone()).tell(on[1].clone());
+        does = does.rapid(0.0, 0.0, 10.0).cut(0.0, 0.0, -2.0);
+        does = does.rapid(0.0, 0.0, 10.0);
+        for told in ends {
+            does = does.tell(told.clone());
+        }
+        codes(&does, asks())
+    };
+    let off = Told::Spindle(Spindle::Off);
+    let dry = Told::Coolant(Coolants::default());
+    // M30 stops both, and so do M5 and M9.
+    assert_eq!(found(&[Told::End]), []);
+    assert_eq!(found(&[off.clone(), dry.clone()]), []);
+    assert_eq!(found(&[dry]), [("spindle", 1, 0)]);
+    assert_eq!(found(&[off]), [("coolant", 2, 0)]);
+}
+
+#[test]
 fn a_tool_is_not_changed_while_something_runs_that_should_stand() {
     let flood = Coolants {
         flood: true,
@@ -631,7 +669,8 @@ fn a_tool_is_not_changed_while_something_runs_that_should_stand() {
         }
         does = with(does.tell(changed(4)), 4).tell(on.clone());
         does = does.tell(Told::Coolant(flood));
-        does.cut(0.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0)
+        does = does.cut(0.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0);
+        does.tell(Told::End)
     };
     let off = [
         Told::Spindle(Spindle::Off),

@@ -1,0 +1,114 @@
+//! Rapids of the course that the program makes at feed.
+
+use super::Verifier;
+use super::place::{Place, free};
+use super::track::What;
+use crate::course::Course;
+use crate::{Motion, MotionKind};
+
+/// A rapid at feed may take so much longer than its axes need: feeds are rounded down.
+const SLOW: f64 = 0.1;
+
+/// And so much besides, minutes.
+const MOMENT: f64 = 1e-4;
+
+impl<C: Course> Verifier<'_, C> {
+    /// A first point that the program comes to at feed. False if the motion is no such.
+    pub(super) fn reaches_at_feed(&mut self, motion: &Motion, places: &[Place]) -> bool {
+        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
+            return false;
+        };
+        let bound = self.bound;
+        let due = self.track.get(index).and_then(|element| {
+            let reached = places[places.len() - 1].within(&element.to, &bound);
+            match element.what {
+                What::Reach(kind) if reached => Some((kind, element.line)),
+                _ => None,
+            }
+        });
+        let Some((kind, cl_line)) = due else {
+            return false;
+        };
+        if kind == MotionKind::Rapid {
+            self.rapid_at_feed(motion, cl_line);
+        }
+        self.pass(motion, places);
+        self.set_kind("rapid");
+        true
+    }
+
+    /// A motion at feed where a rapid is due, along it. False if the motion is no such.
+    pub(super) fn follows_a_rapid(&mut self, motion: &Motion, places: &[Place]) -> bool {
+        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
+            return false;
+        };
+        let bound = self.rapid_bound;
+        let (from, to) = (&places[0], &places[places.len() - 1]);
+        let due = self.track.get(index).is_some_and(|element| {
+            let mut bound = bound;
+            if element.from.axis != element.to.axis {
+                // How the axis goes from one end to the other is not asked for.
+                bound.axis = 2.0;
+            }
+            let on = |place: &Place| free(place, &element.from, &element.to, &bound);
+            let (start, end) = (on(from), on(to));
+            matches!(element.what, What::Way) && !end.is_empty() && start.from <= end.to
+        });
+        if !due {
+            return false;
+        }
+        let cl_line = self.track.get(index).map_or(0, |element| element.line);
+        self.rapid_at_feed(motion, cl_line);
+        self.set_kind("rapid");
+        self.rapid(motion, places);
+        true
+    }
+
+    /// A motion at feed that the machine file lets a rapid be: as fast as its axes go.
+    pub(super) fn is_as_fast_as_rapids(&self, motion: &Motion) -> bool {
+        let wanted = (motion.minutes - MOMENT) / (1.0 + SLOW);
+        let fast = || {
+            // Times that are too short anyhow need not be known.
+            let least = self.axes.least_minutes(self.machine, motion, 0.9 * wanted);
+            least.is_some_and(|(minutes, _)| minutes >= wanted)
+        };
+        self.rules.linear_rapids
+            && motion.kind == MotionKind::Feed
+            && (fast() || self.comes_from_anywhere(motion))
+    }
+
+    /// Off the cuts, by linear axes alone, at what the slowest of them goes: the way was not known when the feed was
+    /// written.
+    fn comes_from_anywhere(&self, motion: &Motion) -> bool {
+        let joints = motion.from.joints.iter().zip(&motion.to.joints);
+        let mut axes = self.machine.axes.iter().zip(joints);
+        let stands = axes.all(|(axis, (from, to))| !axis.joint.rotary || from == to);
+        let linear = self.machine.axes.iter().filter(|axis| !axis.joint.rotary);
+        let slowest = linear
+            .map(|axis| axis.max_feed)
+            .fold(f64::INFINITY, f64::min);
+        self.apart && stands && motion.feed >= slowest * (1.0 - SLOW)
+    }
+
+    /// A rapid of the course is made at feed: where the machine file has it so, as fast as the axes hold.
+    fn rapid_at_feed(&mut self, motion: &Motion, cl_line: u64) {
+        self.found.rapids_at_feed += 1;
+        let feed = motion.feed;
+        if !self.rules.linear_rapids {
+            let message = "a rapid of the CL file is made at feed".to_owned();
+            let told = format!("{message}: {feed:.1} mm/min");
+            self.limit_fault("rapid", message, told, motion, cl_line, feed);
+            return;
+        }
+        let least = self.axes.least_minutes(self.machine, motion, 0.0);
+        if let Some((minutes, joint)) = least
+            && !self.is_as_fast_as_rapids(motion)
+        {
+            let name = &self.machine.axes[joint].name;
+            let message = "a rapid of the CL file is made slower than its axes go".to_owned();
+            let share = minutes / motion.minutes * 100.0;
+            let told = format!("{message}: at {share:.0} % of the max_feed of {name}");
+            self.limit_fault("rapid", message, told, motion, cl_line, 100.0 - share);
+        }
+    }
+}

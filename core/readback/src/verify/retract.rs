@@ -1,0 +1,42 @@
+//! Where a tool is changed, and where the program ends: a posted program has the tool retracted there.
+
+use post_machine::description::Machine;
+use post_machine::kinematics::Joints;
+
+use super::Verifier;
+use crate::course::Course;
+
+/// By how much the depth axes stand nearer to the part than the machine file retracts them: the axis that lacks most, and
+/// how much, mm; none if all of them are retracted, or stand where it has them for a tool change or at the end.
+pub(super) fn lacks(machine: &Machine, joints: &Joints, slack: f64) -> Option<(usize, f64)> {
+    let frame = &machine.frame;
+    let named = [&frame.change, &frame.park, &frame.aside];
+    let lacks = frame.retract.iter().map(|(place, retract)| {
+        let away = machine.axes[*place].joint.direction.dot(&machine.tool_axis);
+        let by = away.signum() * (retract - joints[*place]);
+        (*place, by)
+    });
+    let short = lacks.filter(|(place, by)| {
+        let mut named = named.iter().flat_map(|list| list.iter());
+        let there = |(other, value): &(usize, f64)| {
+            other == place && libm::fabs(joints[*place] - value) <= slack
+        };
+        *by > slack && !named.any(there)
+    });
+    short.max_by(|(_, one), (_, other)| one.total_cmp(other))
+}
+
+impl<C: Course> Verifier<'_, C> {
+    /// The tool must be retracted here, if the program was posted for this machine file.
+    pub(super) fn look_for_retract(&mut self, line: u64, here: &str) {
+        let Some(joints) = self.stands.filter(|_| self.rules.own) else {
+            return;
+        };
+        let Some((place, by)) = lacks(self.machine, &joints, self.rapid_bound.point) else {
+            return;
+        };
+        let name = &self.machine.axes[place].name;
+        let message = format!("{name} stands {by:.3} mm short of its retract {here}");
+        self.fault_at("rapid", message, Some((line, None)), None, Some(by));
+    }
+}

@@ -70,3 +70,89 @@ fn linuxcnc_has_none_under_tcp_that_may_drive_a_joint_too_fast() {
         assert_eq!(verified.code, 0, "{machine}: {}", verified.err);
     }
 }
+
+/// Whether a word of the axes stands in the block.
+fn turns(block: &str) -> bool {
+    let mut words = block.split_whitespace();
+    words.any(|word| word.starts_with(['A', 'B', 'C']))
+}
+
+#[test]
+fn a_fed_rapid_at_half_speed_is_found() {
+    let (machine, sample) = ("linuxcnc-5axis", "linuxcnc-5axis.cls");
+    let (text, verified) = both(machine, sample, &[]);
+    assert_eq!(verified.code, 0, "{}", verified.err);
+    let (plain, _) = both(machine, sample, &["--set", "control.rapid=rapid"]);
+    // Blocks that are rapids if they may be.
+    let rapids: Vec<&str> = turning(&plain).into_iter().map(words_of_axes).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("slow.ngc");
+    let mut found = 0;
+    let lines: Vec<&str> = text.lines().collect();
+    for (place, line) in lines.iter().enumerate() {
+        let Some((words, feed)) = line.split_once(" F").filter(|(words, _)| turns(words)) else {
+            continue;
+        };
+        if !rapids.contains(&words_of_axes(words)) {
+            continue;
+        }
+        // What comes behind has its own feed again.
+        let number: f64 = feed.parse().unwrap();
+        let half = format!("{words} F{:.0}.", 0.5 * number);
+        let mut changed: Vec<String> = lines.iter().map(|line| (*line).to_owned()).collect();
+        changed[place] = half;
+        if let Some(next) = changed.get_mut(place + 1)
+            && !next.contains('F')
+            && !next.starts_with("G0")
+        {
+            next.push_str(&format!(" F{feed}"));
+        }
+        fs::write(&program, changed.join("\n") + "\n").unwrap();
+        let mut verify = command();
+        verify.arg("verify").arg(&program);
+        verify.args(["--against", &format!("tests/machines/{sample}")]);
+        verify.args(["-m", machine, "--set", "control.dialect=linuxcnc"]);
+        verify.args(["--set", "control.tcp=control", "--tool-length", "80"]);
+        let run = run(&mut verify, b"");
+        assert_eq!(run.code, 1, "{line}\n{}", run.out);
+        assert!(run.err.contains("error[rapid]"), "{line}\n{}", run.err);
+        found += 1;
+    }
+    assert!(found >= 2, "{found} fed rapids in\n{text}");
+}
+
+/// A block from its first word of an axis on.
+fn words_of_axes(block: &str) -> &str {
+    let axis = |(_, word): &(usize, &str)| word.starts_with(['X', 'Y', 'Z', 'A', 'B', 'C']);
+    let mut words = block
+        .match_indices(' ')
+        .map(|(at, _)| (at + 1, &block[at + 1..]));
+    let whole = (0, block);
+    match axis(&whole) {
+        true => block,
+        false => words.find(axis).map_or("", |(at, _)| &block[at..]),
+    }
+}
+
+/// The CL file goes from one side of the part to the other straight through where its holes are: so does the program, in
+/// as many rapids as keep its tip on that line.
+#[test]
+fn a_rapid_between_holes_may_end_where_the_cl_file_leads_it() {
+    for machine in ["duoblock", "head-table-bc", "head-table-sr"] {
+        let sample = format!("tests/machines/{machine}.apt");
+        let run = crate::common::post(&[
+            "-q",
+            "-m",
+            machine,
+            "--tcp",
+            "post",
+            "--tool-length",
+            "100",
+            "--verify",
+            &sample,
+            "-o",
+            "-",
+        ]);
+        assert_eq!(run.code, 0, "{machine}\n{}", run.err);
+    }
+}

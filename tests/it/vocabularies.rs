@@ -7,8 +7,8 @@ use std::fs;
 use std::io::Cursor;
 
 use post_grammar::nc::{NcBlock, NcItem, NcReader, NcValue};
-use post_host::{GivenValue, Plugin, ProgramSetup, ProgramWord};
-use post_plugin::{Meaning, VocabularyWord};
+use post_host::{GivenValue, OpenedDialect, Plugin, ProgramSetup, ProgramWord};
+use post_plugin::{Capabilities, DialectSession as _, Meaning, VocabularyWord};
 use post_readback::lexicon::Lexicon;
 
 use crate::common::root;
@@ -81,6 +81,15 @@ fn meaning_called(name: &str) -> Option<&'static str> {
 
 /// What the plugin hands over, as it does.
 pub fn vocabulary(dialect: &str) -> Vec<VocabularyWord> {
+    of_dialect(dialect, |dialect| dialect.vocabulary().unwrap())
+}
+
+/// What the plugin declares.
+pub fn capabilities(dialect: &str) -> Capabilities {
+    of_dialect(dialect, |dialect| dialect.capabilities())
+}
+
+fn of_dialect<T>(dialect: &str, told: impl FnOnce(&mut OpenedDialect) -> T) -> T {
     let plugin = Plugin::linked(post_stock::plugin(dialect).unwrap()).unwrap();
     let word = |name: &str| ProgramWord {
         name: name.to_owned(),
@@ -109,7 +118,7 @@ pub fn vocabulary(dialect: &str) -> Vec<VocabularyWord> {
         tcp: dialect != "grbl",
         ..ProgramSetup::default()
     };
-    plugin.dialect(&setup).unwrap().vocabulary().unwrap()
+    told(&mut plugin.dialect(&setup).unwrap())
 }
 
 /// What the plugin hands over.

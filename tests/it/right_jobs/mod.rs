@@ -14,6 +14,7 @@ use post_command::library::{LoadedMachine, MachineTold, OptionTold};
 use post_testkit::Rng;
 
 use crate::common::root;
+use crate::dialects::DIALECTS;
 use cl::{Cl, Leans};
 
 /// Machines that need nothing but a tool axis, and how they lean the tool.
@@ -37,6 +38,7 @@ const MACHINES: &[(&str, char)] = &[
     ("hmc-b-pallet", 'Y'),
     ("linuxcnc-5axis", '*'),
     ("m800-trunnion", '*'),
+    ("mill-turn", '*'),
     ("nutating-head-45", '*'),
     ("nutating-head-50", '*'),
     ("nutating-head", '*'),
@@ -52,19 +54,6 @@ const MACHINES: &[(&str, char)] = &[
     ("vmc", '-'),
     ("xyzac-trt", '*'),
     ("xyzbc-trt", '*'),
-];
-
-const DIALECTS: &[&str] = &[
-    "fanuc",
-    "haas",
-    "mazak",
-    "mitsubishi",
-    "okuma",
-    "hurco",
-    "linuxcnc",
-    "siemens",
-    "heidenhain",
-    "grbl",
 ];
 
 /// What is asked for.
@@ -118,8 +107,8 @@ impl RightJob {
         asks(&mut random, 8, "control.feed", "inverse-time");
         let mut options = Vec::new();
         if random.pick(2) == 0 {
-            let dialect = DIALECTS[random.pick(DIALECTS.len())];
-            options.push(("dialect".to_owned(), Some(dialect.to_owned())));
+            let dialect = &DIALECTS[random.pick(DIALECTS.len())];
+            options.push(("dialect".to_owned(), Some(dialect.clone())));
         }
         match random.pick(3) {
             0 => options.push(("tcp".to_owned(), Some("control".to_owned()))),

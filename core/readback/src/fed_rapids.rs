@@ -17,26 +17,20 @@ use crate::{Done, Motion, MotionKind, Spindle, Way, course, diff};
 /// A rapid at feed may take so much longer than its axes need: feeds are rounded down.
 const SLOW: f64 = 0.1;
 
-/// Where the control keeps the tip and the axes turn, a linear axis may go so much faster on the way than from end to end, as a
-/// share of that.
-const BENT: f64 = 1.0;
-
 /// And so much besides, minutes.
 const MOMENT: f64 = 1e-4;
 
 /// A motion at feed may be as fast as the axes of the machine go.
 pub(crate) fn is_as_fast_as_rapids(axes: &Axes, machine: &Machine, motion: &Motion) -> bool {
-    let bent = motion.turns() && motion.way != Way::Axes;
-    let slack = if bent { BENT } else { SLOW };
-    is_so_fast(axes, machine, motion, (slack, MOMENT))
+    is_so_fast(axes, machine, motion, MOMENT)
 }
 
-/// It takes longer than its axes need by no more than a share and a moment.
-fn is_so_fast(axes: &Axes, machine: &Machine, motion: &Motion, slack: (f64, f64)) -> bool {
-    motion.kind == MotionKind::Feed
-        && axes
-            .least_minutes(machine, motion)
-            .is_some_and(|(minutes, _)| motion.minutes <= minutes * (1.0 + slack.0) + slack.1)
+/// It takes longer than its axes need, between the words too, by no more than a share and a moment, minutes.
+fn is_so_fast(axes: &Axes, machine: &Machine, motion: &Motion, moment: f64) -> bool {
+    let wanted = (motion.minutes - moment) / (1.0 + SLOW);
+    // Times that are too short anyhow need not be known.
+    let least = || axes.least_minutes(machine, motion, 0.9 * wanted);
+    motion.kind == MotionKind::Feed && least().is_some_and(|(minutes, _)| minutes >= wanted)
 }
 
 /// By linear axes alone, at what the slowest of them goes: the way was not known when the feed was written.
@@ -111,8 +105,7 @@ impl<P> FedRapids<P> {
             if !plain
                 || !straight
                 || self.kept && !motion.state.tcp
-                || !is_so_fast(axes, machine, motion, (BENT, 0.0))
-                    && !comes_from_anywhere(machine, motion)
+                || !is_so_fast(axes, machine, motion, 0.0) && !comes_from_anywhere(machine, motion)
             {
                 continue;
             }
@@ -122,7 +115,7 @@ impl<P> FedRapids<P> {
                 continue;
             }
             motion.fast = true;
-            if !is_so_fast(axes, machine, motion, (SLOW, 0.0)) {
+            if !is_so_fast(axes, machine, motion, 0.0) {
                 continue;
             }
             let (count, _) = self.left.get_or_insert((0, motion.line));

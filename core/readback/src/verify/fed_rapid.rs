@@ -4,13 +4,7 @@ use super::Verifier;
 use super::place::{Place, free};
 use super::track::What;
 use crate::course::Course;
-use crate::{Motion, MotionKind};
-
-/// A rapid at feed may take so much longer than its axes need: feeds are rounded down.
-const SLOW: f64 = 0.1;
-
-/// And so much besides, minutes.
-const MOMENT: f64 = 1e-4;
+use crate::{Motion, MotionKind, fed_rapids};
 
 impl<C: Course> Verifier<'_, C> {
     /// A first point that the program comes to at feed. False if the motion is no such.
@@ -66,28 +60,11 @@ impl<C: Course> Verifier<'_, C> {
 
     /// A motion at feed that the machine file lets a rapid be: as fast as its axes go.
     pub(super) fn is_as_fast_as_rapids(&self, motion: &Motion) -> bool {
-        let wanted = (motion.minutes - MOMENT) / (1.0 + SLOW);
-        let fast = || {
-            // Times that are too short anyhow need not be known.
-            let least = self.axes.least_minutes(self.machine, motion, 0.9 * wanted);
-            least.is_some_and(|(minutes, _)| minutes >= wanted)
-        };
+        let from_anywhere = || self.apart && fed_rapids::comes_from_anywhere(self.machine, motion);
         self.rules.linear_rapids
             && motion.kind == MotionKind::Feed
-            && (fast() || self.comes_from_anywhere(motion))
-    }
-
-    /// Off the cuts, by linear axes alone, at what the slowest of them goes: the way was not known when the feed was
-    /// written.
-    fn comes_from_anywhere(&self, motion: &Motion) -> bool {
-        let joints = motion.from.joints.iter().zip(&motion.to.joints);
-        let mut axes = self.machine.axes.iter().zip(joints);
-        let stands = axes.all(|(axis, (from, to))| !axis.joint.rotary || from == to);
-        let linear = self.machine.axes.iter().filter(|axis| !axis.joint.rotary);
-        let slowest = linear
-            .map(|axis| axis.max_feed)
-            .fold(f64::INFINITY, f64::min);
-        self.apart && stands && motion.feed >= slowest * (1.0 - SLOW)
+            && (fed_rapids::is_as_fast_as_rapids(&self.axes, self.machine, motion)
+                || from_anywhere())
     }
 
     /// A rapid of the course is made at feed: where the machine file has it so, as fast as the axes hold.

@@ -13,7 +13,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use nalgebra::Vector3;
-use post_machine::description::{Machine, Setting, Source, Tcp, load};
+use post_machine::description::{Machine, Rapid, Setting, Source, Tcp, load};
 use post_machine::kinematics::Chain;
 use post_plugin::{Capabilities, Meaning, VocabularyWord};
 use post_readback::course::cl::{ClCourse, Settings};
@@ -161,6 +161,18 @@ impl Job {
         apart(&dense(&motions_of(done), None), &asked, tolerances) <= 1.02
     }
 
+    /// Where the machine makes rapids at feed, one as fast as its axes go from end to end is a rapid.
+    fn is_rapid(&self, motion: &Motion) -> bool {
+        let machine = &self.machine;
+        let axes = machine.axes.iter().enumerate();
+        let least = axes
+            .map(|(place, axis)| {
+                (motion.to.joints[place] - motion.from.joints[place]).abs() / axis.max_feed
+            })
+            .fold(0.0, f64::max);
+        machine.control.rapid == Some(Rapid::Linear) && motion.minutes <= 1.1 * least + 1e-4
+    }
+
     /// How far a place is from what is cut, mm.
     fn clearance(&self, tip: Vector3<f64>) -> f64 {
         let far = self.cuts.iter().map(|cut| (cut - tip).norm());
@@ -214,6 +226,13 @@ impl Job {
             }
             for done in &done {
                 verifier.take(done, &mut |_| {});
+            }
+            for done in &mut done {
+                if let Done::Motion(motion) = done
+                    && self.is_rapid(motion)
+                {
+                    motion.kind = MotionKind::Rapid;
+                }
             }
             all.append(&mut done);
         }
@@ -572,8 +591,9 @@ fn dense(motions: &[&Motion], rapids: Option<&Chain>) -> Vec<At> {
             motion.way,
             post_readback::Way::Axes | post_readback::Way::Tip
         );
-        let count = 2.0 + way / 0.5 + if bent { 40.0 } else { 0.0 } + turn.min(10.0) * 10.0;
-        let count = (count as u32).min(400);
+        // A whole circle ends where it begins: of 60 mm its chords stray by a hundredth of a tolerance then.
+        let count = 2.0 + way / 0.5 + if bent { 1500.0 } else { 0.0 } + turn.min(10.0) * 10.0;
+        let count = (count as u32).min(2000);
         for step in 0..=count {
             let share = f64::from(step) / f64::from(count);
             let ends = [&motion.from, &motion.to];

@@ -51,6 +51,8 @@ pub(super) struct Asked {
     pub tcp_off: bool,
     /// The tool is changed.
     pub change: bool,
+    /// M0 that changes the tool beside T, and alone stops the program as everywhere.
+    pub change_or_stop: bool,
     /// Spindle from here on.
     pub spindle: Option<Turning>,
     /// Coolant from here on: the number behind M.
@@ -110,6 +112,12 @@ pub(super) fn run(
     }
     for index in 0..words.m.list().len() {
         control.m_code(words.m.list()[index], &mut asked)?;
+    }
+    if asked.change_or_stop {
+        match words.present & bit(b'T') != 0 {
+            true => asked.change = true,
+            false => asked.stop = Some(Meaning::Stop),
+        }
     }
     if words.present == 0 && words.g.list().is_empty() && words.m.list().is_empty() && !words.more {
         return Ok(());
@@ -231,6 +239,10 @@ impl Control {
             return Err(self.placed(finding).boxed());
         }
         match self.lexicon.m(code) {
+            Sense::Means(Meaning::ToolChange) if code == 0 => {
+                asked.change_or_stop = true;
+                Ok(())
+            }
             Sense::Means(meaning) => {
                 // `meant` takes ten times the number, as of G.
                 let code = if meaning == Meaning::CoolantOn {

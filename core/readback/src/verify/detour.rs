@@ -20,7 +20,8 @@ const SAME_LINE: f64 = 1e-3;
 /// the machine file sends it (`retract`, `change`, `park`); the depth may be drawn back farther than at all of them. A retract in
 /// positions of the machine leads as far as the machine file says. In a program that was posted for this machine file, rotary
 /// axes turn where the tool is retracted, or with the tip on a way of the course or on the line of the tool at one of its
-/// places; elsewhere nothing is said of the other axes while one turns.
+/// places, and other axes stand between those places only if the tool was retracted; in another program nothing is said of the
+/// other axes while one turns.
 #[derive(Debug, Default)]
 pub(super) struct Detour {
     asked: Vec<(Joints, Pose)>,
@@ -121,7 +122,11 @@ impl Detour {
             let poses = asked.iter().map(|(_, pose)| pose).chain(passed);
             match end.turns(machine, slack) {
                 Some(turns) if own => end.turns_astray(machine, turns, poses, slack[0]),
-                _ => end.astray(machine, &asked, slack, lean),
+                _ if own && end.led => None,
+                _ => {
+                    let retracted = retract::lacks(machine, &end.from, slack[0]).is_none();
+                    end.astray(machine, (&asked, !own || retracted), slack, lean)
+                }
             }
         })
     }
@@ -154,7 +159,10 @@ impl End {
         mut poses: impl Iterator<Item = &'p Pose>,
         slack: f64,
     ) -> Option<Astray> {
-        let retracted = retract::lacks(machine, &self.from, slack).is_none();
+        let ends = [&self.from, &self.joints];
+        let retracted = ends
+            .iter()
+            .all(|joints| retract::lacks(machine, joints, slack).is_none());
         let on_line = |pose: &Pose| {
             let way = self.pose.tip - pose.tip;
             let along = way.dot(&pose.axis);
@@ -173,11 +181,11 @@ impl End {
         })
     }
 
-    /// The axis that is farthest from where it could stand.
+    /// The axis that is farthest from where it could stand; between two places that are asked for, if `between`.
     fn astray(
         &self,
         machine: &Machine,
-        asked: &[(Joints, Pose)],
+        (asked, between): (&[(Joints, Pose)], bool),
         slack: [f64; 2],
         lean: f64,
     ) -> Option<Astray> {
@@ -211,7 +219,9 @@ impl End {
             };
             asked.iter().for_each(|(joints, _)| allow(joints[place]));
             let [least, most] = span(asked, place);
-            allow(value.clamp(least, most.max(least)));
+            if between || self.machine {
+                allow(value.clamp(least, most.max(least)));
+            }
             let frame = &machine.frame;
             let named = [&frame.retract, &frame.aside, &frame.change, &frame.park];
             for (other, value) in named.into_iter().flatten() {

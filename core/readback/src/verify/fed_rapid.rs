@@ -26,7 +26,9 @@ impl<C: Course> Verifier<'_, C> {
         if kind == MotionKind::Rapid {
             self.rapid_at_feed(motion, cl_line);
         }
+        let known = self.placed;
         self.pass(motion, places);
+        self.detour.take(motion, [true, true], known);
         self.set_kind("rapid");
         true
     }

@@ -167,6 +167,12 @@ impl<C: Course> Verifier<'_, C> {
                 format!("a rapid goes {from:.3} mm below where the feed of a hole begins");
             self.fault("hole", message, Some(motion), Some(cl_line), Some(from));
         }
+        if self.rules.own && from < -bound.point {
+            let by = -from;
+            let message =
+                format!("the feed of a hole begins {by:.3} mm above where the CL file has it");
+            self.fault("hole", message, Some(motion), Some(cl_line), Some(by));
+        }
         self.compare_cycle(motion, index);
         self.look_for_detours(Some(motion));
         self.made = None;

@@ -71,6 +71,10 @@ impl<C: Course> Verifier<'_, C> {
             Told::ToolChange { number, .. } => {
                 let same = number.is_some() && running.tool == *number;
                 running.tool = *number;
+                if !same {
+                    self.look_at_change(line);
+                }
+                let running = &mut self.running;
                 // What stands in the block of the change is on behind it.
                 if same || running.lines.contains(&line) {
                     return;

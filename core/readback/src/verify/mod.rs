@@ -258,10 +258,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             Told::Dwell { .. } | Told::Stop | Told::OptionalStop => self.event(line, told),
             Told::Cycle(call) => self.cycle = Some(call.kind),
             Told::CycleEnd => self.cycle = None,
-            Told::ToolChange { .. } => {
-                self.turned.clear();
-                self.look_for_retract(line, "where the tool is changed");
-            }
+            Told::ToolChange { .. } => self.turned.clear(),
             Told::End => self.look_for_retract(line, "where the program ends"),
             Told::Spindle(spindle) if self.turned.len() < track::MOST_SPEEDS => {
                 self.turned.push((*spindle, line));

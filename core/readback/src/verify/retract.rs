@@ -1,5 +1,7 @@
 //! Where a tool is changed, and where the program ends: a posted program has the tool retracted there.
 
+use std::f64::consts::TAU;
+
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 
@@ -26,7 +28,40 @@ pub(super) fn lacks(machine: &Machine, joints: &Joints, slack: f64) -> Option<(u
     short.max_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
+/// The axis that does not stand where the machine file has it for a tool change, and how far it is off, mm or degrees.
+fn off_change(machine: &Machine, joints: &Joints, slack: f64) -> Option<(usize, f64)> {
+    let off = machine.frame.change.iter().map(|(place, value)| {
+        let axis = &machine.axes[*place];
+        let mut apart = joints[*place] - value;
+        if axis.joint.rotary {
+            apart -= TAU * libm::rint(apart / TAU);
+        }
+        (*place, libm::fabs(apart) / axis.unit())
+    });
+    off.filter(|(_, by)| *by > slack)
+        .max_by(|(_, one), (_, other)| one.total_cmp(other))
+}
+
 impl<C: Course> Verifier<'_, C> {
+    /// A tool is changed: retracted, and with the axes where the machine file has them for it, if the program was posted for
+    /// that file.
+    pub(super) fn look_at_change(&mut self, line: u64) {
+        self.look_for_retract(line, "where the tool is changed");
+        let Some(joints) = self.stands.filter(|_| self.rules.own) else {
+            return;
+        };
+        let Some((place, by)) = off_change(self.machine, &joints, self.rules.rapid_tolerance)
+        else {
+            return;
+        };
+        let axis = &self.machine.axes[place];
+        let (name, unit) = (&axis.name, if axis.joint.rotary { "°" } else { " mm" });
+        let message = format!(
+            "{name} stands {by:.3}{unit} from where the machine file has it for a tool change"
+        );
+        self.fault_at("rapid", message, Some((line, None)), None, Some(by));
+    }
+
     /// The tool must be retracted here, if the program was posted for this machine file.
     pub(super) fn look_for_retract(&mut self, line: u64, here: &str) {
         let Some(joints) = self.stands.filter(|_| self.rules.own) else {

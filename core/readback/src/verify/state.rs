@@ -28,11 +28,34 @@ const SHORT: f64 = 1e-3;
 impl<C: Course> Verifier<'_, C> {
     /// Compares what holds in a cut with what the course asks for where the motion has its place.
     pub(super) fn compare(&mut self, motion: &Motion, places: &[Place]) {
-        let Some(element) = self.element_of(places) else {
+        let Some(mut element) = self.element_of(places) else {
             return;
         };
         self.compare_with(motion, &element);
+        if element.feed.is_some_and(|feed| motion.feed > feed) {
+            element.feed = self.feed_of(places, &element);
+        }
         self.compare_feed(motion, places, &element);
+    }
+
+    /// The feed of an element, or of another that a motion lies on as a whole, if that is larger: what is left of a piece at
+    /// a corner is within the tolerance of the next.
+    fn feed_of(&self, places: &[Place], element: &Element) -> Option<f64> {
+        let feed = element.feed?;
+        let last = self.reach.iter().rposition(|span| !span.is_empty())?;
+        let [first, middle, end] = [0, places.len() / 2, places.len() - 1].map(|at| &places[at]);
+        let ahead = end.point - first.point;
+        let on = |other: &&Element| {
+            let free = |place: &Place| free(place, &other.from, &other.to, &self.bound);
+            let forward = ahead.dot(&(other.to.point - other.from.point)) >= 0.0;
+            let whole = [first, middle, end]
+                .iter()
+                .all(|place| !free(place).is_empty());
+            other.is_cut() && forward && whole
+        };
+        let kept = self.track.kept().iter().take(last + 1);
+        let feeds = kept.filter(on).filter_map(|other| other.feed);
+        Some(feeds.fold(feed, f64::max))
     }
 
     /// The element of the course that a motion follows: where all that it may follow ask for the same, any of them; else

@@ -17,6 +17,10 @@ use crate::{Done, Motion, MotionKind, Spindle, Way, course, diff};
 /// A rapid at feed may take so much longer than its axes need: feeds are rounded down.
 const SLOW: f64 = 0.1;
 
+/// Where the control keeps the tip and rotary axes turn: a rapid that stands in several blocks has in each the feed at which
+/// its fastest place is as fast as the axes go, so that a block without that place takes longer than it needs, as a share.
+const IN_PIECES: f64 = 0.5;
+
 /// And so much besides, minutes.
 const MOMENT: f64 = 1e-4;
 
@@ -27,7 +31,11 @@ pub(crate) fn is_as_fast_as_rapids(axes: &Axes, machine: &Machine, motion: &Moti
 
 /// It takes longer than its axes need, between the words too, by no more than a share and a moment, minutes.
 fn is_so_fast(axes: &Axes, machine: &Machine, motion: &Motion, moment: f64) -> bool {
-    let wanted = (motion.minutes - moment) / (1.0 + SLOW);
+    let slack = match motion.turns() && motion.way != Way::Axes {
+        true => IN_PIECES,
+        false => SLOW,
+    };
+    let wanted = (motion.minutes - moment) / (1.0 + slack);
     // Times that are too short anyhow need not be known.
     let least = || axes.least_minutes(machine, motion, 0.9 * wanted);
     motion.kind == MotionKind::Feed && least().is_some_and(|(minutes, _)| minutes >= wanted)

@@ -29,7 +29,8 @@ class Blocks(Mapping[str, NDArray[Any]]):
     ``nc_line``             line of the program; 0 of a block that prints nothing
     ``cl_line``             line of the CL file
     ``kind``                how the tool comes to its end: position, reference, rapid, linear, arc, spline or hole
-    ``reason``              why it is there: point, eased, put_in, leave, stage, rewind, feed or above
+    ``reason``              why it is there: point, eased, put_in, leave, stage, rewind, feed, above or
+                            at_once
     ``time_s``              when it ends; dwells counted in
     ``q``                   axis values at its end, as printed: (n, k), mm and degrees, in the order of :attr:`axes`
     ``tip``, ``axis``       where the tip comes to stand, and the tool axis there: (n, 3), part frame

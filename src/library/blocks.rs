@@ -16,8 +16,8 @@ pub const KINDS: [&str; 7] = [
 ];
 
 /// What [`Blocks::reason`] counts.
-pub const REASONS: [&str; 8] = [
-    "point", "eased", "put_in", "leave", "stage", "rewind", "feed", "above",
+pub const REASONS: [&str; 9] = [
+    "point", "eased", "put_in", "leave", "stage", "rewind", "feed", "above", "at_once",
 ];
 
 /// A row of each block; mm, degrees, s, part frame.
@@ -145,6 +145,7 @@ impl<'m> BlockColumns<'m> {
             Reason::Rewind => 5,
             Reason::Feed => 6,
             Reason::Above => 7,
+            Reason::AtOnce => 8,
         });
         blocks.time.push(self.time);
         for place in &self.places {

@@ -170,8 +170,8 @@ pub const CODES: &[CodeGroup] = &[
             ),
             code(
                 "machine-frame",
-                "`retract` or `park` names an axis that is not there or does not lead the tool off.",
-                "Linear axes for a retract, any axis to park.",
+                "`retract`, `leave` or `park` names an axis that is not there or does not lead the tool off.",
+                "Linear axes for a retract and first in `leave`, any axis to park.",
             ),
             code(
                 "machine-head",
@@ -534,7 +534,7 @@ pub const CODES: &[CodeGroup] = &[
             code(
                 "retract",
                 "The tool cannot be led off the part by what the machine file says.",
-                "`[control] retract`, or `tcp = \"control\"`.",
+                "`[control] retract` or `leave`, or `tcp = \"control\"`.",
             ),
             code(
                 "rounding",

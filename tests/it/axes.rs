@@ -3,11 +3,13 @@
 //!
 //! Expected numbers are worked out by hand, or read back by the tests' own kinematics.
 
+mod approach;
 mod choice;
 mod edge;
 mod exclusive;
 mod heads;
 mod indexed;
+mod leave;
 mod quill;
 mod zero;
 
@@ -230,7 +232,12 @@ fn near(a: f64, b: f64, within: f64) -> bool {
 
 /// A few cuts that turn A and C of the trunnion.
 fn turning_cuts() -> String {
-    let mut cl = cl().rapid(V::new(0.0, 0.0, 60.0), V::z());
+    turning_cuts_from(V::z())
+}
+
+/// The same, the first position with another tool axis.
+fn turning_cuts_from(axis: V) -> String {
+    let mut cl = cl().rapid(V::new(0.0, 0.0, 60.0), axis);
     cl = cl.rapid(V::new(10.0, 5.0, 40.0), lean(10.0, 90.0));
     for step in 0..5 {
         let step = f64::from(step);

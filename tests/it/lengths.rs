@@ -285,7 +285,7 @@ fn linear(block: &str) -> Vec<char> {
 }
 
 /// The mill-turn's depth is X, and with B at 0 its tool lies along Z: nothing comes in along X while Z is short of the
-/// tool's length.
+/// tool's length, up where the tool is retracted.
 #[test]
 fn the_length_stands_before_another_axis_brings_the_tool_in() {
     let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nMULTAX/ON\nRAPID\nGOTO/0,0,150,0,0,1\nRAPID\nGOTO/0,0,82\n\
@@ -296,14 +296,17 @@ fn the_length_stands_before_another_axis_brings_the_tool_in() {
         let mut blocks = text
             .lines()
             .skip_while(|block| !block.contains("G43") && !block.contains("G234"));
-        let mut stated: Vec<char> = Vec::new();
-        let depth = blocks.find(|block| {
-            let words = linear(block);
-            stated.extend(words.iter().filter(|word| **word != 'X'));
-            words.contains(&'X')
-        });
-        assert_eq!(stated, ['Y', 'Z'], "{text}");
-        assert_eq!(depth.map(linear), Some(vec!['X']), "{text}");
+        // Where the length comes on X goes from 60 to 50 mm below the end of its travel.
+        let first = blocks.find(|block| !linear(block).is_empty()).expect(&text);
+        assert_eq!(linear(first), ['X', 'Y', 'Z'], "{text}");
+        let x = first
+            .split_whitespace()
+            .find_map(|word| word.strip_prefix('X'));
+        assert_eq!(x.and_then(|x| x.parse().ok()), Some(610.0), "{text}");
+        // Then X alone, outside, and in along the tool.
+        let mut words = blocks.map(linear).filter(|words| !words.is_empty());
+        assert_eq!(words.next(), Some(vec!['X']), "{text}");
+        assert_eq!(words.next(), Some(vec!['Z']), "{text}");
     }
 }
 

@@ -21,8 +21,6 @@ pub struct MountBounds<'m> {
     at: usize,
     /// Where the tool stood before: axis values and tip.
     last: Option<(Joints, Vector3<f64>)>,
-    /// A first position, or the point over it; and its line.
-    above: Option<(Joints, u64)>,
 }
 
 impl<'m> MountBounds<'m> {
@@ -37,7 +35,6 @@ impl<'m> MountBounds<'m> {
             rooms: vec![(machine, Room::new(machine)?)],
             at: 0,
             last: None,
-            above: None,
         })
     }
 
@@ -81,23 +78,10 @@ impl<'m> MountBounds<'m> {
         };
         // A way off the part, or from above it, is as long as travel lets it be: on a machine whose travel is opened it
         // says nothing.
-        match block.reason {
-            Reason::Leave => {
-                self.last = None;
-                return;
-            }
-            Reason::Above => {
-                self.last = None;
-                self.above = Some((block.joints, block.line));
-                return;
-            }
-            _ => {}
+        if let Reason::Leave | Reason::Above = block.reason {
+            self.last = None;
+            return;
         }
-        // A first position with nothing above it is a point of the part.
-        if let Some((joints, line)) = self.above.take_if(|(_, line)| *line != block.line) {
-            room.take(&joints, line);
-        }
-        self.above = None;
         room.take(&block.joints, block.line);
         let moves = matches!(block.kind, MotionKind::Linear | MotionKind::Rapid);
         if let Some((joints, tip)) = &self.last

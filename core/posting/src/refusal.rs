@@ -49,15 +49,15 @@ pub(crate) fn no_way_off(machine: &Machine) -> Option<Diagnostic> {
         (0..machine.axes.len()).all(placed)
     });
     let turns_alone = machine.axes.iter().all(|axis| axis.joint.rotary);
-    (turns_alone && !said).then(|| {
+    (turns_alone && !said && frame.leave.is_none()).then(|| {
         Diagnostic::error(
             "retract",
             format!(
-                "{} has no linear axis to lead the tool off the part with: retracts by rotary axes are beyond this version",
+                "{} has no linear axis to lead the tool off the part with",
                 machine.name
             ),
         )
-        .help("[control] park with a position for every axis says where it stands at tool changes and at the end; the way there, from where the CL file leaves the tool, is yours to answer for")
+        .help("[control] leave says how far the tool goes back along its own axis, and where the axes go then; [control] park with a position for every axis leaves the way there to you")
     })
 }
 

@@ -95,7 +95,7 @@ P.colour.place = (mode, value) => {
 };
 
 P.KINDS = ["position", "reference", "rapid", "line", "arc", "spline", "cycle"];
-P.REASONS = ["point", "eased", "put in", "leave", "stage", "rewind", "feed", "above"];
+P.REASONS = ["point", "eased", "put in", "leave", "stage", "rewind", "feed", "above", "at once"];
 
 // The ways of colouring that the columns of this report allow; a column is unpacked when its way is chosen.
 P.colour.find = () => {

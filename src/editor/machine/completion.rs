@@ -81,6 +81,7 @@ impl Offers<'_> {
             names.as_slice(),
             ["solution", "prefer" | "require" | "start"]
                 | ["control", "retract" | "change" | "park"]
+                | ["control", "leave", "then"]
                 | ["axis" | "servo"]
         )
     }

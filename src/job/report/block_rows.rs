@@ -281,6 +281,7 @@ impl<'m> BlockRows<'m> {
             Reason::Rewind => 5,
             Reason::Feed => 6,
             Reason::Above => 7,
+            Reason::AtOnce => 8,
         };
         let limit = block.time.limit.or(block.planned.limit);
         let limit = limit.map_or(-1.0, |name| self.limit(name));

@@ -16,6 +16,9 @@ pub fn check(check: &Check) -> String {
     row(&mut text, "machine", &check.machine);
     class(&mut text, &check.class);
     row(&mut text, "solved", &check.solved);
+    if let Some(leaves) = &check.leaves {
+        row(&mut text, "leaves the part", leaves);
+    }
     text.push('\n');
     axes(&mut text, &check.class.axes);
     signs(&mut text, &check.signs);

@@ -28,8 +28,8 @@ END
 FINI
 ";
 
-/// Off the line of the way down, mm: chords of the interpolation, where the head turns nothing.
-const SIDEWAYS: f64 = 0.02;
+/// Off the tool's line on the way in, mm: what interpolation and rounding make.
+const SIDEWAYS: f64 = 0.01;
 
 /// So near to its first point the tip is on the way down to it, mm.
 const NEARLY: f64 = 1.0;
@@ -45,18 +45,15 @@ fn posted(machine: &Machine, folder: &Path) -> std::path::PathBuf {
     folder.join("leaning.ngc")
 }
 
-/// How far the tip goes down to the first point, and how far it strays from the line through it by which it does, mm.
+/// How far the tip goes in to the first point, and how far it strays from the tool's own line through it, mm.
 fn descent(machine: &Machine, rows: &[Row], moved: Vector3<f64>) -> [f64; 2] {
     let stands = |row: &Row| {
         let [tilt, c] = row.rotary.map(f64::to_radians);
         let (tip, _) = (machine.law)(row.linear, tilt, c, row.length);
         tip - moved - Vector3::z() * machine.part
     };
-    // Where the table is turned that is the tool's own line; a fork head comes straight down.
-    let way = match machine.name {
-        "5axis" => Vector3::z(),
-        _ => Vector3::new(0.0, 0.5, 0.866_025_4),
-    };
+    // On a table and under a head alike.
+    let way = Vector3::new(0.0, 0.5, 0.866_025_4);
     let point = Vector3::new(20.0, 10.0, 30.0);
     // The block that comes to the point, at rapid or at feed, is the one in force shortly before.
     let near = |row: &&Row| (stands(row) - point).norm() < NEARLY;
@@ -75,7 +72,7 @@ fn descent(machine: &Machine, rows: &[Row], moved: Vector3<f64>) -> [f64; 2] {
 }
 
 #[test]
-fn the_tip_comes_down_its_line_wherever_the_part_is() {
+fn the_tip_comes_in_along_the_tool_wherever_the_part_is() {
     for machine in &MACHINES {
         if shared("linuxcnc/run").is_none() {
             return;

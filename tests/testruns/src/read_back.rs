@@ -195,16 +195,26 @@ impl Model {
         self.gauge - self.tool_axis * length
     }
 
-    /// Positions of the linear axes with the tip on the part origin and all rotary axes at zero; of quills and
+    /// Positions of the linear axes with the tip on the part origin and all rotary axes showing zero; of quills and
     /// what they run along, only the sum is meant.
     fn work_offset(&self, length: f64) -> Vec<f64> {
         let linear: Vec<usize> = (0..self.axes.len())
             .filter(|place| !self.axes[*place].rotary)
             .collect();
-        let directions = DMatrix::from_fn(3, linear.len(), |row, column| {
-            self.axes[linear[column]].direction[row]
+        let shows = |axis: &Axis| if axis.rotary { 0.0 } else { axis.zero };
+        let shown: Vec<f64> = self.axes.iter().map(shows).collect();
+        let home = self.reach(&shown, length).tip;
+        let directions = linear.iter().map(|place| {
+            let mut further = shown.clone();
+            further[*place] += 1.0;
+            self.reach(&further, length).tip - home
         });
-        let wanted = DMatrix::from_column_slice(3, 1, (self.mount - self.home(length)).as_slice());
+        let directions = DMatrix::from_iterator(
+            3,
+            linear.len(),
+            directions.flat_map(|way| [way.x, way.y, way.z]),
+        );
+        let wanted = DMatrix::from_column_slice(3, 1, (-home).as_slice());
         let solved = directions.pseudo_inverse(1e-9).unwrap() * wanted;
         let mut offset = vec![0.0; self.axes.len()];
         for (row, place) in linear.into_iter().enumerate() {

@@ -7,6 +7,7 @@
 
 mod class;
 mod commission;
+mod leaving;
 mod nominal;
 mod pointing;
 mod probe;
@@ -45,6 +46,9 @@ pub struct Check {
     pub class: Class,
     /// How the chain is solved: in closed form, or numerically.
     pub solved: String,
+    /// How the tool leaves the part, where the machine file has another way than that of the depth axis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub leaves: Option<String>,
     /// What each axis does, a line an axis and direction.
     pub signs: Vec<Sign>,
     /// The solutions for one direction, written out.
@@ -88,6 +92,7 @@ impl Check {
                 "numerically, from the point before; each solution verified by the forward product"
             }
             .to_owned(),
+            leaves: leaving::told(machine),
             signs: signs::table(&probe),
             typical,
             poles,

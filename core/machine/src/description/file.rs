@@ -544,6 +544,13 @@ pub(crate) struct ControlFile {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Number>")]
     pub retract: Positions,
+    /// How the tool leaves the part, and, the other way round, comes to it; by the depth axis alone (retract) if not said.
+    #[schemars(with = "Option<LeaveFile>")]
+    pub leave: Option<Spanned<LeaveFile>>,
+    /// So far from the ends of their travel linear axes stay over a first position, so that a part which sits higher than
+    /// [workpiece] mount says ends in no alarm, mm; half of the way where there is less, and 50 if not said.
+    #[schemars(with = "Option<Number>", extend("minimum" = 0))]
+    pub approach_room: Option<Quantity>,
     /// Where axes stand before a tool change, machine coordinates, mm or degrees; if not said the rotary axes of park there,
     /// and those that swivel the tool at 0. `{}` leaves all where they are.
     #[schemars(with = "Option<BTreeMap<String, Number>>")]
@@ -552,6 +559,33 @@ pub(crate) struct ControlFile {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Number>")]
     pub park: Positions,
+}
+
+/// How the tool leaves the part: straight back first, then axes go to positions of the machine. It comes back to the
+/// place where it left its line, and in along it.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LeaveFile {
+    /// What it goes back along; tool if not said.
+    #[serde(default)]
+    pub along: LeaveAlong,
+    /// How far, mm; less where the travel of an axis ends.
+    #[schemars(with = "Number", extend("exclusiveMinimum" = 0))]
+    pub distance: Quantity,
+    /// Where axes go then, one after the other in the order written: max or min is the end of travel, a number a position
+    /// in machine coordinates, mm or degrees.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Number>")]
+    pub then: Positions,
+}
+
+/// What a tool leaves the part along.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum LeaveAlong {
+    /// Its own axis.
+    #[default]
+    Tool,
 }
 
 /// Which curves the program has as curves.

@@ -4,8 +4,9 @@ use toml::Spanned;
 
 use super::build::Builder;
 use super::choice::FARTHEST;
-use super::file::{ControlFile, Positions as Said};
+use super::file::{ControlFile, LeaveAlong, LeaveFile, Positions as Said};
 use super::keys::axes_are;
+use super::quantity::{Number, Quantity};
 use super::{Axis, Machine};
 use crate::axis_words::is_depth;
 use crate::diagnostic::Short;
@@ -14,26 +15,49 @@ use crate::kinematics::travel::passed;
 /// More rotary axes between bed and tool are those of an arm.
 const MOST_SWIVELS: usize = 3;
 
+/// So far from the ends of travel linear axes stay over a first position, if the file does not say, mm.
+const ROOM: f64 = 50.0;
+
 /// The positions of a machine around a program's moves.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Where the depth axes stand when the tool is retracted: place in the chain and value, mm.
     pub retract: Vec<(usize, f64)>,
-    /// Where other linear axes go then, once it is: mm.
+    /// Where other axes go then, once it is: mm or radians.
     pub aside: Vec<(usize, f64)>,
+    /// How far the tool goes back along its own axis before that, whenever it leaves the part, mm; then `retract` and `aside`
+    /// go one after the other, whichever axes they are. None: what leads away is the depth axis.
+    pub leave: Option<f64>,
     /// The machine file says so, and answers for it; else it is the end of travel away from the part.
     pub retract_said: bool,
+    /// So far from the ends of travel linear axes stay over a first position, mm.
+    pub room: f64,
     /// Where axes stand before a tool change, the tool retracted: mm or radians.
     pub change: Vec<(usize, f64)>,
     /// Where axes stand at the program's end and where the CL file sends the tool home: mm or radians.
     pub park: Vec<(usize, f64)>,
 }
 
+impl Default for Frame {
+    fn default() -> Self {
+        Self {
+            retract: Vec::new(),
+            aside: Vec::new(),
+            leave: None,
+            retract_said: false,
+            room: ROOM,
+            change: Vec::new(),
+            park: Vec::new(),
+        }
+    }
+}
+
 impl Machine {
     /// A head is retracted and parked by the axes of the machine that carries it, as far as they go with it.
     pub(super) fn keep_frame_of(&mut self, carrier: &Machine) {
         self.frame = carrier.frame.clone();
-        for (place, value) in &mut self.frame.retract {
+        let frame = &mut self.frame;
+        for (place, value) in frame.retract.iter_mut().chain(&mut frame.aside) {
             let axis = self.axes.get(*place);
             if let Some([least, most]) = axis.and_then(|axis| axis.travel) {
                 *value = value.clamp(least, most);
@@ -110,72 +134,179 @@ impl Builder<'_> {
         let aside = retract.iter().copied();
         let aside = aside.filter(|(place, _)| !is_depth(machine, *place));
         machine.frame = Frame {
+            leave: None,
+            room: self.approach_room(said),
             retract_said: !retract.is_empty(),
             aside: aside.collect(),
             retract: depth,
             change,
             park,
         };
+        if let Some(leave) = &said.leave {
+            self.leave(leave, said, machine);
+        }
+    }
+
+    /// Takes the way that `leave` says, which replaces that of the depth axis.
+    fn leave(&mut self, spanned: &Spanned<LeaveFile>, said: &ControlFile, machine: &mut Machine) {
+        let leave = spanned.get_ref();
+        let LeaveAlong::Tool = leave.along;
+        let distance = self.number(&leave.distance);
+        if distance <= 0.0 {
+            let message = format!("leave draws the tool back by {} mm", Short(distance));
+            let help = "distance is above zero, mm";
+            self.fault("machine-frame", leave.distance.span(), message, help);
+        }
+        if let Some(name) = said.retract.keys().next() {
+            self.fault(
+                "machine-frame",
+                name.span(),
+                "retract and leave both say how the tool leaves the part".to_owned(),
+                "what retract says stands behind then = … of leave",
+            );
+        }
+        let mut names: Vec<&Spanned<String>> = leave.then.keys().collect();
+        names.sort_by_key(|name| name.span().start);
+        let mut then = Vec::new();
+        for name in names {
+            let value = &leave.then[name];
+            then.extend(self.position((name, value), true, machine));
+        }
+        let moves = |(place, _): &(usize, f64)| !machine.axes[*place].joint.rotary;
+        let slides = machine.axes.iter().any(|axis| !axis.joint.rotary);
+        if slides && then.first().is_some_and(|first| !moves(first)) {
+            self.fault(
+                "machine-frame",
+                spanned.span(),
+                "the first of then is a rotary axis: the tool is still at the part".to_owned(),
+                "linear axes first; or leave it out: rotary axes stand where change and park say",
+            );
+        }
+        let aside = then.split_off(then.len().min(1));
+        machine.frame = Frame {
+            retract: then,
+            aside,
+            leave: Some(distance),
+            retract_said: true,
+            ..std::mem::take(&mut machine.frame)
+        };
+    }
+
+    /// What `approach_room` says, mm.
+    fn approach_room(&mut self, said: &ControlFile) -> f64 {
+        let Some(quantity) = &said.approach_room else {
+            return ROOM;
+        };
+        let room = self.number(quantity);
+        if room < 0.0 {
+            let message = format!("approach_room is {} mm", Short(room));
+            self.fault("machine-frame", quantity.span(), message, "0 or more");
+        }
+        room
     }
 
     fn positions(&mut self, said: &Said, machine: &Machine) -> Vec<(usize, f64)> {
-        let mut positions = Vec::new();
-        for (name, value) in said {
-            let known = machine
-                .axes
-                .iter()
-                .position(|axis| axis.name == *name.get_ref());
-            let Some(place) = known else {
+        let said = said.iter();
+        said.filter_map(|said| self.position(said, false, machine))
+            .collect()
+    }
+
+    /// A position of an axis; `ends`: it may be that of an end of travel, by its name.
+    fn position(
+        &mut self,
+        (name, value): (&Spanned<String>, &Quantity),
+        ends: bool,
+        machine: &Machine,
+    ) -> Option<(usize, f64)> {
+        let known = machine
+            .axes
+            .iter()
+            .position(|axis| axis.name == *name.get_ref());
+        let Some(place) = known else {
+            self.fault(
+                "machine-frame",
+                name.span(),
+                format!("the machine has no axis {}", name.get_ref()),
+                &axes_are(&machine.axes),
+            );
+            return None;
+        };
+        let axis = &machine.axes[place];
+        if let (true, Some(end)) = (ends, End::of(value)) {
+            let Some([least, most]) = axis.travel else {
+                let message = format!("{} has no end of travel", axis.name);
                 self.fault(
                     "machine-frame",
-                    name.span(),
-                    format!("the machine has no axis {}", name.get_ref()),
-                    &axes_are(&machine.axes),
+                    value.span(),
+                    message,
+                    "a position, as the control shows it",
                 );
-                continue;
+                return None;
             };
-            let axis = &machine.axes[place];
-            let shown = self.number(value);
-            let position = shown * axis.unit() - axis.zero;
-            if let (Some([least, most]), true) =
-                (axis.travel, passed(axis.travel, position, 0.0).is_some())
-            {
-                self.fault(
-                    "machine-travel",
-                    value.span(),
-                    format!(
-                        "{} cannot stand at {}: its travel is {} to {}",
-                        axis.name,
-                        Short(shown),
-                        Short(axis.reading(least)),
-                        Short(axis.reading(most))
-                    ),
-                    "positions of [control] are in machine coordinates, as the control shows them",
-                );
-            }
-            if axis.travel.is_none() && libm::fabs(position) > FARTHEST {
-                self.fault(
-                    "machine-travel",
-                    value.span(),
-                    format!("{} cannot stand at {}", axis.name, Short(shown)),
-                    "an endless axis stands within ten thousand turns of zero",
-                );
-            }
-            if !stands(axis, position) {
-                self.fault(
-                    "machine-travel",
-                    value.span(),
-                    format!(
-                        "{} cannot stand at {}: it is none of its positions",
-                        axis.name,
-                        Short(shown)
-                    ),
-                    "",
-                );
-            }
-            positions.push((place, position));
+            return Some((
+                place,
+                match end {
+                    End::Max => most,
+                    End::Min => least,
+                },
+            ));
         }
-        positions
+        let shown = self.number(value);
+        let position = shown * axis.unit() - axis.zero;
+        if let (Some([least, most]), true) =
+            (axis.travel, passed(axis.travel, position, 0.0).is_some())
+        {
+            self.fault(
+                "machine-travel",
+                value.span(),
+                format!(
+                    "{} cannot stand at {}: its travel is {} to {}",
+                    axis.name,
+                    Short(shown),
+                    Short(axis.reading(least)),
+                    Short(axis.reading(most))
+                ),
+                "positions of [control] are in machine coordinates, as the control shows them",
+            );
+        }
+        if axis.travel.is_none() && libm::fabs(position) > FARTHEST {
+            self.fault(
+                "machine-travel",
+                value.span(),
+                format!("{} cannot stand at {}", axis.name, Short(shown)),
+                "an endless axis stands within ten thousand turns of zero",
+            );
+        }
+        if !stands(axis, position) {
+            self.fault(
+                "machine-travel",
+                value.span(),
+                format!(
+                    "{} cannot stand at {}: it is none of its positions",
+                    axis.name,
+                    Short(shown)
+                ),
+                "",
+            );
+        }
+        Some((place, position))
+    }
+}
+
+/// An end of travel, by its name.
+#[derive(Clone, Copy)]
+enum End {
+    Max,
+    Min,
+}
+
+impl End {
+    fn of(value: &Quantity) -> Option<Self> {
+        match value.get_ref() {
+            Number::Expression(name) if name.trim() == "max" => Some(Self::Max),
+            Number::Expression(name) if name.trim() == "min" => Some(Self::Min),
+            _ => None,
+        }
     }
 }
 

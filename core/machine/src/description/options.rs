@@ -11,7 +11,7 @@ use super::{GivenOption, OptionValue};
 use crate::diagnostic::Diagnostic;
 
 /// Sub-tables of `[control]` that are the machine's own: no dialect has such a name.
-const OWN: [&str; 4] = ["arcs", "retract", "change", "park"];
+const OWN: [&str; 5] = ["arcs", "leave", "retract", "change", "park"];
 
 /// Takes the sub-tables of `[section]` out: they belong to plugins, and only those know their keys.
 pub(super) fn take_options(

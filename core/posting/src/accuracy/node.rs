@@ -220,6 +220,12 @@ impl Placer {
         self.control_point
     }
 
+    /// The linear joints that end, and their travel, mm.
+    pub(crate) fn linear_travel(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let limits = self.linear.iter();
+        limits.map(|limit| (limit.joint, limit.travel))
+    }
+
     /// The solver in use.
     pub fn solver(&self) -> &Solver {
         &self.solver

@@ -1,25 +1,29 @@
 //! The way to a first position, from where the tool is retracted.
 
+use nalgebra::Vector3;
 use post_machine::axis_words;
 use post_machine::description::Tcp;
-use post_machine::kinematics::Pose;
+use post_machine::kinematics::{Joints, Pose};
 
+use super::lie::Lie;
 use super::nominal::{Nominal, Travels};
 use super::{Block, Blocks, Leg, MotionKind, Reason, Surroundings};
-use crate::accuracy::{Bound, Node, Placer, Refused};
+use crate::accuracy::{Bound, Node, Placer};
 use crate::program::{Motion, Pace};
-use crate::refusal;
 use crate::stream::Flow;
 
-/// So far below the end of its travel the depth axis comes over a first position, mm: a part that sits higher on the
-/// machine than the file's `mount` still leaves it room.
-const ROOM: f64 = 50.0;
-
-/// A shorter way down is none, mm.
+/// A shorter way in or down is none, mm.
 const LEAST: f64 = 1.0;
 
-/// A tool lies across an axis where the cosine of the angle between them is less.
-const LYING: f64 = 0.01;
+/// So far out on its line a tool stands that wins no height there, mm: as far as one that leans is drawn back when it
+/// leaves the part.
+const OUT: f64 = 100.0;
+
+/// An axis that moves by a smaller share of the tool's way stands.
+const STANDS: f64 = 1e-9;
+
+/// A way is tried so often, each time half as long, where a chain that is solved by steps has no place at its end.
+const TRIES: u32 = 8;
 
 /// Angles that differ by less are the same, radians; of directions, one less their cosine.
 const SAME: f64 = 1e-9;
@@ -27,11 +31,13 @@ const SAME: f64 = 1e-9;
 /// The word of a plane along its normal.
 const DEPTH: usize = 2;
 
-/// A tool that is measured, and not drawn, leans by less: 0.1 degrees.
-const MEASURED: f64 = 1.8e-3;
-
-/// One less the cosine of an angle that the rounding of a plane's angles can make.
-const SAME_WAY: f64 = 1e-8;
+/// The axis that retracts the tool, and where it does.
+struct Retract {
+    depth: usize,
+    position: f64,
+    /// The sense of the axis away from the part.
+    up: f64,
+}
 
 impl Blocks<'_> {
     /// The first position after the start, a tool change, or a turn of an index axis.
@@ -46,35 +52,38 @@ impl Blocks<'_> {
         if !self.comes_from_above(placer, node) {
             return self.come(leg, node, kind, to);
         }
-        let above = match self.above(placer, node) {
-            Some(Ok(above)) => above,
-            Some(Err(refused)) => {
-                let fault = refusal::refused(self.machine, &refused);
-                return to.findings.at(leg.line, fault);
+        let stops = self.stops_above(placer, node);
+        let mut last: Option<&Node> = None;
+        for stop in &stops {
+            let motion = Motion {
+                tip: stop.target.tip,
+                pace: Pace::Rapid,
+                chord: 0.0,
+                ..*leg.motion
+            };
+            let over = Leg {
+                motion: &motion,
+                loose: true,
+                reason: Reason::Above,
+                ..*leg
+            };
+            match last {
+                None => self.come(&over, stop, kind, to),
+                Some(last) => self.cut(placer, &over, last, stop, to),
             }
+            last = Some(stop);
+        }
+        match last {
+            Some(last) => self.cut(placer, leg, last, node, to),
             // It is up there already.
             None => {
                 let leg = Leg {
-                    reason: Reason::Above,
+                    reason: Reason::AtOnce,
                     ..*leg
                 };
-                return self.come(&leg, node, kind, to);
+                self.come(&leg, node, kind, to);
             }
-        };
-        let motion = Motion {
-            tip: above.target.tip,
-            pace: Pace::Rapid,
-            chord: 0.0,
-            ..*leg.motion
-        };
-        let over = Leg {
-            motion: &motion,
-            loose: true,
-            reason: Reason::Above,
-            ..*leg
-        };
-        self.come(&over, &above, kind, to);
-        self.cut(placer, leg, &above, node, to);
+        }
     }
 
     /// From wherever the tool stands to `node`.
@@ -89,11 +98,14 @@ impl Blocks<'_> {
         }));
     }
 
-    /// No word moves the depth axis alone, as X and Y move the others: the words are those of a part that is turned, or
-    /// of a plane whose Z is not the depth's word, or the control begins to keep the tip with the very move. Else the words
-    /// across the tool come first.
+    /// No word moves the tool along its own line alone, as X and Y move it across: the words are those of a part that is
+    /// turned, or of a plane whose Z is not the depth's word, or the tool leans, or the control begins to keep the tip
+    /// with the very move. Else the words across the tool come first.
     fn comes_from_above(&self, placer: &Placer, node: &Node) -> bool {
         let machine = self.machine;
+        if machine.frame.leave.is_some() {
+            return true;
+        }
         let joints = &node.trace.joints;
         let Some(depth) = axis_words::depth(self.base) else {
             return false;
@@ -102,7 +114,8 @@ impl Blocks<'_> {
         let word = axis_words::coordinate(&machine.axes[depth].name);
         if let Some(normal) = self.plane_normal() {
             // Along it, and not into the part, it is the plane's own Z: the others come first where that is its word.
-            return word != DEPTH || 1.0 - way.dot(&normal) >= SAME_WAY;
+            let along = Lie::of(&normal, &way) == Lie::Along && way.dot(&normal) > 0.0;
+            return word != DEPTH || !along;
         }
         if machine.control.tcp == Tcp::Post {
             return false;
@@ -116,50 +129,179 @@ impl Blocks<'_> {
         if turned && !self.tcp_still {
             return true;
         }
-        // With a move that puts the length on, a tool that lies aslant moves the depth as well as the others.
-        let axis = node.target.axis;
-        let aslant = libm::fabs(way.dot(&axis)).min(way.cross(&axis).norm()) > MEASURED;
-        (aslant && !self.tcp_still) || 1.0 - libm::fabs(way[word]) >= SAME
+        Lie::of(&node.target.axis, &way) != Lie::Along || 1.0 - libm::fabs(way[word]) >= SAME
     }
 
-    /// The same stance with the depth axis drawn back, as high as the retract and `ROOM` below the end of travel allow:
-    /// where no head leans that is the tool's own line. None where there is no such place.
-    fn above(&self, placer: &Placer, node: &Node) -> Option<Result<Node, Refused>> {
-        let machine = self.machine;
-        let depth = axis_words::depth(self.base)?;
-        let mut retract = machine.frame.retract.iter();
-        let (_, retract) = retract.find(|(joint, _)| *joint == depth)?;
-        let joints = &node.trace.joints;
-        let chain = placer.solver().chain();
-        // Along the tool to its holder; where it lies across the axis, to the retract.
-        let along = chain.way_of(depth, joints).dot(&node.target.axis);
-        let away = match libm::fabs(along) > LYING {
-            true => libm::copysign(1.0, along),
-            false => libm::copysign(1.0, retract - joints[depth]),
-        };
-        let to_retract = (retract - joints[depth]) * away;
-        let end =
-            machine.axes[depth].travel.map_or(
-                *retract,
-                |[least, most]| {
-                    if away > 0.0 { most } else { least }
-                },
-            );
-        let to_end = (end - joints[depth]) * away;
-        // A tool without a length is one that nobody has measured.
-        let measured = chain.tip() != machine.gauge;
-        let room = (to_end / 2.0).min(if measured { ROOM } else { f64::INFINITY });
-        let way = to_retract.min(to_end - room);
-        if way < LEAST {
-            return None;
+    /// Where the tool comes by to `node`, from the retract on: the place farthest out on its own line from which it goes
+    /// straight in. Where another axis ends its travel before that is as high as the retract, or the line wins no height,
+    /// the place over it comes first. None where the tool is up there already.
+    fn stops_above(&self, placer: &Placer, node: &Node) -> Vec<Node> {
+        if let Some(distance) = self.machine.frame.leave {
+            let out = self.out_by_leave(placer, node, distance);
+            return out.into_iter().map(|(out, _)| out).collect();
         }
-        let target = Pose {
-            tip: node.target.tip + chain.way_of(depth, joints) * (away * way),
-            ..node.target
+        let Some(retract) = self.retract() else {
+            return Vec::new();
         };
-        Some(match placer.solver().closed_form() {
-            true => placer.settled(target, 1.0, joints),
-            false => placer.place(target, 1.0, joints),
+        let chain = placer.solver().chain();
+        let height = self.height_left(placer, &retract, &node.trace.joints);
+        if height < LEAST {
+            return Vec::new();
+        }
+        let line = self.line_of(node);
+        let rates = self.rates(placer, node, &line);
+        let rise = rates[retract.depth] * retract.up;
+        let way = chain.way_of(retract.depth, &node.trace.joints);
+        let rises = rise > 0.0 && Lie::of(&line, &way) != Lie::Across;
+        let most = if rises { height / rise } else { OUT };
+        let mut others = rates;
+        if rises {
+            others[retract.depth] = 0.0;
+        }
+        let travel = self.free_way(placer, node, &others, |end| self.kept_free(placer, end));
+        let out = self.drawn_out(placer, node, &line, most.min(travel));
+        let mut stops = Vec::new();
+        if !rises || travel < most {
+            let from = out.as_ref().unwrap_or(node);
+            stops.extend(self.drawn_up(placer, &retract, from));
+        }
+        stops.extend(out);
+        stops
+    }
+
+    /// The tool of `node` drawn back along its own axis by `distance` mm, or as far as travel lets it; and how far that is.
+    /// None where that is nowhere.
+    pub(super) fn out_by_leave(
+        &self,
+        placer: &Placer,
+        node: &Node,
+        distance: f64,
+    ) -> Option<(Node, f64)> {
+        let line = self.line_of(node);
+        let rates = self.rates(placer, node, &line);
+        let free = self.free_way(placer, node, &rates, |_| 0.0);
+        // A last decimal stays, so that no rounded word passes the end.
+        let way = distance.min(free - placer.last_decimal());
+        let out = self.drawn_out(placer, node, &line, way)?;
+        let way = (out.tip - node.tip).dot(&line);
+        Some((out, way))
+    }
+
+    /// The axis that retracts the tool; none where nobody says how far it goes.
+    fn retract(&self) -> Option<Retract> {
+        let depth = axis_words::depth(self.base)?;
+        let mut retract = self.machine.frame.retract.iter();
+        let (_, position) = retract.find(|(joint, _)| *joint == depth)?;
+        let axis = &self.machine.axes[depth];
+        Some(Retract {
+            depth,
+            position: *position,
+            up: libm::copysign(1.0, axis.joint.direction.dot(&self.machine.tool_axis)),
         })
+    }
+
+    /// The line of the tool at `node`, away from the part: in a plane its normal, which is the word Z alone. Unit vector,
+    /// part frame.
+    fn line_of(&self, node: &Node) -> Vector3<f64> {
+        self.plane_normal().unwrap_or(node.trace.pose.axis)
+    }
+
+    /// How the linear axes go while the tool goes a mm along `line`, the rotary ones standing, mm.
+    fn rates(&self, placer: &Placer, node: &Node, line: &Vector3<f64>) -> Joints {
+        let solver = placer.solver();
+        let joints = &node.trace.joints;
+        let mut rates = Joints::default();
+        let mut further = *joints;
+        if solver.closed_form()
+            && solver
+                .place(node.tip + line, &mut further, &node.trace.turns)
+                .is_ok()
+        {
+            for (rate, (after, before)) in rates.iter_mut().zip(further.iter().zip(joints)) {
+                *rate = after - before;
+            }
+        } else if let Some(depth) = axis_words::depth(self.base) {
+            rates[depth] = solver.chain().way_of(depth, joints).dot(line);
+        }
+        rates
+    }
+
+    /// How far the tool can go before a linear axis is as near to its end of travel as `kept` says of the way there, mm.
+    fn free_way(
+        &self,
+        placer: &Placer,
+        node: &Node,
+        rates: &Joints,
+        kept: impl Fn(f64) -> f64,
+    ) -> f64 {
+        let limits = placer.linear_travel().filter_map(|(joint, [least, most])| {
+            let (rate, stands) = (rates[joint], node.trace.joints[joint]);
+            let end = if rate > 0.0 {
+                most - stands
+            } else {
+                stands - least
+            };
+            (libm::fabs(rate) > STANDS).then(|| (end - kept(end)) / libm::fabs(rate))
+        });
+        limits.fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far an axis stays from an end of travel that is `end` mm away: half of the way where there is less, and where
+    /// nobody has measured the tool.
+    fn kept_free(&self, placer: &Placer, end: f64) -> f64 {
+        let measured = placer.solver().chain().tip() != self.machine.gauge;
+        let room = if measured {
+            self.machine.frame.room
+        } else {
+            f64::INFINITY
+        };
+        room.min(end / 2.0)
+    }
+
+    /// How far the retract leads up from `joints`, mm: no farther than the depth axis may come near to its end.
+    fn height_left(&self, placer: &Placer, retract: &Retract, joints: &Joints) -> f64 {
+        let stands = joints[retract.depth];
+        let to_retract = (retract.position - stands) * retract.up;
+        let travel = self.machine.axes[retract.depth].travel;
+        let end = travel.map_or(retract.position, |[least, most]| {
+            if retract.up > 0.0 { most } else { least }
+        });
+        let to_end = (end - stands) * retract.up;
+        to_retract.min(to_end - self.kept_free(placer, to_end))
+    }
+
+    /// The tool of `node` drawn back along its line by `way` mm, or as far as there is a place for it.
+    fn drawn_out(
+        &self,
+        placer: &Placer,
+        node: &Node,
+        line: &Vector3<f64>,
+        way: f64,
+    ) -> Option<Node> {
+        let ways = (0..TRIES).map(|halved| way / f64::from(1 << halved));
+        ways.take_while(|way| *way >= LEAST)
+            .find_map(|way| self.stands_at(placer, node, node.tip + line * way))
+    }
+
+    /// The tool of `node` as high as the retract, by the depth axis alone.
+    fn drawn_up(&self, placer: &Placer, retract: &Retract, node: &Node) -> Option<Node> {
+        let joints = &node.trace.joints;
+        let height = self.height_left(placer, retract, joints);
+        let way = placer.solver().chain().way_of(retract.depth, joints);
+        (height >= LEAST)
+            .then(|| self.stands_at(placer, node, node.tip + way * (retract.up * height)))
+            .flatten()
+    }
+
+    /// The tool of `node` at another place, the rotary axes standing.
+    fn stands_at(&self, placer: &Placer, node: &Node, tip: Vector3<f64>) -> Option<Node> {
+        let target = Pose { tip, ..node.target };
+        let joints = &node.trace.joints;
+        let placed = match placer.solver().closed_form() {
+            true => placer.settled(target, 1.0, joints),
+            // The rotary axes are needed for the way.
+            false => placer.place(target, 1.0, joints),
+        };
+        placed.ok()
     }
 }

@@ -116,8 +116,10 @@ pub enum Reason {
     Rewind,
     /// The planned feed changes there.
     Feed,
-    /// A first position is come to from there, by the depth axis alone.
+    /// A first position is come to from there, along the tool's own line, or that place along the depth axis.
     Above,
+    /// It ends on a CL point, a first position with nothing above it: all words stand in one block.
+    AtOnce,
 }
 
 /// How long a block takes.

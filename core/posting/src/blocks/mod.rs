@@ -8,6 +8,7 @@ mod block;
 mod cutter;
 mod fitted;
 mod gathered;
+mod lie;
 mod nominal;
 mod off_part;
 mod plane;

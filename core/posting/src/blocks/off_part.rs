@@ -1,6 +1,6 @@
 //! The ways off the part and back that the CL file does not write: ahead of a retract, and drawn back in a cut.
 
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::orientation::angle;
 
@@ -23,6 +23,9 @@ const AWAY: f64 = 1e-3;
 /// A way across the tool axis is one but for so much.
 const SIDEWAYS: f64 = 1e-6;
 
+/// What a way is cut short by must be more to be told, mm.
+const SHORT: f64 = 1e-3;
+
 /// How far a tool that leans is drawn back where the machine has no `[rewind]`, mm: the first that travel allows.
 const LEAVE: [f64; 5] = [100.0, 50.0, 25.0, 12.0, 6.0];
 
@@ -44,6 +47,9 @@ impl Blocks<'_> {
         last: Box<Node>,
         to: &mut Surroundings<'_, '_>,
     ) -> Box<Node> {
+        if let Some(distance) = self.machine.frame.leave {
+            return self.leave_along(placer, line, last, distance, to);
+        }
         if self.machine.frame.retract.is_empty() {
             return last;
         }
@@ -54,6 +60,44 @@ impl Blocks<'_> {
         };
         self.check_retract(placer, line, &last, to.findings);
         last
+    }
+
+    /// The tool goes back along its own axis by `distance` mm, or as far as travel lets it: what the machine file says of
+    /// `leave`, which answers for where the axes go from there.
+    fn leave_along(
+        &mut self,
+        placer: &Placer,
+        line: u64,
+        last: Box<Node>,
+        distance: f64,
+        to: &mut Surroundings<'_, '_>,
+    ) -> Box<Node> {
+        let Some((out, way)) = self.out_by_leave(placer, &last, distance) else {
+            if self.on_part {
+                to.findings.at(line, stays());
+            }
+            return last;
+        };
+        if self.on_part && way < distance - SHORT {
+            to.findings.at(line, left_early(way, distance));
+        }
+        let motion = Motion {
+            tip: out.target.tip,
+            axis: last.target.axis,
+            edge: last.target.edge,
+            pace: Pace::Rapid,
+            chord: 0.0,
+        };
+        let leg = Leg {
+            line,
+            motion: &motion,
+            // In a bore it is no rapid over the part.
+            loose: placer.solver().closed_form(),
+            reason: Reason::Leave,
+        };
+        self.cut(placer, &leg, &last, &out, to);
+        self.on_part = false;
+        Box::new(out)
     }
 
     /// A tool that leans goes back along its own axis.
@@ -232,4 +276,24 @@ impl Blocks<'_> {
         self.on_part = true;
         self.last = Some(at);
     }
+}
+
+/// The tool is in the part, and travel lets it back nowhere.
+fn stays() -> Diagnostic {
+    Diagnostic::error(
+        "retract",
+        "the tool must leave the part along its own axis here ([control] leave), and travel ends where it stands",
+    )
+    .help("end the path where there is way left, or another --mount")
+}
+
+/// Travel ends before the way that `leave` asks for.
+fn left_early(way: f64, distance: f64) -> Diagnostic {
+    let message = format!(
+        "the tool leaves the part by {way:.3} mm along its own axis, and [control] leave says {}: travel ends there",
+        Short(distance)
+    );
+    Diagnostic::warning("retract", message).help(
+        "is it out of the part there? Else another --mount, or a shorter distance that is enough",
+    )
 }

@@ -78,7 +78,9 @@ impl Lengths {
         let (along, miss) = machine.lies_along().unzip();
         // The word that puts it on stands with that of the depth; a quill beside it does as well.
         let deep = |place| axis_words::is_depth(base, place);
-        if along.is_some_and(deep) && compensated.is_some_and(deep) {
+        // Where the tool comes from the place where it leaves its line all words stand in one block.
+        let in_one = base.frame.leave.is_some() && along.is_some() && along == compensated;
+        if in_one || along.is_some_and(deep) && compensated.is_some_and(deep) {
             let miss = miss.zip(length).map_or(0.0, |(miss, length)| miss * length);
             let finding = self.once(tool, false);
             return finding.or_else(|| missed(machine, miss));

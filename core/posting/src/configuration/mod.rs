@@ -344,7 +344,10 @@ impl<'a> Configuration<'a> {
     /// The tool is retracted and axes are sent to positions of the machine: what comes behind begins there.
     fn park(&mut self, positions: &[(usize, f64)]) {
         let mut near = *self.route.stands_at();
-        for (joint, value) in positions {
+        let frame = &self.machine.frame;
+        let left = frame.retract.iter().chain(&frame.aside);
+        let left = left.filter(|_| frame.leave.is_some());
+        for (joint, value) in left.chain(positions) {
             near[*joint] = *value;
         }
         self.route.begin_at(near);

@@ -178,7 +178,6 @@ impl Emit<'_> {
     /// Blocks that the control makes itself.
     fn pass(&mut self, stream: &[Flow<Block>]) {
         for block in points(stream).filter(|block| !block.still) {
-            self.extremes.follow(block.line);
             self.extremes.cover(&block.joints);
             self.extremes.go(&self.last, &block.joints);
             self.extremes.mark(block, self.writer.next());

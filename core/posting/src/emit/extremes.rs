@@ -27,8 +27,6 @@ pub(crate) struct Extremes {
     pub most: Joints,
     /// Way of each axis over all blocks, mm or radians.
     pub travel: Joints,
-    /// A first position that is come to from above, or the point over it, and its line.
-    first: Option<(Joints, u64)>,
     /// Where the largest deviations stand in the batch that is not written yet: index of the event.
     marks: [Option<usize>; 3],
 }
@@ -42,7 +40,6 @@ impl Extremes {
             least: [f64::INFINITY; MAX_AXES],
             most: [f64::NEG_INFINITY; MAX_AXES],
             travel: [0.0; MAX_AXES],
-            first: None,
             marks: [None; 3],
         }
     }
@@ -83,19 +80,10 @@ impl Extremes {
         }
     }
 
-    /// A block is written that brings the tool from the retract to `joints`: as a retract does, a point over the first one
-    /// takes no travel that the part needs. It is one where the next block is of the same `line`.
-    pub(super) fn reach_first(&mut self, joints: &Joints, line: u64) {
+    /// A block is written that brings the tool to a point over the first one: as a retract, it takes no travel that the part
+    /// needs.
+    pub(super) fn reach_above(&mut self) {
         self.blocks += 1;
-        self.first = Some((*joints, line));
-    }
-
-    /// A block of this line follows.
-    #[inline]
-    pub(super) fn follow(&mut self, line: u64) {
-        if let Some((joints, _)) = self.first.take().filter(|(_, first)| *first != line) {
-            self.cover(&joints);
-        }
     }
 
     /// A block is written that ends at `joints`.

@@ -58,8 +58,16 @@ impl Emit<'_> {
         if std::mem::take(&mut self.plane_on) {
             self.writer.push(line, Event::PlaneOff);
         }
-        if !machine.frame.aside.is_empty() {
-            self.go(line, &machine.frame.aside, parks);
+        match machine.frame.leave {
+            // One after the other.
+            Some(_) => {
+                for position in &machine.frame.aside {
+                    self.set_clamp(line, position.0, false, true);
+                    self.go(line, &[*position], parks);
+                }
+            }
+            None if machine.frame.aside.is_empty() => {}
+            None => self.go(line, &machine.frame.aside, parks),
         }
     }
 
@@ -298,7 +306,7 @@ impl Emit<'_> {
         let line = block.line;
         self.worked = true;
         match block.reason {
-            Reason::Above => self.extremes.reach_first(&block.joints, line),
+            Reason::Above => self.extremes.reach_above(),
             _ => self.extremes.reach(&block.joints),
         }
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
@@ -353,7 +361,7 @@ impl Emit<'_> {
             Event::Position {
                 tool: stands(block),
                 feed: block.time.feed,
-                plane_first: block.reason != Reason::Above,
+                plane_first: !matches!(block.reason, Reason::Above | Reason::AtOnce),
                 words,
             },
         );

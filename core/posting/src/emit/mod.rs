@@ -213,7 +213,6 @@ impl<'a> Emit<'a> {
     #[inline]
     fn block(&mut self, block: &Block, findings: &Findings) {
         let line = block.line;
-        self.extremes.follow(line);
         if self.waits && cuts(block) {
             self.wake(line, findings);
         }
@@ -231,7 +230,10 @@ impl<'a> Emit<'a> {
                     self.extremes.mark(block, self.writer.next());
                     return;
                 }
-                self.extremes.reach(&block.joints);
+                match block.reason {
+                    Reason::Above => self.extremes.reach_above(),
+                    _ => self.extremes.reach(&block.joints),
+                }
                 self.extremes.go(&self.last, &block.joints);
                 if self.clamps() {
                     self.clamp(block);

@@ -103,7 +103,7 @@ impl Rapids {
     /// A first position is come to from above, by the depth axis alone: the feed, mm/min, if that is to be written as a
     /// feed move. If it is left to the control and the axis would be too fast, that is noted.
     pub(super) fn feed_down(&mut self, block: &Block) -> Option<f64> {
-        if block.reason == Reason::Above {
+        if let Reason::Above | Reason::AtOnce = block.reason {
             return self.feed_across(block);
         }
         let (Tcp::Control, Some((chain, depth))) = (self.tcp, &self.down) else {

@@ -12,7 +12,8 @@ use std::sync::Arc;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 
-use super::{Course, Curve, Item, Piece, Reach, descent};
+use super::descent::{Descent, descends};
+use super::{Course, Curve, Item, Piece, Reach};
 use crate::interpret::Interpreter;
 use crate::{Done, Motion, MotionKind, State, Told, Way};
 
@@ -89,6 +90,8 @@ pub struct DoneCourse<P> {
     astray: u32,
     /// Axis values behind the last way in machine coordinates.
     retracted: Option<Joints>,
+    /// The tool has come down aside of its own line, to where it goes in along it.
+    on_line: bool,
     ended: bool,
 }
 
@@ -107,6 +110,7 @@ impl<P: Program> DoneCourse<P> {
             stands: None,
             astray: u32::MAX,
             retracted: None,
+            on_line: false,
             ended: false,
         }
     }
@@ -235,14 +239,16 @@ impl<P: Program> DoneCourse<P> {
         self.stands = Some(motion.to.pose);
     }
 
-    /// The tool comes on to its first position, by the depth axis alone from about where it was retracted: the pose that is
-    /// reached is the one below.
+    /// The tool comes on to its first position from about where it was retracted, by the depth axis alone or along its own
+    /// line: the pose that is reached is the one below.
     fn comes_down(&mut self, motion: &Motion) -> bool {
+        let on_line = std::mem::take(&mut self.on_line);
         let known = self.retracted.as_ref();
         let known = known.filter(|_| motion.kind == MotionKind::Rapid);
-        if !known.is_some_and(|retracted| descent::comes_down(motion, retracted)) {
+        let descent = known.and_then(|retracted| descends(motion, retracted, on_line));
+        let Some(descent) = descent else {
             return false;
-        }
+        };
         let held = self.held.iter_mut().rev();
         let Some(Item::Reach(reach)) = held
             .map(|(_, item)| item)
@@ -252,6 +258,7 @@ impl<P: Program> DoneCourse<P> {
         };
         reach.to = motion.to.pose;
         reach.line = motion.line;
+        self.on_line = descent == Descent::ToLine;
         true
     }
 

@@ -8,7 +8,7 @@ use post_machine::kinematics::{Joints, Pose};
 
 use super::Program;
 use super::outline::Splitter;
-use crate::course::descent::comes_down;
+use crate::course::descent::{Descent, descends};
 use crate::{Done, Motion, MotionKind, State, Told, Way};
 
 /// Steps stray from the way by no more: mm, radians.
@@ -152,6 +152,8 @@ pub(super) struct Steps<P> {
     retracted: Option<Joints>,
     /// It has not cut since, nor gone down.
     above: bool,
+    /// It has come down to its own line, from above, and goes in along it perhaps.
+    on_line: bool,
     /// Its rapids since.
     held: Vec<Next>,
     operation: usize,
@@ -174,6 +176,7 @@ impl<P: Program> Steps<P> {
             minutes: 0.0,
             retracted: None,
             above: true,
+            on_line: false,
             held: Vec::new(),
             operation: 0,
             ended: false,
@@ -300,7 +303,13 @@ impl<P: Program> Steps<P> {
             return Leg::None;
         }
         let rapid = motion.kind == MotionKind::Rapid || motion.fast;
-        let down = self.above && rapid && comes_down(motion, &retracted);
+        let on_line = std::mem::take(&mut self.on_line);
+        let descent = match self.above && rapid {
+            true => descends(motion, &retracted, on_line),
+            false => None,
+        };
+        self.on_line = descent == Some(Descent::ToLine);
+        let down = descent == Some(Descent::ToPoint);
         self.above &= !down && rapid;
         match (down, self.above) {
             (true, _) => Leg::Down,

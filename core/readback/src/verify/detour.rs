@@ -16,8 +16,9 @@ const MOST: usize = 64;
 const SAME_LINE: f64 = 1e-3;
 
 /// Where a tool goes between two cuts: to the places that are asked for, and on the line of the tool at one of them as
-/// far off as it likes. Anywhere else each axis that it moves stands between where it stands at those places, or where
-/// the machine file sends it (`retract`, `change`, `park`); the depth may be drawn back farther than at all of them. A retract in
+/// far off as it likes, and from over such a place down to it by the depth axis. Anywhere else each axis that it moves
+/// stands between where it stands at those places, or where the machine file sends it (`retract`, `leave`, `change`,
+/// `park`); the depth may be drawn back farther than at all of them. A retract in
 /// positions of the machine leads as far as the machine file says. In a program that was posted for this machine file, rotary
 /// axes turn where the tool is retracted, or with the tip on a way of the course or on the line of the tool at one of its
 /// places, and other axes stand between those places only if the tool was retracted; in another program nothing is said of the
@@ -113,12 +114,20 @@ impl Detour {
             return None;
         }
         let lean = lean + SAME_LINE;
-        let mut open = open.iter().filter(|end| {
-            let mut passed = passed.iter();
-            end.machine || !passed.any(|pose| end.on_the_line(pose, slack[0], lean))
-        });
         let passed = &passed;
-        open.find_map(|end| {
+        let on_a_line = |end: &End| {
+            let mut places = asked.iter().map(|(_, pose)| pose).chain(passed);
+            !end.machine && places.any(|pose| end.on_the_line(pose, slack[0], lean))
+        };
+        let goes = |(place, end): &(usize, &End)| {
+            let mut passed = passed.iter();
+            let next = open.get(place + 1).filter(|next| on_a_line(next));
+            !end.machine
+                && (passed.any(|pose| end.on_the_line(pose, slack[0], lean))
+                    || next.is_some_and(|next| end.is_over(next, machine, slack)))
+        };
+        let mut open = open.iter().enumerate().filter(|end| !goes(end));
+        open.find_map(|(_, end)| {
             let poses = asked.iter().map(|(_, pose)| pose).chain(passed);
             match end.turns(machine, slack) {
                 Some(turns) if own => end.turns_astray(machine, turns, poses, slack[0]),
@@ -256,6 +265,20 @@ impl End {
             }
         }
         worst.map(|(_, astray)| astray)
+    }
+
+    /// The tool comes from here to where `next` ends by the depth axis alone, which was drawn back.
+    fn is_over(&self, next: &Self, machine: &Machine, slack: [f64; 2]) -> bool {
+        let mut axes = machine.axes.iter().enumerate();
+        self.turns(machine, slack).is_none()
+            && next.from == self.joints
+            && axes.all(|(place, axis)| {
+                let down = self.joints[place] - next.joints[place];
+                match is_depth(machine, place) {
+                    true => down * axis.joint.direction.dot(&machine.tool_axis) >= 0.0,
+                    false => libm::fabs(down) <= slack[usize::from(axis.joint.rotary)],
+                }
+            })
     }
 
     /// The tool stands on its own line through a place, at it or farther off.

@@ -9,13 +9,22 @@ use super::Verifier;
 use crate::course::Course;
 
 /// By how much the depth axes stand nearer to the part than the machine file retracts them: the axis that lacks most, and
-/// how much, mm; none if all of them are retracted, or stand where it has them for a tool change or at the end.
+/// how much, mm; none if all of them are retracted, or stand where it has them for a tool change or at the end. Of a machine
+/// with `leave` those are the axes that go behind the way out.
 pub(super) fn lacks(machine: &Machine, joints: &Joints, slack: f64) -> Option<(usize, f64)> {
     let frame = &machine.frame;
     let named = [&frame.change, &frame.park, &frame.aside];
-    let lacks = frame.retract.iter().map(|(place, retract)| {
+    let leaves = frame.leave.is_some();
+    let then = frame.aside.iter().filter(|_| leaves);
+    let lacks = frame.retract.iter().chain(then).map(|(place, retract)| {
         let away = machine.axes[*place].joint.direction.dot(&machine.tool_axis);
-        let by = away.signum() * (retract - joints[*place]);
+        let by = retract - joints[*place];
+        // Where the file says how the tool leaves, its axes stand there, and nowhere beyond.
+        let by = if leaves {
+            libm::fabs(by)
+        } else {
+            away.signum() * by
+        };
         (*place, by)
     });
     let short = lacks.filter(|(place, by)| {

@@ -192,6 +192,47 @@ fn length_and_tcp_are_switched_in_the_order_of_the_control() {
     );
 }
 
+/// Axis positions of a table that turns hold for a part on one place alone: the program's head says it, and the sheet.
+#[test]
+fn what_stands_or_falls_with_the_mount_says_so() {
+    let control = FANUC.replace("post", "control");
+    for (machine, control, alone) in [
+        ("xyzac-trt", FANUC, true),
+        ("xyzac-trt", &control, false),
+        ("head-head", FANUC, false),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let sheet = folder.path().join("sheet.md");
+        let arguments = [
+            "--mount",
+            "0,0,-60",
+            "--setup-sheet",
+            sheet.to_str().unwrap(),
+        ];
+        let lines = lines(machine, control, &arguments, UPRIGHT);
+        let head = lines
+            .iter()
+            .any(|line| line.ends_with(", FOR THE PART AT X0 Y0 Z-60 ALONE)"));
+        assert_eq!(head, alone, "{machine}: {}", lines.join("\n"));
+        let sheet = fs::read_to_string(sheet).unwrap();
+        let says = |text: &str| sheet.contains(text);
+        assert!(
+            says("Z -60.000 mm in the machine frame"),
+            "{machine}: {sheet}"
+        );
+        assert_eq!(
+            says("for the part origin there alone"),
+            alone,
+            "{machine}: {sheet}"
+        );
+        assert_eq!(
+            says("wherever the work offset is measured"),
+            !alone,
+            "{machine}: {sheet}"
+        );
+    }
+}
+
 #[test]
 fn positions_of_the_machine_file_are_gone_to() {
     let more = format!(

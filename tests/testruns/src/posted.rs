@@ -354,31 +354,42 @@ pub fn post(
 /// [`post`] for a recorder that may declare something, with all of `observers` looking on.
 pub fn watched(
     machine: &Machine,
-    mut dialect: Recorder,
+    dialect: Recorder,
     cl: &str,
     job: Job,
     model: &mut dyn ModelSession,
     observers: &mut [&mut dyn Observer],
 ) -> Run {
-    let mut job = job;
+    // The path is what is looked at here, as it is: no retract behind it, and none that a machine which leans any way
+    // could not make.
+    let mut machine = machine.clone();
+    machine.frame.retract.clear();
+    framed(&machine, dialect, cl, job, model, observers)
+}
+
+/// [`watched`], with the ways from and to the retract.
+pub fn framed(
+    machine: &Machine,
+    mut dialect: Recorder,
+    cl: &str,
+    mut job: Job,
+    model: &mut dyn ModelSession,
+    observers: &mut [&mut dyn Observer],
+) -> Run {
     if job.reading.spindle == ToldSpindle::Unknown {
         // Texts this short do not care for the spindle.
         job.reading.spindle = ToldSpindle::Still;
     }
     let mut output = Nowhere;
-    // The path is what is looked at here, as it is: no retract behind it, and none that a machine which leans any way
-    // could not make.
-    let mut machine = machine.clone();
-    machine.frame.retract.clear();
     if machine.control.planes {
-        let mut pass = AheadPass::new(&machine, job.reading.clone());
+        let mut pass = AheadPass::new(machine, job.reading.clone());
         let mut reader = Reader::new(cl.as_bytes());
         while let Ok(Some(record)) = reader.next_record() {
             pass.record(&record);
         }
         job.ahead = Some(Arc::new(pass.finish()));
     }
-    let mut post = Post::new(&machine, job, &mut dialect, model, &mut output)
+    let mut post = Post::new(machine, job, &mut dialect, model, &mut output)
         .expect("machine and dialect agree");
     for observer in observers {
         post.watch(*observer);

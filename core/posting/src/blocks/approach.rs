@@ -74,7 +74,11 @@ impl Blocks<'_> {
             last = Some(stop);
         }
         match last {
-            Some(last) => self.cut(placer, leg, last, node, to),
+            Some(last) => {
+                // Into a bore it is no rapid over the part.
+                let loose = leg.loose && placer.solver().closed_form();
+                self.cut(placer, &Leg { loose, ..*leg }, last, node, to);
+            }
             // It is up there already.
             None => {
                 let leg = Leg {

@@ -7,7 +7,7 @@ use post_plugin::{Capabilities, PlaneAngles};
 use post_posting::Job;
 use post_posting::program::{Reading, ToldSpindle};
 use post_testkit::{Rng, randomised};
-use post_testruns::posted::{AskedPlane, Recorder, Run, Samples, watched};
+use post_testruns::posted::{AskedPlane, Recorder, Run, Samples, framed, watched};
 
 use crate::holes::{TABLE, machine};
 
@@ -33,16 +33,19 @@ fn machines(tcp: &str) -> [(&'static str, Machine); 3] {
     ]
 }
 
-fn run(machine: &Machine, recorder: Recorder, cl: &str) -> Run {
-    let job = Job {
+fn job() -> Job {
+    Job {
         reading: Reading {
             spindle: ToldSpindle::On(500.0),
             ..Reading::default()
         },
         tool_length: Some(150.0),
         ..Job::default()
-    };
-    watched(machine, recorder, cl, job, &mut Samples, &mut [])
+    }
+}
+
+fn run(machine: &Machine, recorder: Recorder, cl: &str) -> Run {
+    watched(machine, recorder, cl, job(), &mut Samples, &mut [])
 }
 
 /// Operations with a tool axis each, and the tip and the axis of every line.
@@ -176,10 +179,10 @@ fn words_and_angles_of_planes_lead_back_to_the_path() {
 fn a_plane_begins_and_ends_with_the_tool_clear_of_the_part() {
     let (_, mut rng) = randomised(1u32, 24);
     let leaning = Vector3::new(0.0, -0.6, 0.8);
-    let job = sides(&mut rng, &[leaning]);
+    let side = sides(&mut rng, &[leaning]);
     for (name, machine) in machines("control") {
         let recorder = Recorder::new(&machine, 3).with_planes(PlaneAngles::Zxz, 3);
-        let run = run(&machine, recorder, &job.cl).good(name);
+        let run = framed(&machine, recorder, &side.cl, job(), &mut Samples, &mut []).good(name);
         let kinds: Vec<_> = run.asked.iter().map(|asked| asked.kind).collect();
         // It returns to 0 for the tool change.
         let park = if name == "table" {
@@ -187,8 +190,8 @@ fn a_plane_begins_and_ends_with_the_tool_clear_of_the_part() {
         } else {
             &["Park"][..]
         };
-        // Under a head that leans it comes to a place on the line of the tool first, the plane's Z.
-        let way_in = if name == "table" {
+        // Under a head that leans it comes to a place on the line of the tool first, the plane's Z, and leaves along it.
+        let along = if name == "table" {
             &[][..]
         } else {
             &["Rapid"][..]
@@ -198,8 +201,9 @@ fn a_plane_begins_and_ends_with_the_tool_clear_of_the_part() {
             park,
             &["ToolChange", "Spindle", "Retract", "Turn"],
             &["Plane", "Position"],
-            way_in,
+            along,
             &["Linear", "Linear", "Linear", "Linear", "Rapid"],
+            along,
             &["Retract", "PlaneOff", "Spindle", "End"],
         ]
         .concat();
@@ -208,6 +212,13 @@ fn a_plane_begins_and_ends_with_the_tool_clear_of_the_part() {
             .filter(|kind| *kind != "Comment")
             .collect();
         assert_eq!(kinds, expected, "{name}");
+        if name == "table" {
+            continue;
+        }
+        let first = run.asked.iter().position(|asked| asked.kind == "Position");
+        let [above, below] = [0, 1].map(|next| &run.asked[first.unwrap() + next].words);
+        assert_eq!(above[..2], below[..2], "{name}");
+        assert!(above[2] > below[2] + 1000.0, "{name}: {above:?} {below:?}");
     }
 }
 

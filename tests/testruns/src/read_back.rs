@@ -201,6 +201,9 @@ impl Model {
         let linear: Vec<usize> = (0..self.axes.len())
             .filter(|place| !self.axes[*place].rotary)
             .collect();
+        if linear.is_empty() {
+            return vec![0.0; self.axes.len()];
+        }
         let shows = |axis: &Axis| if axis.rotary { 0.0 } else { axis.zero };
         let shown: Vec<f64> = self.axes.iter().map(shows).collect();
         let home = self.reach(&shown, length).tip;

@@ -74,7 +74,8 @@ impl Emit<'_> {
     /// Cutter compensation ends while the tool still cuts: on the way out the control would go aside, into what stands
     /// there, or stop with an alarm.
     fn tell_compensation(&mut self, findings: &Findings) {
-        if let Some(line) = self.left_compensating.take() {
+        // Behind another fault nothing is written, and ways are missing: it may end there.
+        if let Some(line) = self.left_compensating.take().filter(|_| !findings.failed()) {
             findings.at(
                 line,
                 Diagnostic::error(

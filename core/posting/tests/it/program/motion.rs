@@ -89,7 +89,7 @@ fn rapid_is_for_one_move_and_as_a_feed_until_the_next_feed() {
         (
             "CYCLE/DRILL,FEDTO,-1,RAPTO,2,MMPM,50;RAPID;GOTO/0,0,0;CYCLE/OFF;GOTO/1,0,0",
             "R 0,0,2; R 0,0,2; F50 0,0,-1; R 0,0,2; F100 1,0,0",
-            "",
+            "warning cycle",
         ),
     ]);
     let text = "UNITS/MM;GOTO/1,0,0;GOTO/2,0,0";

@@ -40,7 +40,8 @@ pub(crate) fn descends(motion: &Motion, retracted: &Joints, on_line: bool) -> Op
     }
     let along = goes_in(motion);
     let descends = slides && (retracts && (along || count == 1) || on_line && along);
-    descends.then(|| match along || !matches!(motion.way, Way::Tip) {
+    let to_point = along || !matches!(motion.way, Way::Tip);
+    descends.then_some(match to_point {
         true => Descent::ToPoint,
         false => Descent::ToLine,
     })

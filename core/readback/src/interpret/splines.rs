@@ -202,7 +202,7 @@ impl Control {
         let weight = words.take(b'P');
         if begins {
             let order = words.take_number(b'L', self)?.unwrap_or(ORDER_OF_EVEN);
-            if order < ORDER_OF_EVEN || order > 10 {
+            if !(ORDER_OF_EVEN..=10).contains(&order) {
                 let message = format!("a spline of order {order}, and those of 3 to 10 are run");
                 return Err(self.refuse("nc-spline", message));
             }

@@ -91,6 +91,7 @@ impl Part {
             planned,
             solutions: false,
             any_coolant: false,
+            any_work_offset: false,
             own: true,
             lines: self.lines.clone(),
         };

@@ -53,19 +53,36 @@ pub fn by_name_or_file(plugin: &Path, named: &[PathBuf]) -> Result<Plugin, Vec<D
 
 /// The number of the program, of a dialect whose programs have one.
 pub fn program_number(finder: &Finder, machine: &Machine) -> Option<i64> {
-    const KEY: &str = "program_number";
+    integer(finder, machine, "program_number")
+}
+
+/// An option of the dialect that is a whole number, as the machine file has it or as it is by default.
+pub fn integer(finder: &Finder, machine: &Machine, key: &str) -> Option<i64> {
     let plugin = finder.find(&machine.control.dialect).ok()?;
-    let declared = plugin.options().iter().find(|spec| spec.key == KEY)?;
-    let given = machine
-        .control
-        .options
-        .iter()
-        .find(|given| given.key == KEY);
-    match (given.map(|given| &given.value), declared.default) {
+    let declared = plugin.options().iter().find(|spec| spec.key == key)?;
+    match (given_value(machine, key), declared.default) {
         (Some(OptionValue::Integer(number)), _) => Some(*number),
         (None, Value::Integer(number)) => Some(number),
         _ => None,
     }
+}
+
+/// An option of the dialect that is text, likewise.
+pub fn text(finder: &Finder, machine: &Machine, key: &str) -> Option<String> {
+    let plugin = finder.find(&machine.control.dialect).ok()?;
+    let declared = plugin.options().iter().find(|spec| spec.key == key)?;
+    match (given_value(machine, key), declared.default) {
+        (Some(OptionValue::Text(text)), _) => Some(text.clone()),
+        (None, Value::Text(text)) => Some(text.to_owned()),
+        _ => None,
+    }
+}
+
+fn given_value<'m>(machine: &'m Machine, key: &str) -> Option<&'m OptionValue> {
+    let mut given = machine.control.options.iter();
+    given
+        .find(|given| given.key == key)
+        .map(|given| &given.value)
 }
 
 /// Opens the dialect of a machine for the program `program`, made from the CL file `cl_file`.

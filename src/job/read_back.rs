@@ -17,7 +17,7 @@ use post_readback::verify::{
     BlockReport, CutPath, Fault, Registers, Rules, Verification, Verifier,
 };
 
-use super::nc_program;
+use super::{nc_program, plugin_finder};
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
@@ -42,6 +42,8 @@ pub struct Reading<'a> {
     pub planned: bool,
     /// Which coolant flows is the program's own business.
     pub any_coolant: bool,
+    /// Which work offset it cuts in, where the CL file names none, is the program's own business.
+    pub any_work_offset: bool,
     /// The program was posted for this machine file, in this run.
     pub own: bool,
     /// Each line is told with the solution of the machine that it ends in.
@@ -96,10 +98,7 @@ pub fn as_counted(machine: &Machine, words: &[VocabularyWord], offsets: &Offsets
 
 /// Which register a length is compensated by.
 fn registers(words: &[VocabularyWord]) -> Registers {
-    let has = |letter: &str, meaning: Meaning| {
-        let mut words = words.iter();
-        words.any(|word| word.meaning == meaning && word.word == letter)
-    };
+    let has = |letter: &str, meaning: Meaning| has_letter(words, letter, meaning);
     match (
         has("H", Meaning::LengthRegister),
         has("D", Meaning::LengthOn),
@@ -108,6 +107,28 @@ fn registers(words: &[VocabularyWord]) -> Registers {
         (false, true) => Registers::Edges,
         (false, false) => Registers::None,
     }
+}
+
+fn has_letter(words: &[VocabularyWord], letter: &str, meaning: Meaning) -> bool {
+    let mut words = words.iter();
+    words.any(|word| word.meaning == meaning && word.word == letter)
+}
+
+/// The work offset that posting writes where the CL file names none: the dialect's option, as the machine file has it or as
+/// it is by default. None where lines of the machine file name one, its words of CL files may, or the operator chooses it.
+fn work_offset(finder: &Finder, machine: &Machine, words: &[VocabularyWord]) -> Option<String> {
+    let offsets = words
+        .iter()
+        .filter(|word| word.meaning == Meaning::WorkOffset);
+    let offsets: Vec<&str> = offsets.map(|word| word.word.as_ref()).collect();
+    let mut lines = machine.program.own_words();
+    if !machine.word_rules.is_empty() || lines.any(|word| offsets.contains(&word.as_str())) {
+        return None;
+    }
+    if let Some(row) = plugin_finder::integer(finder, machine, "preset") {
+        return (row >= 0).then(|| format!("CYCL DEF 247 Q339={row}"));
+    }
+    plugin_finder::text(finder, machine, "work_offset")
 }
 
 /// How the CL file is meant, as posting was told.
@@ -262,6 +283,15 @@ pub fn hold<C: Course, R: Read + Seek>(
             },
             None => offsets.clone(),
         }),
+        radius_registers: has_letter(&spoken.words, "D", Meaning::RadiusRegister),
+        // Posting has written its own, or lines of the user's another.
+        work_offset: match reading.any_work_offset || reading.own {
+            true => None,
+            false => work_offset(reading.finder, machine, &spoken.words),
+        },
+        first_preset: plugin_finder::integer(reading.finder, machine, "preset")
+            .and_then(|row| u32::try_from(row).ok())
+            .map_or(1, |row| row.max(1)),
         solutions: reading.solutions,
         planned: reading.planned,
         coolants: !reading.any_coolant,

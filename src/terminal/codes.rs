@@ -855,6 +855,11 @@ pub const CODES: &[CodeGroup] = &[
                 "Look at both lines.",
             ),
             code(
+                "smoothing",
+                "The control may leave the path by more than the tolerance and than `[program.smoothing]`.",
+                "A tolerance of the CL file's accuracy, or `--tolerance` as large as what is meant.",
+            ),
+            code(
                 "spindle",
                 "The spindle stands, turns otherwise, or turns while the tool is changed.",
                 "Look at both lines.",

@@ -72,6 +72,7 @@ mod verified;
 mod vocabularies;
 mod words;
 mod writable;
+mod wrong_programs;
 
 #[path = "../bench/generate.rs"]
 #[expect(dead_code, reason = "its `main` is that of the example")]

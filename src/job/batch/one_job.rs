@@ -256,6 +256,7 @@ impl OneJob<'_> {
             planned: self.study.options.plan,
             solutions: false,
             any_coolant: false,
+            any_work_offset: false,
             own: true,
             lines: None,
         };

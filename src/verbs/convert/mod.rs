@@ -277,6 +277,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         planned: false,
         solutions: false,
         any_coolant: false,
+        any_work_offset: false,
         own: false,
         lines: None,
     };

@@ -75,7 +75,8 @@ pub struct VerifyArguments {
     planned: bool,
 
     /// Is not compared: `coolant`, where words of the machine or of yours (`[codes]`, `INSERT`, a plugin) switch it, and the
-    /// control knows more of them than the CL file names. Repeatable.
+    /// control knows more of them than the CL file names; `work-offset`, where the CL file names none and the program cuts in
+    /// another than the dialect's option `work_offset` (Heidenhain's `preset`). Repeatable.
     #[arg(long, value_name = "WHAT", value_enum)]
     ignore: Vec<Ignored>,
 
@@ -93,6 +94,8 @@ pub struct VerifyArguments {
 enum Ignored {
     /// Which coolant flows, and whether.
     Coolant,
+    /// Which work offset is cut in, where the CL file names none.
+    WorkOffset,
 }
 
 const MAP: Role = Role {
@@ -144,6 +147,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         planned: arguments.planned,
         solutions: arguments.map.is_some(),
         any_coolant: arguments.ignore.contains(&Ignored::Coolant),
+        any_work_offset: arguments.ignore.contains(&Ignored::WorkOffset),
         own: false,
         lines: None,
     };

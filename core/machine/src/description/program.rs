@@ -153,6 +153,19 @@ impl ProgramRules {
     pub fn text(&self, at: TextPlace) -> Option<&ProgramText> {
         self.texts.iter().find(|text| text.at == at)
     }
+
+    /// The words of all lines of the user's own, facts of samples in them.
+    pub fn own_words(&self) -> impl Iterator<Item = String> {
+        let lines = self
+            .texts
+            .iter()
+            .filter_map(|text| text.lines(&text.at.sample()).ok());
+        let words = lines.flatten().flat_map(|line| {
+            let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+            words
+        });
+        words.collect::<Vec<_>>().into_iter()
+    }
 }
 
 /// Facts that a first pass over the CL file finds.

@@ -29,6 +29,13 @@ impl SmoothingRules {
         self.default.is_some() || !self.operations.is_empty()
     }
 
+    /// The largest tolerance of the tip that one of them has, mm.
+    pub fn largest(&self) -> Option<f64> {
+        let operations = self.operations.iter().map(|(_, smoothing)| smoothing);
+        let all = operations.chain(&self.default);
+        all.map(|smoothing| smoothing.tolerance).reduce(f64::max)
+    }
+
     /// In the operation of this name.
     pub fn of(&self, name: &str) -> Option<Smoothing> {
         let name = name.to_uppercase();

@@ -190,6 +190,7 @@ impl Control {
     #[inline]
     pub(super) fn motion(&mut self, mode: MotionMode) {
         self.modal.motion = mode;
+        self.stand_behind_taps();
         if self.cycles.in_force() {
             cycles::end(self);
         }
@@ -238,6 +239,10 @@ impl Control {
             let finding = Diagnostic::error("nc-word", message).help(help);
             return Err(self.placed(finding).boxed());
         }
+        // Fanuc's word, and that of the controls whose dialect names it.
+        self.modal.rigid_taps |= code == 29
+            && self.lexicon.language() == Language::Macro
+            && self.lexicon.m(code) == Sense::Means(Meaning::Nothing);
         match self.lexicon.m(code) {
             Sense::Means(Meaning::ToolChange) if code == 0 => {
                 asked.change_or_stop = true;

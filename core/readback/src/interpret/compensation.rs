@@ -18,9 +18,12 @@ impl Control {
         let register = if side == 0 || self.lexicon.tools_have_edges() {
             None
         } else {
-            words
-                .take_number(b'D', self)?
-                .or(self.state.radius_register)
+            let said = words.take_number(b'D', self)?;
+            said.or(match self.lexicon.language() {
+                // Without D the tool in the spindle is meant.
+                Language::Rs274 => self.state.tool,
+                _ => self.state.radius_register,
+            })
         };
         if self.state.compensation == side && (side == 0 || self.state.radius_register == register)
         {

@@ -380,6 +380,8 @@ impl Modal {
             vectors: false,
             tcp_by_length: false,
             named_register: None,
+            rigid_taps: false,
+            tapped: false,
         }
     }
 }

@@ -86,11 +86,19 @@ impl Control {
             | Meaning::CycleReam
             | Meaning::CycleBore
             | Meaning::CycleBoreFine
-            | Meaning::CycleBoreBack => asked.cycle = Some((code, meaning)),
+            | Meaning::CycleBoreBack => {
+                if !matches!(meaning, Meaning::CycleTap | Meaning::CycleTapLeft) {
+                    self.stand_behind_taps();
+                }
+                asked.cycle = Some((code, meaning));
+            }
             // Bored in, and drawn out by hand.
             Meaning::CycleOther if matches!(code, 870 | 880) => asked.cycle = Some((code, meaning)),
             Meaning::CycleOther => return Err(self.not_followed(code)),
-            Meaning::CycleOff => asked.cycle_off = true,
+            Meaning::CycleOff => {
+                self.stand_behind_taps();
+                asked.cycle_off = true;
+            }
             Meaning::ReturnStart => self.modal.return_start = true,
             Meaning::ReturnClearance => self.modal.return_start = false,
             Meaning::ReferenceReturn => asked.reference = Some(1),

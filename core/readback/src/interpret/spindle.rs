@@ -17,7 +17,10 @@ impl Control {
     ) -> Result<(), Box<Diagnostic>> {
         if let Some(speed) = words.take(b'S') {
             self.modal.speed = speed;
-            self.speed_changed();
+            // Beside a word that turns it the new speed never has the old sense.
+            if matches!(asked.spindle, None | Some(Turning::Off)) {
+                self.speed_changed();
+            }
         }
         if let Some(number) = words.take(b'T').filter(|number| !number.is_nan()) {
             let number = which(b'T', number, self)?;
@@ -58,6 +61,7 @@ impl Control {
 
     /// What the spindle does from here on.
     pub(super) fn turn_spindle(&mut self, turning: Turning) {
+        self.modal.tapped = false;
         let spindle = match turning {
             Turning::Clockwise | Turning::CounterClockwise if self.modal.surface_speed => {
                 Spindle::Surface {
@@ -75,6 +79,14 @@ impl Control {
             self.state.spindle = spindle;
             self.state_changed();
             self.tell(Told::Spindle(spindle));
+        }
+    }
+
+    /// A rigid tapping cycle is over: the spindle, which was an axis in it, stands.
+    pub(super) fn stand_behind_taps(&mut self) {
+        self.modal.rigid_taps = false;
+        if self.modal.tapped {
+            self.turn_spindle(Turning::Off);
         }
     }
 

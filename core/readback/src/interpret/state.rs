@@ -159,6 +159,10 @@ pub(super) struct Modal {
     pub tcp_by_length: bool,
     /// A length register by a name: `HL=1`.
     pub named_register: Option<u32>,
+    /// The taps of this cycle are rigid: M29.
+    pub rigid_taps: bool,
+    /// A rigid tap was made and no word has turned the spindle since: it stands when the cycle is over.
+    pub tapped: bool,
 }
 
 /// What axis words alone mean.

@@ -46,6 +46,10 @@ pub(super) struct Made {
     deepest: f64,
     /// How the spindle has turned in it.
     spindle: Spindle,
+    /// A cycle was called since.
+    pub again: bool,
+    /// A hole of a cycle that was made twice is told once.
+    cycle: bool,
 }
 
 impl Made {
@@ -328,6 +332,12 @@ impl<C: Course> Verifier<'_, C> {
             if down {
                 self.compare_with(motion, &element);
                 self.compare_feed(motion, places, &at_the_speed_of(motion, &element));
+            } else if run.bottom && asked.back == Some(MotionKind::Feed) {
+                let out = Element {
+                    feed: asked.out,
+                    ..element.clone()
+                };
+                self.compare_feed(motion, places, &out);
             }
         }
         self.hole = Some(run);
@@ -338,6 +348,8 @@ impl<C: Course> Verifier<'_, C> {
                 axis,
                 deepest: run.deepest,
                 spindle: motion.state.spindle,
+                again: false,
+                cycle: motion.hole,
             });
             self.end_hole(motion, run, &element, axis.depth);
             if rapid {
@@ -375,6 +387,19 @@ impl<C: Course> Verifier<'_, C> {
                 state::spindle_name(made.spindle)
             );
             self.fault("spindle", message, Some(motion), None, None);
+        }
+        if in_it
+            && goes
+            && motion.kind != MotionKind::Rapid
+            && made.again
+            && made.cycle
+            && motion.hole
+        {
+            let message = "a hole is made once more, and the CL file asks for it once".to_owned();
+            self.fault("hole", message, Some(motion), None, None);
+            if let Some(made) = &mut self.made {
+                made.again = false;
+            }
         }
         if in_it && goes {
             self.set_kind(match motion.kind {

@@ -153,7 +153,7 @@ impl<C: Course> Verifier<'_, C> {
         }
     }
 
-    fn left_on(&mut self, line: u64, code: &'static str, message: String) {
+    pub(super) fn left_on(&mut self, line: u64, code: &'static str, message: String) {
         let known = &mut self.found.left_on;
         match known.iter_mut().find(|known| known.code == code) {
             Some(known) => known.count += 1,

@@ -64,6 +64,12 @@ pub struct Rules {
     pub tool_registers: Vec<(u32, u32)>,
     /// Where each work offset lies is stated: motions tell whether the right one is in force.
     pub work_offsets: bool,
+    /// A contour is compensated by the radius in a register, D.
+    pub radius_registers: bool,
+    /// The work offset of a program whose CL file names none; none: it is the program's own business.
+    pub work_offset: Option<String>,
+    /// Number of the row of Heidenhain's presets that is the first work offset.
+    pub first_preset: u32,
     /// How long the tools are; none where lengths lie in the work offset.
     pub lengths: Option<Offsets>,
     /// A feed by time cannot be so large that a block takes less than this, minutes.
@@ -107,6 +113,9 @@ impl Rules {
             registers: Registers::None,
             tool_registers: Vec::new(),
             work_offsets: false,
+            radius_registers: false,
+            work_offset: None,
+            first_preset: 1,
             lengths: None,
             least_minutes: 0.0,
             linear_rapids: machine.rapid(false) == Rapid::Linear,
@@ -128,6 +137,16 @@ const COMPUTED: f64 = 1e-6;
 
 /// Where a rapid passes a point of the course the tool axis may be off by so much, radians.
 const RAPID_TURN: f64 = 1.0 / 180.0 * PI;
+
+/// A command of the spindle.
+#[derive(Clone, Copy, Debug)]
+struct Turned {
+    spindle: Spindle,
+    /// Line of the program.
+    line: u64,
+    /// The next came before anything moved: S and M3 in blocks of their own are one command.
+    passing: bool,
+}
 
 /// Holds a program against a course, motion by motion.
 #[derive(Debug)]
@@ -161,9 +180,13 @@ pub struct Verifier<'m, C> {
     /// Ends of the pieces of the motion at hand, its beginning first.
     places: Vec<Place>,
     spare: Vec<Span>,
+    /// What the spindle was told since the tool came or since it was compared.
+    turned: Vec<Turned>,
+    /// The program has moved since the spindle was told something.
+    moved: bool,
+    /// By how much the control may leave the path, as it was looked at last, mm.
+    smoothing: f64,
     /// The work offsets that were cut in, each by the number that the course asks for.
-    /// What the spindle was told since the tool came or since it was compared: with the line of the program.
-    turned: Vec<(Spindle, u64)>,
     worked: Vec<(Option<u32>, String)>,
     detour: Detour,
     running: Running,
@@ -215,6 +238,8 @@ impl<'m, C: Course> Verifier<'m, C> {
             spare: Vec::new(),
             worked: Vec::new(),
             turned: Vec::new(),
+            moved: false,
+            smoothing: 0.0,
             detour: Detour::default(),
             running: Running::default(),
             stands: None,
@@ -256,12 +281,26 @@ impl<'m, C: Course> Verifier<'m, C> {
     fn told(&mut self, line: u64, told: &Told) {
         match told {
             Told::Dwell { .. } | Told::Stop | Told::OptionalStop => self.event(line, told),
-            Told::Cycle(call) => self.cycle = Some(call.kind),
+            Told::Cycle(call) => {
+                self.cycle = Some(call.kind);
+                if let Some(made) = &mut self.made {
+                    made.again = true;
+                }
+            }
             Told::CycleEnd => self.cycle = None,
             Told::ToolChange { .. } => self.turned.clear(),
             Told::End => self.look_for_retract(line, "where the program ends"),
             Told::Spindle(spindle) if self.turned.len() < track::MOST_SPEEDS => {
-                self.turned.push((*spindle, line));
+                if !std::mem::take(&mut self.moved)
+                    && let Some(last) = self.turned.last_mut()
+                {
+                    last.passing = true;
+                }
+                self.turned.push(Turned {
+                    spindle: *spindle,
+                    line,
+                    passing: false,
+                });
             }
             _ => {}
         }
@@ -297,6 +336,7 @@ impl<'m, C: Course> Verifier<'m, C> {
     }
 
     fn motion(&mut self, motion: &Motion) {
+        self.moved = true;
         self.found.motions += 1;
         self.found.time_s += motion.minutes * 60.0;
         let mut places = std::mem::take(&mut self.places);

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use post_machine::axis_words::is_depth;
 
 use super::place::{Place, free};
+use post_motion::Corner;
+
 use super::track::Element;
 use super::{Registers, Verifier};
 use crate::course::Course;
-use crate::{Coolants, Motion, MotionKind, Spindle, Told, Way};
+use crate::{Coolants, Corners, Motion, MotionKind, Spindle, Told, Way};
 
 /// Speeds and feeds are rounded as they are printed: so much of them, and so much besides.
 const SHARE: f64 = 0.005;
@@ -150,9 +152,44 @@ impl<C: Course> Verifier<'_, C> {
                 format!("cuts with radius register {has}, and the CL file asks for {wants}");
             self.fault("register", message, Some(motion), cl_line, None);
         }
+        if asked.side != 0
+            && state.compensation == asked.side
+            && state.radius_register.is_none()
+            && self.rules.radius_registers
+            && let Some(wants) = asked.register
+        {
+            let message = format!(
+                "cuts with radius compensation and no radius register, and the CL file asks for {wants}"
+            );
+            self.fault("register", message, Some(motion), cl_line, None);
+        }
         self.compare_register(motion, element);
         self.compare_length(motion, element);
         self.compare_work_offset(motion, element);
+        self.compare_smoothing(motion);
+    }
+
+    /// What the control may leave the path by is told where it is more than the tolerance and than the machine file's
+    /// own: how far it does leave it follows from its accelerations.
+    fn compare_smoothing(&mut self, motion: &Motion) {
+        let state = &motion.state;
+        let said = match state.corners {
+            Corners::Said(Corner::Blend { tolerance }) => tolerance,
+            _ => None,
+        };
+        let smoothing = state.smoothing.or(said).unwrap_or(0.0);
+        if smoothing == self.smoothing {
+            return;
+        }
+        self.smoothing = smoothing;
+        let most = self.machine.smoothing.largest().unwrap_or(0.0);
+        let most = most.max(self.rules.tolerance);
+        if smoothing > most + SHORT {
+            let message = format!(
+                "the control may leave the path by {smoothing} mm, and the tolerance is {most} mm"
+            );
+            self.left_on(motion.line, "smoothing", message);
+        }
     }
 
     /// Between the tool change and its first cut the spindle turns as the course has it of this tool: the speed of the
@@ -162,10 +199,16 @@ impl<C: Course> Verifier<'_, C> {
         if self.turned.is_empty() || motion.state.tool != asked.tool {
             return;
         }
-        for (spindle, line) in std::mem::take(&mut self.turned) {
+        for turned in std::mem::take(&mut self.turned) {
+            let (spindle, line) = (turned.spindle, turned.line);
             let known = [asked.spindle, motion.state.spindle, Spindle::Off];
             let mut known = known.iter().chain(&asked.turned);
-            if known.any(|known| same_spindle(spindle, *known)) {
+            // On its way from one command to the next the speed counts, and not the sense.
+            let passes = |known: Spindle| match (spindle.rpm(), known.rpm()) {
+                (Some(has), Some(wants)) => turned.passing && libm::fabs(has - wants) <= PLACE,
+                _ => false,
+            };
+            if known.any(|known| same_spindle(spindle, *known) || passes(*known)) {
                 continue;
             }
             let message = format!(
@@ -182,17 +225,40 @@ impl<C: Course> Verifier<'_, C> {
     /// the same and no other's.
     fn compare_work_offset(&mut self, motion: &Motion, element: &Element) {
         let asked = element.asked.work_offset;
-        let Some(name) = &motion.state.work_offset else {
-            return;
-        };
         if self.rules.work_offsets {
+            return;
+        }
+        let wanted = self.rules.work_offset.as_deref();
+        let Some(name) = motion.state.work_offset.clone() else {
+            let message = match (asked, wanted) {
+                (Some(asked), Some(_)) => format!(
+                    "cuts in no work offset that the program names, and the CL file asks for work offset {asked}"
+                ),
+                (None, Some(wanted)) => format!(
+                    "cuts in no work offset that the program names, and that of the machine file is {wanted}"
+                ),
+                (_, None) => return,
+            };
+            let cl_line = Some(element.line);
+            return self.fault("work-offset", message, Some(motion), cl_line, None);
+        };
+        let name = &name;
+        if let (None, Some(wanted)) = (asked, wanted) {
+            if !name.eq_ignore_ascii_case(wanted) {
+                let message = format!(
+                    "cuts in {name}: the CL file names no work offset, and that of the machine file is {wanted}"
+                );
+                let cl_line = Some(element.line);
+                self.fault("work-offset", message, Some(motion), cl_line, None);
+            }
             return;
         }
         let known = |of: Option<u32>| {
             let mut worked = self.worked.iter();
             worked.find(|(other, _)| *other == of).map(|(_, name)| name)
         };
-        let message = match (known(asked), asked, number_of(name)) {
+        let number = number_of(name, self.rules.first_preset);
+        let message = match (known(asked), asked, number) {
             (Some(known), _, _) if known != name => {
                 format!(
                     "cuts in {name}, and in {known} before: the CL file asks for no other work offset"
@@ -427,10 +493,26 @@ pub(super) fn same_event(asked: &Told, done: &Told, spindle: Spindle) -> bool {
     }
 }
 
-/// The number of a work offset whose name has one: G54 is the first of six, `G54.1 P3` and the like say theirs beyond.
-fn number_of(name: &str) -> Option<u32> {
-    let code: u32 = name.strip_prefix('G')?.parse().ok()?;
-    (54..=59).contains(&code).then(|| code - 53)
+/// The number of a work offset whose name has one, as posting counts them; G500 and G53, which are none, are 0. `first`
+/// is the row of presets that is the first.
+fn number_of(name: &str, first: u32) -> Option<u32> {
+    if let Some(row) = name.strip_prefix("CYCL DEF 247 Q339=") {
+        let row: u32 = row.parse().ok()?;
+        return Some((row + 1).saturating_sub(first));
+    }
+    let beyond = |prefix: &str| name.strip_prefix(prefix)?.parse::<u32>().ok();
+    if let Some(number) = beyond("G15 H") {
+        return Some(number);
+    }
+    if let Some(number) = beyond("G54.1 P").or(beyond("G154 P")) {
+        return Some(6 + number);
+    }
+    match beyond("G")? {
+        53 | 500 => Some(0),
+        code @ 54..=59 => Some(code - 53),
+        code @ 505..=599 => Some(code - 500),
+        _ => None,
+    }
 }
 
 pub(super) fn same_spindle(has: Spindle, wants: Spindle) -> bool {

@@ -74,6 +74,8 @@ pub(super) struct Hole {
     pub dwell: Option<Told>,
     /// How the tool comes back.
     pub back: Option<MotionKind>,
+    /// And how fast, mm/min; none at rapid.
+    pub out: Option<f64>,
     /// How the course comes to it at rapid: a control may go otherwise.
     pub approach: Vec<[Place; 2]>,
 }
@@ -256,6 +258,7 @@ impl<C: Course> Track<C> {
                     pecks: (cycle.peck > 0.0).then_some(pecks),
                     dwell: None,
                     back: None,
+                    out: None,
                     approach: std::mem::take(&mut self.approach),
                 };
                 self.hole = Some(Element {
@@ -277,7 +280,7 @@ impl<C: Course> Track<C> {
                 match &mut element.what {
                     What::Hole(hole) if hole.back.is_none() => {
                         if up {
-                            hole.back = Some(piece.kind);
+                            (hole.back, hole.out) = (Some(piece.kind), piece.feed);
                         }
                         true
                     }

@@ -2,6 +2,7 @@
 
 use post_machine::diagnostic::Diagnostic;
 
+use crate::interpret::block::Turning;
 use crate::{CycleCall, CycleKind};
 
 /// Strokes that one hole may have: a peck that is tiny against the depth is refused.
@@ -43,6 +44,8 @@ pub(crate) struct Hole {
     pub lift: [f64; 3],
     /// The operator draws the tool out, or is asked to: the program stops at the bottom.
     pub stop: bool,
+    /// How the cycle itself turns the spindle in the hole and behind it; none: it leaves it as it is.
+    pub turning: Option<[Turning; 2]>,
 }
 
 /// How the tool comes back to the clearance.

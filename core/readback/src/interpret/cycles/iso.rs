@@ -6,6 +6,7 @@ use post_plugin::Meaning;
 
 use super::hole::{Hole, Out, Pecks, Wait};
 use super::{drill, feed_a_minute};
+use crate::interpret::block::Turning;
 use crate::interpret::gathered::{Gathered, bit};
 use crate::interpret::go::{Path, Target};
 use crate::interpret::state::Control;
@@ -135,7 +136,19 @@ pub(super) fn hole(
         if target.point[first].is_some() || target.point[second].is_some() || target.said != 0 {
             control.go(MotionKind::Rapid, &Path::Straight, &target)?;
         }
-        drill(control, &hole)
+        let sense = match running.meaning {
+            Meaning::CycleTap => Turning::Clockwise,
+            Meaning::CycleTapLeft => Turning::CounterClockwise,
+            _ => return drill(control, &hole),
+        };
+        if !control.modal.rigid_taps && !matches!(running.code, 842 | 843) {
+            return drill(control, &hole);
+        }
+        // The cycle turns the spindle itself, whatever was said before.
+        control.turn_spindle(sense);
+        let made = drill(control, &hole);
+        control.modal.tapped = true;
+        made
     });
     words.present |= hidden;
     made
@@ -188,7 +201,12 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         bottom: running.bottom,
         away,
         feed,
-        wait: Wait::seconds(running.dwell),
+        // G81 has no wait: a P beside it says nothing.
+        wait: Wait::seconds(if running.code == 810 {
+            0.0
+        } else {
+            running.dwell
+        }),
         // LinuxCNC feeds all the way out, but for G85.
         out_all: control.lexicon.language() == Language::Rs274 && running.code != 850,
         ..Hole::default()

@@ -183,6 +183,10 @@ fn drill(control: &mut Control, hole: &Hole) -> Result<(), Box<Diagnostic>> {
     let strokes = hole
         .strokes(from[axis])
         .map_err(|finding| control.placed(*finding).boxed())?;
+    let [in_it, behind] = hole.turning.map_or([None; 2], |turning| turning.map(Some));
+    if let Some(turning) = in_it {
+        control.turn_spindle(turning);
+    }
     control.tell(Told::Cycle(hole.call()));
     let before = (control.modal.feed, control.modal.feed_mode, control.hole);
     control.modal.feed_mode = FeedMode::PerMinute;
@@ -190,6 +194,9 @@ fn drill(control: &mut Control, hole: &Hole) -> Result<(), Box<Diagnostic>> {
     let made = strokes.iter().try_for_each(|stroke| made(control, stroke));
     (control.modal.feed, control.modal.feed_mode, control.hole) = before;
     control.tell(Told::CycleEnd);
+    if let Some(turning) = behind {
+        control.turn_spindle(turning);
+    }
     made
 }
 

@@ -4,6 +4,7 @@ use post_machine::diagnostic::Diagnostic;
 
 use super::hole::{Hole, Out, Pecks, SAME, Wait};
 use crate::CycleKind;
+use crate::interpret::block::Turning;
 
 /// What the control knows besides the arguments; lengths in mm, feeds in mm/min.
 pub(crate) struct Around {
@@ -141,9 +142,28 @@ fn made(arguments: &Arguments<'_>, hole: Hole, around: &Around) -> Result<Hole, 
                 .given(12)
                 .filter(|speed| *speed != 0.0)
                 .unwrap_or(speed);
-            thread(arguments, hole, 9, [speed, back])?
+            let hole = thread(arguments, hole, 9, [speed, back])?;
+            let turning = match hole.kind {
+                CycleKind::TapLeft => Turning::CounterClockwise,
+                _ => Turning::Clockwise,
+            };
+            Hole {
+                // The spindle is an axis in the thread: where SDAC does not turn it, it stands.
+                turning: Some([turning, behind(arguments, 7).unwrap_or(Turning::Off)]),
+                ..hole
+            }
         }
-        "CYCLE840" => thread(arguments, hole, 11, [around.speed; 2])?,
+        "CYCLE840" => {
+            let hole = thread(arguments, hole, 11, [around.speed; 2])?;
+            let turning = match hole.kind {
+                CycleKind::TapLeft => Turning::CounterClockwise,
+                _ => Turning::Clockwise,
+            };
+            Hole {
+                turning: behind(arguments, 8).map(|behind| [turning, behind]),
+                ..hole
+            }
+        }
         "CYCLE85" => Hole {
             kind: CycleKind::Ream,
             wait: arguments.wait(6),
@@ -183,6 +203,16 @@ fn made(arguments: &Arguments<'_>, hole: Hole, around: &Around) -> Result<Hole, 
         _ => return Err(arguments.refuse("this cycle is not known")),
     };
     Ok(hole)
+}
+
+/// SDAC: what the spindle does when the cycle is over.
+fn behind(arguments: &Arguments<'_>, place: usize) -> Option<Turning> {
+    match arguments.given(place) {
+        Some(3.0) => Some(Turning::Clockwise),
+        Some(4.0) => Some(Turning::CounterClockwise),
+        Some(5.0) => Some(Turning::Off),
+        _ => None,
+    }
 }
 
 /// FFR and RFF: without them the feed in force.

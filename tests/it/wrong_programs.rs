@@ -1,0 +1,305 @@
+//! Programs that crash or spoil: posted, changed as a hand or another post would, and held against their CL file. Each
+//! unchanged one is right; of each changed one the fault is named.
+
+use std::fs;
+
+use crate::common::post;
+
+/// Taps between drilling and reaming, at 600/min.
+const HOLES: &str = "\
+TOOL PATH/A,TOOL,T1
+LOAD/TOOL,1,ADJUST,1
+SPINDL/RPM,600,CLW
+RAPID
+GOTO/0,0,60,0,0,1
+CYCLE/TAP,RAPTO,3,FEDTO,-12,MMPR,1.25,RTRCTO,20
+GOTO/0,70,0
+GOTO/20,70,0
+CYCLE/OFF
+CYCLE/REAM,RAPTO,3,FEDTO,-12,MMPM,120
+GOTO/0,80,0
+GOTO/20,80,0
+CYCLE/OFF
+CYCLE/DRILL,RAPTO,3,FEDTO,-12,MMPM,120,RTRCTO,25,DWELL,0.5
+GOTO/0,90,0
+GOTO/40,90,0
+CYCLE/OFF
+RAPID
+GOTO/0,0,60
+END-OF-PATH
+FINI
+";
+
+/// A contour with cutter compensation, the register that of the tool.
+const CONTOUR: &str = "\
+TOOL PATH/A,TOOL,T5
+LOAD/TOOL,5,ADJUST,5
+SPINDL/RPM,3000,CLW
+RAPID
+GOTO/-20,-20,60,0,0,1
+RAPID
+GOTO/-20,-20,2
+FEDRAT/MMPM,600
+GOTO/-20,-20,-5
+CUTCOM/LEFT
+GOTO/0,0,-5
+GOTO/0,40,-5
+GOTO/40,40,-5
+CUTCOM/OFF
+GOTO/60,60,-5
+RAPID
+GOTO/60,60,60
+END-OF-PATH
+FINI
+";
+
+/// The same tool turns the other way and faster in the second operation.
+const REVERSED: &str = "\
+TOOL PATH/A,TOOL,T1
+LOAD/TOOL,1,ADJUST,1
+SPINDL/RPM,3000,CCLW
+RAPID
+GOTO/0,0,60,0,0,1
+FEDRAT/MMPM,600
+GOTO/0,0,20
+GOTO/10,0,20
+RAPID
+GOTO/10,0,60
+END-OF-PATH
+TOOL PATH/B,TOOL,T1
+SPINDL/RPM,7500,CLW
+RAPID
+GOTO/0,0,60
+FEDRAT/MMPM,600
+GOTO/0,0,20
+GOTO/10,5,20
+RAPID
+GOTO/10,0,60
+END-OF-PATH
+FINI
+";
+
+/// What changes in a program: every occurrence of the first text becomes the second.
+type Change<'a> = (&'a str, &'a str);
+
+/// A job on the library's `vmc` in one of its dialects.
+struct Posted {
+    folder: tempfile::TempDir,
+    dialect: &'static str,
+    text: String,
+}
+
+impl Posted {
+    fn new(cl: &str, dialect: &'static str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let posted = Self {
+            folder,
+            dialect,
+            text: String::new(),
+        };
+        fs::write(posted.path("part.cls"), cl).unwrap();
+        let (cl, nc) = (posted.path("part.cls"), posted.path("part.nc"));
+        let job = ["-m", "vmc", "--tool-length", "100", "--dialect", dialect];
+        let run = post(&[&["-q", "--verify", "-o", &nc, &cl][..], &job].concat());
+        assert_eq!(run.code, 0, "{dialect}: {}", run.err);
+        let text = fs::read_to_string(&nc).unwrap();
+        Self { text, ..posted }
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.folder.path().join(name).to_str().unwrap().to_owned()
+    }
+
+    fn verify(&self, text: &str, more: &[&str]) -> crate::common::Run {
+        let (cl, nc) = (self.path("part.cls"), self.path("changed.nc"));
+        fs::write(&nc, text).unwrap();
+        let job = [
+            "-m",
+            "vmc",
+            "--tool-length",
+            "100",
+            "--dialect",
+            self.dialect,
+        ];
+        post(&[&["verify", "-q", &nc, "--against", &cl][..], &job, more].concat())
+    }
+
+    /// The unchanged program is right; with the change the message is told, as an error or as a warning.
+    fn told(&self, (from, to): Change<'_>, message: &str) {
+        let right = self.verify(&self.text, &[]);
+        assert_eq!(right.code, 0, "{}: {}", self.dialect, right.err);
+        assert!(!right.err.contains(message), "{}", right.err);
+        assert!(self.text.contains(from), "{from} in\n{}", self.text);
+        let changed = self.verify(&self.text.replace(from, to), &[]);
+        assert!(
+            changed.err.contains(message),
+            "{} {from} -> {to}: {}\n{}",
+            self.dialect,
+            changed.err,
+            self.text
+        );
+        let error = message.starts_with("error");
+        assert_eq!(changed.code, i32::from(error), "{from} -> {to}");
+    }
+}
+
+/// Behind M29 and G84 the spindle stands until S and M3: without them the reamer is pushed in as it stands.
+#[test]
+fn the_spindle_stands_behind_a_rigid_tap() {
+    let fanuc = Posted::new(HOLES, "fanuc");
+    let (tap, rest) = fanuc.text.split_once("M29 S600\n").unwrap();
+    let again = rest.replacen("S600 M3\n", "", 1);
+    assert_ne!(again, rest);
+    let changed = fanuc.verify(&format!("{tap}M29 S600\n{again}"), &[]);
+    assert!(
+        changed
+            .err
+            .contains("error[spindle]: the spindle stands in a cut"),
+        "{}",
+        changed.err
+    );
+    // By a chuck that gives way the control turns it again itself.
+    let floating = again.replace("M3 S600", "");
+    let changed = fanuc.verify(&format!("{tap}{floating}"), &[]);
+    assert_eq!(changed.code, 0, "{}", changed.err);
+}
+
+/// SDAC, the seventh argument of CYCLE84: 3 clockwise, 4 counter-clockwise, 5 stands.
+#[test]
+fn behind_a_thread_the_spindle_does_what_its_cycle_says() {
+    let siemens = Posted::new(HOLES, "siemens");
+    let of = |sdac: &str| format!("CYCLE84(20,0,3,-12,,0,{sdac},");
+    let turns = "error[spindle]: the spindle turns counter-clockwise at 600/min in a cut";
+    siemens.told((&of("3"), &of("4")), turns);
+    let stands = "error[spindle]: the spindle stands in a cut";
+    siemens.told((&of("3"), &of("5")), stands);
+    siemens.told((&of("3"), &of("")), stands);
+}
+
+#[test]
+fn the_feed_out_of_a_reamed_hole_is_that_of_the_cl_file() {
+    let fast = "error[feed]: the feed is above that of the CL file, 120 mm/min: 1200.0 mm/min";
+    let siemens = Posted::new(HOLES, "siemens");
+    siemens.told((",0,120,120)", ",0,120,1200)"), fast);
+    let heidenhain = Posted::new(HOLES, "heidenhain");
+    heidenhain.told(("Q208=+120 ", "Q208=+1200 "), fast);
+}
+
+#[test]
+fn a_hole_is_made_once() {
+    let fanuc = Posted::new(HOLES, "fanuc");
+    let once = "error[hole]: a hole is made once more";
+    fanuc.told(("\nX40.000\n", "\nX40.000\nX40.000\n"), once);
+    let siemens = Posted::new(HOLES, "siemens");
+    let second = siemens.text.rmatches("X20.000 Y80.000\n").next().unwrap();
+    siemens.told((second, &second.repeat(2)), once);
+}
+
+/// P beside G81 says nothing: the hole has no wait at its bottom.
+#[test]
+fn a_drilling_cycle_without_a_wait_does_not_wait() {
+    let fanuc = Posted::new(HOLES, "fanuc");
+    fanuc.told(
+        ("G82 ", "G81 "),
+        "error[event]: a dwell of 0.5 s at the bottom of a hole is left out",
+    );
+}
+
+#[test]
+fn a_contour_has_its_radius_register() {
+    let fanuc = Posted::new(CONTOUR, "fanuc");
+    let none = "error[register]: cuts with radius compensation and no radius register, and the CL file asks for 5";
+    fanuc.told(("G41 D5", "G41"), none);
+    // LinuxCNC takes the radius of the tool in the spindle.
+    let linuxcnc = Posted::new(CONTOUR, "linuxcnc");
+    let changed = linuxcnc.verify(&linuxcnc.text.replace("G41 D5", "G41"), &[]);
+    assert_eq!(changed.code, 0, "{}", changed.err);
+}
+
+/// Where the CL file names no work offset, that of the machine file's dialect is meant.
+#[test]
+fn the_work_offset_is_that_of_the_machine_file() {
+    let wrong = |name: &str, meant: &str| {
+        format!(
+            "error[work-offset]: cuts in {name}: the CL file names no work offset, and that of the machine file is {meant}"
+        )
+    };
+    let changes = [
+        ("fanuc", "G54\n", "G55\n", "G55", "G54"),
+        ("haas", "G54\n", "G154 P5\n", "G154 P5", "G54"),
+        ("siemens", "G54\n", "G500\n", "G500", "G54"),
+        (
+            "heidenhain",
+            "Q339=+1 ",
+            "Q339=+2 ",
+            "CYCL DEF 247 Q339=2",
+            "CYCL DEF 247 Q339=1",
+        ),
+    ];
+    for (dialect, from, to, name, meant) in changes {
+        let posted = Posted::new(CONTOUR, dialect);
+        posted.told((from, to), &wrong(name, meant));
+        let changed = posted.text.replace(from, to);
+        let ignored = posted.verify(&changed, &["--ignore", "work-offset"]);
+        assert_eq!(ignored.code, 0, "{dialect}: {}", ignored.err);
+    }
+    let fanuc = Posted::new(CONTOUR, "fanuc");
+    fanuc.told(
+        ("G54\n", ""),
+        "error[work-offset]: cuts in no work offset that the program names",
+    );
+    let of_option = fanuc.verify(
+        &fanuc.text.replace("G54\n", "G55\n"),
+        &["--set", "dialect.fanuc.work_offset=G55"],
+    );
+    assert_eq!(of_option.code, 0, "{}", of_option.err);
+}
+
+/// A CL file that names its work offsets is kept to, by all names that a control has for them.
+#[test]
+fn the_work_offset_that_the_cl_file_names_is_kept_to() {
+    let named = CONTOUR.replace(
+        "RAPID\nGOTO/-20,-20,60",
+        "SET/OFSETL,2\nRAPID\nGOTO/-20,-20,60",
+    );
+    for (dialect, from, to) in [
+        ("fanuc", "G55\n", "G54.1 P2\n"),
+        ("siemens", "G55\n", "G500\n"),
+        ("okuma", "G15 H2\n", "G15 H3\n"),
+    ] {
+        let posted = Posted::new(&named, dialect);
+        posted.told((from, to), "error[work-offset]: cuts in");
+    }
+}
+
+#[test]
+fn smoothing_beyond_the_tolerance_is_told() {
+    let siemens = Posted::new(CONTOUR, "siemens");
+    let more =
+        "warning[smoothing]: the control may leave the path by 1 mm, and the tolerance is 0.005 mm";
+    siemens.told(("G54\n", "G54\nCYCLE832(1,3,1)\n"), more);
+    let linuxcnc = Posted::new(CONTOUR, "linuxcnc");
+    let text = linuxcnc.text.replacen("G61\n", "G64 P1\n", 1);
+    assert_ne!(text, linuxcnc.text);
+    let changed = linuxcnc.verify(&text, &[]);
+    assert!(changed.err.contains(more), "{}", changed.err);
+}
+
+/// `S7500` turns the spindle as it turned before until the block behind it says how: nothing has moved in between.
+#[test]
+fn a_spindle_that_is_reversed_at_another_speed_is_right() {
+    for dialect in ["fanuc", "siemens", "heidenhain"] {
+        let posted = Posted::new(REVERSED, dialect);
+        let right = posted.verify(&posted.text, &[]);
+        assert_eq!(right.code, 0, "{dialect}: {}", right.err);
+    }
+    let fanuc = Posted::new(REVERSED, "fanuc");
+    let burst = fanuc.text.replace("S7500 M3", "S30000 M3\nS7500 M3");
+    assert_ne!(burst, fanuc.text);
+    let changed = fanuc.verify(&burst, &[]);
+    assert!(
+        changed.err.contains("at 30000/min with this tool"),
+        "{}",
+        changed.err
+    );
+}

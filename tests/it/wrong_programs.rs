@@ -250,7 +250,7 @@ fn the_work_offset_is_that_of_the_machine_file() {
     );
     let of_option = fanuc.verify(
         &fanuc.text.replace("G54\n", "G55\n"),
-        &["--set", "dialect.fanuc.work_offset=G55"],
+        &["--set", "control.fanuc.work_offset=G55"],
     );
     assert_eq!(of_option.code, 0, "{}", of_option.err);
 }

@@ -265,7 +265,6 @@ fn the_work_offset_that_the_cl_file_names_is_kept_to() {
     for (dialect, from, to) in [
         ("fanuc", "G55\n", "G54.1 P2\n"),
         ("siemens", "G55\n", "G500\n"),
-        ("okuma", "G15 H2\n", "G15 H3\n"),
     ] {
         let posted = Posted::new(&named, dialect);
         posted.told((from, to), "error[work-offset]: cuts in");

@@ -91,7 +91,8 @@ impl Part {
             planned,
             solutions: false,
             any_coolant: false,
-            any_work_offset: false,
+            // It was written in this run, or lines of the user's have another.
+            any_work_offset: true,
             own: true,
             lines: self.lines.clone(),
         };

@@ -284,8 +284,7 @@ pub fn hold<C: Course, R: Read + Seek>(
             None => offsets.clone(),
         }),
         radius_registers: has_letter(&spoken.words, "D", Meaning::RadiusRegister),
-        // Posting has written its own, or lines of the user's another.
-        work_offset: match reading.any_work_offset || reading.own {
+        work_offset: match reading.any_work_offset {
             true => None,
             false => work_offset(reading.finder, machine, &spoken.words),
         },
@@ -352,6 +351,13 @@ pub fn hold<C: Course, R: Read + Seek>(
     progress.finish();
     let report = program.report();
     findings.extend(report.notes.iter().cloned());
+    if let Some((line, axes)) = &report.unsaid {
+        let message = format!(
+            "the program cuts before it says where {axes} stands: where the machine has it then is not known"
+        );
+        let place = Place::new(name, *line, "", 0..0);
+        findings.push(Diagnostic::error("missing", message).at(Some(place)));
+    }
     for (word, count, line) in report.unknown.iter().take(MOST_UNREAD) {
         let message = format!("{word} is not known and is taken to move nothing; {count} times");
         let place = Place::new(name, *line, "", 0..0);

@@ -302,3 +302,114 @@ fn a_spindle_that_is_reversed_at_another_speed_is_right() {
         changed.err
     );
 }
+
+/// A slot, then holes behind it.
+const SLOT: &str = "\
+TOOL PATH/A,TOOL,T1
+LOAD/TOOL,1,ADJUST,1
+SPINDL/RPM,3000,CLW
+RAPID
+GOTO/0,0,60,0,0,1
+RAPID
+GOTO/0,0,2
+FEDRAT/MMPM,600
+GOTO/0,0,-5
+GOTO/40,0,-5
+CYCLE/DRILL,RAPTO,3,FEDTO,-8,MMPM,200
+GOTO/0,50,0
+GOTO/20,50,0
+CYCLE/OFF
+RAPID
+GOTO/0,0,70
+END-OF-PATH
+FINI
+";
+
+/// Up first, then across: neither from a slot to the first hole at its depth, nor from hole to hole below the level of
+/// return, where clamps are.
+#[test]
+fn no_rapid_goes_across_to_a_hole_lower_than_the_cl_file() {
+    let low = |by: &str| {
+        format!("error[rapid]: a rapid goes to the next hole {by} mm lower than the CL file's")
+    };
+    let slot = Posted::new(SLOT, "fanuc");
+    slot.told(("G0 Z3.000\nX0.000", "G0 X0.000"), &low("8.000"));
+    let clamped = SLOT.replace("MMPM,200", "MMPM,200,RTRCTO,30");
+    let fanuc = Posted::new(&clamped, "fanuc");
+    fanuc.told(("G98 ", "G99 "), &low("27.000"));
+    let siemens = Posted::new(&clamped, "siemens");
+    siemens.told(("CYCLE81(30,", "CYCLE81(3,"), &low("27.000"));
+    let heidenhain = Posted::new(&clamped, "heidenhain");
+    heidenhain.told(("Q204=+30 ", "Q204=+3 "), &low("27.000"));
+}
+
+/// Where the machine has its axes before the program says it is not known: without its first X and Y it cuts anywhere.
+#[test]
+fn the_place_at_the_start_is_not_known() {
+    let unsaid = "error[missing]: the program cuts before it says where X, Y stands";
+    for (dialect, first) in [
+        ("fanuc", "G0 X0.000 Y0.000\nG43"),
+        ("haas", "G0 X0.000 Y0.000\nG43"),
+    ] {
+        let slot = Posted::new(SLOT, dialect);
+        slot.told((first, "G43"), unsaid);
+    }
+    let heidenhain = Posted::new(SLOT, "heidenhain");
+    heidenhain.told(("L X+0.000 Y+0.000 R0 FMAX\n", "L R0 FMAX\n"), unsaid);
+}
+
+/// The tool dives through the part while the table turns beneath it.
+#[test]
+fn a_rapid_that_turns_an_axis_goes_no_deeper_than_the_cl_file() {
+    let cl = "\
+TOOL PATH/A,TOOL,T1
+LOAD/TOOL,1,ADJUST,1
+SPINDL/RPM,8000,CLW
+RAPID
+GOTO/0,0,70,0,0,1
+RAPID
+GOTO/0,0,30,0,0,1
+FEDRAT/MMPM,800
+GOTO/5,0,25,0.1,0,0.994987
+GOTO/15,5,25,0.3,0.1,0.948683
+RAPID
+GOTO/30,8,60,0.3,0.1,0.948683
+END-OF-PATH
+FINI
+";
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (cl_file, nc) = (path("part.cls"), path("part.nc"));
+    fs::write(&cl_file, cl).unwrap();
+    let job = [
+        "-m",
+        "ac-trunnion",
+        "--tool-length",
+        "100",
+        "--set",
+        "control.tcp=control",
+    ];
+    let run = post(&[&["-q", "-o", &nc, &cl_file][..], &job].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let text = fs::read_to_string(&nc).unwrap();
+    let verify = |text: &str| {
+        fs::write(&nc, text).unwrap();
+        post(&[&["verify", "-q", &nc, "--against", &cl_file][..], &job].concat())
+    };
+    let right = verify(&text);
+    assert_eq!(right.code, 0, "{}", right.err);
+    let lines: Vec<&str> = text.lines().collect();
+    let first_cut = lines.iter().position(|line| line.contains("G1 ")).unwrap();
+    let mut dives = lines.clone();
+    dives.splice(
+        first_cut..first_cut,
+        ["X-8. Y-8. Z-30. C270.", "X0. Y0. Z30. C0."],
+    );
+    let wrong = verify(&(dives.join("\n") + "\n"));
+    assert!(
+        wrong.err.contains("error[rapid]"),
+        "{}\n{}",
+        wrong.err,
+        dives.join("\n")
+    );
+}

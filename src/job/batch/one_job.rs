@@ -256,7 +256,8 @@ impl OneJob<'_> {
             planned: self.study.options.plan,
             solutions: false,
             any_coolant: false,
-            any_work_offset: false,
+            // It was written in this run, or lines of the user's have another.
+            any_work_offset: true,
             own: true,
             lines: None,
         };

@@ -70,6 +70,11 @@ pub struct VerifyArguments {
     #[command(flatten)]
     report: ReportArguments,
 
+    /// The program was posted for this machine file, and is held to what posting promises of its rapids besides: rotary
+    /// axes turn where the tool is retracted or on its line, and it is retracted wherever a tool is changed and at the end.
+    #[arg(long)]
+    posted: bool,
+
     /// The feed was planned (`post --plan`): it may be below that of the CL file.
     #[arg(long)]
     planned: bool,
@@ -148,7 +153,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         solutions: arguments.map.is_some(),
         any_coolant: arguments.ignore.contains(&Ignored::Coolant),
         any_work_offset: arguments.ignore.contains(&Ignored::WorkOffset),
-        own: false,
+        own: arguments.posted,
         lines: None,
     };
     let once_more = Again {

@@ -110,6 +110,8 @@ impl Control {
                 corners: Corners::Unsaid,
             },
             shared: None,
+            said: 0,
+            fed: false,
             at: Stance::default(),
             turns: Turns::default(),
             ended: false,

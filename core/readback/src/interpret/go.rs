@@ -85,7 +85,11 @@ impl Control {
         kind: MotionKind,
         point: Vector3<f64>,
     ) -> Result<(), Box<Diagnostic>> {
-        self.go(kind, &Path::Straight, &Target::point(point))
+        // It says nothing that was not known of the others.
+        let said = self.said;
+        let went = self.go(kind, &Path::Straight, &Target::point(point));
+        self.said = said;
+        went
     }
 
     /// Goes to `target`.
@@ -97,6 +101,7 @@ impl Control {
         target: &Target,
     ) -> Result<(), Box<Diagnostic>> {
         let from = self.at;
+        self.says(target);
         let tips = self.tip_words();
         if let Some(vector) = target.vector {
             self.aim(target, vector)?;
@@ -124,6 +129,30 @@ impl Control {
         };
         self.moved(kind, way, from);
         Ok(())
+    }
+
+    /// Remembers which axes the program has led somewhere.
+    fn says(&mut self, target: &Target) {
+        self.said |= target.said;
+        for (row, place) in self.axes.cartesian.iter().enumerate() {
+            if let (Some(_), Some(place)) = (target.point[row], place) {
+                self.said |= 1 << place;
+            }
+        }
+    }
+
+    /// The first motion at feed: have all linear axes been led somewhere?
+    #[cold]
+    fn look_where_it_begins(&mut self) {
+        self.fed = true;
+        let unsaid = self.axes.cartesian.iter().flatten();
+        let unsaid = unsaid.filter(|place| self.said & (1 << **place) == 0);
+        let names: Vec<&str> = unsaid
+            .map(|place| self.machine.axes[*place].name.as_str())
+            .collect();
+        if !names.is_empty() {
+            self.report.unsaid = Some((self.line, names.join(", ")));
+        }
     }
 
     /// Brings the axes to `joints` (mm and radians from the drawing's zeros), all linearly: the turn to a tilted plane.
@@ -394,6 +423,9 @@ impl Control {
         let arc = matches!(way, Way::Arc { .. } | Way::Spline(_));
         if from.joints == self.at.joints && !arc {
             return;
+        }
+        if kind != MotionKind::Rapid && !self.fed {
+            self.look_where_it_begins();
         }
         let (feed, minutes) = self.timed(kind, &way, &from, &self.at);
         let state = self.hand_on_state();

@@ -87,6 +87,7 @@ impl Control {
         said: u32,
     ) -> Result<(), Box<Diagnostic>> {
         self.in_machine = true;
+        self.said |= said;
         // A control whose kinematics are switched has no other coordinates than those of the tip then.
         let went = if self.state.tcp && self.lexicon.language() == Language::Rs274 {
             self.go_world(kind, joints, said)

@@ -84,6 +84,9 @@ pub struct ReadReport {
     pub unknown: Vec<(String, u64, u64)>,
     /// What was taken for granted.
     pub notes: Vec<Diagnostic>,
+    /// The line of the first motion at feed, if the program has not said before where these linear axes stand: it is taken
+    /// to begin with them at zero.
+    pub unsaid: Option<(u64, String)>,
 }
 
 /// Runs blocks one by one.

@@ -58,6 +58,10 @@ pub(super) struct Control {
     pub state: State,
     /// `state` as it was handed on last; none if it has changed since.
     pub(super) shared: Option<Arc<State>>,
+    /// Bits of the places of axes of which the program has said where they go.
+    pub said: u32,
+    /// Something was fed.
+    pub fed: bool,
     /// Where the machine stands.
     pub at: Stance,
     /// Sines and cosines of its joints.

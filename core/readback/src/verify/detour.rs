@@ -205,12 +205,14 @@ impl End {
         {
             return None;
         }
-        if !self.machine && self.turns(machine, slack).is_some() {
-            // While the part turns or the head swings, the linear axes go round with it.
-            return None;
-        }
+        // While the part turns or the head swings, the linear axes go round with it: but the depth goes no deeper than at all
+        // places that are asked for.
+        let goes_round = !self.machine && self.turns(machine, slack).is_some();
         let mut worst: Option<(f64, Astray)> = None;
         for (place, axis) in machine.axes.iter().enumerate() {
+            if goes_round && !is_depth(machine, place) {
+                continue;
+            }
             let rotary = axis.joint.rotary;
             let slack = slack[usize::from(rotary)];
             let value = self.joints[place];
@@ -228,7 +230,7 @@ impl End {
             };
             asked.iter().for_each(|(joints, _)| allow(joints[place]));
             let [least, most] = span(asked, place);
-            if between || self.machine {
+            if between || self.machine || goes_round {
                 allow(value.clamp(least, most.max(least)));
             }
             let frame = &machine.frame;

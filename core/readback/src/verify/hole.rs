@@ -52,19 +52,6 @@ pub(super) struct Made {
     cycle: bool,
 }
 
-impl Made {
-    /// A place on its axis or above it, mm of slack.
-    pub fn is_above(&self, place: &Place, slack: f64) -> bool {
-        self.axis.split(place).1.point <= slack
-    }
-
-    /// It has another direction than `up`, or lies on the line through `foot` along it.
-    pub fn stands_on(&self, foot: Vector3<f64>, up: Vector3<f64>, slack: f64) -> bool {
-        let offset = self.axis.top.point - foot;
-        (self.axis.top.axis - up).norm() > 1e-9 || (offset - up * offset.dot(&up)).norm() <= slack
-    }
-}
-
 /// The axis of a hole, from the level where the feed begins.
 #[derive(Clone, Copy, Debug)]
 struct Axis {

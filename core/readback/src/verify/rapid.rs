@@ -24,6 +24,7 @@ impl<C: Course> Verifier<'_, C> {
         let led = asked || self.leads_past(end);
         let follows = self.keeps_to_the_way(motion, places);
         let was_known = self.placed;
+        self.look_how_low(motion, places);
         self.pass(motion, places);
         self.apart = true;
         let known = self.placed;
@@ -36,9 +37,6 @@ impl<C: Course> Verifier<'_, C> {
             if !asked {
                 self.look_where_it_ends(motion, end);
             }
-        }
-        if self.rules.own {
-            self.look_how_low(motion, places);
         }
         // Where a rapid comes from that leads to the course first of all, nothing has asked for.
         let known = if self.rules.own { was_known } else { known };
@@ -86,10 +84,11 @@ impl<C: Course> Verifier<'_, C> {
         false
     }
 
-    /// Between holes along the same axis a posted program goes across no lower than the CL file does.
+    /// To the first hole and from one to the next along the same axis, no rapid goes across lower than the CL file does: up
+    /// first, then across.
     fn look_how_low(&mut self, motion: &Motion, places: &[Place]) {
         let slack = self.rapid_bound.point;
-        let (Some(made), Some(index)) = (self.made, self.next) else {
+        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
             return;
         };
         let Some(due) = self.track.get(index) else {
@@ -99,20 +98,26 @@ impl<C: Course> Verifier<'_, C> {
             return;
         };
         let (foot, up, line) = (due.from.point, due.from.axis, due.line);
+        let upright = |place: &Place| (place.axis - up).norm() <= RAPID_TURN;
         let height = |place: &Place| (place.point - foot).dot(&up);
-        let across = |place: &Place| {
-            let offset = place.point - foot;
-            (offset - up * offset.dot(&up)).norm() > slack
+        let across = |[from, to]: [&Place; 2]| {
+            let way = to.point - from.point;
+            (way - up * way.dot(&up)).norm() > slack
         };
-        let ways = hole.approach.iter();
-        let ways = ways.filter(|ends| ends.iter().any(across));
-        let asked = ways.flatten().map(height).fold(f64::INFINITY, f64::min);
-        if !asked.is_finite() || made.stands_on(foot, up, slack) {
+        let lowest = |[from, to]: [&Place; 2]| height(from).min(height(to));
+        // What the course crosses by leaning the tool it crosses at heights of its own.
+        if !hole.approach.iter().flatten().all(upright) || !places.iter().all(upright) {
             return;
         }
-        let off = places.iter().filter(|place| across(place));
-        let off = off.filter(|place| !made.is_above(place, slack));
-        let low = off.map(height).fold(f64::INFINITY, f64::min);
+        let ways = hole.approach.iter().map(|[from, to]| [from, to]);
+        let asked = ways.filter(|ends| across(*ends)).map(lowest);
+        let asked = asked.fold(f64::INFINITY, f64::min);
+        if !asked.is_finite() {
+            return;
+        }
+        let ways = places.windows(2).map(|ends| [&ends[0], &ends[1]]);
+        let low = ways.filter(|ends| across(*ends)).map(lowest);
+        let low = low.fold(f64::INFINITY, f64::min);
         if low < asked - slack {
             let by = asked - low;
             let message =

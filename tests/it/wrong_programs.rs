@@ -413,3 +413,32 @@ FINI
         dives.join("\n")
     );
 }
+
+/// Right ones that were refused: a plan that comes to rest at the end of a cut by ways shorter than a rounding, and a first
+/// retract that comes from where nobody knows.
+#[test]
+fn a_plan_that_comes_to_rest_and_a_first_retract_are_right() {
+    let folder = tempfile::tempdir().unwrap();
+    let nc = folder.path().join("part.nc");
+    let nc = nc.to_str().unwrap();
+    for job in [
+        &[
+            "-m",
+            "xyzbc-trt",
+            "--plan",
+            "--tool-length",
+            "60",
+            "tests/it/wrong_programs/planned.cls",
+        ][..],
+        &[
+            "-m",
+            "head-head",
+            "--tool-length",
+            "100",
+            "tests/it/wrong_programs/heads.cls",
+        ],
+    ] {
+        let run = post(&[&["-q", "--verify", "-o", nc][..], job].concat());
+        assert_eq!(run.code, 0, "{job:?}: {}", run.err);
+    }
+}

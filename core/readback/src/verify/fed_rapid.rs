@@ -40,7 +40,13 @@ impl<C: Course> Verifier<'_, C> {
         };
         let bound = self.rapid_bound;
         let (from, to) = (&places[0], &places[places.len() - 1]);
+        let cut = self.bound;
+        let mut stays = false;
         let due = self.track.get(index).is_some_and(|element| {
+            // The end of the cut before, as it is rounded.
+            stays = [from, to]
+                .iter()
+                .all(|place| place.within(&element.from, &cut));
             let mut bound = bound;
             if element.from.axis != element.to.axis {
                 // How the axis goes from one end to the other is not asked for.
@@ -54,7 +60,9 @@ impl<C: Course> Verifier<'_, C> {
             return false;
         }
         let cl_line = self.track.get(index).map_or(0, |element| element.line);
-        self.rapid_at_feed(motion, cl_line);
+        if !stays {
+            self.rapid_at_feed(motion, cl_line);
+        }
         self.set_kind("rapid");
         self.rapid(motion, places);
         true

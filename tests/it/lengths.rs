@@ -184,6 +184,16 @@ fn a_head_whose_tool_lies_across_the_compensated_axis_answers_for_it_or_is_refus
         made.err
     );
     assert!(text.contains("M62"), "{text}");
+    // Who sets the machine up is told what to enter.
+    let folder = tempfile::tempdir().unwrap();
+    let sheet = ["--setup-sheet", "sheet.md"];
+    both(folder.path(), HEADS, &swapped("ANGLE"), &sheet);
+    let sheet = fs::read_to_string(folder.path().join("sheet.md")).unwrap();
+    assert!(
+        sheet.contains("Length registers with head ANGLE")
+            && sheet.contains("| 0, not the length below"),
+        "{sheet}"
+    );
     // The control has one length of a tool.
     let same = swapped("ANGLE").replace("LOADTL/2\n", "");
     let said = refused(HEADS, &same, &[]);
@@ -462,4 +472,26 @@ fn a_spindle_that_waits_turns_before_whatever_cuts() {
     );
     let again = text.rfind("S15000 M3").expect(&text);
     assert!(again < text.find("G3 ").expect(&text), "{text}");
+}
+
+/// At rapid into a slot, and where lines of the user's own run, the spindle of a tool without a speed of its own turns.
+#[test]
+fn a_spindle_that_waits_turns_before_the_tool_goes_in() {
+    let tail = LATE.find("SPINDL/RPM,800").unwrap();
+    let dive = format!(
+        "{}RAPID\nGOTO/-20,10,40\nFEDRAT/600,MMPM\nGOTO/20,10,40\nRAPID\nGOTO/20,10,50\nEND\nFINI\n",
+        &LATE[..tail]
+    );
+    let machine = "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n";
+    let (_, text) = good(machine, &dive, &LONG);
+    let again = text.rfind("S15000 M3").expect(&text);
+    assert!(again < text.find("Z40.").expect(&text), "{text}");
+    let called = format!("{}MYCYC\nEND\nFINI\n", &LATE[..tail]);
+    let machine = format!("{machine}[cl.words]\nMYCYC = \"M98 P7000\"\n");
+    let named = [&LONG[..], &["--allow", "MYCYC"]].concat();
+    let folder = tempfile::tempdir().unwrap();
+    let (made, text, _) = both(folder.path(), &machine, &called, &named);
+    assert_eq!(made.code, 0, "{}", made.err);
+    let again = text.rfind("S15000 M3").expect(&text);
+    assert!(again < text.find("M98 P7000").expect(&text), "{text}");
 }

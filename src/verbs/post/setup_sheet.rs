@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use post_machine::description::{Machine, OptionValue, OutputUnits};
+use post_machine::description::{LengthAxis, Machine, OptionValue, OutputUnits};
 use post_posting::LookedAhead;
 use post_posting::program::Tool;
 use post_posting::report::{LengthSource, Report};
@@ -79,7 +79,16 @@ fn the_machine(
         }
         .to_owned(),
     );
+    if machine.length_axis == LengthAxis::None {
+        row("Length registers", NO_LENGTH.to_owned());
+    }
     for head in &machine.heads {
+        if head.machine.length_axis == LengthAxis::None && machine.length_axis != LengthAxis::None {
+            row(
+                &format!("Length registers with head {}", head.name),
+                NO_LENGTH.to_owned(),
+            );
+        }
         if let Some(offset) = head.offset {
             let name = format!("Work offset of head {}", head.name);
             row(
@@ -156,6 +165,9 @@ fn the_programs(programs: &[(&PathArg, &Report)]) -> Section {
         rows: rows.collect(),
     }
 }
+
+/// What stands in the registers where the control must not put a length along an axis that the tool does not lie along.
+const NO_LENGTH: &str = "0, not the length below: the work offset was measured with the tool in it";
 
 fn the_tools(ahead: &LookedAhead, programs: &[(&PathArg, &Report)]) -> Section {
     let size = |value: Option<f64>| value.map_or("?".to_owned(), |value| number(value, 3));

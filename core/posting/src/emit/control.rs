@@ -104,7 +104,7 @@ impl Emit<'_> {
             refuse(line, &event, "CALSUB", findings);
             return;
         }
-        if self.waits {
+        if self.waits.is_some() {
             self.wake(line, findings);
         }
         self.writer.push(line, event);

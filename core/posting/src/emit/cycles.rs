@@ -144,7 +144,7 @@ impl Emit<'_> {
             self.end_cycle(hole.line);
             self.replay(&hole.above, findings);
         }
-        if self.waits && native.is_some() {
+        if self.waits.is_some() && native.is_some() {
             self.wake(hole.line, findings);
         }
         match native {

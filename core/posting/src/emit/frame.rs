@@ -6,7 +6,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
-use super::{Emit, across, cycles, stands};
+use super::{Emit, FirstPosition, across, cycles, stands};
 use crate::blocks::{Block, Reason};
 use crate::findings::Findings;
 use crate::program::{Pace, Tool};
@@ -205,7 +205,7 @@ impl Emit<'_> {
         }
         self.leave(line);
         self.rest(line);
-        (self.changed, self.waits) = (true, false);
+        (self.changed, self.waits) = (true, None);
         if self.texts.any_tool() {
             self.say(line, TextPlace::BetweenTools);
         }
@@ -256,7 +256,7 @@ impl Emit<'_> {
         // Away first: a spindle that stops in the part tears.
         self.leave(line);
         self.rest(line);
-        (self.changed, self.waits) = (true, false);
+        (self.changed, self.waits) = (true, None);
         self.tool = None;
         self.machine = &head.machine;
         self.words = Words::new(self.machine, self.writer.format());
@@ -315,7 +315,7 @@ impl Emit<'_> {
         self.tell_compensation(findings);
         if self.changed && self.commanded.is_some() && block.pace == Pace::Rapid {
             // The tool's own speed may stand behind its first position.
-            self.waits = true;
+            self.waits = Some(FirstPosition::of(block));
         } else {
             self.wake(line, findings);
         }
@@ -384,7 +384,7 @@ impl Emit<'_> {
 
     /// Spindle and coolant on as the CL file takes them to be.
     pub(super) fn wake(&mut self, line: u64, findings: &Findings) {
-        self.waits = false;
+        self.waits = None;
         if let (false, Some(spindle)) = (self.turning, self.commanded) {
             // The tool change stopped it, and the CL file takes it to be turning.
             self.turning = true;
@@ -428,7 +428,7 @@ impl Emit<'_> {
         self.commanded = on;
         self.changed = false;
         self.writer.push(line, event);
-        if std::mem::take(&mut self.waits) {
+        if self.waits.take().is_some() {
             self.flow(line);
         }
     }

@@ -7,6 +7,7 @@ mod frame;
 mod texts;
 mod writer;
 
+use nalgebra::Vector3;
 use post_machine::axis_words::{self, Words};
 use post_machine::description::{Machine, Smoothing, TextPlace};
 use post_machine::kinematics::Joints;
@@ -49,8 +50,9 @@ pub(crate) struct Emit<'a> {
     commanded: Option<Event<'static>>,
     /// The tool was changed since.
     changed: bool,
-    /// The tool has come near without a speed of its own, and the spindle stands until it has one, or cuts.
-    waits: bool,
+    /// The first position that the tool has come to without a speed of its own: the spindle stands until it has one, or
+    /// goes in.
+    waits: Option<FirstPosition>,
     /// What the CL file last said of coolant.
     coolant: Option<Coolant>,
     /// Coolant was switched off in between.
@@ -129,7 +131,7 @@ impl<'a> Emit<'a> {
             depth_word: cycles::depth_word(machine),
             across: across(machine),
             changed: false,
-            waits: false,
+            waits: None,
             tool: None,
             offset: None,
             told_mount: false,
@@ -213,7 +215,10 @@ impl<'a> Emit<'a> {
     #[inline]
     fn block(&mut self, block: &Block, findings: &Findings) {
         let line = block.line;
-        if self.waits && cuts(block) {
+        if self
+            .waits
+            .is_some_and(|first| cuts(block) || first.goes_in(block))
+        {
             self.wake(line, findings);
         }
         match block.kind {
@@ -347,6 +352,9 @@ impl<'a> Emit<'a> {
             Command::Literal(text) => {
                 // Nobody knows what it does.
                 self.clear = false;
+                if self.waits.is_some() {
+                    self.wake(line, findings);
+                }
                 Event::Literal { text }
             }
             Command::Message(text) if self.writer.knows(Capabilities::MESSAGE) => {
@@ -446,6 +454,32 @@ fn across(machine: &Machine) -> Vec<usize> {
         .map(|(place, _)| place)
         .collect()
 }
+
+/// Where a tool has come to, and of which line of the CL file.
+#[derive(Clone, Copy, Debug)]
+struct FirstPosition {
+    line: u64,
+    tip: Vector3<f64>,
+    axis: Vector3<f64>,
+}
+
+impl FirstPosition {
+    fn of(block: &Block) -> Self {
+        Self {
+            line: block.line,
+            tip: block.tip,
+            axis: block.axis,
+        }
+    }
+
+    /// A block of another line leads below it, along the tool: into a slot, it may be, at rapid.
+    fn goes_in(&self, block: &Block) -> bool {
+        block.line != self.line && (block.tip - self.tip).dot(&self.axis) < -LOWER
+    }
+}
+
+/// A tool that goes less far along its axis stays where it is, mm.
+const LOWER: f64 = 1e-6;
 
 /// At feed, from where the tool stands.
 fn cuts(block: &Block) -> bool {

@@ -58,6 +58,9 @@ const RAPID_TOLERANCE: f64 = 0.5;
 /// So far below its end the depth axis comes over a first position at most, mm.
 const ACROSS: f64 = 50.0;
 
+/// So far out on its own line a tool that leans comes over its first position at most, mm.
+const COMES_IN: f64 = 400.0;
+
 /// What is the same but for the interpolation's last digits, mm or degrees.
 const SAME: f64 = 0.002;
 
@@ -362,10 +365,16 @@ fn judge(machine: &Machine, rows: &[Row], rapids_hold: bool) -> Vec<String> {
                     .collect::<Vec<_>>()
             };
             let on_way = stands(row).iter().any(|(tip, axis)| {
-                paths.iter().flatten().any(|piece| {
-                    off(tip, piece) < RAPID_TOLERANCE
-                        || off(tip, &[piece[1], piece[1] + axis * 101.0]) < RAPID_TOLERANCE
-                })
+                let along = |from: Vector3<f64>, far: f64| {
+                    off(tip, &[from, from + axis * far]) < RAPID_TOLERANCE
+                };
+                let mut first = paths.iter().filter_map(|path| path.first());
+                let comes_in = first.any(|piece| along(piece[1], COMES_IN));
+                comes_in
+                    || paths
+                        .iter()
+                        .flatten()
+                        .any(|piece| off(tip, piece) < RAPID_TOLERANCE || along(piece[1], 101.0))
             });
             let stays = cut_end
                 .is_some_and(|cut| beside(row, &cut) && (row.linear.z - cut.linear.z).abs() < SAME);

@@ -19,7 +19,7 @@ P.path.build = (view) => {
   const vectors = P.choose("Deviation vectors (d, D)", scales.map((by) => (by ? `Vectors × ${by.toLocaleString("en")}` : "No vectors")), scales.indexOf(P.state.scale), (at) => P.set({ scale: scales[at] }));
   const looks = P.choose("Look (v)", P.camera.looks.map(([name]) => name), 0, (at) => P.path.look(at));
   const bar = el("div", { class: "bar" }, el("h2", { id: "path-title" }, "Path"), colours, scene.vectors ? vectors : null, looks, P.button("Fit", "Fit the view (0)", P.path.fit));
-  P.path.canvas = el("canvas", { tabindex: "0", role: "img", "aria-label": "Tool path in three dimensions; the selected block is told in the line at the foot of the page" });
+  P.path.canvas = el("canvas", { tabindex: "0", role: "img", "aria-label": "Tool path in three dimensions; the selected block is told at the foot of the page" });
   P.path.over = el("canvas", { class: "over", "aria-hidden": "true" });
   P.path.legend = el("div", { class: "legend" });
   P.path.notice = el("p", { class: "notice", role: "status", hidden: true });

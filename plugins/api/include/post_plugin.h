@@ -597,10 +597,10 @@ typedef struct {
 /* 2 numbers: Feed of the last approach; none is rapid. */
 #define POST_POSITION_FEED 6u
 /* The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the plane
- * comes first, the depth last. Else (in a tilted plane under a head that leans, or under tool centre point
- * control where the part is turned or the control has no block of its own that begins it) all linear words stand
- * in one block, which leads to a point as high above the part as the machine allows; the next move comes down
- * from there by the depth axis alone. */
+ * comes first, the depth last. Else (in a tilted plane under a head that leans; under tool centre point control
+ * where the tool leans, the part is turned or the control has no block of its own that begins it; where the
+ * machine file says how the tool leaves) all linear words stand in one block. It leads to a point clear of the
+ * part, from which the next moves come in along the tool. */
 #define POST_POSITION_PLANE_FIRST 8u
 /* how many there are, and behind it as many: All axis words, in the order of Setup::words. */
 #define POST_POSITION_WORDS 9u
